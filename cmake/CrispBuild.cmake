@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# How crisp is compiled, written once: every folder is one target made by crisp_library().
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_CXX_VISIBILITY_PRESET default)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
+
+option(CRISP_WARNINGS_AS_ERRORS "Treat warnings as errors" ON)
+set(CRISP_SANITIZE "" CACHE STRING "Sanitizers to build with, as for -fsanitize (address,undefined or thread)")
+
+add_library(crisp_settings INTERFACE)
+target_compile_options(crisp_settings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wimplicit-fallthrough
+  $<$<BOOL:${CRISP_WARNINGS_AS_ERRORS}>:-Werror>)
+if(CRISP_SANITIZE)
+  add_compile_options(-fsanitize=${CRISP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${CRISP_SANITIZE})
+endif()
+
+# crisp_library(<folder's name> [SHARED|STATIC] SOURCES ... [PUBLIC ...] [PRIVATE ...])
+# makes the target crisp_<name> with the alias crisp::<name>. Includes are written from the top of the
+# tree ("pipeline/data/scan.hpp"), here and in an installed package alike.
+function(crisp_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SHARED;STATIC" "" "SOURCES;PUBLIC;PRIVATE")
+  set(kind STATIC)
+  if(arg_SHARED)
+    set(kind SHARED)
+  endif()
+  add_library(crisp_${name} ${kind} ${arg_SOURCES})
+  add_library(crisp::${name} ALIAS crisp_${name})
+  set_target_properties(crisp_${name} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
+                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  target_include_directories(crisp_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/crisp>)
+  target_compile_features(crisp_${name} PUBLIC cxx_std_20)
+  target_link_libraries(crisp_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:crisp_settings>)
+endfunction()
+
+# crisp_test(<name> SOURCES ... LIBRARIES ...) makes one GoogleTest program of a folder's tests.
+function(crisp_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIBRARIES")
+  add_executable(${name}_test ${arg_SOURCES})
+  target_link_libraries(${name}_test PRIVATE ${arg_LIBRARIES} GTest::gmock GTest::gtest_main crisp_settings)
+  target_compile_definitions(${name}_test PRIVATE CRISP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  set_target_properties(${name}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+  gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+endfunction()

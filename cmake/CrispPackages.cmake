@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The packages crisp stands on. A package that only some folders need is still looked for here, so that
+# configuring fails at once, with everything that is missing on one screen.
+
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(yaml-cpp REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(TBB REQUIRED)
+find_package(flann REQUIRED)  # link crisp_flann: the packaged target forgets lz4
+pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)
+pkg_check_modules(PCAP REQUIRED IMPORTED_TARGET libpcap)
+pkg_check_modules(TINS REQUIRED IMPORTED_TARGET libtins)
+
+add_library(crisp_flann INTERFACE IMPORTED GLOBAL)
+target_link_libraries(crisp_flann INTERFACE flann::flann_cpp lz4)
+if(NOT TARGET yaml-cpp::yaml-cpp)  # yaml-cpp 0.7
+  add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
+endif()
+
+if(CRISP_BUILD_TESTS OR PROJECT_IS_TOP_LEVEL)
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+endif()

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/data/calibration.hpp"
+
+#include <algorithm>
+
+namespace crisp {
+
+const LaserCalibration* Calibration::find(const std::string& laser) const {
+  const auto found =
+      std::find_if(lasers.begin(), lasers.end(), [&](const auto& l) { return l.name == laser; });
+  return found == lasers.end() ? nullptr : &*found;
+}
+
+}  // namespace crisp

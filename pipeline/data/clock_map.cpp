@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/data/clock_map.hpp"
+
+#include <algorithm>
+
+namespace crisp {
+
+double ClockMap::to_hub(double device_time) const {
+  auto next = std::upper_bound(pieces.begin(), pieces.end(), device_time,
+                               [](double t, const ClockPiece& piece) { return t < piece.device_begin; });
+  const ClockPiece& piece = next == pieces.begin() ? pieces.front() : *std::prev(next);
+  return piece.hub_begin + piece.rate * (device_time - piece.device_begin);
+}
+
+double ClockMap::skew_ppm(double device_end) const {
+  const double duration = device_end - pieces.front().device_begin;
+  if (duration <= 0) return 1e6 * (pieces.front().rate - 1);
+  double sum = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const double end = i + 1 < pieces.size() ? pieces[i + 1].device_begin : device_end;
+    sum += (pieces[i].rate - 1) * (end - pieces[i].device_begin);
+  }
+  return 1e6 * sum / duration;
+}
+
+}  // namespace crisp

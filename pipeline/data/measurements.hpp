@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace crisp {
+
+/// n measurements in the order of firing, as a struct of arrays of equal length. No calibration is applied,
+/// so that they can be replayed under any. Usually one scan, but any number of beams of any lasers will do.
+struct Measurements {
+  std::int64_t epoch_ns = 0;        ///< [ns since the Unix epoch] zero of `time`; the same for a whole run
+  std::vector<float> range;         ///< [m], > 0: beams without an echo are not here
+  std::vector<float> mirror_angle;  ///< [rad] θ of equation (2): reported angle − mount
+  std::vector<double> time;         ///< [s since epoch] hub time at which the beam was fired (η not applied)
+  std::vector<std::uint16_t> laser;  ///< index of the laser in the rig
+  std::vector<float> remission;      ///< device's units, 0 where unknown
+  std::vector<std::uint16_t> beam;   ///< index of the beam in its scan
+
+  std::size_t size() const { return range.size(); }
+  void reserve(std::size_t n);
+  void append(const Measurements& other);  ///< @throws Error if the epochs differ
+};
+
+}  // namespace crisp

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/data/plate_trajectory.hpp"
+
+#include <algorithm>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+/// Slope at the middle of three points: the derivative of the parabola through them.
+double middle_slope(double t0, double t1, double t2, double y0, double y1, double y2) {
+  const double before = t1 - t0;
+  const double after = t2 - t1;
+  return ((y1 - y0) / before * after + (y2 - y1) / after * before) / (before + after);
+}
+
+std::vector<double> slopes(std::span<const double> t, std::span<const double> y) {
+  const std::size_t n = t.size();
+  std::vector<double> slope(n, 0.0);
+  if (n < 2) return slope;
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    slope[i] = middle_slope(t[i - 1], t[i], t[i + 1], y[i - 1], y[i], y[i + 1]);
+  }
+  slope.front() = (y[1] - y[0]) / (t[1] - t[0]);
+  slope.back() = (y[n - 1] - y[n - 2]) / (t[n - 1] - t[n - 2]);
+  return slope;
+}
+
+}  // namespace
+
+PlateTrajectory::PlateTrajectory(std::int64_t epoch_ns, std::vector<double> times, std::vector<double> angles,
+                                 double max_gap)
+    : epoch_ns_(epoch_ns), times_(std::move(times)), angles_(std::move(angles)), max_gap_(max_gap) {
+  if (times_.size() != angles_.size()) throw Error("a plate trajectory needs one angle for each time");
+  if (std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) != times_.end()) {
+    throw Error("the times of a plate trajectory must ascend");
+  }
+  rates_ = slopes(times_, angles_);
+}
+
+std::optional<PlateState> PlateTrajectory::inside(std::size_t interval, double t) const {
+  const double width = times_[interval + 1] - times_[interval];
+  if (width > max_gap_) return std::nullopt;
+  const double u = (t - times_[interval]) / width;
+  const double rise = angles_[interval + 1] - angles_[interval];
+  const double m0 = rates_[interval] * width;
+  const double m1 = rates_[interval + 1] * width;
+  const double c2 = 3 * rise - 2 * m0 - m1;
+  const double c3 = m0 + m1 - 2 * rise;
+  return PlateState{.angle = angles_[interval] + u * (m0 + u * (c2 + u * c3)),
+                    .rate = (m0 + u * (2 * c2 + u * 3 * c3)) / width};
+}
+
+std::optional<PlateState> PlateTrajectory::at(double t) const {
+  if (times_.size() < 2 || !(t >= times_.front() && t <= times_.back())) return std::nullopt;
+  const auto next = std::upper_bound(times_.begin() + 1, times_.end() - 1, t);
+  return inside(static_cast<std::size_t>(next - times_.begin()) - 1, t);
+}
+
+std::optional<PlateState> PlateTrajectory::Cursor::at(double t) {
+  const auto& times = trajectory_->times_;
+  if (times.size() < 2 || !(t >= times.front() && t <= times.back())) return std::nullopt;
+  constexpr std::size_t kSteps = 16;  // beyond these a bisection is cheaper than walking
+  for (std::size_t step = 0; step < kSteps; ++step) {
+    if (t < times[interval_]) {
+      --interval_;
+    } else if (t > times[interval_ + 1]) {
+      ++interval_;
+    } else {
+      return trajectory_->inside(interval_, t);
+    }
+  }
+  const auto next = std::upper_bound(times.begin() + 1, times.end() - 1, t);
+  interval_ = static_cast<std::size_t>(next - times.begin()) - 1;
+  return trajectory_->inside(interval_, t);
+}
+
+}  // namespace crisp

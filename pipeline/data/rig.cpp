@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/data/rig.hpp"
+
+#include <numbers>
+
+namespace crisp {
+
+Calibration nominal_calibration(const Rig& rig) {
+  Calibration calibration;
+  for (const auto& laser : rig.lasers) {
+    calibration.lasers.push_back(laser.nominal);
+    calibration.lasers.back().name = laser.name;
+  }
+  return calibration;
+}
+
+Rig default_rig() {
+  constexpr double kDegree = std::numbers::pi / 180;
+  Rig rig;
+  for (int i = 0; i < 3; ++i) {
+    RigLaser laser;
+    laser.name = "laser" + std::to_string(i + 1);
+    laser.address = {.ip = "192.168.0." + std::to_string(i + 1), .port = 0};
+    laser.mount = 45 * kDegree;
+    laser.nominal.name = laser.name;
+    laser.nominal.tau.value = 0.20;
+    laser.nominal.lambda.value = i * 120 * kDegree;
+    rig.lasers.push_back(laser);
+  }
+  rig.plate.address = {.ip = "192.168.0.10", .port = 4000};
+  return rig;
+}
+
+}  // namespace crisp

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pipeline/data/calibration.hpp"
+
+namespace crisp {
+
+/// Where a device is reached, or where its packets come from.
+struct Address {
+  std::string ip;          ///< "192.168.0.1"
+  std::uint16_t port = 0;  ///< 0: any
+  bool operator==(const Address&) const = default;
+};
+
+/// One laser of a rig with what is known of it before any calibration.
+struct RigLaser {
+  std::string name;
+  Address address;
+  double mount = 0;          ///< [rad] θ = reported angle − mount
+  double time_offset = 0;    ///< [s] from the scan's stamp to its first possible beam
+  int period_offset = 0;     ///< whole mirror periods between them (−1: the stamp is one period late)
+  LaserCalibration nominal;  ///< the values to start from
+};
+
+/// The plate and its encoder.
+struct RigPlate {
+  std::string name = "plate";
+  Address address;
+  double counts_per_revolution = 16384;
+};
+
+/// The scanner: what is screwed to what, and under which address it speaks.
+struct Rig {
+  std::vector<RigLaser> lasers;
+  RigPlate plate;
+};
+
+/// The calibration that a rig's nominal values make.
+Calibration nominal_calibration(const Rig& rig);
+
+/// The rig of configs/rig.yaml: three LMS-151, τ = 0.20 m, α = 0, λ = 0°, 120°, 240°, η = 0, mount = 45°.
+Rig default_rig();
+
+}  // namespace crisp
