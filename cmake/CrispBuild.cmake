@@ -15,6 +15,7 @@ set(CRISP_SANITIZE "" CACHE STRING "Sanitizers to build with, as for -fsanitize 
 add_library(crisp_settings INTERFACE)
 target_compile_options(crisp_settings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wimplicit-fallthrough
+  -Wno-missing-field-initializers  # designated initialisers leave the rest to the defaults
   $<$<BOOL:${CRISP_WARNINGS_AS_ERRORS}>:-Werror>)
 if(CRISP_SANITIZE)
   add_compile_options(-fsanitize=${CRISP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace crisp {
+
+/// A number with its derivatives with respect to up to eight parameters.
+using Jet = ceres::Jet<double, 8>;
+
+template <class T>
+using Vector3 = Eigen::Matrix<T, 3, 1>;
+
+/// One beam on its way through the chain of the sensor model. T is double or Jet; what the device and the
+/// encoder measured is plain double, what the model makes of it is T. Each phase of the chain may read all
+/// that earlier phases have set:
+///
+/// | phase  | sets                | frame                                                            |
+/// |--------|---------------------|------------------------------------------------------------------|
+/// | time   | time                | the plate's clock                                                |
+/// | plate  | plate_angle         |                                                                  |
+/// | mirror | mirror_angle        |                                                                  |
+/// | beam   | origin, direction   | the laser's: the scan plane is z = 0, θ = 0 along +x             |
+/// | mount  | origin, direction   | the plate's, before the turn by φ + λ: x outwards, z = spin axis |
+/// | base   | origin, direction   | the base's: z = spin axis                                        |
+/// | range  | range               |                                                                  |
+///
+/// The point is origin + range * direction.
+template <class T>
+struct Beam {
+  double measured_range = 0;   ///< [m]
+  double measured_mirror = 0;  ///< [rad] θ
+  double hub_time = 0;         ///< [s since the run's epoch]
+  double remission = 0;        ///< device's units
+  double plate_rate = 0;       ///< [rad/s] at `time`
+  std::uint16_t number = 0;    ///< index in its scan
+
+  T time{};                                   ///< [s since the run's epoch] hub_time + η
+  T plate_angle{};                            ///< [rad] φ at `time`
+  T mirror_angle{};                           ///< [rad] θ
+  Vector3<T> origin = Vector3<T>::Zero();     ///< [m]
+  Vector3<T> direction = Vector3<T>::Zero();  ///< unit vector
+  T range{};                                  ///< [m]
+
+  Vector3<T> point() const { return origin + direction * range; }
+};
+
+}  // namespace crisp

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <concepts>
+#include <optional>
+#include <span>
+
+#include "pipeline/model/equation_two.hpp"
+#include "pipeline/model/sensor_model.hpp"
+
+namespace crisp {
+
+/// Where the plate is, as the chain asks for it: by a trajectory's cursor, or by the simulator's true motion.
+template <class Plate>
+concept PlateMotion = requires(Plate plate, double t) {
+  { plate.at(t) } -> std::convertible_to<std::optional<PlateState>>;
+};
+
+inline double scalar(double value) { return value; }
+inline double scalar(const Jet& value) { return value.a; }
+
+/// Lets the terms of one phase change the beams.
+template <class T>
+void apply_phase(const LaserChain& chain, Phase phase, std::span<const T> parameters,
+                 std::span<Beam<T>> beams) {
+  for (const auto& [term, first] : chain.phases[static_cast<std::size_t>(phase)]) {
+    term->apply(beams, parameters.subspan(first, term->info().parameters.size()));
+  }
+}
+
+/// Takes beams of one laser through the whole chain. Those at whose time the plate is unknown are marked
+/// false in `known` and hold no point.
+///
+/// @param chain       the laser's
+/// @param parameters  in the order of chain.slots
+/// @param beams       with what was measured filled in; the rest is set here
+/// @param plate       φ(t) [rad] on the hub's clock
+template <class T, PlateMotion Plate>
+void trace(const LaserChain& chain, std::span<const T> parameters, std::span<Beam<T>> beams, Plate& plate,
+           std::span<bool> known) {
+  const Mounting<T> laser{.lambda = parameters[0], .tau = parameters[1], .alpha = parameters[2]};
+  const T& eta = parameters[3];
+
+  for (auto& beam : beams) beam.time = beam.hub_time + eta;
+  apply_phase(chain, Phase::kTime, parameters, beams);
+
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    auto& beam = beams[i];
+    const double t = scalar(beam.time);
+    const auto state = plate.at(t);
+    known[i] = state.has_value();
+    beam.plate_angle = state ? state->angle + state->rate * (beam.time - t) : T(0);
+    beam.plate_rate = state ? state->rate : 0;
+  }
+  apply_phase(chain, Phase::kPlate, parameters, beams);
+
+  for (auto& beam : beams) beam.mirror_angle = T(beam.measured_mirror);
+  apply_phase(chain, Phase::kMirror, parameters, beams);
+
+  for (auto& beam : beams) aim(beam);
+  apply_phase(chain, Phase::kBeam, parameters, beams);
+
+  for (auto& beam : beams) mount(beam, laser);
+  apply_phase(chain, Phase::kMount, parameters, beams);
+
+  for (auto& beam : beams) spin(beam, T(beam.plate_angle + laser.lambda));
+  apply_phase(chain, Phase::kBase, parameters, beams);
+
+  for (auto& beam : beams) beam.range = T(beam.measured_range);
+  apply_phase(chain, Phase::kRange, parameters, beams);
+}
+
+}  // namespace crisp

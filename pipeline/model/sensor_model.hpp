@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pipeline/data/calibration.hpp"
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/model/term.hpp"
+
+namespace crisp {
+
+/// The terms of a calibration, resolved once: `slots` says where their parameters lie in a laser's list.
+struct ChainTerm {
+  std::shared_ptr<const ModelTerm> term;
+  std::size_t first_slot = 0;
+};
+
+/// The chain of one laser: which of the model's parameters it depends on, and its terms by phase.
+struct LaserChain {
+  std::vector<std::size_t> slots;  ///< index in SensorModel::values(): λ, τ, α, η, own terms, the plate's
+  std::vector<std::vector<ChainTerm>> phases;  ///< by Phase
+  bool bare = true;                            ///< equation (2) alone: no terms
+};
+
+/// Points with their measurements.
+struct Placed {
+  Eigen::Matrix3Xd points;           ///< [m] in the base's frame, one a column
+  std::vector<std::uint32_t> index;  ///< the measurement of each; those that the plate's readings do not
+                                     ///< cover are left out
+};
+
+/// d(point)/d(parameter) of placed points.
+struct PointDerivatives {
+  std::vector<std::vector<std::size_t>> columns;  ///< by laser: the free parameters it depends on, as indices
+                                                  ///< into the list of free ones
+  std::size_t stride = 0;                         ///< columns of the laser with the most
+  Eigen::Matrix3Xd values;  ///< 3 × (stride · points): column k of point i is at i · stride + k
+};
+
+/// Equations (1) to (3) of Sheehan, Harrison and Newman, and whatever terms a calibration adds to them.
+///
+///     x = Rz(φ(t + η) + λ) Tx(τ) Rz(α) Ry(π/2) [r cos θ, r sin θ, 0]ᵀ
+///
+/// The same code serves simulation, assembly, calibration and diagnosis.
+class SensorModel {
+ public:
+  /// @throws Error for a term that `terms` does not know, or whose parameters are not those it declares
+  explicit SensorModel(Calibration calibration, const TermRegistry& terms = {});
+
+  std::size_t lasers() const { return chains_.size(); }
+
+  /// All parameters in one list: "laser1.lambda", "laser1.tau", "laser1.alpha", "laser1.eta",
+  /// "laser1.mirror.cone.kappa", …, "plate.encoder.eccentricity.a", …
+  const std::vector<std::string>& names() const { return names_; }
+  std::size_t index(const std::string& name) const;  ///< @throws Error if there is none
+  const Eigen::VectorXd& values() const { return values_; }
+  void set_values(const Eigen::VectorXd& values);
+
+  /// The calibration with the present values.
+  Calibration calibration() const;
+
+  /// Places every measurement that the plate's readings cover.
+  /// @throws Error if `beams` names a laser that the model does not have, or the epochs differ
+  Placed place(const Measurements& beams, const PlateTrajectory& plate) const;
+
+  /// The same, with derivatives with respect to the parameters `free` (indices into values()).
+  Placed place(const Measurements& beams, const PlateTrajectory& plate, const std::vector<std::size_t>& free,
+               PointDerivatives& derivatives) const;
+
+  const LaserChain& chain(std::size_t laser) const { return chains_[laser]; }
+
+ private:
+  void add_parameters(const std::string& owner, const std::vector<TermParameters>& terms);
+
+  Calibration calibration_;
+  std::vector<std::string> names_;
+  Eigen::VectorXd values_;
+  std::vector<LaserChain> chains_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/model/beam.hpp"
+
+namespace crisp {
+
+/// Where in the chain a term acts: see the table at Beam.
+enum class Phase { kTime, kPlate, kMirror, kBeam, kMount, kBase, kRange };
+
+/// Whether each laser has its own parameters of a term, or all share the plate's.
+enum class Scope { kLaser, kPlate };
+
+struct TermParameter {
+  std::string name;
+  std::string unit;  ///< "m", "rad", "s" or "1"
+  double lower = 0;  ///< bounds for calibration
+  double upper = 0;
+  double neutral = 0;  ///< the value at which the term changes nothing
+  std::string summary;
+};
+
+struct TermInfo {
+  std::string name;  ///< as in docs: "mirror.cone"
+  std::string summary;
+  Phase phase = Phase::kRange;
+  Scope scope = Scope::kLaser;
+  std::vector<TermParameter> parameters;
+};
+
+/// One departure of a real scanner from equation (2): parameters, and how they change a beam. Immutable.
+/// Derive from DifferentiableTerm, not from this.
+class ModelTerm {
+ public:
+  virtual ~ModelTerm() = default;
+  virtual const TermInfo& info() const = 0;
+
+  /// Changes each beam; `parameters` are in the order of info().parameters.
+  virtual void apply(std::span<Beam<double>> beams, std::span<const double> parameters) const = 0;
+  virtual void apply(std::span<Beam<Jet>> beams, std::span<const Jet> parameters) const = 0;
+};
+
+/// Writes both `apply` for a term whose formula is a template, so that it is written once and differentiated
+/// automatically:
+///
+///     struct Cone : DifferentiableTerm<Cone> {
+///       const TermInfo& info() const override;
+///       template <class T> void change(Beam<T>& beam, std::span<const T> parameters) const;
+///     };
+template <class Term>
+class DifferentiableTerm : public ModelTerm {
+ public:
+  void apply(std::span<Beam<double>> beams, std::span<const double> parameters) const final {
+    for (auto& beam : beams) static_cast<const Term&>(*this).change(beam, parameters);
+  }
+  void apply(std::span<Beam<Jet>> beams, std::span<const Jet> parameters) const final {
+    for (auto& beam : beams) static_cast<const Term&>(*this).change(beam, parameters);
+  }
+};
+
+/// The terms that are known by name: the built-in ones and those of plugins.
+class TermRegistry {
+ public:
+  /// @throws Error if the name is taken
+  void add(std::shared_ptr<const ModelTerm> term);
+  /// @throws Error naming the nearest known term
+  std::shared_ptr<const ModelTerm> get(const std::string& name) const;
+  bool knows(const std::string& name) const;
+  std::vector<std::string> names() const;
+
+ private:
+  std::vector<std::shared_ptr<const ModelTerm>> terms_;
+};
+
+}  // namespace crisp
