@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/kernel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+TruncatedGaussian::TruncatedGaussian(double sigma, double cutoff) {
+  if (!(std::isfinite(sigma) && sigma > 0)) {
+    throw Error(fmt::format("the kernel's width is {} m", sigma), "sigma must be above 0");
+  }
+  if (!(cutoff >= 1 && cutoff <= 12)) {
+    throw Error(fmt::format("the kernel's cut-off is {} sigma", cutoff), "it must lie in 1 to 12");
+  }
+  radius = cutoff * sigma;
+  exponent = 1 / (4 * sigma * sigma);
+  peak = std::pow(exponent / std::numbers::pi, 1.5);
+  floor = std::exp(-0.25 * cutoff * cutoff);
+}
+
+double truncation_bound(const TruncatedGaussian& kernel, double sum_of_squares, double side) {
+  // Along one axis, cells m apart leave a gap of (m − 1) sides at least.
+  constexpr int kNear = 12;
+  std::array<double, kNear + 1> along{};
+  double all = 0;  // Σ over every offset of one axis
+  double far = 0;  // the part of it beyond kNear
+  for (int m = 0;; ++m) {
+    const double gap = std::max(m - 1, 0) * side;
+    const double g = std::exp(-kernel.exponent * gap * gap);
+    const double both_signs = m == 0 ? g : 2 * g;
+    all += both_signs;
+    if (m <= kNear) {
+      along.at(m) = g;
+    } else {
+      far += both_signs;
+      if (both_signs <= 1e-18 * far || both_signs == 0) break;
+    }
+  }
+  double near = 0;
+  for (int i = 0; i <= kNear; ++i) {
+    for (int j = 0; j <= kNear; ++j) {
+      for (int k = 0; k <= kNear; ++k) {
+        const int signs = (i == 0 ? 1 : 2) * (j == 0 ? 1 : 2) * (k == 0 ? 1 : 2);
+        near += signs * std::min(kernel.floor, along.at(i) * along.at(j) * along.at(k));
+      }
+    }
+  }
+  return (near + 3 * far * all * all) * sum_of_squares;
+}
+
+}  // namespace crisp

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/points.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+bool is_a_position(double value) { return std::abs(value) <= 1e12; }
+
+}  // namespace
+
+void Vectors::assign(std::size_t n, double value) {
+  x.assign(n, value);
+  y.assign(n, value);
+  z.assign(n, value);
+}
+
+void check(const PointsView& points) {
+  const std::size_t n = points.size();
+  if (points.y.size() != n || points.z.size() != n) {
+    throw Error(
+        fmt::format("the points have {} x, {} y and {} z coordinates", n, points.y.size(), points.z.size()),
+        "give as many of each");
+  }
+  for (const auto& axis : {points.x, points.y, points.z}) {
+    const auto bad = std::ranges::find_if_not(axis, is_a_position);
+    if (bad != axis.end()) {
+      throw Error(fmt::format("point {} has a coordinate of {} m", bad - axis.begin(), *bad),
+                  "leave out points without a valid position");
+    }
+  }
+}
+
+void check_weights(std::span<const double> weights, std::size_t n) {
+  if (weights.empty()) return;
+  if (weights.size() != n) {
+    throw Error(fmt::format("there are {} weights for {} points", weights.size(), n),
+                "give one a point, or none at all");
+  }
+  const auto bad = std::ranges::find_if(weights, [](double w) { return !(std::isfinite(w) && w >= 0); });
+  if (bad != weights.end()) {
+    throw Error(fmt::format("the weight of point {} is {}", bad - weights.begin(), *bad),
+                "weights are finite and not negative");
+  }
+  if (std::ranges::none_of(weights, [](double w) { return w > 0; })) {
+    throw Error("all weights are 0", "give at least one point a weight above 0");
+  }
+}
+
+}  // namespace crisp

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace crisp {
+
+/// A view of n points [m] in any one Cartesian frame, as a struct of arrays.
+struct PointsView {
+  std::span<const double> x, y, z;
+
+  std::size_t size() const { return x.size(); }
+};
+
+/// n vectors that are owned, as a struct of arrays.
+struct Vectors {
+  std::vector<double> x, y, z;
+
+  std::size_t size() const { return x.size(); }
+  void assign(std::size_t n, double value);
+  PointsView view() const { return {x, y, z}; }
+};
+
+/// Refuses what no measure of a cloud can work with.
+///
+/// @throws Error  if the arrays' lengths differ, or if a coordinate is no number or beyond ±1e12 m
+void check(const PointsView& points);
+
+/// Refuses weights that do not fit the points. No weights at all stand for n ones.
+///
+/// @throws Error  if there are neither 0 nor n of them, if one is negative or not finite, or if all are 0
+void check_weights(std::span<const double> weights, std::size_t n);
+
+}  // namespace crisp
