@@ -120,6 +120,40 @@ std::vector<double> chain_values(const LaserChain& chain, const Eigen::VectorXd&
   return result;
 }
 
+Placed room_for(std::size_t measurements) {
+  Placed result;
+  result.points.resize(3, static_cast<Eigen::Index>(measurements));
+  result.index.reserve(measurements);
+  return result;
+}
+
+void shrink(Placed& placed) {
+  placed.points.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(placed.index.size()));
+}
+
+/// Takes all measurements through their lasers' chains, in blocks, and visits those that the plate covers:
+/// visit(index of the measurement, beam).
+template <class T, class Parameters, class Visit>
+void trace_all(const std::vector<LaserChain>& chains, Parameters parameters_of, const Measurements& beams,
+               const PlateTrajectory& plate, Visit visit) {
+  std::vector<std::vector<T>> parameters;
+  for (std::size_t laser = 0; laser < chains.size(); ++laser) parameters.push_back(parameters_of(laser));
+  PlateTrajectory::Cursor cursor(plate);
+  std::vector<Beam<T>> block(kBlock);
+  std::array<bool, kBlock> known{};
+  for (std::size_t begin = 0; begin < beams.size();) {
+    const std::size_t end = run_end(beams, begin);
+    const std::span<Beam<T>> run(block.data(), end - begin);
+    const auto laser = beams.laser[begin];
+    fill(beams, begin, run);
+    trace<T>(chains[laser], parameters[laser], run, cursor, known);
+    for (std::size_t i = 0; i < run.size(); ++i) {
+      if (known[i]) visit(begin + i, run[i]);
+    }
+    begin = end;
+  }
+}
+
 }  // namespace
 
 SensorModel::SensorModel(Calibration calibration, const TermRegistry& terms)
@@ -173,84 +207,48 @@ Calibration SensorModel::calibration() const {
 
 Placed SensorModel::place(const Measurements& beams, const PlateTrajectory& plate) const {
   check_input(*this, beams, plate);
-  std::vector<std::vector<double>> parameters;
-  for (const auto& chain : chains_) parameters.push_back(chain_values(chain, values_));
-
-  Placed result;
-  result.points.resize(3, static_cast<Eigen::Index>(beams.size()));
-  result.index.reserve(beams.size());
-  PlateTrajectory::Cursor cursor(plate);
-  std::vector<Beam<double>> block(kBlock);
-  std::array<bool, kBlock> known{};
-  for (std::size_t begin = 0; begin < beams.size();) {
-    const std::size_t end = run_end(beams, begin);
-    const std::span<Beam<double>> run(block.data(), end - begin);
-    fill(beams, begin, run);
-    const auto laser = beams.laser[begin];
-    trace<double>(chains_[laser], parameters[laser], run, cursor, known);
-    for (std::size_t i = 0; i < run.size(); ++i) {
-      if (!known[i]) continue;
-      result.points.col(static_cast<Eigen::Index>(result.index.size())) = run[i].point();
-      result.index.push_back(static_cast<std::uint32_t>(begin + i));
-    }
-    begin = end;
-  }
-  result.points.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(result.index.size()));
+  Placed result = room_for(beams.size());
+  const auto parameters = [&](std::size_t laser) { return chain_values(chains_[laser], values_); };
+  trace_all<double>(chains_, parameters, beams, plate,
+                    [&](std::size_t measurement, const Beam<double>& beam) {
+                      result.points.col(static_cast<Eigen::Index>(result.index.size())) = beam.point();
+                      result.index.push_back(static_cast<std::uint32_t>(measurement));
+                    });
+  shrink(result);
   return result;
 }
 
 Placed SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
                           const std::vector<std::size_t>& free, PointDerivatives& derivatives) const {
-  check_input(*this, beams, plate);
+  Placed result = place(beams, plate);
   const FreeSlots slots = free_slots(chains_, free);
   derivatives.columns = slots.columns;
   derivatives.stride = 0;
   for (const auto& columns : slots.columns) derivatives.stride = std::max(derivatives.stride, columns.size());
-  derivatives.values.setZero(3, static_cast<Eigen::Index>(beams.size() * derivatives.stride));
+  derivatives.values.setZero(3, static_cast<Eigen::Index>(result.index.size() * derivatives.stride));
 
-  Placed result;
-  result.points.resize(3, static_cast<Eigen::Index>(beams.size()));
-  result.index.reserve(beams.size());
-  PlateTrajectory::Cursor cursor(plate);
-  std::vector<Beam<Jet>> block(kBlock);
-  std::array<bool, kBlock> known{};
+  // As many passes as it takes to seed every free parameter in one of a Jet's derivatives.
   constexpr std::size_t kWidth = Jet::DIMENSION;
-  for (std::size_t begin = 0; begin < beams.size();) {
-    const std::size_t end = run_end(beams, begin);
-    const std::span<Beam<Jet>> run(block.data(), end - begin);
-    const auto laser = beams.laser[begin];
-    const auto& laser_slots = slots.slots[laser];
-    const auto values = chain_values(chains_[laser], values_);
-    const std::size_t placed_before = result.index.size();
-    // As many passes as it takes to seed every free parameter in one of the Jet's derivatives.
-    for (std::size_t first = 0; first == 0 || first < laser_slots.size(); first += kWidth) {
-      std::vector<Jet> parameters(values.begin(), values.end());
-      const std::size_t seeded = std::min(kWidth, laser_slots.size() - std::min(first, laser_slots.size()));
-      for (std::size_t k = 0; k < seeded; ++k) parameters[laser_slots[first + k]].v[static_cast<int>(k)] = 1;
-      fill(beams, begin, run);
-      trace<Jet>(chains_[laser], parameters, run, cursor, known);
-      std::size_t point = placed_before;
-      for (std::size_t i = 0; i < run.size(); ++i) {
-        if (!known[i]) continue;
-        const Vector3<Jet> x = run[i].point();
-        if (first == 0) {
-          result.points.col(static_cast<Eigen::Index>(point)) = Eigen::Vector3d(x[0].a, x[1].a, x[2].a);
-          result.index.push_back(static_cast<std::uint32_t>(begin + i));
-        }
-        for (std::size_t k = 0; k < seeded; ++k) {
-          const auto j = static_cast<int>(k);
-          derivatives.values.col(static_cast<Eigen::Index>(point * derivatives.stride + first + k)) =
-              Eigen::Vector3d(x[0].v[j], x[1].v[j], x[2].v[j]);
-        }
-        ++point;
+  for (std::size_t first = 0; first < derivatives.stride; first += kWidth) {
+    const auto parameters = [&](std::size_t laser) {
+      const auto values = chain_values(chains_[laser], values_);
+      std::vector<Jet> seeded(values.begin(), values.end());
+      const auto& own = slots.slots[laser];
+      for (std::size_t k = first; k < std::min(first + kWidth, own.size()); ++k) {
+        seeded[own[k]].v[static_cast<Eigen::Index>(k - first)] = 1;
       }
-    }
-    begin = end;
+      return seeded;
+    };
+    const auto count = static_cast<Eigen::Index>(std::min(kWidth, derivatives.stride - first));
+    auto column = static_cast<Eigen::Index>(first);
+    trace_all<Jet>(chains_, parameters, beams, plate, [&](std::size_t, const Beam<Jet>& beam) {
+      const Vector3<Jet> x = beam.point();
+      for (int axis = 0; axis < 3; ++axis) {
+        derivatives.values.row(axis).segment(column, count) = x[axis].v.head(count).transpose();
+      }
+      column += static_cast<Eigen::Index>(derivatives.stride);
+    });
   }
-  const auto placed = static_cast<Eigen::Index>(result.index.size());
-  result.points.conservativeResize(Eigen::NoChange, placed);
-  derivatives.values.conservativeResize(Eigen::NoChange,
-                                        placed * static_cast<Eigen::Index>(derivatives.stride));
   return result;
 }
 
