@@ -11,6 +11,9 @@ find_package(nlohmann_json REQUIRED)
 find_package(TBB REQUIRED)
 find_package(flann REQUIRED)  # link crisp_flann: the packaged target forgets lz4
 pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)
+# By pkg-config, since find_package(PCL) drags in far more than crisp needs; pcl_io, with its VTK, only where
+# PCD files are read and written.
+pkg_check_modules(PCL_COMMON REQUIRED IMPORTED_TARGET pcl_common)
 pkg_check_modules(PCAP REQUIRED IMPORTED_TARGET libpcap)
 pkg_check_modules(TINS REQUIRED IMPORTED_TARGET libtins)
 

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "pipeline/data/cloud.hpp"
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/model/sensor_model.hpp"
+
+namespace crisp {
+
+struct Deskewed {
+  std::shared_ptr<Cloud> cloud;
+  std::size_t outside = 0;  ///< beams fired when the plate's readings do not say where it was: left out
+};
+
+/// Places every beam where the plate was when that beam was fired: equations (1) to (3) of Sheehan, Harrison
+/// and Newman, and the terms that `model` adds to them.
+///
+/// @param beams  n measurements: range [m], mirror angle [rad], hub time [s since the epoch], laser
+/// @param plate  φ(t) [rad] on the hub's clock, with the same epoch
+/// @return the cloud in the base's frame [m], in the order of the measurements
+/// @throws Error if `beams` names a laser that `model` does not have, or the epochs differ
+Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model);
+
+}  // namespace crisp
