@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/data/rig.hpp"
+
+namespace crisp {
+
+class Registrar;
+
+/// What a run was told, the same for all of its stages.
+struct RunSettings {
+  Rig rig = default_rig();
+  unsigned threads = 1;                  ///< how many threads a stage may use
+  std::uint64_t seed = 1;                ///< for whatever is drawn at random
+  std::filesystem::path output;          ///< the folder that `-o` names; empty if none was given
+  const Registrar* registrar = nullptr;  ///< what is known by name: stages, and whatever else was registered
+};
+
+/// What one stage had to say during a run.
+struct StageReport {
+  std::map<std::string, std::uint64_t> counts;
+  std::vector<std::string> warnings;
+  nlohmann::json section = nlohmann::json::object();
+  std::vector<std::string> lines;
+  std::vector<std::filesystem::path> read;
+  std::vector<std::filesystem::path> written;
+};
+
+/// Through which a stage knows the run that it is part of, and tells what happened. To be used from the
+/// thread that the stage was called in; only interrupted() may be asked from any.
+class Context {
+ public:
+  using Progress = std::function<void(double fraction, std::string_view what)>;
+
+  Context(const RunSettings& run, StageReport& report, const std::atomic<bool>* stop = nullptr,
+          Progress progress = {})
+      : run_(&run), report_(&report), stop_(stop), progress_(std::move(progress)) {}
+
+  const Rig& rig() const { return run_->rig; }
+  unsigned threads() const { return run_->threads; }
+  std::uint64_t seed() const { return run_->seed; }
+  const RunSettings& run() const { return *run_; }
+
+  /// Adds to the loss (or other event) of this name: "telegrams with a wrong checksum". Zero makes it known.
+  void count(const std::string& name, std::uint64_t n = 1) { report_->counts[name] += n; }
+  /// Something that a person should know but that does not stop the run.
+  void warn(std::string text) { report_->warnings.push_back(std::move(text)); }
+  /// Adds the keys of this object to the stage's section of summary.json; keys given before are replaced.
+  void report(const nlohmann::json& section) { report_->section.update(section); }
+  /// Adds lines to what people read at the end of the run; may hold line breaks (a table).
+  void say(std::string text) { report_->lines.push_back(std::move(text)); }
+  /// Names a file that the results depend on, so that its hash becomes part of the provenance.
+  void reads(std::filesystem::path file) { report_->read.push_back(std::move(file)); }
+  /// Names a file that was written, once it is complete: a record of its origin is put beside it.
+  void wrote(std::filesystem::path file) { report_->written.push_back(std::move(file)); }
+
+  /// How much of the stage's own work is done, 0 to 1; `what` says what is being done ("sigma 5 cm").
+  void progress(double fraction, std::string_view what = {}) const {
+    if (progress_) progress_(fraction, what);
+  }
+  /// The run is to stop: return soon. The run then ends without calling finish(), so nothing is written.
+  bool interrupted() const { return stop_ && stop_->load(std::memory_order_relaxed); }
+
+ private:
+  const RunSettings* run_;
+  StageReport* report_;
+  const std::atomic<bool>* stop_;
+  Progress progress_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/stage/option.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crisp {
+namespace {
+
+std::string type_name(const Option& option) {
+  switch (option.type) {
+    case OptionType::boolean:
+      return "true or false";
+    case OptionType::integer:
+      return "a whole number";
+    case OptionType::number:
+      return option.unit.empty() || option.unit == "1" ? "a number" : "a number in " + option.unit;
+    case OptionType::text:
+      return "a text";
+    case OptionType::choice:
+      return "a name";
+    case OptionType::path:
+      return "a path";
+  }
+  return {};
+}
+
+std::string bounds(const Option& option) {
+  const bool below = std::isfinite(option.max) && std::abs(option.max) < 9e18;
+  const bool above = std::isfinite(option.min) && std::abs(option.min) < 9e18;
+  if (above && below) return fmt::format("{:g} to {:g}", option.min, option.max);
+  if (above) return fmt::format("at least {:g}", option.min);
+  if (below) return fmt::format("at most {:g}", option.max);
+  return {};
+}
+
+bool has_type(const Option& option, const OptionScalar& scalar) {
+  switch (option.type) {
+    case OptionType::boolean:
+      return std::holds_alternative<bool>(scalar);
+    case OptionType::integer:
+      return std::holds_alternative<std::int64_t>(scalar);
+    case OptionType::number:
+      return std::holds_alternative<double>(scalar);
+    default:
+      return std::holds_alternative<std::string>(scalar);
+  }
+}
+
+std::string scalar_text(const Option& option, const OptionScalar& scalar) {
+  struct Printer {
+    const std::string& unit;
+    std::string operator()(bool value) const { return value ? "true" : "false"; }
+    std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
+    std::string operator()(double value) const { return fmt::format("{}{}", value, unit); }
+    std::string operator()(const std::string& value) const { return value; }
+  };
+  return std::visit(Printer{option.unit == "1" ? std::string() : option.unit}, scalar);
+}
+
+std::optional<std::string> scalar_complaint(const Option& option, const OptionScalar& scalar) {
+  if (!has_type(option, scalar)) return "is of the wrong type";
+  double number = 0;
+  if (const auto* integer = std::get_if<std::int64_t>(&scalar)) number = static_cast<double>(*integer);
+  if (const auto* real = std::get_if<double>(&scalar)) {
+    number = *real;
+    if (!std::isfinite(number)) return "is not a finite number";
+  }
+  if (number < option.min || number > option.max) {
+    return fmt::format("{} is out of range", scalar_text(option, scalar));
+  }
+  if (const auto* text = std::get_if<std::string>(&scalar); text && !option.choices.empty()) {
+    if (std::find(option.choices.begin(), option.choices.end(), *text) == option.choices.end()) {
+      return fmt::format("'{}' is not one of its names", *text);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> complaint(const Option& option, const OptionValue& value) {
+  if (std::holds_alternative<std::monostate>(value)) {
+    if (option.may_be_auto) return std::nullopt;
+    return "cannot be 'auto'";
+  }
+  const auto* list = std::get_if<std::vector<OptionScalar>>(&value);
+  if (option.list != (list != nullptr)) return option.list ? "is not a list" : "is a list";
+  if (!list) return scalar_complaint(option, std::get<OptionScalar>(value));
+  if (list->size() < option.min_count || list->size() > option.max_count) {
+    return fmt::format("has {} elements", list->size());
+  }
+  for (const auto& scalar : *list) {
+    if (auto wrong = scalar_complaint(option, scalar)) return wrong;
+  }
+  return std::nullopt;
+}
+
+std::string expectation(const Option& option) {
+  std::string text =
+      option.choices.empty() ? type_name(option) : fmt::format("one of {}", fmt::join(option.choices, ", "));
+  if (const auto limits = bounds(option); !limits.empty() && option.choices.empty()) text += ", " + limits;
+  if (option.list) {
+    text = "a list, each " + text;
+    if (option.min_count > 0) text += fmt::format(", {} or more of them", option.min_count);
+    if (option.max_count != std::numeric_limits<std::size_t>::max()) {
+      text += fmt::format(", {} at most", option.max_count);
+    }
+  }
+  if (option.may_be_auto) text += ", or auto";
+  return text;
+}
+
+std::string to_text(const Option& option, const OptionValue& value) {
+  if (std::holds_alternative<std::monostate>(value)) return "auto";
+  if (const auto* scalar = std::get_if<OptionScalar>(&value)) return scalar_text(option, *scalar);
+  std::vector<std::string> elements;
+  for (const auto& scalar : std::get<std::vector<OptionScalar>>(value)) {
+    elements.push_back(scalar_text(option, scalar));
+  }
+  return fmt::format("[{}]", fmt::join(elements, ", "));
+}
+
+}  // namespace crisp

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace crisp {
+
+/// What one value of an option is.
+enum class OptionType { boolean, integer, number, text, choice, path };
+
+using OptionScalar = std::variant<bool, std::int64_t, double, std::string>;
+/// A value of an option: `auto` (monostate), one value, or a list of them. Numbers are in the option's unit.
+using OptionValue = std::variant<std::monostate, OptionScalar, std::vector<OptionScalar>>;
+
+/// One option as it was declared: everything that parsing, validation and documentation need to know.
+struct Option {
+  std::string name;
+  std::string help;
+  OptionType type = OptionType::text;
+  bool list = false;         ///< takes a list of values (a single one is a list of length 1)
+  bool may_be_auto = false;  ///< `auto` is a value
+  bool required = false;     ///< there is no default
+  std::string unit;          ///< SI unit of the value ("m", "rad", "s", "Hz", "1"), empty if it has none
+  double min = -std::numeric_limits<double>::infinity();  ///< smallest number, in `unit`
+  double max = std::numeric_limits<double>::infinity();   ///< largest number, in `unit`
+  std::size_t min_count = 0;                              ///< shortest list
+  std::size_t max_count = std::numeric_limits<std::size_t>::max();
+  std::vector<std::string> choices;  ///< all the texts that are allowed, if not empty
+
+  std::function<void(void* object, const OptionValue& value)> set;
+  std::function<OptionValue(const void* object)> get;
+};
+
+/// What is wrong with `value` for this option, in words, or nothing if it is right.
+std::optional<std::string> complaint(const Option& option, const OptionValue& value);
+
+/// "a length in m, 0.0001 to 10": what the option expects, for messages and documentation.
+std::string expectation(const Option& option);
+
+/// The value as a person would write it in YAML, with its unit: "0.05m", "[0.5m, 0.01m]", "auto".
+std::string to_text(const Option& option, const OptionValue& value);
+
+}  // namespace crisp

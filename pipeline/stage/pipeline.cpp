@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/stage/pipeline.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "pipeline/files/nearest.hpp"
+#include "pipeline/stage/wiring.hpp"
+
+namespace crisp {
+namespace {
+
+/// The tag of a node that was not given one: its stage's name, numbered from the second on.
+std::string default_tag(const std::vector<PipelineNode>& nodes, const std::string& stage) {
+  const auto taken = [&](const std::string& tag) {
+    return std::any_of(nodes.begin(), nodes.end(), [&](const auto& node) { return node.tag == tag; });
+  };
+  std::string tag = stage;
+  for (int i = 2; taken(tag); ++i) tag = fmt::format("{}-{}", stage, i);
+  return tag;
+}
+
+class Builder {
+ public:
+  Builder(const RunSettings& run, std::vector<Error>& errors) : run_(run), errors_(errors) {}
+
+  /// A node of which `type` is null when the stage is not known.
+  PipelineNode make(const StageSpec& spec, const std::vector<PipelineNode>& above) {
+    PipelineNode node;
+    node.place = spec.place;
+    node.tag = spec.tag.empty() ? default_tag(above, spec.stage) : spec.tag;
+    check_tag(node, above);
+    node.type = run_.registrar->stages().find(spec.stage);
+    if (!node.type) {
+      fail(spec.place, fmt::format("there is no stage '{}'", spec.stage),
+           did_you_mean(spec.stage, run_.registrar->stages().names(), "crisp stages lists them"));
+      return node;
+    }
+    node.stage = node.type->make();
+    set_options(node, spec);
+    return node;
+  }
+
+  /// Asks a stage whether its options agree with each other and the rig.
+  void check(const PipelineNode& node) {
+    try {
+      node.stage->check(run_);
+    } catch (const Error& error) {
+      fail(error.place().line ? error.place() : node.place, node.tag + ": " + error.message(),
+           error.advice());
+    }
+  }
+
+ private:
+  void fail(const Place& place, std::string what, std::string advice) {
+    errors_.emplace_back(std::move(what), std::move(advice), place);
+  }
+
+  void check_tag(const PipelineNode& node, const std::vector<PipelineNode>& above) {
+    const auto same =
+        std::find_if(above.begin(), above.end(), [&](const auto& n) { return n.tag == node.tag; });
+    if (same == above.end()) return;
+    fail(node.place, fmt::format("the tag '{}' is used twice", node.tag),
+         "the other is at " + to_string(same->place));
+  }
+
+  void set_options(PipelineNode& node, const StageSpec& spec) {
+    void* object = node.type->options_object(*node.stage);
+    for (const auto& [name, value] : spec.with) {
+      const Option* option = node.type->find_option(name);
+      if (!option) {
+        fail(spec.place, fmt::format("{}: there is no option '{}'", node.tag, name), {});
+      } else if (const auto wrong = complaint(*option, value)) {
+        fail(spec.place, fmt::format("{}: option '{}' {}", node.tag, name, *wrong),
+             "expected is " + expectation(*option));
+      } else {
+        option->set(object, value);
+      }
+    }
+    for (const auto& option : node.type->options) {
+      if (option.required && !spec.with.contains(option.name)) {
+        fail(spec.place, fmt::format("{}: option '{}' is missing ({})", node.tag, option.name, option.help),
+             "expected is " + expectation(option));
+      }
+    }
+  }
+
+  const RunSettings& run_;
+  std::vector<Error>& errors_;
+};
+
+}  // namespace
+
+Pipeline build_pipeline(const std::vector<StageSpec>& specs, const RunSettings& run,
+                        std::vector<Error>& errors) {
+  Pipeline pipeline;
+  Builder builder(run, errors);
+  for (const auto& spec : specs) pipeline.nodes.push_back(builder.make(spec, pipeline.nodes));
+  connect(pipeline, specs, run.registrar->stages(), errors);
+  if (!errors.empty()) return pipeline;  // checks may rely on options that are right one by one
+  for (const auto& node : pipeline.nodes) builder.check(node);
+  return pipeline;
+}
+
+Pipeline build_pipeline(const std::vector<StageSpec>& specs, const RunSettings& run) {
+  std::vector<Error> errors;
+  Pipeline pipeline = build_pipeline(specs, run, errors);
+  if (!errors.empty()) throw Errors(std::move(errors));
+  return pipeline;
+}
+
+}  // namespace crisp

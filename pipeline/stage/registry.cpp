@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/stage/registry.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace crisp {
+namespace {
+
+bool well_formed(const std::string& name) {
+  const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  return !name.empty() && std::all_of(name.begin(), name.end(), allowed);
+}
+
+bool is_stage_name(const std::string& name) {
+  const auto dot = name.find('.');
+  return dot != std::string::npos && well_formed(name.substr(0, dot)) && well_formed(name.substr(dot + 1));
+}
+
+void check_options(const StageType& type) {
+  std::set<std::string> seen;
+  const auto object = type.make();
+  for (const auto& option : type.options) {
+    const auto fail = [&](const std::string& what) {
+      throw Error("stage " + type.name + " declares its option '" + option.name + "' wrongly: " + what);
+    };
+    if (!well_formed(option.name)) fail("names are of a-z, 0-9 and _");
+    if (!seen.insert(option.name).second) fail("it is declared twice");
+    if (option.help.empty()) fail("it has no help");
+    if (option.type == OptionType::choice && option.choices.empty()) fail("an enumeration needs choices()");
+    if (option.required) continue;
+    const auto wrong = complaint(option, option.get(type.options_object(*object)));
+    if (wrong) fail("its default " + *wrong + ", expected is " + expectation(option));
+  }
+}
+
+void check_flow(const StageType& type) {
+  const auto drives = [](const StageInput& input) { return !input.held; };
+  if (!type.inputs.empty() && std::none_of(type.inputs.begin(), type.inputs.end(), drives)) {
+    throw Error("stage " + type.name + " holds inputs but takes none that makes it run");
+  }
+  for (auto i = type.inputs.begin(); i != type.inputs.end(); ++i) {
+    if (std::any_of(type.inputs.begin(), i, [&](const auto& other) { return other.kind == i->kind; })) {
+      throw Error("stage " + type.name + " takes " + std::string(i->kind.name()) + " twice");
+    }
+  }
+}
+
+}  // namespace
+
+const Option* StageType::find_option(const std::string& option) const {
+  const auto found =
+      std::find_if(options.begin(), options.end(), [&](const auto& o) { return o.name == option; });
+  return found == options.end() ? nullptr : &*found;
+}
+
+bool StageType::gives(const Kind& kind) const {
+  return std::find(outputs.begin(), outputs.end(), kind) != outputs.end();
+}
+
+void StageRegistry::add(StageType type) {
+  if (!is_stage_name(type.name)) {
+    throw Error("'" + type.name + "' is not a stage's name", "write family.name, of a-z, 0-9 and _");
+  }
+  if (type.summary.empty()) throw Error("stage " + type.name + " has no summary");
+  check_flow(type);
+  check_options(type);
+  if (const auto* other = find(type.name)) {
+    throw Error("there are two stages " + type.name + ": one " + other->origin + ", one " + type.origin);
+  }
+  types_.emplace(type.name, std::move(type));
+}
+
+const StageType* StageRegistry::find(const std::string& name) const {
+  const auto found = types_.find(name);
+  return found == types_.end() ? nullptr : &found->second;
+}
+
+std::vector<const StageType*> StageRegistry::all() const {
+  std::vector<const StageType*> list;
+  for (const auto& [name, type] : types_) list.push_back(&type);
+  return list;
+}
+
+std::vector<std::string> StageRegistry::names() const {
+  std::vector<std::string> list;
+  for (const auto& [name, type] : types_) list.push_back(name);
+  return list;
+}
+
+std::vector<std::string> StageRegistry::givers(const Kind& kind) const {
+  std::vector<std::string> list;
+  for (const auto& [name, type] : types_) {
+    if (type.gives(kind)) list.push_back(name);
+  }
+  return list;
+}
+
+void* Registrar::other(std::type_index type) const {
+  const auto found = others_.find(type);
+  if (found == others_.end()) throw Error(std::string("this program has no registry of ") + type.name());
+  return found->second;
+}
+
+}  // namespace crisp

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <typeindex>
+#include <vector>
+
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// The stages that are known, by name.
+class StageRegistry {
+ public:
+  /// @throws Error if the name is taken or malformed, or the description is incomplete or contradicts itself
+  void add(StageType type);
+
+  const StageType* find(const std::string& name) const;  ///< nullptr if there is none
+  std::vector<const StageType*> all() const;             ///< by name
+  std::vector<std::string> names() const;
+  std::vector<std::string> givers(const Kind& kind) const;  ///< names of the stages that give it
+
+ private:
+  std::map<std::string, StageType> types_;
+};
+
+/// What a family's or plugin's `void register_xxx(Registrar&)` is handed. Stages have their registry here;
+/// registries of other things (terms of the sensor model, measures …) are attached by the program, so that
+/// this library need not know them:
+///
+///     registrar.stage<DeskewStage>();
+///     registrar.get<TermRegistry>().add(...);
+class Registrar {
+ public:
+  template <class S>
+  void stage() {
+    StageType type = describe_stage<S>();
+    type.origin = origin_;
+    stages_.add(std::move(type));
+  }
+  StageRegistry& stages() { return stages_; }
+  const StageRegistry& stages() const { return stages_; }
+
+  /// Makes a registry known, which must outlive the registrar.
+  template <class R>
+  void attach(R& registry) {
+    others_[typeid(R)] = &registry;
+  }
+  /// @throws Error if no registry of this type is attached
+  template <class R>
+  R& get() const {
+    return *static_cast<R*>(other(typeid(R)));
+  }
+
+  /// From where the next registrations come: "built in", or a plugin's file.
+  void set_origin(std::string origin) { origin_ = std::move(origin); }
+  const std::string& origin() const { return origin_; }
+
+ private:
+  void* other(std::type_index type) const;
+
+  StageRegistry stages_;
+  std::map<std::type_index, void*> others_;
+  std::string origin_ = "built in";
+};
+
+}  // namespace crisp

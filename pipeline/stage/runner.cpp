@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/stage/runner.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <new>
+
+namespace crisp {
+namespace {
+
+/// Measures each stage's own time: a stage's clock stands while the stages that it feeds are at work.
+class Stopwatch {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  class Turn {
+   public:
+    Turn(Stopwatch& watch, double& seconds) : watch_(watch), before_(watch.running_) {
+      watch_.switch_to(&seconds);
+    }
+    ~Turn() { watch_.switch_to(before_); }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+   private:
+    Stopwatch& watch_;
+    double* before_;
+  };
+
+ private:
+  void switch_to(double* seconds) {
+    const auto now = Clock::now();
+    if (running_) *running_ += std::chrono::duration<double>(now - since_).count();
+    running_ = seconds;
+    since_ = now;
+  }
+
+  double* running_ = nullptr;
+  Clock::time_point since_;
+};
+
+/// One stage at work: its inputs' latest items, and what waits for those that are not there yet.
+struct Worker {
+  PipelineNode* node = nullptr;
+  NodeResult result;
+  std::vector<Item> slots;        ///< one an input, with a null value where nothing is there
+  std::vector<std::size_t> open;  ///< for each input, how many of its feeders have not finished
+  std::deque<std::pair<std::size_t, Item>> waiting;  ///< (input, item) in order of arrival
+  /// (output kind, worker, input) of everything that this one feeds
+  struct Edge {
+    Kind kind;
+    std::size_t to;
+    std::size_t input;
+  };
+  std::vector<Edge> edges;
+};
+
+class Runner {
+ public:
+  Runner(Pipeline& pipeline, const RunSettings& run, const RunHooks& hooks) : run_(run), hooks_(hooks) {
+    for (auto& node : pipeline.nodes) add(node);
+  }
+
+  std::vector<NodeResult> run() {
+    for (const auto source : sources())
+      call(source, [&](Worker& w, Outputs& out, Context& context) {
+        w.node->stage->process(Inputs({}), out, context);
+      });
+    for (std::size_t i = 0; i < workers_.size(); ++i) finish(i);
+    std::vector<NodeResult> results;
+    for (auto& worker : workers_) results.push_back(std::move(worker.result));
+    return results;
+  }
+
+ private:
+  void add(PipelineNode& node) {
+    const std::size_t index = workers_.size();
+    Worker& worker = workers_.emplace_back();
+    worker.node = &node;
+    worker.result.tag = node.tag;
+    worker.result.stage = node.type->name;
+    for (std::size_t i = 0; i < node.type->inputs.size(); ++i) {
+      const Kind kind = node.type->inputs[i].kind;
+      worker.slots.push_back({kind, nullptr});
+      worker.open.push_back(node.feeders[i].size());
+      for (const auto feeder : node.feeders[i]) workers_[feeder].edges.push_back({kind, index, i});
+    }
+  }
+
+  /// Sources whose items are only held go first; otherwise the pipeline's order.
+  std::vector<std::size_t> sources() const {
+    std::vector<std::size_t> list;
+    for (std::size_t i = 0; i < workers_.size(); ++i) {
+      if (workers_[i].node->type->is_source()) list.push_back(i);
+    }
+    std::stable_partition(list.begin(), list.end(), [&](std::size_t i) { return is_only_held(i); });
+    return list;
+  }
+
+  bool is_only_held(std::size_t index) const {
+    const auto& edges = workers_[index].edges;
+    return !edges.empty() && std::all_of(edges.begin(), edges.end(), [&](const Worker::Edge& edge) {
+      return workers_[edge.to].node->type->inputs[edge.input].held;
+    });
+  }
+
+  /// Whether the stage can run: everything that it holds is there, or will never come and is optional.
+  static bool is_ready(const Worker& worker) {
+    for (std::size_t i = 0; i < worker.slots.size(); ++i) {
+      const StageInput& input = worker.node->type->inputs[i];
+      if (input.held && !worker.slots[i].value && (input.required || worker.open[i] > 0)) return false;
+    }
+    return true;
+  }
+
+  void deliver(std::size_t to, std::size_t input, Item item) {
+    Worker& worker = workers_[to];
+    ++worker.result.taken[std::string(item.kind.name())];
+    const bool held = worker.node->type->inputs[input].held;
+    if (held && !worker.slots[input].value) {
+      worker.slots[input] = std::move(item);
+      if (is_ready(worker)) replay(to);
+    } else if (!is_ready(worker)) {
+      worker.waiting.emplace_back(input, std::move(item));
+    } else {
+      take(to, input, std::move(item));
+    }
+  }
+
+  void take(std::size_t to, std::size_t input, Item item) {
+    Worker& worker = workers_[to];
+    worker.slots[input] = std::move(item);
+    if (worker.node->type->inputs[input].held) return;
+    call(to, [](Worker& w, Outputs& out, Context& context) {
+      w.node->stage->process(Inputs(w.slots), out, context);
+    });
+    worker.slots[input].value = nullptr;
+  }
+
+  void replay(std::size_t index) {
+    auto& waiting = workers_[index].waiting;
+    while (!waiting.empty()) {
+      auto [input, item] = std::move(waiting.front());
+      waiting.pop_front();
+      take(index, input, std::move(item));
+    }
+  }
+
+  void finish(std::size_t index) {
+    if (!workers_[index].waiting.empty()) throw never_came(workers_[index]);
+    call(index, [](Worker& w, Outputs& out, Context& context) { w.node->stage->finish(out, context); });
+    for (const auto& edge : workers_[index].edges) {
+      Worker& fed = workers_[edge.to];
+      if (--fed.open[edge.input] == 0 && is_ready(fed)) replay(edge.to);
+    }
+  }
+
+  static Error never_came(const Worker& worker) {
+    std::string missing;
+    for (std::size_t i = 0; i < worker.slots.size(); ++i) {
+      const StageInput& input = worker.node->type->inputs[i];
+      if (input.held && input.required && !worker.slots[i].value) missing = input.kind.name();
+    }
+    return Error(worker.node->tag + ": it waited for a " + missing + ", but the stages above gave none",
+                 "see what they report", worker.node->place);
+  }
+
+  void give(std::size_t from, Item item) {
+    if (is_stopped()) throw Interrupted();
+    Worker& worker = workers_[from];
+    if (!worker.node->type->gives(item.kind)) {
+      throw Error("it gives " + std::string(item.kind.name()) + ", which it does not declare");
+    }
+    if (!item.value) throw Error("it gives a " + std::string(item.kind.name()) + " that is null");
+    ++worker.result.given[std::string(item.kind.name())];
+    for (const auto& edge : worker.edges) {
+      if (edge.kind == item.kind) deliver(edge.to, edge.input, item);
+    }
+  }
+
+  /// Calls into a stage: its time is taken, and what it throws is told with its tag and place.
+  template <class Call>
+  void call(std::size_t index, Call&& body) {
+    if (is_stopped()) throw Interrupted();
+    Worker& worker = workers_[index];
+    Outputs out([this, index](Item item) { give(index, std::move(item)); });
+    Context context(run_, worker.result.report, hooks_.stop, progress_of(worker));
+    try {
+      Stopwatch::Turn turn(stopwatch_, worker.result.seconds);
+      body(worker, out, context);
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Told&) {
+      throw;
+    } catch (const Error& error) {
+      const Place& place = error.place().file.empty() ? worker.node->place : error.place();
+      throw Told(worker.node->tag + ": " + error.message(), error.advice(), place);
+    } catch (const std::bad_alloc&) {
+      throw Told(worker.node->tag + ": the memory is exhausted", "give it less data at once",
+                 worker.node->place);
+    } catch (const std::exception& error) {
+      throw Told(worker.node->tag + ": " + error.what(), {}, worker.node->place);
+    }
+    if (is_stopped()) throw Interrupted();
+  }
+
+  Context::Progress progress_of(const Worker& worker) const {
+    if (!hooks_.progress) return {};
+    return [this, &worker](double fraction, std::string_view what) {
+      hooks_.progress(worker.node->tag, fraction, what);
+    };
+  }
+
+  bool is_stopped() const { return hooks_.stop && hooks_.stop->load(std::memory_order_relaxed); }
+
+  /// An error that names its stage already: it passes through the stages that feed that one.
+  class Told : public Error {
+    using Error::Error;
+  };
+
+  const RunSettings& run_;
+  const RunHooks& hooks_;
+  std::deque<Worker> workers_;
+  Stopwatch stopwatch_;
+};
+
+}  // namespace
+
+std::vector<NodeResult> run_pipeline(Pipeline& pipeline, const RunSettings& run, const RunHooks& hooks) {
+  return Runner(pipeline, run, hooks).run();
+}
+
+}  // namespace crisp

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/pipeline.hpp"
+
+namespace crisp {
+
+/// The run was told to stop.
+class Interrupted : public std::runtime_error {
+ public:
+  Interrupted() : std::runtime_error("interrupted") {}
+};
+
+/// What one stage of a run did.
+struct NodeResult {
+  std::string tag;
+  std::string stage;
+  double seconds = 0;                          ///< its own time, without that of the stages that it feeds
+  std::map<std::string, std::uint64_t> taken;  ///< items by kind
+  std::map<std::string, std::uint64_t> given;  ///< items by kind
+  StageReport report;
+};
+
+/// How a run can be stopped and watched from outside.
+struct RunHooks {
+  const std::atomic<bool>* stop = nullptr;
+  std::function<void(const std::string& tag, double fraction, std::string_view what)> progress = {};
+};
+
+/// Runs a pipeline to its end in the calling thread: each source gives all that it has, every item runs
+/// through all stages below before the next is given (depth first, in the pipeline's order, without queues),
+/// then each stage finishes, in the pipeline's order. The same pipeline always runs in the same order.
+///
+/// A source of which all that it gives is held by others runs before the other sources, so that a known
+/// calibration is there before the data.
+/// @throws Error        what a stage threw, with the stage's tag, and its place in the pipeline's file
+/// @throws Interrupted  when told to stop; no stage has finished then that had not before
+std::vector<NodeResult> run_pipeline(Pipeline& pipeline, const RunSettings& run, const RunHooks& hooks = {});
+
+}  // namespace crisp

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/stage/runner.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/pipeline/stage/toy_stages.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class RunnerTest : public testing::Test {
+ protected:
+  RunnerTest() {
+    toy::register_toys(registrar_);
+    run_.registrar = &registrar_;
+    toy::log().clear();
+  }
+
+  std::vector<NodeResult> run(const std::vector<StageSpec>& specs, const RunHooks& hooks = {}) {
+    Pipeline pipeline = build_pipeline(specs, run_);
+    return run_pipeline(pipeline, run_, hooks);
+  }
+
+  std::string message_of(const std::vector<StageSpec>& specs) {
+    try {
+      run(specs);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  static OptionValue number(int value) { return OptionScalar(std::int64_t{value}); }
+  static OptionValue text(const std::string& value) { return OptionScalar(value); }
+  static OptionValue words(const std::vector<std::string>& list) {
+    return std::vector<OptionScalar>(list.begin(), list.end());
+  }
+
+  Registrar registrar_;
+  RunSettings run_;
+};
+
+TEST_F(RunnerTest, PassesEachItemThroughAllStagesBeforeTheNext) {
+  run({{.stage = "toy.count", .with = {{"n", number(2)}}},
+       {.stage = "toy.log", .tag = "a"},
+       {.stage = "toy.log", .tag = "b"}});
+  EXPECT_THAT(toy::log(), ElementsAre("number 1", "number 1", "number 2", "number 2", "count finishes",
+                                      "log finishes", "log finishes"));
+}
+
+TEST_F(RunnerTest, KeepsWhatDrivesAStageUntilWhatItHoldsIsThere) {
+  run({{.stage = "toy.count"}, {.stage = "toy.sum"}, {.stage = "toy.share"}, {.stage = "toy.log"}});
+  EXPECT_THAT(toy::log(), ElementsAre("count finishes", "1/6", "number 16", "2/6", "number 33", "3/6",
+                                      "number 50", "log finishes"));
+}
+
+TEST_F(RunnerTest, WaitsForAnOptionalInputThatAStageAboveGives) {
+  run({{.stage = "toy.count", .with = {{"n", number(2)}}},
+       {.stage = "toy.say", .with = {{"words", words({"aye"})}}},
+       {.stage = "toy.sum"},
+       {.stage = "toy.share"}});
+  EXPECT_THAT(toy::log(), ElementsAre("count finishes", "1/3 aye", "2/3 aye"));
+}
+
+TEST_F(RunnerTest, GoesOnWithoutAnOptionalInputThatNeverCame) {
+  run({{.stage = "toy.count", .with = {{"n", number(2)}}},
+       {.stage = "toy.say", .with = {{"words", words({})}}},
+       {.stage = "toy.sum"},
+       {.stage = "toy.share"}});
+  EXPECT_THAT(toy::log(), ElementsAre("count finishes", "1/3", "2/3"));
+}
+
+TEST_F(RunnerTest, ReplaysUpdatesOfAHeldInputInTheirOrder) {
+  // Both words are said before the numbers come, as the source of words is only held: the last one holds.
+  run({{.stage = "toy.count", .with = {{"n", number(1)}}},
+       {.stage = "toy.say", .with = {{"words", words({"first", "last"})}}},
+       {.stage = "toy.sum"},
+       {.stage = "toy.share"}});
+  EXPECT_THAT(toy::log(), ElementsAre("count finishes", "1/1 last"));
+}
+
+TEST_F(RunnerTest, MergesTheStagesThatInputsNames) {
+  run({{.stage = "toy.count", .tag = "low", .with = {{"n", number(1)}}},
+       {.stage = "toy.count", .tag = "high", .with = {{"n", number(1)}, {"first", number(9)}}},
+       {.stage = "toy.log", .inputs = {{{"low", {}}, {"high", {}}}}}});
+  EXPECT_THAT(toy::log(),
+              ElementsAre("number 1", "number 9", "count finishes", "count finishes", "log finishes"));
+}
+
+TEST_F(RunnerTest, CountsWhatEachStageTookAndGave) {
+  const auto results = run({{.stage = "toy.count"}, {.stage = "toy.log"}});
+  EXPECT_EQ(results[0].given.at("Number"), 3u);
+  EXPECT_EQ(results[1].taken.at("Number"), 3u);
+  EXPECT_EQ(results[1].report.counts.at("entries"), 3u);
+  EXPECT_GE(results[0].seconds, 0);
+}
+
+TEST_F(RunnerTest, TellsTheStageThatThrewAndNotTheOneThatFedIt) {
+  const std::vector<StageSpec> specs = {{.stage = "toy.count"}, {.stage = "toy.throw", .tag = "culprit"}};
+  EXPECT_EQ(message_of(specs), "error: culprit: it saw a three; avoid threes");
+}
+
+TEST_F(RunnerTest, TurnsAnyExceptionIntoAnErrorWithThePlaceOfTheStage) {
+  std::vector<StageSpec> specs = {{.stage = "toy.count"}, {.stage = "toy.throw"}};
+  specs[1].place = {"p.yaml", 7, 5};
+  specs[1].with = {{"how", text("standard")}};
+  EXPECT_EQ(message_of(specs), "p.yaml:7:5: error: toy.throw: three");
+  specs[1].with = {{"how", text("memory")}};
+  EXPECT_THAT(message_of(specs), HasSubstr("toy.throw: the memory is exhausted"));
+  specs[1].with = {{"how", text("undeclared")}};
+  EXPECT_THAT(message_of(specs), HasSubstr("it gives Word, which it does not declare"));
+}
+
+TEST_F(RunnerTest, SaysThatWhatAStageWaitedForNeverCame) {
+  const OptionValue yes = OptionScalar(true);
+  EXPECT_THAT(
+      message_of(
+          {{.stage = "toy.count"}, {.stage = "toy.sum", .with = {{"silent", yes}}}, {.stage = "toy.share"}}),
+      HasSubstr("toy.share: it waited for a Sum, but the stages above gave none"));
+}
+
+TEST_F(RunnerTest, StopsWithoutFinishingWhenTold) {
+  std::atomic<bool> stop = true;
+  const std::vector<StageSpec> specs = {{.stage = "toy.count"}, {.stage = "toy.log"}};
+  EXPECT_THROW(run(specs, {.stop = &stop}), Interrupted);
+  EXPECT_TRUE(toy::log().empty());
+}
+
+}  // namespace
+}  // namespace crisp

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Small stages that the tests build pipelines of: they pass numbers and words along and write down, in a log
+// that all of them share, what they were called with and when.
+
+#include <string>
+#include <vector>
+
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp::toy {
+
+struct Number {
+  int value = 0;
+};
+struct Word {
+  std::string text;
+};
+struct Sum {
+  int value = 0;
+};
+
+inline std::vector<std::string>& log() {
+  static std::vector<std::string> entries;
+  return entries;
+}
+
+}  // namespace crisp::toy
+
+template <>
+struct crisp::KindName<crisp::toy::Number> {
+  static constexpr std::string_view value = "Number";
+};
+template <>
+struct crisp::KindName<crisp::toy::Word> {
+  static constexpr std::string_view value = "Word";
+};
+template <>
+struct crisp::KindName<crisp::toy::Sum> {
+  static constexpr std::string_view value = "Sum";
+};
+
+namespace crisp::toy {
+
+/// Gives first, first + 1, … in process.
+class CountStage final : public Stage {
+ public:
+  static void describe(StageDescription<CountStage>& d) {
+    d.name("toy.count").summary("counts").gives<Number>();
+    d.option("n", &CountStage::n_, "how many numbers").range(0, 1000);
+    d.option("first", &CountStage::first_, "the first of them");
+  }
+  void process(const Inputs&, Outputs& out, Context&) override {
+    for (int i = 0; i < n_; ++i) out.give(Number{first_ + i});
+  }
+  void finish(Outputs&, Context&) override { log().push_back("count finishes"); }
+
+ private:
+  int n_ = 3;
+  int first_ = 1;
+};
+
+/// Gives a word at once, or only when it finishes, or never.
+class SayStage final : public Stage {
+ public:
+  static void describe(StageDescription<SayStage>& d) {
+    d.name("toy.say").summary("says words").gives<Word>();
+    d.option("words", &SayStage::words_, "what to say");
+  }
+  void process(const Inputs&, Outputs& out, Context&) override {
+    for (const auto& word : words_) out.give(Word{word});
+  }
+
+ private:
+  std::vector<std::string> words_ = {"hello"};
+};
+
+/// Adds the numbers up; gives the sum in finish.
+class SumStage final : public Stage {
+ public:
+  static void describe(StageDescription<SumStage>& d) {
+    d.name("toy.sum").summary("adds numbers up").takes<Number>().gives<Sum>();
+    d.option("silent", &SumStage::silent_, "gives no sum");
+  }
+  void process(const Inputs& in, Outputs&, Context&) override { sum_ += in.get<Number>().value; }
+  void finish(Outputs& out, Context&) override {
+    if (!silent_) out.give(Sum{sum_});
+  }
+
+ private:
+  bool silent_ = false;
+  int sum_ = 0;
+};
+
+/// Takes numbers, holds the sum, and perhaps a word; logs each call; gives the number's share of the sum in
+/// %.
+class ShareStage final : public Stage {
+ public:
+  static void describe(StageDescription<ShareStage>& d) {
+    d.name("toy.share").summary("divides").takes<Number>().holds<Sum>().holds<Word>(Need::optional);
+    d.gives<Number>();
+  }
+  void process(const Inputs& in, Outputs& out, Context&) override {
+    const auto* word = in.find<Word>();
+    log().push_back(std::to_string(in.get<Number>().value) + "/" + std::to_string(in.get<Sum>().value) +
+                    (word ? " " + word->text : ""));
+    out.give(Number{100 * in.get<Number>().value / in.get<Sum>().value});
+  }
+};
+
+/// Takes numbers and words; logs them in their order of arrival.
+class LogStage final : public Stage {
+ public:
+  static void describe(StageDescription<LogStage>& d) {
+    d.name("toy.log").summary("writes down").takes<Number>(Need::optional).takes<Word>(Need::optional);
+  }
+  void process(const Inputs& in, Outputs&, Context& context) override {
+    if (const auto* number = in.find<Number>()) log().push_back("number " + std::to_string(number->value));
+    if (const auto* word = in.find<Word>()) log().push_back("word " + word->text);
+    context.count("entries");
+  }
+  void finish(Outputs&, Context&) override { log().push_back("log finishes"); }
+};
+
+/// Throws what `how` says when it sees its third number.
+class ThrowStage final : public Stage {
+ public:
+  enum class How { error, standard, memory, undeclared };
+  static void describe(StageDescription<ThrowStage>& d) {
+    d.name("toy.throw").summary("throws").takes<Number>().gives<Number>();
+    d.option("how", &ThrowStage::how_, "what it throws")
+        .choices({{"error", How::error},
+                  {"standard", How::standard},
+                  {"memory", How::memory},
+                  {"undeclared", How::undeclared}});
+  }
+  void process(const Inputs& in, Outputs& out, Context&) override {
+    if (in.get<Number>().value < 3) return out.give(*in.find<Number>());
+    switch (how_) {
+      case How::error:
+        throw Error("it saw a three", "avoid threes");
+      case How::standard:
+        throw std::out_of_range("three");
+      case How::memory:
+        throw std::bad_alloc();
+      case How::undeclared:
+        out.give(Word{"three"});
+    }
+  }
+
+ private:
+  How how_ = How::error;
+};
+
+inline void register_toys(Registrar& registrar) {
+  registrar.stage<CountStage>();
+  registrar.stage<SayStage>();
+  registrar.stage<SumStage>();
+  registrar.stage<ShareStage>();
+  registrar.stage<LogStage>();
+  registrar.stage<ThrowStage>();
+}
+
+}  // namespace crisp::toy
