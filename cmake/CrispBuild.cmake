@@ -21,6 +21,9 @@ if(CRISP_SANITIZE)
   add_compile_options(-fsanitize=${CRISP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${CRISP_SANITIZE})
 endif()
+if(CRISP_BUILD_FUZZERS)  # the libraries report their coverage to libFuzzer, whose main only the targets get
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
 
 # crisp_library(<folder's name> [SHARED|STATIC] SOURCES ... [PUBLIC ...] [PRIVATE ...])
 # makes the target crisp_<name> with the alias crisp::<name>. Includes are written from the top of the
@@ -49,4 +52,46 @@ function(crisp_test name)
   target_compile_definitions(${name}_test PRIVATE CRISP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set_target_properties(${name}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
   gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+endfunction()
+
+# crisp_fuzz(<name> SOURCES ... LIBRARIES ...) makes one fuzz target, <name>_fuzz, of sources that define
+# LLVMFuzzerTestOneInput, with the seeds in corpus/<name>/. With clang and CRISP_BUILD_FUZZERS libFuzzer
+# searches from the seeds for CRISP_FUZZ_SECONDS (test fuzz.<name>); elsewhere each seed is replayed once
+# (test seeds.<name>), so that what was once found stays found in every build.
+function(crisp_fuzz name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIBRARIES")
+  set(seeds "${CMAKE_CURRENT_SOURCE_DIR}/corpus/${name}")
+  if(NOT IS_DIRECTORY "${seeds}")
+    message(FATAL_ERROR "the fuzz target ${name} has no seeds: put some small inputs into ${seeds}")
+  endif()
+  add_executable(${name}_fuzz ${arg_SOURCES})
+  target_link_libraries(${name}_fuzz PRIVATE ${arg_LIBRARIES} crisp_settings)
+  set_target_properties(${name}_fuzz PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+  if(CRISP_BUILD_FUZZERS)
+    target_link_options(${name}_fuzz PRIVATE -fsanitize=fuzzer)
+    add_dependencies(fuzzers ${name}_fuzz)
+    set(found "${CMAKE_BINARY_DIR}/fuzz/${name}")
+    file(MAKE_DIRECTORY "${found}/corpus")
+    add_test(NAME fuzz.${name} COMMAND ${name}_fuzz -max_total_time=${CRISP_FUZZ_SECONDS} -timeout=10
+             -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix=${found}/ ${found}/corpus ${seeds})
+    math(EXPR limit "${CRISP_FUZZ_SECONDS} + 300")
+    set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT ${limit})
+  else()
+    target_link_libraries(${name}_fuzz PRIVATE crisp_replay)
+    add_test(NAME seeds.${name} COMMAND ${name}_fuzz ${seeds})
+    set_tests_properties(seeds.${name} PROPERTIES TIMEOUT 120)
+  endif()
+endfunction()
+
+# crisp_benchmark(<name> SOURCES ... LIBRARIES ...) makes one Google Benchmark program, <name>_bench.
+# Benchmarks are no tests: nothing fails for being slow.
+function(crisp_benchmark name)
+  if(NOT CRISP_BUILD_BENCHMARKS)
+    return()
+  endif()
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIBRARIES")
+  add_executable(${name}_bench ${arg_SOURCES})
+  target_link_libraries(${name}_bench PRIVATE ${arg_LIBRARIES} benchmark::benchmark_main crisp_settings)
+  target_compile_definitions(${name}_bench PRIVATE CRISP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  set_target_properties(${name}_bench PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bench")
 endfunction()
