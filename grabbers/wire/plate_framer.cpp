@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/wire/plate_framer.hpp"
+
+namespace crisp {
+
+void PlateFramer::gap() {
+  if (!line_.empty()) ++counts_.failures[static_cast<std::size_t>(PlateFailure::Truncated)];
+  line_.clear();
+}
+
+std::optional<PlateReading> PlateFramer::take(char c) {
+  if (c == '$') {
+    gap();  // of a sentence that lost its end
+    line_ = "$";
+    return {};
+  }
+  if (line_.empty()) {
+    if (c != '\r' && c != '\n') ++counts_.skipped_bytes;
+    return {};
+  }
+  if (c == '\n') return finish_line();
+  if (line_.size() > kLongestPlateSentence) {
+    gap();
+    return {};
+  }
+  line_ += c;
+  return {};
+}
+
+std::optional<PlateReading> PlateFramer::finish_line() {
+  if (line_.back() == '\r') line_.pop_back();
+  PlateReading reading{.receipt_ns = latest_ns_};
+  const auto failure = decode_plate_sentence(line_, reading);
+  line_.clear();
+  if (failure != PlateFailure::None) {
+    ++counts_.failures[static_cast<std::size_t>(failure)];
+    return {};
+  }
+  ++counts_.readings;
+  return reading;
+}
+
+}  // namespace crisp

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "grabbers/wire/bytes.hpp"
+#include "grabbers/wire/plate_sentence.hpp"
+
+namespace crisp {
+
+/// Finds the plate's sentences in a stream of bytes (datagrams, a serial line, TCP) that is cut anywhere and
+/// may be damaged. A sentence begins with `$` and ends with a line feed; everything else is skipped and
+/// counted. Memory is bounded by one line.
+class PlateFramer {
+ public:
+  struct Counts {
+    std::uint64_t readings = 0;
+    std::array<std::uint64_t, 5> failures{};  ///< lines that are no reading, by PlateFailure
+    std::uint64_t skipped_bytes = 0;          ///< bytes outside of any sentence
+    std::uint64_t of(PlateFailure failure) const { return failures[static_cast<std::size_t>(failure)]; }
+  };
+
+  /// Takes the next bytes and calls `sink(const PlateReading&)` for each reading that they complete.
+  /// @param arrival_ns [ns] hub time at which these bytes arrived: the reading's receipt time
+  template <class Sink>
+  void feed(ByteView bytes, std::int64_t arrival_ns, Sink&& sink) {
+    for (const auto byte : bytes) {
+      latest_ns_ = line_.empty() || byte == '$' ? arrival_ns : std::max(latest_ns_, arrival_ns);
+      if (const auto reading = take(static_cast<char>(byte))) sink(*reading);
+    }
+  }
+
+  /// Says that bytes are missing here, or that the datagram or stream ends.
+  void gap();
+
+  const Counts& counts() const { return counts_; }
+
+  /// Whether the begin of a sentence waits for its end.
+  bool waiting() const { return !line_.empty(); }
+
+ private:
+  std::optional<PlateReading> take(char c);
+  std::optional<PlateReading> finish_line();
+
+  std::string line_;  ///< from '$' on; empty between sentences
+  std::int64_t latest_ns_ = 0;
+  Counts counts_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/wire/scan_conversion.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace crisp {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kUnitsPerDegree = 1e4;
+constexpr double kMillimetre = 1e-3;
+constexpr std::size_t kMostEchoes = 5;
+
+/// The n of DISTn or RSSIn, 0 for every other name.
+std::size_t echo_number(const ChannelBlock& channel, std::string_view kind) {
+  const std::string_view name = channel.name;
+  if (!name.starts_with(kind) || name.size() != kind.size() + 1) return 0;
+  const auto n = static_cast<std::size_t>(name.back() - '0');
+  return n >= 1 && n <= kMostEchoes ? n : 0;
+}
+
+/// What gathers the channels of one telegram into one scan.
+class Gathering {
+ public:
+  explicit Gathering(Scan& scan) : scan_(scan) {
+    for (auto& echo : scan_.echoes) {
+      echo.ranges.clear();
+      echo.remissions.clear();
+    }
+  }
+
+  void take(const ChannelBlock& channel) {
+    if (const auto n = echo_number(channel, "DIST")) {
+      if (agrees(channel)) ranges(channel, echo(n).ranges);
+      echoes_ = std::max(echoes_, n);
+    } else if (const auto m = echo_number(channel, "RSSI")) {
+      if (agrees(channel)) values(channel, echo(m).remissions);
+    }
+  }
+
+  ScanFailure finish() {
+    if (failure_ != ScanFailure::None) return failure_;
+    if (echoes_ == 0) return ScanFailure::NoDistances;
+    scan_.echoes.resize(echoes_);
+    for (auto& echo : scan_.echoes) echo.ranges.resize(first_->raw.size());  // an echo that was not sent
+    scan_.start_angle = first_->start_angle / kUnitsPerDegree * kDegree;
+    scan_.angle_step = exact_angle_step(first_->angle_step);
+    return ScanFailure::None;
+  }
+
+ private:
+  Echo& echo(std::size_t n) {
+    if (scan_.echoes.size() < n) scan_.echoes.resize(n);
+    return scan_.echoes[n - 1];
+  }
+
+  bool agrees(const ChannelBlock& channel) {
+    if (!first_) first_ = &channel;
+    constexpr double kTurn = 360 * kUnitsPerDegree;
+    if (!std::isfinite(channel.scale) || !std::isfinite(channel.offset)) {
+      failure_ = ScanFailure::BadScale;
+    } else if (channel.raw.size() != first_->raw.size() || channel.start_angle != first_->start_angle ||
+               channel.angle_step != first_->angle_step) {
+      failure_ = ScanFailure::ChannelsDisagree;
+    } else if (std::abs(double{1} * channel.start_angle) > kTurn ||
+               double{1} * channel.angle_step * static_cast<double>(channel.raw.size()) > 1.01 * kTurn) {
+      failure_ = ScanFailure::BadAngles;
+    }
+    return failure_ == ScanFailure::None;
+  }
+
+  static void ranges(const ChannelBlock& channel, std::vector<float>& out) {
+    const double scale = channel.scale * kMillimetre, offset = channel.offset * kMillimetre;
+    out.resize(channel.raw.size());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const double range = channel.raw[i] * scale + offset;
+      out[i] = channel.raw[i] < kFirstDistance || range < 0 ? 0.0F : static_cast<float>(range);
+    }
+  }
+
+  static void values(const ChannelBlock& channel, std::vector<float>& out) {
+    out.resize(channel.raw.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = channel.raw[i] * channel.scale + channel.offset;
+  }
+
+  Scan& scan_;
+  const ChannelBlock* first_ = nullptr;
+  std::size_t echoes_ = 0;
+  ScanFailure failure_ = ScanFailure::None;
+};
+
+}  // namespace
+
+std::string_view to_string(ScanFailure failure) {
+  switch (failure) {
+    case ScanFailure::None:
+      return "none";
+    case ScanFailure::NoDistances:
+      return "no distance channel";
+    case ScanFailure::ChannelsDisagree:
+      return "channels with different angles or numbers of values";
+    case ScanFailure::BadScale:
+      return "a scale factor or offset that is no finite number";
+    case ScanFailure::BadAngles:
+      return "angles beyond a full turn";
+  }
+  return "unknown";
+}
+
+double exact_angle_step(std::uint16_t step) {
+  constexpr double kParts = 24;
+  const double parts = std::round(step * kParts / kUnitsPerDegree);
+  const bool rounded = std::lround(parts * kUnitsPerDegree / kParts) == step;
+  return (rounded ? parts / kParts : step / kUnitsPerDegree) * kDegree;
+}
+
+ScanFailure to_scan(const ScanData& data, std::uint16_t laser, std::int64_t receipt_ns, Scan& scan) {
+  Gathering gathering(scan);
+  for (const auto& channel : data.channels16) gathering.take(channel);
+  for (const auto& channel : data.channels8) gathering.take(channel);
+  const auto failure = gathering.finish();
+  if (failure != ScanFailure::None) return failure;
+  scan.laser = laser;
+  scan.serial_number = data.serial_number;
+  scan.device_status = data.device_status;
+  scan.telegram_counter = data.telegram_counter;
+  scan.scan_counter = data.scan_counter;
+  scan.scan_time_us = data.scan_time_us;
+  scan.transmission_time_us = data.transmission_time_us;
+  scan.receipt_ns = receipt_ns;
+  scan.scan_frequency = data.scan_frequency / 100.0;
+  scan.encoders.clear();
+  for (const auto& encoder : data.encoders) scan.encoders.push_back({encoder.position, encoder.speed});
+  return ScanFailure::None;
+}
+
+}  // namespace crisp

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "grabbers/wire/cola_framer.hpp"
+#include "grabbers/wire/scan_data.hpp"
+
+namespace crisp {
+
+/// The bytes of "02 73 …"; white space is ignored.
+Bytes from_hex(std::string_view hex);
+
+/// A real telegram of tests/grabbers/wire/telegrams, framing included.
+Bytes real_telegram(std::string_view file);
+
+/// Where data that is shared but not in the repository lies: $CRISP_SHARED_DATA or ../shared/data.
+std::filesystem::path shared_data();
+
+/// A telegram with every optional block, several encoders and channels; `seed` varies the values.
+ScanData full_scan_data(std::uint32_t seed);
+
+/// One telegram found in a stream, with bytes of its own.
+struct FoundTelegram {
+  ColaLanguage language;
+  Bytes payload;
+  std::int64_t completed_ns;
+  bool operator==(const FoundTelegram&) const = default;
+};
+
+/// What a framer finds in a stream fed in pieces of `piece` bytes, piece i arriving at time i; a gap at the
+/// end.
+std::vector<FoundTelegram> find_telegrams(ByteView stream, std::size_t piece = 1 << 20,
+                                          ColaFramer::Counts* counts = nullptr);
+
+}  // namespace crisp
