@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+namespace crisp {
+
+/// A file that is there whole or not at all: it is written aside, in the same folder, and takes its name when
+/// it is complete and on the disk. Left without commit() (an exception, an interruption), nothing remains of
+/// it, and a file of that name from before stays as it was.
+///
+/// Write through write(), or let a library write to aside() and then commit().
+class AtomicFile {
+ public:
+  /// Makes the folder if need be, and the file aside.
+  /// @throws Error that names the file: no permission, not a regular file, a full disk
+  explicit AtomicFile(std::filesystem::path file);
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  ~AtomicFile();
+
+  /// @throws Error that names the file, if the disk is full or fails
+  void write(std::string_view bytes);
+
+  /// Puts the file in its place. Nothing may be written afterwards.
+  /// @throws Error that names the file, if the disk is full or fails
+  void commit();
+
+  const std::filesystem::path& path() const { return file_; }
+  const std::filesystem::path& aside() const { return aside_; }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* stream) const { std::fclose(stream); }
+  };
+
+  std::filesystem::path file_;
+  std::filesystem::path target_;  ///< file_, with symbolic links followed
+  std::filesystem::path aside_;
+  std::unique_ptr<std::FILE, Close> stream_;
+};
+
+/// Writes a whole file at once, as AtomicFile does.
+void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+}  // namespace crisp

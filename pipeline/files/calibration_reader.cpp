@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include "pipeline/files/calibration_file.hpp"
+#include "pipeline/files/yaml_map.hpp"
+
+namespace crisp {
+namespace {
+
+class CalibrationReader {
+ public:
+  Calibration read(const YamlNode& root) {
+    YamlMap map(root, "calibration", errors_);
+    check_schema(map, 1);
+    if (const YamlNode* lasers = map.require("lasers")) read_lasers(*lasers);
+    if (const YamlNode* plate = map.find("plate")) read_plate(*plate);
+    if (const YamlNode* covariance = map.find("covariance")) read_covariance(*covariance);
+    if (const YamlNode* quality = map.find("quality")) read_quality(*quality);
+    if (const YamlNode* provenance = map.find("provenance")) read_provenance(*provenance);
+    map.refuse_others();
+    if (!errors_.empty()) throw Errors(std::move(errors_));
+    return std::move(calibration_);
+  }
+
+ private:
+  void read_lasers(const YamlNode& node) {
+    YamlMap map(node, "lasers", errors_);
+    if (node.kind == YamlNode::Kind::map && node.entries.empty()) map.fail(node.place, "there is none");
+    for (const auto& [name, place, value] : node.entries) {
+      YamlMap laser_map(value, "laser '" + name + "'", errors_);
+      LaserCalibration laser;
+      laser.name = name;
+      for (Parameter* parameter : {&laser.lambda, &laser.tau, &laser.alpha, &laser.eta}) {
+        const YamlNode* found = laser_map.require(parameter->name);
+        if (found) *parameter = read_parameter(*found, parameter->name, laser_map.what(), parameter->unit);
+      }
+      if (const YamlNode* terms = laser_map.find("terms")) laser.terms = read_terms(*terms, laser_map.what());
+      laser_map.refuse_others();
+      calibration_.lasers.push_back(std::move(laser));
+    }
+  }
+
+  void read_plate(const YamlNode& node) {
+    YamlMap map(node, "plate", errors_);
+    if (const YamlNode* terms = map.find("terms")) calibration_.plate_terms = read_terms(*terms, "plate");
+    map.refuse_others();
+  }
+
+  std::vector<TermParameters> read_terms(const YamlNode& node, const std::string& what) {
+    YamlMap map(node, what + ", terms", errors_);
+    std::vector<TermParameters> terms;
+    for (const auto& [name, place, value] : node.entries) {
+      YamlMap term_map(value, what + ", term '" + name + "'", errors_);
+      TermParameters term{name, {}};
+      for (const auto& entry : value.entries) {
+        term.parameters.push_back(read_parameter(entry.value, entry.key, term_map.what(), {}));
+      }
+      terms.push_back(std::move(term));
+    }
+    return terms;
+  }
+
+  /// @param unit  the only unit that is right, or empty where the file says which it is
+  Parameter read_parameter(const YamlNode& node, const std::string& name, const std::string& what,
+                           const std::string& unit) {
+    YamlMap map(node, what + ", " + name, errors_);
+    Parameter parameter{name, unit};
+    map.require("value");
+    parameter.value = map.number("value", "", 0);
+    parameter.std_error = map.number("std_error", "", 0);
+    parameter.free = map.boolean("free", false);
+    const YamlNode* written = map.require("unit");
+    if (written) parameter.unit = map.text("unit", unit);
+    if (written && !unit.empty() && parameter.unit != unit) {
+      map.fail(written->place, describe(*written) + " is not its unit", "convert the value to " + unit);
+    }
+    if (parameter.std_error < 0) map.fail(node.find("std_error")->place, "a standard error is not negative");
+    map.refuse_others();
+    return parameter;
+  }
+
+  void read_covariance(const YamlNode& node) {
+    YamlMap map(node, "covariance", errors_);
+    std::string wrong;
+    if (const YamlNode* order = list(map, "order")) {
+      for (const auto& item : order->items) {
+        if (auto name = read_text(item, wrong))
+          calibration_.covariance_order.push_back(std::move(*name));
+        else
+          map.fail(item.place, "'order': " + wrong);
+      }
+    }
+    if (const YamlNode* values = list(map, "values")) {
+      for (const auto& item : values->items) {
+        if (const auto number = read_number(item, "", wrong))
+          calibration_.covariance.push_back(*number);
+        else
+          map.fail(item.place, "'values': " + wrong);
+      }
+      const std::size_t m = calibration_.covariance_order.size();
+      if (values->items.size() != m * m) {
+        map.fail(values->place, fmt::format("there are {} values for {} parameters", values->items.size(), m),
+                 fmt::format("write {} x {}, row by row", m, m));
+      }
+    }
+    map.refuse_others();
+  }
+
+  const YamlNode* list(YamlMap& map, const std::string& key) {
+    const YamlNode* node = map.require(key);
+    if (!node || node->kind == YamlNode::Kind::sequence) return node;
+    map.fail(node->place, "'" + key + "': " + describe(*node) + " is not a list");
+    return nullptr;
+  }
+
+  /// Plain figures, figures with a before and an after, and what could not be observed.
+  void read_quality(const YamlNode& node) {
+    YamlMap map(node, "quality", errors_);
+    if (const YamlNode* unobservable = map.find("unobservable")) read_unobservable(*unobservable, map);
+    for (const auto& [name, place, value] : node.entries) {
+      if (name == "unobservable") continue;
+      if (value.kind == YamlNode::Kind::map) {
+        YamlMap pair(value, "quality, " + name, errors_);
+        for (const char* when : {"before", "after"}) {
+          if (pair.find(when)) calibration_.quality[name + "_" + when] = pair.number(when, "", 0);
+        }
+        pair.refuse_others();
+      } else {
+        calibration_.quality[name] = map.number(name, "", 0);
+      }
+    }
+  }
+
+  void read_unobservable(const YamlNode& node, YamlMap& parent) {
+    if (node.kind != YamlNode::Kind::sequence) {
+      parent.fail(node.place, "'unobservable': " + describe(node) + " is not a list");
+    }
+    for (const auto& item : node.items) {
+      YamlMap map(item, "quality, unobservable", errors_);
+      map.require("parameter");
+      calibration_.unobservable.push_back(
+          {map.text("parameter", ""), map.text("reason", ""), map.text("combination", "")});
+      map.refuse_others();
+    }
+  }
+
+  void read_provenance(const YamlNode& node) {
+    YamlMap map(node, "provenance", errors_);
+    for (const auto& entry : node.entries) calibration_.provenance[entry.key] = map.text(entry.key, "");
+  }
+
+  Calibration calibration_;
+  std::vector<Error> errors_;
+};
+
+}  // namespace
+
+Calibration parse_calibration(const YamlNode& root) { return CalibrationReader().read(root); }
+
+Calibration read_calibration(const std::filesystem::path& file) { return parse_calibration(read_yaml(file)); }
+
+}  // namespace crisp

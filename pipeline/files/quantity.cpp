@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/files/quantity.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace crisp {
+namespace {
+
+struct Unit {
+  std::string_view name;
+  std::string_view si;
+  double factor;
+};
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// Every spelling that is understood, with what one of it is in the SI unit.
+constexpr std::array kUnits = {
+    Unit{"m", "m", 1},
+    Unit{"um", "m", 1e-6},
+    Unit{"µm", "m", 1e-6},
+    Unit{"mm", "m", 1e-3},
+    Unit{"cm", "m", 1e-2},
+    Unit{"km", "m", 1e3},
+    Unit{"rad", "rad", 1},
+    Unit{"mrad", "rad", 1e-3},
+    Unit{"deg", "rad", kDegree},
+    Unit{"°", "rad", kDegree},
+    Unit{"turn", "rad", kTurn},
+    Unit{"s", "s", 1},
+    Unit{"ns", "s", 1e-9},
+    Unit{"us", "s", 1e-6},
+    Unit{"µs", "s", 1e-6},
+    Unit{"ms", "s", 1e-3},
+    Unit{"min", "s", 60},
+    Unit{"h", "s", 3600},
+    Unit{"Hz", "Hz", 1},
+    Unit{"kHz", "Hz", 1e3},
+    Unit{"rad/s", "rad/s", 1},
+    Unit{"deg/s", "rad/s", kDegree},
+    Unit{"turn/s", "rad/s", kTurn},
+    Unit{"rpm", "rad/s", kTurn / 60},
+    Unit{"m/s", "m/s", 1},
+    Unit{"mm/s", "m/s", 1e-3},
+    Unit{"km/h", "m/s", 1 / 3.6},
+    Unit{"%", "1", 1e-2},
+    Unit{"ppm", "1", 1e-6},
+};
+
+Complaint complain(std::string_view text, std::string_view why) {
+  constexpr std::size_t kLongest = 60;
+  return {fmt::format("'{}' {}", text.substr(0, kLongest), why)};
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool has_leading_zero(std::string_view number) {
+  if (!number.empty() && number.front() == '-') number.remove_prefix(1);
+  return number.size() > 1 && number[0] == '0' && is_digit(number[1]);
+}
+
+struct NumberAndRest {
+  double number;
+  std::string_view rest;
+};
+
+/// The decimal number that the text begins with, or nothing.
+std::optional<NumberAndRest> leading_number(std::string_view text) {
+  if (!text.empty() && text.front() == '+') {
+    text.remove_prefix(1);
+    if (!text.empty() && text.front() == '-') return std::nullopt;
+  }
+  const auto first = text.find_first_not_of('-');
+  if (first == std::string_view::npos || !(is_digit(text[first]) || text[first] == '.')) return std::nullopt;
+  double number = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (failure != std::errc()) return std::nullopt;
+  return NumberAndRest{number, text.substr(static_cast<std::size_t>(end - text.data()))};
+}
+
+Complaint wrong_unit(std::string_view text, std::string_view given, std::string_view wanted) {
+  if (wanted.empty()) return complain(text, "has a unit, but a plain number is wanted");
+  const auto known =
+      std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& u) { return u.name == given; });
+  const std::string units = fmt::format("{}", fmt::join(units_of(wanted), ", "));
+  if (known == kUnits.end()) {
+    return complain(text, fmt::format("has the unknown unit '{}'{}{}", given.substr(0, 20),
+                                      units.empty() ? "" : "; understood are ", units));
+  }
+  const std::string dimension = wanted == "1" ? "a number without dimension" : fmt::format("{}", wanted);
+  return complain(text, fmt::format("cannot be converted to {}", dimension));
+}
+
+}  // namespace
+
+std::variant<double, Complaint> parse_quantity(std::string_view text, std::string_view unit) {
+  const std::string_view whole = trimmed(text);
+  const auto parts = leading_number(whole);
+  if (!parts) return complain(text, "is not a number");
+  if (has_leading_zero(whole)) return complain(text, "begins with 0, which readers understand differently");
+  if (!std::isfinite(parts->number)) return complain(text, "is not a finite number");
+  const std::string_view given = trimmed(parts->rest);
+  if (given.empty() || (given == unit && unit != "1")) return parts->number;
+  for (const auto& known : kUnits) {
+    if (known.name != given || known.si != unit) continue;
+    const double value = parts->number * known.factor;
+    if (!std::isfinite(value)) return complain(text, "is not a finite number");
+    return value;
+  }
+  return wrong_unit(text, given, unit);
+}
+
+std::variant<std::int64_t, Complaint> parse_integer(std::string_view text) {
+  const std::string_view whole = trimmed(text);
+  if (has_leading_zero(whole)) return complain(text, "begins with 0, which readers understand differently");
+  std::int64_t integer = 0;
+  const auto [end, failure] = std::from_chars(whole.data(), whole.data() + whole.size(), integer);
+  if (failure == std::errc() && end == whole.data() + whole.size()) return integer;
+  const auto parts = leading_number(whole);    // 1e6, +5
+  constexpr double kExact = 9007199254740992;  // 2^53
+  const bool is_whole = parts && parts->rest.empty() && std::trunc(parts->number) == parts->number;
+  if (!is_whole || std::abs(parts->number) > kExact) return complain(text, "is not a whole number");
+  return static_cast<std::int64_t>(parts->number);
+}
+
+std::vector<std::string> units_of(std::string_view unit) {
+  std::vector<std::string> names;
+  for (const auto& known : kUnits) {
+    if (known.si == unit) names.emplace_back(known.name);
+  }
+  return names;
+}
+
+}  // namespace crisp

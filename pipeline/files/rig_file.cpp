@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/files/rig_file.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "pipeline/files/yaml_map.hpp"
+
+namespace crisp {
+namespace {
+
+bool is_ip(const std::string& text) {
+  std::array<unsigned char, sizeof(in6_addr)> bytes{};
+  return inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
+         inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
+}
+
+/// Names become parts of "laser1.tau" and of file names.
+bool is_device_name(const std::string& name) {
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
+  return !name.empty() && std::all_of(name.begin(), name.end(), allowed);
+}
+
+class RigReader {
+ public:
+  Rig read(const YamlNode& root) {
+    YamlMap map(root, "rig", errors_);
+    check_schema(map, 1);
+    if (const YamlNode* lasers = map.require("lasers")) read_lasers(*lasers);
+    if (const YamlNode* plate = map.require("plate")) read_plate(*plate);
+    map.refuse_others();
+    if (errors_.empty()) check_addresses();
+    if (!errors_.empty()) throw Errors(std::move(errors_));
+    return std::move(rig_);
+  }
+
+ private:
+  void read_lasers(const YamlNode& node) {
+    YamlMap map(node, "lasers", errors_);
+    if (node.kind == YamlNode::Kind::map && node.entries.empty()) map.fail(node.place, "there is none");
+    constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max();
+    if (node.entries.size() > kMost) map.fail(node.place, fmt::format("there are more than {}", kMost));
+    for (const auto& entry : node.entries) {
+      if (!is_device_name(entry.key)) {
+        map.fail(entry.place, "'" + entry.key + "' is not a name of letters, digits, _ and -");
+      }
+      read_laser(entry);
+    }
+  }
+
+  void read_laser(const YamlEntry& entry) {
+    YamlMap map(entry.value, "laser '" + entry.key + "'", errors_);
+    RigLaser laser;
+    laser.name = entry.key;
+    laser.address = read_address(map, 0);
+    laser.mount = bounded(map, "mount", "rad", 0, 100);
+    laser.time_offset = bounded(map, "time_offset", "s", 0, 10);
+    laser.period_offset = static_cast<int>(map.integer("period_offset", 0, -100, 100));
+    laser.nominal.name = laser.name;
+    if (const YamlNode* nominal = map.require("nominal")) read_nominal(*nominal, map.what(), laser.nominal);
+    map.refuse_others();
+    places_.push_back(entry.place);
+    rig_.lasers.push_back(std::move(laser));
+  }
+
+  void read_nominal(const YamlNode& node, const std::string& what, LaserCalibration& nominal) {
+    YamlMap map(node, what + ", nominal", errors_);
+    map.require("lambda");
+    map.require("tau");
+    nominal.lambda.value = bounded(map, "lambda", "rad", 0, 100);
+    nominal.tau.value = bounded(map, "tau", "m", 0, 10);
+    nominal.alpha.value = bounded(map, "alpha", "rad", 0, 100);
+    nominal.eta.value = bounded(map, "eta", "s", 0, 10);
+    map.refuse_others();
+  }
+
+  void read_plate(const YamlNode& node) {
+    constexpr int kDefaultPort = 4000;
+    YamlMap map(node, "plate", errors_);
+    rig_.plate.name = map.text("name", "plate");
+    rig_.plate.address = read_address(map, kDefaultPort);
+    rig_.plate.counts_per_revolution = map.number("counts_per_revolution", "", 16384);
+    if (!(rig_.plate.counts_per_revolution >= 1)) {
+      map.fail(node.find("counts_per_revolution")->place, "'counts_per_revolution' is not at least 1");
+    }
+    map.refuse_others();
+    places_.push_back(node.place);
+  }
+
+  Address read_address(YamlMap& map, int default_port) {
+    Address address;
+    const YamlNode* ip = map.require("address");
+    address.ip = map.text("address", "");
+    if (ip && ip->kind == YamlNode::Kind::scalar && !is_ip(address.ip)) {
+      map.fail(ip->place, "'" + address.ip + "' is not an IP address", "write it as 192.168.0.1");
+    }
+    address.port = static_cast<std::uint16_t>(map.integer("port", default_port, 0, 65535));
+    return address;
+  }
+
+  /// A number whose size cannot be more than `limit`, in SI: beyond it, somebody forgot a unit.
+  double bounded(YamlMap& map, const std::string& key, std::string_view unit, double fallback, double limit) {
+    const double value = map.number(key, unit, fallback);
+    if (std::abs(value) <= limit) return value;
+    map.fail(map.find(key)->place, fmt::format("'{}': {:g} {} cannot be meant", key, value, unit),
+             fmt::format("its size is at most {:g} {}; is a unit missing?", limit, unit));
+    return fallback;
+  }
+
+  /// Two devices at one address could not be told apart.
+  void check_addresses() {
+    std::vector<std::pair<std::string, Address>> devices;
+    for (const auto& laser : rig_.lasers) devices.emplace_back(laser.name, laser.address);
+    devices.emplace_back(rig_.plate.name, rig_.plate.address);
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const auto& [name, address] = devices[i];
+        const auto& [other, used] = devices[j];
+        const bool overlap = address.port == used.port || address.port == 0 || used.port == 0;
+        if (name == other) {
+          errors_.emplace_back("rig: two devices are named '" + name + "'", "", places_[i]);
+        } else if (address.ip == used.ip && overlap) {
+          errors_.emplace_back(
+              fmt::format("rig: '{}' and '{}' have the same address {}", other, name, address.ip),
+              "give each its own, or ports that differ", places_[i]);
+        }
+      }
+    }
+  }
+
+  Rig rig_;
+  std::vector<Place> places_;  ///< of the lasers, then of the plate
+  std::vector<Error> errors_;
+};
+
+}  // namespace
+
+Rig parse_rig(const YamlNode& root) { return RigReader().read(root); }
+
+Rig read_rig(const std::filesystem::path& file) { return parse_rig(read_yaml(file)); }
+
+}  // namespace crisp

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/files/yaml.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace crisp {
+namespace {
+
+// Within {} and [], YAML ends a plain scalar at a brace, so `{file: ${input}}` would not parse. The braces of
+// a variable are hidden from the parser behind two control characters, one byte each, so that columns stay
+// right.
+constexpr char kOpen = '\x01';
+constexpr char kClose = '\x02';
+
+bool is_name_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+std::string parser_text(std::string_view text) {
+  // Without its last line breaks: yaml-cpp does not notice a quote that is still open at one.
+  std::string hidden(text.substr(0, text.find_last_not_of(" \t\r\n") + 1));
+  for (std::size_t at = hidden.find("${"); at != std::string::npos; at = hidden.find("${", at + 2)) {
+    std::size_t end = at + 2;
+    while (end < hidden.size() && is_name_character(hidden[end])) ++end;
+    if (end == at + 2 || end == hidden.size() || hidden[end] != '}') continue;
+    hidden[at + 1] = kOpen;
+    hidden[end] = kClose;
+  }
+  return hidden;
+}
+
+std::string show_variables(std::string text) {
+  std::replace(text.begin(), text.end(), kOpen, '{');
+  std::replace(text.begin(), text.end(), kClose, '}');
+  return text;
+}
+
+/// Refuses what no person writes into a text file, and what would be taken for a hidden brace.
+void check_characters(std::string_view text, const std::string& file) {
+  int line = 1;
+  int column = 1;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool control = (byte < 0x20 && c != '\t' && c != '\n' && c != '\r') || byte == 0x7f;
+    if (control) {
+      throw Error(fmt::format("there is a control character (0x{:02x})", byte), "is this a text file?",
+                  {file, line, column});
+    }
+    ++column;
+    if (c == '\n') {
+      ++line;
+      column = 1;
+    }
+  }
+}
+
+/// Builds the tree from the parser's events; keeps all errors that leave the rest readable.
+class TreeBuilder final : public YAML::EventHandler {
+ public:
+  explicit TreeBuilder(std::string file) : file_(std::move(file)) {}
+
+  YamlNode root;
+  std::vector<Error> errors;
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    check_anchor(mark, anchor);
+    add(node(mark, YamlNode::Kind::null));
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    errors.emplace_back("aliases (*name) are not understood",
+                        "write the value out, or use vars:", place(mark));
+    add(node(mark, YamlNode::Kind::null));
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    check_anchor(mark, anchor);
+    check_tag(mark, tag);
+    YamlNode scalar = node(mark, YamlNode::Kind::scalar);
+    scalar.text = show_variables(value);
+    scalar.quoted = tag == "!";
+    add(std::move(scalar));
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(mark, tag, anchor, YamlNode::Kind::sequence);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(mark, tag, anchor, YamlNode::Kind::map);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  /// A sequence or map that is being read.
+  struct Level {
+    YamlNode node;
+    bool awaits_value = false;  ///< a map whose last key has no value yet
+    std::set<std::string> keys;
+  };
+
+  Place place(const YAML::Mark& mark) const { return {file_, mark.line + 1, mark.column + 1}; }
+
+  YamlNode node(const YAML::Mark& mark, YamlNode::Kind kind) const {
+    YamlNode made;
+    made.kind = kind;
+    made.place = place(mark);
+    return made;
+  }
+
+  void check_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) {
+    if (anchor == YAML::NullAnchor) return;
+    errors.emplace_back("anchors (&name) are not understood", "use vars:", place(mark));
+  }
+  void check_tag(const YAML::Mark& mark, const std::string& tag) {
+    if (tag.empty() || tag == "?" || tag == "!") return;
+    errors.emplace_back("tags (" + tag + ") are not understood", "leave it out", place(mark));
+  }
+
+  void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YamlNode::Kind kind) {
+    constexpr std::size_t kDeepest = 64;
+    if (levels_.size() >= kDeepest) throw Error("lists and maps are nested too deeply", {}, place(mark));
+    check_anchor(mark, anchor);
+    check_tag(mark, tag);
+    levels_.push_back({node(mark, kind), false, {}});
+  }
+  void close() {
+    YamlNode done = std::move(levels_.back().node);
+    levels_.pop_back();
+    add(std::move(done));
+  }
+
+  void add(YamlNode child) {
+    if (levels_.empty()) {
+      root = std::move(child);
+      return;
+    }
+    Level& level = levels_.back();
+    if (level.node.kind == YamlNode::Kind::sequence) {
+      level.node.items.push_back(std::move(child));
+    } else if (level.awaits_value) {
+      level.node.entries.back().value = std::move(child);
+      level.awaits_value = false;
+    } else {
+      add_key(level, std::move(child));
+    }
+  }
+
+  void add_key(Level& level, YamlNode key) {
+    if (key.kind != YamlNode::Kind::scalar) {
+      errors.emplace_back("a key must be a name, not " + describe(key), "", key.place);
+    } else if (!level.keys.insert(key.text).second) {
+      const auto same = std::find_if(level.node.entries.begin(), level.node.entries.end(),
+                                     [&](const YamlEntry& entry) { return entry.key == key.text; });
+      errors.emplace_back("'" + key.text + "' is given twice",
+                          fmt::format("the first is in line {}", same->place.line), key.place);
+    }
+    level.node.entries.push_back({std::move(key.text), std::move(key.place), {}});
+    level.awaits_value = true;
+  }
+
+  std::string file_;
+  std::vector<Level> levels_;
+};
+
+/// Second and further documents are only looked at to find that they are there.
+struct IgnoreAll final : YAML::EventHandler {
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  }
+  void OnMapEnd() override {}
+};
+
+}  // namespace
+
+const YamlNode* YamlNode::find(std::string_view key) const {
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [&](const YamlEntry& entry) { return entry.key == key; });
+  return found == entries.end() ? nullptr : &found->value;
+}
+
+std::string describe(const YamlNode& node) {
+  constexpr std::size_t kLongest = 60;
+  switch (node.kind) {
+    case YamlNode::Kind::null:
+      return "nothing";
+    case YamlNode::Kind::sequence:
+      return "a list";
+    case YamlNode::Kind::map:
+      return "a map";
+    case YamlNode::Kind::scalar:
+      break;
+  }
+  return "'" + (node.text.size() > kLongest ? node.text.substr(0, kLongest) + "…" : node.text) + "'";
+}
+
+YamlNode parse_yaml(std::string_view text, const std::string& file) {
+  check_characters(text, file);
+  std::istringstream stream(parser_text(text));
+  TreeBuilder builder(file);
+  try {
+    YAML::Parser parser(stream);
+    parser.HandleNextDocument(builder);
+    IgnoreAll ignore;
+    if (parser.HandleNextDocument(ignore)) throw Error("there is more than one document in it", {}, {file});
+  } catch (const YAML::Exception& error) {
+    const Place place = {file, error.mark.line + 1, error.mark.column + 1};
+    builder.errors.emplace_back("this is not YAML: " + error.msg, std::string(), place);
+  }
+  if (!builder.errors.empty()) throw Errors(std::move(builder.errors));
+  return std::move(builder.root);
+}
+
+YamlNode read_yaml(const std::filesystem::path& file) {
+  constexpr std::size_t kLimit = 16 << 20;
+  return parse_yaml(read_text_file(file, kLimit), file.string());
+}
+
+std::string read_text_file(const std::filesystem::path& file, std::size_t limit) {
+  const auto fail = [&](const std::string& why) -> Error {
+    return Error("cannot read " + file.string() + ": " + why);
+  };
+  if (std::filesystem::is_directory(file)) throw fail("it is a folder");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw fail(std::strerror(errno));
+  std::string text(limit + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad()) throw fail(std::strerror(errno));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > limit) throw fail(fmt::format("it is longer than {} bytes", limit));
+  return text;
+}
+
+}  // namespace crisp

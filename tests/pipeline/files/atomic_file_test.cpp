@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/files/atomic_file.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <iterator>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class AtomicFileTest : public testing::Test {
+ protected:
+  AtomicFileTest() {
+    std::string pattern = (fs::temp_directory_path() / "crisp-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~AtomicFileTest() override { fs::remove_all(folder_); }
+
+  static std::string content(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  std::ptrdiff_t entries() const { return std::distance(fs::directory_iterator(folder_), {}); }
+
+  fs::path folder_;
+};
+
+TEST_F(AtomicFileTest, TakesItsNameOnlyWhenItIsComplete) {
+  const fs::path file = folder_ / "new" / "x.txt";
+  AtomicFile out(file);
+  out.write("half");
+  EXPECT_FALSE(fs::exists(file));
+  out.write(" and half");
+  out.commit();
+  EXPECT_EQ(content(file), "half and half");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "new"), {}), 1);
+}
+
+TEST_F(AtomicFileTest, LeavesNothingBehindWhenItIsGivenUp) {
+  const fs::path file = folder_ / "x.txt";
+  write_file(file, "old");
+  {
+    AtomicFile out(file);
+    out.write("new");
+  }
+  EXPECT_EQ(content(file), "old");
+  EXPECT_EQ(entries(), 1);
+}
+
+TEST_F(AtomicFileTest, CommitsWhatALibraryWroteAside) {
+  AtomicFile out(folder_ / "x.txt");
+  fs::remove(out.aside());
+  std::ofstream(out.aside()) << "by another hand";
+  out.commit();
+  EXPECT_EQ(content(folder_ / "x.txt"), "by another hand");
+}
+
+TEST_F(AtomicFileTest, WritesThroughALinkAndKeepsIt) {
+  write_file(folder_ / "target", "old");
+  fs::create_symlink("target", folder_ / "link");
+  write_file(folder_ / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(content(folder_ / "target"), "new");
+}
+
+TEST_F(AtomicFileTest, RefusesToReplaceWhatIsNotAFile) {
+  for (const fs::path& target : {fs::path("/dev/null"), folder_}) {
+    try {
+      write_file(target, "x");
+      FAIL() << target;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(),
+                  HasSubstr("cannot write " + target.string() + ": it is there and is not a file"));
+    }
+  }
+}
+
+TEST_F(AtomicFileTest, NamesTheFileWhenItsFolderCannotBeMade) {
+  write_file(folder_ / "file", "x");
+  try {
+    write_file(folder_ / "file" / "below.txt", "x");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr((folder_ / "file" / "below.txt").string()));
+  }
+}
+
+/// In a process of its own that may write no more than 4096 bytes to a file, as on a full disk.
+TEST_F(AtomicFileTest, NamesTheFileAndKeepsTheOldOneWhenTheDiskIsFull) {
+  const fs::path file = folder_ / "big.txt";
+  write_file(file, "old");
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit = {4096, 4096};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      write_file(file, std::string(1 << 20, 'x'));
+    } catch (const Error& error) {
+      _exit(std::string(error.what()).find(file.string()) != std::string::npos ? 42 : 1);
+    }
+    _exit(2);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), 42);
+  EXPECT_EQ(content(file), "old");
+  EXPECT_EQ(entries(), 1);
+}
+
+}  // namespace
+}  // namespace crisp

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/files/rig_file.hpp"
+
+#include <gmock/gmock.h>
+
+namespace crisp {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+std::vector<std::string> errors_of(const std::string& text) {
+  try {
+    parse_rig(parse_yaml(text, "rig.yaml"));
+  } catch (const Errors& errors) {
+    std::vector<std::string> all;
+    for (const auto& error : errors.all()) all.emplace_back(error.what());
+    return all;
+  }
+  return {};
+}
+
+TEST(RigFile, ReadsTheDefaultRigOfTheConfigs) {
+  const Rig rig = read_rig(CRISP_SOURCE_DIR "/configs/rig.yaml");
+  const Rig expected = default_rig();
+  ASSERT_EQ(rig.lasers.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(rig.lasers[i].name, expected.lasers[i].name);
+    EXPECT_EQ(rig.lasers[i].address, expected.lasers[i].address);
+    EXPECT_DOUBLE_EQ(rig.lasers[i].mount, 45 * kDegree);
+    EXPECT_DOUBLE_EQ(rig.lasers[i].nominal.tau.value, 0.2);
+    EXPECT_DOUBLE_EQ(rig.lasers[i].nominal.lambda.value, static_cast<double>(i) * 120 * kDegree);
+    EXPECT_EQ(rig.lasers[i].nominal.name, rig.lasers[i].name);
+    EXPECT_EQ(rig.lasers[i].nominal.eta.value, 0);
+  }
+  EXPECT_EQ(rig.plate.address, expected.plate.address);
+  EXPECT_EQ(rig.plate.counts_per_revolution, 16384);
+}
+
+TEST(RigFile, ReadsOneLaserWithEveryKey) {
+  const Rig rig = parse_rig(parse_yaml(R"(
+crisp: 1
+plate: {name: table, address: "10.0.0.9", port: 5000, counts_per_revolution: 8192}
+lasers:
+  front:
+    {address: 10.0.0.1, port: 2111, mount: -45deg, time_offset: 0.78ms, period_offset: -1,
+     nominal: {lambda: 10deg, tau: 150mm, alpha: -2deg, eta: -30ms}}
+)",
+                                       "rig.yaml"));
+  ASSERT_EQ(rig.lasers.size(), 1u);
+  const RigLaser& laser = rig.lasers[0];
+  EXPECT_EQ(laser.address, (Address{"10.0.0.1", 2111}));
+  EXPECT_DOUBLE_EQ(laser.mount, -45 * kDegree);
+  EXPECT_DOUBLE_EQ(laser.time_offset, 0.78e-3);
+  EXPECT_EQ(laser.period_offset, -1);
+  EXPECT_DOUBLE_EQ(laser.nominal.lambda.value, 10 * kDegree);
+  EXPECT_DOUBLE_EQ(laser.nominal.tau.value, 0.15);
+  EXPECT_DOUBLE_EQ(laser.nominal.alpha.value, -2 * kDegree);
+  EXPECT_DOUBLE_EQ(laser.nominal.eta.value, -0.03);
+  EXPECT_EQ(rig.plate.name, "table");
+  EXPECT_EQ(rig.plate.address, (Address{"10.0.0.9", 5000}));
+  EXPECT_EQ(rig.plate.counts_per_revolution, 8192);
+}
+
+TEST(RigFile, ReportsEveryMistakeWithItsPlace) {
+  EXPECT_THAT(
+      errors_of(R"(crisp: 1
+lasers:
+  laser 1:
+    address: 192.168.0.300
+    port: 99999
+    muont: 45deg
+    nominal: {lambda: 45m, tau: 200}
+plate: {counts_per_revolution: 0}
+)"),
+      ElementsAre(HasSubstr("rig.yaml:3:3: error: lasers: 'laser 1' is not a name of letters"),
+                  HasSubstr("rig.yaml:4:14: error: laser 'laser 1': '192.168.0.300' is not an IP address"),
+                  HasSubstr("rig.yaml:5:11: error: laser 'laser 1': 'port': 99999 is not from 0 to 65535"),
+                  HasSubstr("rig.yaml:7:23: error: laser 'laser 1', nominal: 'lambda': '45m' cannot be "
+                            "converted to rad"),
+                  HasSubstr("rig.yaml:7:33: error: laser 'laser 1', nominal: 'tau': 200 m cannot be meant"),
+                  HasSubstr("rig.yaml:6:5: error: laser 'laser 1': there is no key 'muont'; did you mean "
+                            "'mount'?"),
+                  HasSubstr("plate: 'address' is missing"),
+                  HasSubstr("rig.yaml:8:32: error: plate: 'counts_per_revolution' is not at least 1")));
+}
+
+TEST(RigFile, RefusesDevicesThatCouldNotBeToldApart) {
+  const std::string laser = "{address: 10.0.0.1, nominal: {lambda: 0, tau: 0}}";
+  EXPECT_THAT(
+      errors_of("crisp: 1\nlasers:\n  a: " + laser + "\n  b: " + laser + "\nplate: {address: 10.0.0.2}\n"),
+      ElementsAre(HasSubstr("rig.yaml:4:3: error: rig: 'a' and 'b' have the same address 10.0.0.1")));
+  EXPECT_THAT(errors_of("crisp: 1\nlasers:\n  plate: " + laser + "\nplate: {address: 10.0.0.2}\n"),
+              ElementsAre(HasSubstr("two devices are named 'plate'")));
+}
+
+TEST(RigFile, RefusesARigWithoutLasersAndOtherVersions) {
+  EXPECT_THAT(errors_of("crisp: 1\nlasers: {}\nplate: {address: 10.0.0.2}\n"),
+              ElementsAre(HasSubstr("lasers: there is none")));
+  EXPECT_THAT(errors_of("crisp: 2\nlasers: {a: {address: 10.0.0.1, nominal: {lambda: 0, tau: 0}}}\n"
+                        "plate: {address: 10.0.0.2}\n"),
+              ElementsAre(HasSubstr("it is of schema version 2, and this program reads up to version 1")));
+  EXPECT_THAT(errors_of("[1, 2]"), ElementsAre(HasSubstr("rig: a list is not a map")));
+  EXPECT_THAT(errors_of(""), ElementsAre(HasSubstr("rig: nothing is not a map")));
+}
+
+}  // namespace
+}  // namespace crisp
