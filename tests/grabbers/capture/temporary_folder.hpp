@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "grabbers/wire/bytes.hpp"
+
+namespace crisp {
+
+/// A folder of its own that is gone when the test is.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  std::filesystem::path operator/(const char* name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+Bytes read_file(const std::filesystem::path& path);
+void write_file(const std::filesystem::path& path, ByteView bytes);
+
+}  // namespace crisp
