@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+#include "grabbers/simulate/motion.hpp"
+#include "grabbers/simulate/scene.hpp"
+#include "grabbers/simulate/settings.hpp"
+#include "pipeline/data/calibration.hpp"
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/model/term.hpp"
+
+namespace crisp {
+
+/// What perfectly aligned clocks would have made of a recording.
+struct SimulatedMeasurements {
+  Measurements beams;
+  PlateTrajectory plate;    ///< reaches 0.25 s beyond the beams at both ends, so that any lag is covered
+  Calibration truth;        ///< of which the beams were made
+  std::size_t no_echo = 0;  ///< beams that nothing came back from
+};
+
+/// Simulates measurements without clocks, telegrams or delays: times are hub times whose only error is the η
+/// of the true calibration, φ_j = φ(t_j + η).
+///
+/// @param scene     in the base's frame
+/// @param terms     that `settings.truth` names
+/// @throws Error    if the settings make no sense
+SimulatedMeasurements simulate_measurements(const ScannerSettings& settings, const Scene& scene,
+                                            const TermRegistry& terms = {});
+
+/// The same with a motion of the plate [true time, s] of one's own instead of `settings.motion`.
+SimulatedMeasurements simulate_measurements(const ScannerSettings& settings, const Scene& scene,
+                                            const Motion& motion, const TermRegistry& terms = {});
+
+}  // namespace crisp

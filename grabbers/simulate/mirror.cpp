@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/mirror.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+Mirror::Mirror(const MirrorSettings& settings, std::uint64_t seed, const std::string& laser)
+    : settings_(settings), jitter_(seed, laser + ".mirror.jitter") {
+  if (!(settings.frequency > 0)) throw Error("the mirror of " + laser + " must turn faster than 0 Hz");
+  if (!(std::abs(settings.slowest) < 0.5 && settings.wander >= 0 && settings.wander < 0.5 &&
+        settings.jitter >= 0 && settings.jitter < 0.05)) {
+    throw Error("the mirror of " + laser + " departs too far from its nominal period");
+  }
+  constexpr double kTurn = 2 * std::numbers::pi;
+  RandomStream random(seed, laser + ".mirror");
+  time_ = random.uniform() / settings.frequency;
+  slowness_ = random.uniform(0, settings.slowest);
+  for (auto& wave : waves_) {
+    wave = {.amplitude = settings.wander / static_cast<double>(waves_.size()),
+            .angular_frequency = kTurn * random.uniform(0.1, 0.6),
+            .phase = random.uniform(0, kTurn)};
+  }
+}
+
+Revolution Mirror::next() {
+  double departure = slowness_;
+  for (const auto& wave : waves_) {
+    departure += wave.amplitude * std::sin(wave.angular_frequency * time_ + wave.phase);
+  }
+  if (settings_.jitter > 0) departure += settings_.jitter * jitter_.normal();
+  const Revolution revolution{
+      .number = number_++, .begin = time_, .period = (1 + departure) / settings_.frequency};
+  time_ += revolution.period;
+  return revolution;
+}
+
+}  // namespace crisp

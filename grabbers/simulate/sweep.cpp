@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kFirstPossibleBeam = -45 * kDegree;  // reported angle that the mirror's index stands for
+constexpr double kSmallestRange = 0.016;              // [m] what a device sends below is a code, not a range
+
+/// A Lambertian surface's echo in the device's units: it fades with the square of the range from 10 m on.
+float remission(double reflectance, const Hit& hit) {
+  constexpr double kFade = 10;
+  const double share = hit.distance / kFade;
+  return static_cast<float>(std::round(254 * reflectance * hit.cos_incidence / (1 + share * share)));
+}
+
+void check(const ScannerSettings& settings) {
+  if (settings.truth.lasers.size() != settings.rig.lasers.size()) {
+    throw Error("the simulation's truth has " + std::to_string(settings.truth.lasers.size()) +
+                    " lasers, but the rig has " + std::to_string(settings.rig.lasers.size()),
+                "give the truth of each laser of the rig, in its order");
+  }
+  if (!(settings.range.sigma >= 0 && settings.range.quantum >= 0 && settings.range.max_distance > 0)) {
+    throw Error("the noise, the step and the reach of a laser's range must not be negative");
+  }
+  for (const auto beam : settings.beams) {
+    if (beam >= settings.field.beams()) {
+      throw Error("beam " + std::to_string(beam) + " is outside the field of view of " +
+                  std::to_string(settings.field.beams()) + " beams");
+    }
+  }
+}
+
+std::vector<std::uint16_t> fired_beams(const ScannerSettings& settings) {
+  if (!settings.beams.empty()) return settings.beams;
+  std::vector<std::uint16_t> all(settings.field.beams());
+  std::iota(all.begin(), all.end(), std::uint16_t{0});
+  return all;
+}
+
+}  // namespace
+
+SweepSimulator::SweepSimulator(const ScannerSettings& settings, const Scene& scene, const Motion& motion,
+                               const TermRegistry& terms)
+    : settings_(settings), scene_(&scene), motion_(&motion), caster_(scene), model_(settings.truth, terms) {
+  check(settings_);
+  beams_ = fired_beams(settings_);
+  traced_.resize(beams_.size());
+  for (std::size_t i = 0; i < settings_.rig.lasers.size(); ++i) {
+    const auto& name = settings_.rig.lasers[i].name;
+    Laser& laser = lasers_.emplace_back(Laser{.mirror = Mirror(settings_.mirror, settings_.seed, name),
+                                              .noise = RandomStream(settings_.seed, name + ".noise"),
+                                              .upcoming = {},
+                                              .parameters = {}});
+    laser.upcoming = laser.mirror.next();
+    for (const auto slot : model_.chain(i).slots) {
+      laser.parameters.push_back(model_.values()[static_cast<Eigen::Index>(slot)]);
+    }
+  }
+}
+
+Sweep SweepSimulator::next() {
+  const auto earliest = std::min_element(lasers_.begin(), lasers_.end(), [](const auto& a, const auto& b) {
+    return a.upcoming.begin < b.upcoming.begin;
+  });
+  Sweep sweep;
+  sweep.laser = static_cast<std::uint16_t>(earliest - lasers_.begin());
+  sweep.revolution = earliest->upcoming;
+  sweep.beams = beams_;
+  earliest->upcoming = earliest->mirror.next();
+  aim(*earliest, sweep);
+  measure(*earliest, sweep);
+  return sweep;
+}
+
+void SweepSimulator::aim(Laser& laser, Sweep& sweep) {
+  const double eta = laser.parameters[3];
+  const double mount = settings_.rig.lasers[sweep.laser].mount;
+  const auto& field = settings_.field;
+  sweep.times.resize(beams_.size());
+  for (std::size_t i = 0; i < beams_.size(); ++i) {
+    const double angle = field.first + beams_[i] * field.step;
+    const double turned = (angle - kFirstPossibleBeam) / (360 * kDegree);
+    sweep.times[i] = sweep.revolution.begin + turned * sweep.revolution.period;
+    traced_[i] = {};
+    traced_[i].measured_mirror = angle - mount;
+    traced_[i].hub_time = sweep.times[i] - eta;
+    traced_[i].number = beams_[i];
+  }
+  const auto known = std::make_unique<bool[]>(beams_.size());  // a true motion knows every instant
+  trace<double>(model_.chain(sweep.laser), laser.parameters, traced_, *motion_, {known.get(), beams_.size()});
+}
+
+void SweepSimulator::measure(Laser& laser, Sweep& sweep) {
+  sweep.ranges.assign(beams_.size(), 0);
+  sweep.remissions.assign(beams_.size(), 0);
+  const auto& range = settings_.range;
+  for (std::size_t i = 0; i < beams_.size(); ++i) {
+    const double noise = range.sigma * laser.noise.normal();
+    const auto hit = caster_.cast({traced_[i].origin, traced_[i].direction}, range.max_distance);
+    if (!hit) continue;
+    const float strength = remission(scene_->surfaces[hit->surface].reflectance, *hit);
+    traced_[i].remission = strength;
+    const double measured =
+        noise + reported_range(model_.chain(sweep.laser), laser, traced_[i], hit->distance);
+    const double stepped =
+        range.quantum > 0 ? range.quantum * std::round(measured / range.quantum) : measured;
+    if (!(stepped >= kSmallestRange)) continue;
+    sweep.ranges[i] = static_cast<float>(stepped);
+    sweep.remissions[i] = strength;
+  }
+}
+
+/// The range that the model's terms turn into the true distance: found by stepping, since terms are small.
+double SweepSimulator::reported_range(const LaserChain& chain, const Laser& laser, Beam<double> beam,
+                                      double distance) const {
+  if (chain.phases[static_cast<std::size_t>(Phase::kRange)].empty()) return distance;
+  constexpr int kSteps = 20;
+  constexpr double kClose = 1e-9;  // [m]
+  beam.measured_range = distance;
+  for (int step = 0; step < kSteps; ++step) {
+    beam.range = beam.measured_range;
+    apply_phase<double>(chain, Phase::kRange, laser.parameters, {&beam, 1});
+    const double miss = distance - beam.range;
+    beam.measured_range += miss;
+    if (std::abs(miss) < kClose) break;
+  }
+  return beam.measured_range;
+}
+
+}  // namespace crisp

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/mirror.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+std::vector<Revolution> turns(const MirrorSettings& settings, std::uint64_t seed, int n) {
+  Mirror mirror(settings, seed, "laser1");
+  std::vector<Revolution> result;
+  for (int i = 0; i < n; ++i) result.push_back(mirror.next());
+  return result;
+}
+
+TEST(Mirror, TurnsSlowerThanNominalAndWandersWithinItsBounds) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const auto all = turns({}, seed, 3000);
+    const auto [shortest, longest] =
+        std::minmax_element(all.begin(), all.end(), [](auto& a, auto& b) { return a.period < b.period; });
+    EXPECT_GE(shortest->period, 0.020 * (1 - 0.002));
+    EXPECT_LE(longest->period, 0.020 * (1 + 0.006 + 0.002));
+    EXPECT_GT(longest->period - shortest->period, 0.020 * 0.002) << "wanders both ways";
+  }
+}
+
+TEST(Mirror, BeginsEachTurnWhereTheLastOneEnded) {
+  const auto all = turns({.jitter = 1e-3}, 1, 1000);
+  EXPECT_GE(all.front().begin, 0);
+  EXPECT_LT(all.front().begin, 0.020);
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].number, i);
+    EXPECT_DOUBLE_EQ(all[i].begin, all[i - 1].begin + all[i - 1].period);
+  }
+}
+
+TEST(Mirror, HasTheJitterThatWasAskedFor) {
+  const auto all = turns({.slowest = 0, .wander = 0, .jitter = 1e-3}, 1, 20000);
+  double sum = 0;
+  for (const auto& turn : all) sum += std::pow(turn.period - 0.020, 2);
+  EXPECT_NEAR(std::sqrt(sum / 20000) / 0.020, 1e-3, 4e-3 / std::sqrt(2 * 20000));
+}
+
+TEST(Mirror, RefusesPeriodsThatNoMirrorHas) {
+  EXPECT_THROW(Mirror({.frequency = 0}, 1, "laser1"), Error);
+  EXPECT_THROW(Mirror({.wander = 1}, 1, "laser1"), Error);
+}
+
+}  // namespace
+}  // namespace crisp

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace crisp {
+namespace {
+
+constexpr int kDraws = 200'000;
+
+struct Moments {
+  double mean = 0;
+  double variance = 0;
+  double fourth = 0;
+};
+
+Moments moments(const std::function<double()>& draw) {
+  double s1 = 0;
+  double s2 = 0;
+  double s4 = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const double x = draw();
+    s1 += x;
+    s2 += x * x;
+    s4 += x * x * x * x;
+  }
+  return {s1 / kDraws, s2 / kDraws - s1 * s1 / kDraws / kDraws, s4 / kDraws};
+}
+
+TEST(RandomStream, DrawsNormalNumbersWithTheMomentsOfTheNormalDistribution) {
+  RandomStream random(1, "test");
+  const auto found = moments([&] { return random.normal(); });
+  EXPECT_NEAR(found.mean, 0, 4 * std::sqrt(1.0 / kDraws));
+  EXPECT_NEAR(found.variance, 1, 4 * std::sqrt(2.0 / kDraws));
+  EXPECT_NEAR(found.fourth, 3, 4 * std::sqrt(96.0 / kDraws));
+}
+
+TEST(RandomStream, DrawsUniformAndExponentialNumbersWithTheirMeansAndVariances) {
+  RandomStream random(2, "test");
+  const auto uniform = moments([&] { return random.uniform(-1, 3); });
+  EXPECT_NEAR(uniform.mean, 1, 4 * std::sqrt(16.0 / 12 / kDraws));
+  EXPECT_NEAR(uniform.variance, 16.0 / 12, 0.02);
+  const auto exponential = moments([&] { return random.exponential(0.5); });
+  EXPECT_NEAR(exponential.mean, 0.5, 4 * 0.5 / std::sqrt(kDraws));
+  EXPECT_NEAR(exponential.variance, 0.25, 4 * 0.25 * std::sqrt(8.0 / kDraws));
+}
+
+TEST(RandomStream, RepeatsItselfForTheSameSeedAndNameOnly) {
+  RandomStream one(7, "laser1.noise");
+  RandomStream same(7, "laser1.noise");
+  RandomStream other_name(7, "laser2.noise");
+  RandomStream other_seed(8, "laser1.noise");
+  const auto first = one.bits();
+  EXPECT_EQ(first, same.bits());
+  EXPECT_NE(first, other_name.bits());
+  EXPECT_NE(first, other_seed.bits());
+}
+
+}  // namespace
+}  // namespace crisp
