@@ -34,7 +34,7 @@ std::optional<std::string> nearest_name(std::string_view name, const std::vector
   constexpr std::size_t kLongest = 64;  // a longer one is no typing error of any name of ours
   if (name.size() > kLongest) return std::nullopt;
   std::optional<std::string> best;
-  std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
+  std::size_t least = (name.size() + 2) / 3 + 1;
   for (const auto& candidate : known) {
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < least) {

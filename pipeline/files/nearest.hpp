@@ -9,7 +9,7 @@
 namespace crisp {
 
 /// The known name that `name` was probably meant to be: the one of least edit distance, if that is at most a
-/// third of the name's length (and at least 1). The first of equals.
+/// third of the name's length, rounded up. The first of equals.
 std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& known);
 
 /// "did you mean 'sigma'?" where a known name is near; otherwise `otherwise`.

@@ -60,7 +60,7 @@ void YamlMap::fail(const Place& place, const std::string& what, std::string advi
 }
 
 const YamlNode* YamlMap::find(const std::string& key) {
-  known_.push_back(key);
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   return node_.find(key);
 }
 

@@ -12,16 +12,6 @@
 namespace crisp {
 namespace {
 
-/// The tag of a node that was not given one: its stage's name, numbered from the second on.
-std::string default_tag(const std::vector<PipelineNode>& nodes, const std::string& stage) {
-  const auto taken = [&](const std::string& tag) {
-    return std::any_of(nodes.begin(), nodes.end(), [&](const auto& node) { return node.tag == tag; });
-  };
-  std::string tag = stage;
-  for (int i = 2; taken(tag); ++i) tag = fmt::format("{}-{}", stage, i);
-  return tag;
-}
-
 class Builder {
  public:
   Builder(const RunSettings& run, std::vector<Error>& errors) : run_(run), errors_(errors) {}
@@ -30,7 +20,7 @@ class Builder {
   PipelineNode make(const StageSpec& spec, const std::vector<PipelineNode>& above) {
     PipelineNode node;
     node.place = spec.place;
-    node.tag = spec.tag.empty() ? default_tag(above, spec.stage) : spec.tag;
+    node.tag = spec.tag;
     check_tag(node, above);
     node.type = run_.registrar->stages().find(spec.stage);
     if (!node.type) {
@@ -80,7 +70,7 @@ class Builder {
       }
     }
     for (const auto& option : node.type->options) {
-      if (option.required && !spec.with.contains(option.name)) {
+      if (option.required && !spec.with.contains(option.name) && !spec.refused.contains(option.name)) {
         fail(spec.place, fmt::format("{}: option '{}' is missing ({})", node.tag, option.name, option.help),
              "expected is " + expectation(option));
       }
@@ -93,8 +83,19 @@ class Builder {
 
 }  // namespace
 
-Pipeline build_pipeline(const std::vector<StageSpec>& specs, const RunSettings& run,
-                        std::vector<Error>& errors) {
+void name_stages(std::vector<StageSpec>& specs) {
+  for (auto spec = specs.begin(); spec != specs.end(); ++spec) {
+    const auto taken = [&](const std::string& tag) {
+      return std::any_of(specs.begin(), spec, [&](const auto& above) { return above.tag == tag; });
+    };
+    if (!spec->tag.empty()) continue;
+    spec->tag = spec->stage;
+    for (int i = 2; taken(spec->tag); ++i) spec->tag = fmt::format("{}-{}", spec->stage, i);
+  }
+}
+
+Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run, std::vector<Error>& errors) {
+  name_stages(specs);
   Pipeline pipeline;
   Builder builder(run, errors);
   for (const auto& spec : specs) pipeline.nodes.push_back(builder.make(spec, pipeline.nodes));
@@ -104,9 +105,9 @@ Pipeline build_pipeline(const std::vector<StageSpec>& specs, const RunSettings& 
   return pipeline;
 }
 
-Pipeline build_pipeline(const std::vector<StageSpec>& specs, const RunSettings& run) {
+Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run) {
   std::vector<Error> errors;
-  Pipeline pipeline = build_pipeline(specs, run, errors);
+  Pipeline pipeline = build_pipeline(std::move(specs), run, errors);
   if (!errors.empty()) throw Errors(std::move(errors));
   return pipeline;
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,12 @@ struct StageSpec {
   std::string tag = {};                                  ///< empty: the stage's name
   std::optional<std::vector<TagReference>> inputs = {};  ///< absent: the nearest stages above that fit
   std::map<std::string, OptionValue> with = {};          ///< the options that are not at their default
+  std::set<std::string> refused = {};                    ///< options that were given, wrongly, which was said
   Place place = {};
 };
+
+/// Gives a tag to each stage that has none: its name, numbered from the second of that name on.
+void name_stages(std::vector<StageSpec>& specs);
 
 /// One stage of a pipeline, made, told its options and connected.
 struct PipelineNode {
@@ -50,11 +55,10 @@ struct Pipeline {
 /// An input without `inputs` is fed by the nearest stage above that gives its kind; with `inputs`, by all the
 /// stages named there that give it, and by no other.
 /// @throws Errors all the mistakes that were found
-Pipeline build_pipeline(const std::vector<StageSpec>& specs, const RunSettings& run);
+Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run);
 
 /// The same, but adds mistakes to `errors` instead of throwing, so that a caller can report its own with
 /// them. The pipeline is complete only if no error was added.
-Pipeline build_pipeline(const std::vector<StageSpec>& specs, const RunSettings& run,
-                        std::vector<Error>& errors);
+Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run, std::vector<Error>& errors);
 
 }  // namespace crisp

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/stage/option_yaml.hpp"
+
+#include "pipeline/files/nearest.hpp"
+#include "pipeline/files/yaml_map.hpp"
+
+namespace crisp {
+namespace {
+
+template <class T>
+std::optional<OptionScalar> boxed(const std::optional<T>& value) {
+  if (!value) return std::nullopt;
+  return OptionScalar(*value);
+}
+
+std::optional<OptionScalar> read_scalar(const Option& option, const YamlNode& node,
+                                        const std::filesystem::path& folder, std::string& wrong) {
+  switch (option.type) {
+    case OptionType::boolean:
+      return boxed(read_boolean(node, wrong));
+    case OptionType::integer:
+      return boxed(read_integer(node, wrong));
+    case OptionType::number:
+      return boxed(read_number(node, option.unit == "1" ? "1" : option.unit, wrong));
+    case OptionType::text:
+    case OptionType::choice:
+      return boxed(read_text(node, wrong));
+    case OptionType::path:
+      break;
+  }
+  const auto path = read_text(node, wrong);
+  if (path && path->empty()) wrong = "the path is empty";
+  if (!wrong.empty()) return std::nullopt;
+  return OptionScalar((folder / *path).lexically_normal().string());
+}
+
+class Reader {
+ public:
+  Reader(const Option& option, const std::string& who, const std::filesystem::path& folder,
+         std::vector<Error>& errors)
+      : option_(option), who_(who), folder_(folder), errors_(errors) {}
+
+  std::optional<OptionValue> read(const YamlNode& node) {
+    if (option_.may_be_auto && node.kind == YamlNode::Kind::scalar && node.text == "auto") {
+      return std::monostate{};
+    }
+    if (!option_.list) {
+      auto scalar = read_element(node);
+      if (!scalar) return std::nullopt;
+      return checked(node, std::move(*scalar));
+    }
+    if (node.kind != YamlNode::Kind::sequence) {  // a single value is a list of one
+      auto scalar = read_element(node);
+      if (!scalar) return std::nullopt;
+      return checked(node, std::vector<OptionScalar>{std::move(*scalar)});
+    }
+    std::vector<OptionScalar> list;
+    for (const auto& item : node.items) {
+      if (auto scalar = read_element(item)) list.push_back(std::move(*scalar));
+    }
+    if (list.size() != node.items.size()) return std::nullopt;
+    return checked(node, std::move(list));
+  }
+
+ private:
+  std::optional<OptionScalar> read_element(const YamlNode& node) {
+    std::string wrong;
+    auto scalar = read_scalar(option_, node, folder_, wrong);
+    if (!scalar) refuse(node.place, wrong);
+    return scalar;
+  }
+
+  std::optional<OptionValue> checked(const YamlNode& node, OptionValue value) {
+    if (const auto wrong = complaint(option_, value)) {
+      refuse(node.place, *wrong, did_you_mean(node.text, option_.choices, {}));
+      return std::nullopt;
+    }
+    return value;
+  }
+
+  void refuse(const Place& place, const std::string& wrong, const std::string& hint = {}) {
+    errors_.emplace_back(who_ + ": option '" + option_.name + "': " + wrong,
+                         (hint.empty() ? "" : hint + " ") + "expected is " + expectation(option_), place);
+  }
+
+  const Option& option_;
+  const std::string& who_;
+  const std::filesystem::path& folder_;
+  std::vector<Error>& errors_;
+};
+
+}  // namespace
+
+std::optional<OptionValue> read_option(const Option& option, const YamlNode& node, const std::string& who,
+                                       const std::filesystem::path& folder, std::vector<Error>& errors) {
+  return Reader(option, who, folder, errors).read(node);
+}
+
+}  // namespace crisp

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/files/yaml.hpp"
+#include "pipeline/stage/option.hpp"
+
+namespace crisp {
+
+/// Reads the value of an option, units converted, paths made absolute.
+/// @param who     the stage's tag, the subject of messages
+/// @param folder  what relative paths are relative to
+/// @return nothing if the value is wrong, which is then said in `errors`, with its place
+std::optional<OptionValue> read_option(const Option& option, const YamlNode& node, const std::string& who,
+                                       const std::filesystem::path& folder, std::vector<Error>& errors);
+
+}  // namespace crisp

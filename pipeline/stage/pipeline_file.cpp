@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/stage/pipeline_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "pipeline/files/nearest.hpp"
+#include "pipeline/files/rig_file.hpp"
+#include "pipeline/files/yaml_map.hpp"
+#include "pipeline/stage/option_yaml.hpp"
+#include "pipeline/stage/settings.hpp"
+#include "pipeline/stage/variables.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PlanReader {
+ public:
+  PlanReader(const fs::path& folder, const PipelineArguments& arguments, const StageRegistry& stages,
+             std::vector<Error>& errors)
+      : folder_(folder),
+        arguments_(arguments),
+        stages_(stages),
+        errors_(errors),
+        settings_(arguments.set, errors) {}
+
+  PipelinePlan read(const YamlNode& root) {
+    YamlMap map(root, "pipeline", errors_);
+    check_schema(map, 1);
+    set_arguments();
+    if (const YamlNode* vars = map.find("vars")) read_variables(*vars);
+    read_rig_of(map.find("rig"));
+    if (const YamlNode* list = map.require("pipeline")) read_stages(*list);
+    map.refuse_others();
+    settings_.apply(plan_.stages, stages_, errors_);
+    return std::move(plan_);
+  }
+
+ private:
+  void set_arguments() {
+    const auto set = [&](const std::string& name, const std::optional<fs::path>& path, const char* advice) {
+      if (path)
+        variables_.set(name, fs::absolute(*path).lexically_normal().string());
+      else if (arguments_.only_validate)
+        variables_.set(name, "/" + name);
+      else
+        variables_.set_missing(name, advice);
+    };
+    set("input", arguments_.input, "give it with -i");
+    set("output", arguments_.output, "give it with -o");
+  }
+
+  void read_variables(const YamlNode& node) {
+    YamlMap map(node, "vars", errors_);
+    for (const auto& [name, place, value] : node.entries) {
+      if (name == "input" || name == "output") {
+        map.fail(place, "'" + name + "' is set by the command line", "choose another name");
+        continue;
+      }
+      YamlNode known = value;
+      if (const auto given = settings_.take_variable(name, errors_))
+        known = *given;
+      else
+        variables_.substitute(known, errors_);  // a variable may use those above it
+      variables_.set(name, std::move(known));
+    }
+  }
+
+  void read_rig_of(const YamlNode* node) {
+    if (arguments_.rig) return use_rig(fs::absolute(*arguments_.rig), {});
+    if (!node) return;
+    YamlNode rig = *node;
+    variables_.substitute(rig, errors_);
+    if (rig.kind == YamlNode::Kind::scalar) return use_rig(folder_ / rig.text, rig.place);
+    collect([&] { plan_.rig = parse_rig(rig); }, rig.place);
+  }
+
+  void use_rig(const fs::path& file, const Place& place) {
+    plan_.rig_file = file.lexically_normal();
+    collect([&] { plan_.rig = read_rig(plan_.rig_file); }, place);
+  }
+
+  /// Adds what `action` throws to the errors, at `place` where it has no place of its own.
+  template <class Action>
+  void collect(Action action, const Place& place) {
+    try {
+      action();
+    } catch (const Errors& several) {
+      errors_.insert(errors_.end(), several.all().begin(), several.all().end());
+    } catch (const Error& error) {
+      errors_.emplace_back(error.message(), error.advice(), error.place().line ? error.place() : place);
+    }
+  }
+
+  void read_stages(const YamlNode& list) {
+    if (list.kind != YamlNode::Kind::sequence) {
+      errors_.emplace_back("pipeline: " + describe(list) + " is not a list of stages",
+                           "begin each with '- stage:'", list.place);
+    } else if (list.items.empty()) {
+      errors_.emplace_back("pipeline: there is no stage in it", "", list.place);
+    }
+    for (const auto& item : list.items) read_stage(item);
+  }
+
+  void read_stage(const YamlNode& node) {
+    YamlMap map(node, "stage", errors_);
+    StageSpec spec;
+    spec.place = node.place;
+    const YamlNode* name = map.require("stage");
+    spec.stage = map.text("stage", "");
+    if (name) spec.place = name->place;
+    spec.tag = map.text("tag", "");
+    if (const YamlNode* tag = map.find("tag"); tag && !is_tag(spec.tag)) {
+      map.fail(tag->place, describe(*tag) + " is not a tag", "tags are of letters, digits, '_', '-' and '.'");
+    }
+    if (const YamlNode* inputs = map.find("inputs")) spec.inputs = read_inputs(*inputs, map);
+    if (const YamlNode* with = map.find("with")) read_options(*with, spec);
+    map.refuse_others();
+    if (!spec.stage.empty()) plan_.stages.push_back(std::move(spec));
+  }
+
+  static bool is_tag(const std::string& tag) {
+    const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.'; };
+    return !tag.empty() && std::all_of(tag.begin(), tag.end(), allowed);
+  }
+
+  std::vector<TagReference> read_inputs(const YamlNode& node, YamlMap& map) {
+    std::vector<TagReference> inputs;
+    if (node.kind == YamlNode::Kind::scalar)
+      inputs.push_back({node.text, node.place});
+    else if (node.kind != YamlNode::Kind::sequence)
+      map.fail(node.place, describe(node) + " is not a list of tags");
+    for (const auto& item : node.items) {
+      std::string wrong;
+      if (auto tag = read_text(item, wrong))
+        inputs.push_back({std::move(*tag), item.place});
+      else
+        map.fail(item.place, "inputs: " + wrong);
+    }
+    return inputs;
+  }
+
+  void read_options(const YamlNode& node, StageSpec& spec) {
+    if (node.kind == YamlNode::Kind::null) return;
+    const std::string who = spec.tag.empty() ? spec.stage : spec.tag;
+    YamlMap map(node, who, errors_);
+    const StageType* type = stages_.find(spec.stage);
+    if (!type) return;  // said when the pipeline is built
+    for (const auto& entry : node.entries) {
+      const Option* option = type->find_option(entry.key);
+      if (!option) {
+        map.fail(entry.place, "there is no option '" + entry.key + "'", no_such_option(*type, entry.key));
+        continue;
+      }
+      YamlNode value = entry.value;
+      const std::size_t before = errors_.size();
+      variables_.substitute(value, errors_);
+      std::optional<OptionValue> read;
+      if (errors_.size() == before) read = read_option(*option, value, who, folder_, errors_);
+      if (read)
+        spec.with[option->name] = std::move(*read);
+      else
+        spec.refused.insert(option->name);
+    }
+  }
+
+  const fs::path& folder_;
+  const PipelineArguments& arguments_;
+  const StageRegistry& stages_;
+  std::vector<Error>& errors_;
+  Settings settings_;
+  Variables variables_;
+  PipelinePlan plan_;
+};
+
+/// Errors of one file in the order of its lines; files in the order of their first error.
+void sort_by_place(std::vector<Error>& errors) {
+  std::vector<std::string> files;
+  for (const auto& error : errors) {
+    if (std::find(files.begin(), files.end(), error.place().file) == files.end()) {
+      files.push_back(error.place().file);
+    }
+  }
+  const auto key = [&](const Error& error) {
+    const auto file = std::find(files.begin(), files.end(), error.place().file) - files.begin();
+    return std::tuple(file, error.place().line, error.place().column);
+  };
+  std::stable_sort(errors.begin(), errors.end(),
+                   [&](const Error& a, const Error& b) { return key(a) < key(b); });
+}
+
+}  // namespace
+
+PipelinePlan parse_plan(const YamlNode& root, const fs::path& folder, const PipelineArguments& arguments,
+                        const StageRegistry& stages, std::vector<Error>& errors) {
+  return PlanReader(folder, arguments, stages, errors).read(root);
+}
+
+LoadedPipeline load_pipeline(const fs::path& file, const PipelineArguments& arguments, RunSettings& run) {
+  std::vector<Error> errors;
+  const fs::path folder = fs::absolute(file).parent_path();
+  PipelinePlan plan = parse_plan(read_yaml(file), folder, arguments, run.registrar->stages(), errors);
+  run.rig = std::move(plan.rig);
+  run.output = arguments.output ? fs::absolute(*arguments.output).lexically_normal() : fs::path();
+  Pipeline pipeline = build_pipeline(plan.stages, run, errors);
+  sort_by_place(errors);
+  if (!errors.empty()) throw Errors(std::move(errors));
+  return {std::move(pipeline), file, std::move(plan.rig_file)};
+}
+
+}  // namespace crisp

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/files/yaml.hpp"
+#include "pipeline/stage/pipeline.hpp"
+
+namespace crisp {
+
+/// What was said besides the file: it goes before what the file says.
+struct PipelineArguments {
+  std::optional<std::filesystem::path> input = {};   ///< what ${input} stands for
+  std::optional<std::filesystem::path> output = {};  ///< what ${output} stands for, a folder
+  std::optional<std::filesystem::path> rig = {};
+  std::vector<std::string> set = {};  ///< "tag.option=value", or "variable=value" for one of `vars:`
+  bool only_validate = false;         ///< ${input} and ${output} need no value
+};
+
+/// A pipeline as its file describes it.
+struct PipelinePlan {
+  Rig rig = default_rig();
+  std::filesystem::path rig_file;  ///< empty: the default rig
+  std::vector<StageSpec> stages;
+};
+
+/// Reads a pipeline's YAML (docs/pipelines.md), the rig that it names included. Adds all mistakes to
+/// `errors`; the plan is of use only to find further ones if there are any.
+PipelinePlan parse_plan(const YamlNode& root, const std::filesystem::path& folder,
+                        const PipelineArguments& arguments, const StageRegistry& stages,
+                        std::vector<Error>& errors);
+
+/// A pipeline that is ready to run, and what it came from.
+struct LoadedPipeline {
+  Pipeline pipeline;
+  std::filesystem::path file;
+  std::filesystem::path rig_file;  ///< empty: the default rig
+};
+
+/// Reads the file, makes and connects the stages; sets `run.rig` and `run.output`. Opens no other file than
+/// the pipeline's and the rig's.
+/// @throws Errors  all mistakes that were found, in the order of the file
+LoadedPipeline load_pipeline(const std::filesystem::path& file, const PipelineArguments& arguments,
+                             RunSettings& run);
+
+}  // namespace crisp

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/stage/settings.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "pipeline/files/nearest.hpp"
+#include "pipeline/stage/option_yaml.hpp"
+
+namespace crisp {
+namespace {
+
+/// A place that names the setting, without line and column.
+Place place_of(const std::string& text) { return {"--set " + text, 0, 0}; }
+
+void move_to(YamlNode& node, const Place& place) {
+  node.place = place;
+  for (auto& item : node.items) move_to(item, place);
+  for (auto& entry : node.entries) move_to(entry.value, place);
+}
+
+/// The value as YAML, or null with an error added if it is none.
+YamlNode parse_value(const std::string& value, const std::string& text, std::vector<Error>& errors) {
+  YamlNode node;
+  try {
+    node = parse_yaml(value, {});
+  } catch (const Error& error) {
+    errors.emplace_back(error.message(), error.advice(), place_of(text));
+  }
+  move_to(node, place_of(text));
+  return node;
+}
+
+}  // namespace
+
+std::string no_such_option(const StageType& type, const std::string& name) {
+  std::vector<std::string> known;
+  for (const auto& option : type.options) known.push_back(option.name);
+  return did_you_mean(name, known,
+                      known.empty() ? "it has none" : "crisp stages " + type.name + " lists them");
+}
+
+Settings::Settings(const std::vector<std::string>& texts, std::vector<Error>& errors) {
+  for (const auto& text : texts) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      errors.emplace_back("a setting needs a name and a value", "write --set tag.option=value",
+                          place_of(text));
+    } else {
+      settings_.push_back({text, text.substr(0, equals), text.substr(equals + 1)});
+    }
+  }
+}
+
+std::optional<YamlNode> Settings::take_variable(const std::string& name, std::vector<Error>& errors) {
+  std::optional<YamlNode> value;
+  for (auto& setting : settings_) {
+    if (setting.target != name) continue;
+    setting.used = true;
+    value = parse_value(setting.value, setting.text, errors);  // the last one holds
+  }
+  return value;
+}
+
+void Settings::apply(std::vector<StageSpec>& specs, const StageRegistry& stages, std::vector<Error>& errors) {
+  name_stages(specs);
+  for (auto& setting : settings_) {
+    if (!setting.used) apply(setting, specs, stages, errors);
+  }
+}
+
+void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const StageRegistry& stages,
+                     std::vector<Error>& errors) {
+  const Place place = place_of(setting.text);
+  const auto dot = setting.target.rfind('.');
+  const std::string tag = setting.target.substr(0, dot);
+  const auto spec = std::find_if(specs.begin(), specs.end(), [&](const auto& s) { return s.tag == tag; });
+  if (dot == std::string::npos || spec == specs.end()) {
+    std::vector<std::string> tags;
+    for (const auto& s : specs) tags.push_back(s.tag);
+    const std::string what = dot == std::string::npos ? "variable" : "stage with the tag";
+    errors.emplace_back("the pipeline has no " + what + " '" + tag + "'", did_you_mean(tag, tags, {}), place);
+    return;
+  }
+  const StageType* type = stages.find(spec->stage);
+  if (!type) return;  // said when the pipeline is built
+  const std::string name = setting.target.substr(dot + 1);
+  const Option* option = type->find_option(name);
+  if (!option) {
+    errors.emplace_back(tag + ": there is no option '" + name + "'", no_such_option(*type, name), place);
+    return;
+  }
+  YamlNode node;
+  if (option->list) {
+    const std::size_t before = errors.size();
+    node = parse_value(setting.value, setting.text, errors);
+    if (errors.size() != before) return;
+  } else {  // taken as it is: the shell has its own quotes
+    node.kind = YamlNode::Kind::scalar;
+    node.text = setting.value;
+    node.place = place;
+  }
+  auto value = read_option(*option, node, tag, std::filesystem::current_path(), errors);
+  if (value) spec->with[name] = std::move(*value);
+}
+
+}  // namespace crisp

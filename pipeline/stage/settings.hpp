@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/files/yaml.hpp"
+#include "pipeline/stage/pipeline.hpp"
+
+namespace crisp {
+
+/// What an unknown option could have been meant to be, and where the known ones are listed.
+std::string no_such_option(const StageType& type, const std::string& name);
+
+/// The settings of a command line, `tag.option=value` and `variable=value`, which go before those of the
+/// file.
+class Settings {
+ public:
+  Settings(const std::vector<std::string>& texts, std::vector<Error>& errors);
+
+  /// The value of a variable, if one is set; it counts as used from then on.
+  std::optional<YamlNode> take_variable(const std::string& name, std::vector<Error>& errors);
+
+  /// Sets the options that are named, and adds an error for each setting that nothing has a use for. Paths
+  /// are relative to the current folder.
+  void apply(std::vector<StageSpec>& specs, const StageRegistry& stages, std::vector<Error>& errors);
+
+ private:
+  struct Setting {
+    std::string text;    ///< all of it, for messages
+    std::string target;  ///< before the =
+    std::string value;   ///< behind it
+    bool used = false;
+  };
+
+  void apply(Setting& setting, std::vector<StageSpec>& specs, const StageRegistry& stages,
+             std::vector<Error>& errors);
+
+  std::vector<Setting> settings_;
+};
+
+}  // namespace crisp

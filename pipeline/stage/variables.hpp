@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pipeline/files/yaml.hpp"
+
+namespace crisp {
+
+/// The variables of a pipeline: what `${name}` stands for.
+class Variables {
+ public:
+  /// A variable and its value, which may be a list or map where `${name}` stands alone.
+  void set(const std::string& name, YamlNode value) { values_[name] = std::move(value); }
+  void set(const std::string& name, const std::string& text);
+  /// A variable that is known but has no value in this run; `advice` says how to give it one.
+  void set_missing(const std::string& name, std::string advice) { missing_[name] = std::move(advice); }
+  bool contains(const std::string& name) const { return values_.contains(name); }
+
+  /// Replaces each `${name}` in every scalar of the tree, once: what is put in is not looked at again.
+  /// `$${` stands for `${`. Adds an error for each name that is not known.
+  void substitute(YamlNode& node, std::vector<Error>& errors) const;
+
+ private:
+  void substitute_scalar(YamlNode& node, std::vector<Error>& errors) const;
+  const YamlNode* find(const std::string& name, const Place& place, std::vector<Error>& errors) const;
+
+  std::map<std::string, YamlNode> values_;
+  std::map<std::string, std::string> missing_;
+};
+
+}  // namespace crisp
