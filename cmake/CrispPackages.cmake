@@ -10,6 +10,7 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(TBB REQUIRED)
 find_package(flann REQUIRED)  # link crisp_flann: the packaged target forgets lz4
+pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
 pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)
 # By pkg-config, since find_package(PCL) drags in far more than crisp needs; pcl_io, with its VTK, only where
 # PCD files are read and written.

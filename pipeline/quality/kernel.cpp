@@ -25,7 +25,10 @@ TruncatedGaussian::TruncatedGaussian(double sigma, double cutoff) {
   floor = std::exp(-0.25 * cutoff * cutoff);
 }
 
-double truncation_bound(const TruncatedGaussian& kernel, double sum_of_squares, double side) {
+namespace {
+
+/// Σ over the offsets o of a cubic lattice of min(G(R), G(least distance of cells o apart)) / G(0).
+double sum_over_offsets(const TruncatedGaussian& kernel, double side) {
   // Along one axis, cells m apart leave a gap of (m − 1) sides at least.
   constexpr int kNear = 12;
   std::array<double, kNear + 1> along{};
@@ -52,7 +55,23 @@ double truncation_bound(const TruncatedGaussian& kernel, double sum_of_squares, 
       }
     }
   }
-  return (near + 3 * far * all * all) * sum_of_squares;
+  return near + 3 * far * all * all;
+}
+
+}  // namespace
+
+double truncation_bound(const TruncatedGaussian& kernel, const SpatialOrder& order,
+                        std::span<const double> weights) {
+  double sum_of_squares = 0;
+  double cell = 0;
+  for (std::size_t k = 0; k < order.index.size(); ++k) {
+    if (k > 0 && order.cell[k] != order.cell[k - 1]) {
+      sum_of_squares += cell * cell;
+      cell = 0;
+    }
+    cell += weights[order.index[k]];
+  }
+  return sum_over_offsets(kernel, kernel.radius) * (sum_of_squares + cell * cell);
 }
 
 }  // namespace crisp

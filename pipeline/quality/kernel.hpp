@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
+
+#include "pipeline/quality/spatial_order.hpp"
+
 namespace crisp {
 
 /// The kernel between two points of a cloud whose points are Gaussians of width σ each: the isotropic normal
@@ -14,13 +18,15 @@ struct TruncatedGaussian {
   double floor = 0;     ///< G(R) / G(0)
 };
 
-/// What truncation leaves out, at most, of the sum over all pairs of wᵢ wⱼ G(xᵢ − xⱼ) / G(0).
+/// What truncation leaves out, at most, of Σᵢ Σⱼ wᵢ wⱼ G(xᵢ − xⱼ) / G(0), the sum over all pairs.
 ///
-/// @param sum_of_squares  Σ W² over the cells of a cubic lattice, W being the summed weight in a cell
-/// @param side            [m] of the lattice's cells
+/// Points are sorted into cubic cells, of summed weight W each. For any two cells o apart,
+/// Σ W(A) W(A + o) ≤ Σ W(A)² (Cauchy and Schwarz), and a pair in them errs by no more than G at R or at the
+/// least distance of such cells, whichever is lower. Summed over all o.
 ///
-/// For any two cells o apart, Σ W(A) W(A + o) ≤ Σ W(A)² (Cauchy and Schwarz), and a pair in them errs by
-/// no more than G at R or at the least distance of such cells, whichever is lower. Summed over all o.
-double truncation_bound(const TruncatedGaussian& kernel, double sum_of_squares, double side);
+/// @param order    of the points, by cells of the kernel's radius
+/// @param weights  one a point
+double truncation_bound(const TruncatedGaussian& kernel, const SpatialOrder& order,
+                        std::span<const double> weights);
 
 }  // namespace crisp

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "pipeline/data/error.hpp"
 
@@ -51,6 +52,17 @@ void check_weights(std::span<const double> weights, std::size_t n) {
   if (std::ranges::none_of(weights, [](double w) { return w > 0; })) {
     throw Error("all weights are 0", "give at least one point a weight above 0");
   }
+}
+
+std::vector<double> with_mean_one(std::span<const double> weights, std::size_t n) {
+  if (weights.empty()) return std::vector<double>(n, 1);
+  std::vector<double> scaled(weights.begin(), weights.end());
+  // Against the largest first, so that a sum of huge weights does not overflow.
+  const double largest = *std::ranges::max_element(scaled);
+  for (double& w : scaled) w /= largest;
+  const double mean = std::accumulate(scaled.begin(), scaled.end(), 0.0) / static_cast<double>(n);
+  for (double& w : scaled) w /= mean;
+  return scaled;
 }
 
 }  // namespace crisp

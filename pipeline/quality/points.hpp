@@ -33,4 +33,7 @@ void check(const PointsView& points);
 /// @throws Error  if there are neither 0 nor n of them, if one is negative or not finite, or if all are 0
 void check_weights(std::span<const double> weights, std::size_t n);
 
+/// n weights in the same ratios, but of mean 1; for no weights, n ones.
+std::vector<double> with_mean_one(std::span<const double> weights, std::size_t n);
+
 }  // namespace crisp

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/gaussian_sums.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "pipeline/quality/tile_sums.hpp"
+
+namespace crisp {
+namespace {
+
+/// Positions and weights in the order of the tiles, in single precision and kernel units.
+struct Slots {
+  std::array<std::vector<float>, 3> offset;
+  std::vector<float> weight;
+};
+
+Slots fill_slots(const Tiles& tiles, const PointsView& points, std::span<const double> weights,
+                 double scale) {
+  const std::size_t padded = tiles.points() + simd::kPadding;
+  const std::array<std::span<const double>, 3> axes{points.x, points.y, points.z};
+  Slots slots;
+  slots.weight.resize(padded);
+  for (auto& axis : slots.offset) axis.resize(padded);
+  tbb::parallel_for(std::size_t{0}, tiles.groups(), [&](std::size_t group) {
+    const std::size_t end = std::min(tiles.size(), (group + 1) * Tiles::kFanOut);
+    for (std::size_t t = group * Tiles::kFanOut; t < end; ++t) {
+      for (std::uint32_t slot = tiles.begin()[t]; slot < tiles.begin()[t + 1]; ++slot) {
+        const std::uint32_t i = tiles.order()[slot];
+        slots.weight[slot] = static_cast<float>(weights[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double middle = 0.5 * (tiles.boxes().low[axis][t] + tiles.boxes().high[axis][t]);
+          slots.offset[axis][slot] = static_cast<float>(scale * (axes[axis][i] - middle));
+        }
+      }
+    }
+  });
+  return slots;
+}
+
+simd::TileArrays arrays(const Tiles& tiles, const Slots& slots) {
+  simd::TileArrays result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    result.offset[axis] = slots.offset[axis].data();
+    result.low[axis] = tiles.boxes().low[axis].data();
+    result.high[axis] = tiles.boxes().high[axis].data();
+  }
+  result.weight = slots.weight.data();
+  result.begin = tiles.begin().data();
+  result.size = tiles.size();
+  return result;
+}
+
+/// Groups of tiles to a task: depends on the data alone, never on the threads, so that the sums do not.
+std::size_t groups_a_task(const Tiles& tiles) { return std::clamp<std::size_t>(tiles.groups() / 64, 8, 128); }
+
+/// Sums one task; its pulls go to where its points are in the cloud.
+simd::TaskSums sum_task(const Tiles& tiles, const simd::TileArrays& data, const simd::PairKernel& kernel,
+                        std::size_t first_group, std::size_t last_group, Vectors& pull) {
+  simd::TaskSums sums{};
+  sums.first_tile = first_group * Tiles::kFanOut;
+  sums.last_tile = std::min(tiles.size(), last_group * Tiles::kFanOut);
+  const std::uint32_t first_slot = tiles.begin()[sums.first_tile];
+  const std::size_t slots = tiles.begin()[sums.last_tile] - first_slot;
+  std::array<std::vector<float>, 3> slot_pull;
+  for (std::size_t axis = 0; axis < 3 && pull.size() != 0; ++axis) {
+    slot_pull[axis].resize(slots);
+    sums.pull[axis] = slot_pull[axis].data();
+  }
+  std::vector<std::uint32_t> near;
+  for (std::size_t group = first_group; group < last_group; ++group) {
+    tiles.near_groups(group, near);
+    simd::add_group(data, kernel, group, near.data(), near.size(), sums);
+  }
+  const std::array<std::vector<double>*, 3> out{&pull.x, &pull.y, &pull.z};
+  for (std::size_t axis = 0; axis < 3 && pull.size() != 0; ++axis) {
+    for (std::size_t s = 0; s < slots; ++s) {
+      const double weight = data.weight[first_slot + s];
+      (*out[axis])[tiles.order()[first_slot + s]] = weight * slot_pull[axis][s] / kernel.scale;
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+GaussianSums sum_over_tiles(const Tiles& tiles, const PointsView& points, std::span<const double> weights,
+                            const TruncatedGaussian& kernel, bool gradient) {
+  const double scale = std::sqrt(kernel.exponent * std::numbers::log2e);
+  const simd::PairKernel pair{kernel.radius, scale, static_cast<float>(kernel.floor)};
+  const Slots slots = fill_slots(tiles, points, weights, scale);
+  const simd::TileArrays data = arrays(tiles, slots);
+  GaussianSums result;
+  if (gradient) result.pull.assign(points.size(), 0);
+  const std::size_t step = groups_a_task(tiles);
+  std::vector<simd::TaskSums> tasks((tiles.groups() + step - 1) / step);
+  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
+    tasks[t] = sum_task(tiles, data, pair, t * step, std::min(tiles.groups(), (t + 1) * step), result.pull);
+  });
+  std::uint64_t ordered_pairs = 0;
+  for (const simd::TaskSums& task : tasks) {
+    result.kernel += task.kernel;
+    ordered_pairs += task.pairs;
+    result.tested += task.tested;
+  }
+  result.pairs = (ordered_pairs - points.size()) / 2;  // each point met itself
+  return result;
+}
+
+}  // namespace crisp

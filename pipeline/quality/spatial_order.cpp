@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/spatial_order.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr int kBits = 21;     // a coordinate's share of a key
+constexpr int kFineBits = 4;  // of these, the ones within a cell
+
+double median_of_a_sample(std::span<const double> values) {
+  const std::size_t stride = values.size() / 1024 + 1;
+  std::vector<double> sample;
+  for (std::size_t i = 0; i < values.size(); i += stride) sample.push_back(values[i]);
+  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
+  std::ranges::nth_element(sample, middle);
+  return *middle;
+}
+
+/// A coordinate's 21 bits, two zeros after each.
+std::uint64_t spread(std::uint64_t bits) {
+  bits = (bits | bits << 32) & 0x1f00000000ffff;
+  bits = (bits | bits << 16) & 0x1f0000ff0000ff;
+  bits = (bits | bits << 8) & 0x100f00f00f00f00f;
+  bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
+  return (bits | bits << 2) & 0x1249249249249249;
+}
+
+/// The number of the fine cell along one axis, for each point; the lowest is 0.
+std::vector<std::uint32_t> fine_cells(std::span<const double> values, double fine_side) {
+  constexpr double kMiddle = 1 << (kBits - 1);
+  constexpr double kLast = (1 << kBits) - 1;
+  const double median = median_of_a_sample(values);
+  std::vector<std::uint32_t> cells(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    cells[i] = static_cast<std::uint32_t>(std::clamp((values[i] - median) / fine_side + kMiddle, 0.0, kLast));
+  }
+  // Few leading bits make a short sort; whole cells, so that cells stay what they are.
+  const std::uint32_t lowest = *std::ranges::min_element(cells) >> kFineBits << kFineBits;
+  for (auto& cell : cells) cell -= lowest;
+  return cells;
+}
+
+struct Entry {
+  std::uint64_t key;
+  std::uint32_t index;
+};
+
+/// A stable sort by 11 bits at a time, without the digits that all keys share.
+void radix_sort(std::vector<Entry>& entries) {
+  constexpr int kDigit = 11;
+  constexpr std::uint64_t kMask = (1U << kDigit) - 1;
+  std::uint64_t used = 0;
+  for (const Entry& entry : entries) used |= entry.key;
+  std::vector<Entry> sorted(entries.size());
+  for (int shift = 0; shift < 64 && used >> shift != 0; shift += kDigit) {
+    std::array<std::size_t, kMask + 1> first{};
+    for (const Entry& entry : entries) ++first.at(entry.key >> shift & kMask);
+    std::exclusive_scan(first.begin(), first.end(), first.begin(), std::size_t{0});
+    for (const Entry& entry : entries) sorted[first.at(entry.key >> shift & kMask)++] = entry;
+    entries.swap(sorted);
+  }
+}
+
+}  // namespace
+
+SpatialOrder spatial_order(const PointsView& points, double side) {
+  const std::size_t n = points.size();
+  if (n >= std::numeric_limits<std::uint32_t>::max()) {
+    throw Error("a cloud of 2^32 points or more is too large", "thin it out, or cut it into parts");
+  }
+  SpatialOrder order;
+  if (n == 0) return order;
+  const double fine_side = side / (1 << kFineBits);
+  const auto x = fine_cells(points.x, fine_side);
+  const auto y = fine_cells(points.y, fine_side);
+  const auto z = fine_cells(points.z, fine_side);
+  std::vector<Entry> entries(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    entries[i] = {spread(x[i]) | spread(y[i]) << 1 | spread(z[i]) << 2, static_cast<std::uint32_t>(i)};
+  }
+  radix_sort(entries);
+  order.index.reserve(n);
+  order.cell.reserve(n);
+  for (const Entry& entry : entries) {
+    order.index.push_back(entry.index);
+    order.cell.push_back(entry.key >> (3 * kFineBits));
+  }
+  return order;
+}
+
+}  // namespace crisp

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/tiles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace crisp {
+namespace {
+
+std::array<std::span<const double>, 3> axes(const PointsView& points) {
+  return {points.x, points.y, points.z};
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+Boxes::Boxes(std::size_t n) {
+  for (auto& axis : low) axis.assign(n, kInfinity);
+  for (auto& axis : high) axis.assign(n, -kInfinity);
+}
+
+double squared_gap(const Boxes& a, std::size_t i, const Boxes& b, std::size_t j) {
+  // Rounding is monotone, so that no pair of points is computed to be nearer than their boxes are.
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double gap = std::max({0.0, a.low[axis][i] - b.high[axis][j], b.low[axis][j] - a.high[axis][i]});
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+Tiles::Tiles(const PointsView& points, double reach, std::vector<std::uint32_t> order)
+    : reach_(reach), order_(std::move(order)) {
+  cut(points);
+  std::size_t boxes = size();
+  do {
+    const std::size_t above = (boxes + kFanOut - 1) / kFanOut;
+    levels_.emplace_back(above * kFanOut);
+    boxes = above;
+  } while (boxes > 1);
+  levels_.emplace_back(boxes);
+  refresh(points);
+}
+
+void Tiles::cut(const PointsView& points) {
+  constexpr double kLargest = 1.75;  // of the reach: tiles well filled where points are few, small elsewhere
+  const auto coordinates = axes(points);
+  std::array<double, 3> low{};
+  std::array<double, 3> high{};
+  for (std::uint32_t slot = 0; slot < order_.size(); ++slot) {
+    bool fits = slot > 0 && slot - begin_.back() < kCapacity;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double at = coordinates[axis][order_[slot]];
+      low[axis] = std::min(low[axis], at);
+      high[axis] = std::max(high[axis], at);
+      fits = fits && high[axis] - low[axis] <= kLargest * reach_;
+    }
+    if (fits) continue;
+    begin_.push_back(slot);
+    for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = high[axis] = coordinates[axis][order_[slot]];
+  }
+  begin_.push_back(static_cast<std::uint32_t>(order_.size()));
+}
+
+bool Tiles::refresh(const PointsView& points) {
+  bool compact = true;
+  Boxes& tiles = levels_.front();
+  const auto coordinates = axes(points);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t t = 0; t < size(); ++t) {
+      double low = kInfinity;
+      double high = -kInfinity;
+      for (std::uint32_t slot = begin_[t]; slot < begin_[t + 1]; ++slot) {
+        low = std::min(low, coordinates[axis][order_[slot]]);
+        high = std::max(high, coordinates[axis][order_[slot]]);
+      }
+      tiles.low[axis][t] = low;
+      tiles.high[axis][t] = high;
+      compact = compact && high - low <= 2.5 * reach_;
+    }
+    for (std::size_t level = 1; level < levels_.size(); ++level) {
+      auto& low = levels_[level].low[axis];
+      auto& high = levels_[level].high[axis];
+      for (std::size_t i = 0; i * kFanOut < levels_[level - 1].size(); ++i) {
+        const auto at = static_cast<std::ptrdiff_t>(i * kFanOut);
+        low[i] = *std::min_element(levels_[level - 1].low[axis].begin() + at,
+                                   levels_[level - 1].low[axis].begin() + at + kFanOut);
+        high[i] = *std::max_element(levels_[level - 1].high[axis].begin() + at,
+                                    levels_[level - 1].high[axis].begin() + at + kFanOut);
+      }
+    }
+  }
+  return compact;
+}
+
+void Tiles::near_groups(std::size_t group, std::vector<std::uint32_t>& near) const {
+  near.clear();
+  near_below(levels_.size() - 1, 0, group, near);
+}
+
+void Tiles::near_below(std::size_t level, std::size_t box, std::size_t group,
+                       std::vector<std::uint32_t>& near) const {
+  if (squared_gap(levels_[level], box, levels_[1], group) > reach_ * reach_) return;
+  if (level == 1) {
+    near.push_back(static_cast<std::uint32_t>(box));
+    return;
+  }
+  for (std::size_t child = box * kFanOut; child < (box + 1) * kFanOut; ++child) {
+    near_below(level - 1, child, group, near);
+  }
+}
+
+}  // namespace crisp
