@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/clock/clock_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "plugins/clock/lower_hull.hpp"
+
+namespace crisp {
+namespace {
+
+/// Index of the stamp that a line of this slope touches first from below.
+std::size_t support(std::span<const Stamp> stamps, double slope) {
+  const auto lower = [slope](const Stamp& a, const Stamp& b) {
+    return a.lead - b.lead < slope * (a.device - b.device);
+  };
+  return static_cast<std::size_t>(std::min_element(stamps.begin(), stamps.end(), lower) - stamps.begin());
+}
+
+ClockLine line_through(const Stamp& stamp, double slope, double center) {
+  return {.center = center, .at_center = stamp.lead + slope * (center - stamp.device), .slope = slope};
+}
+
+double slope_between(const Stamp& a, const Stamp& b) { return (b.lead - a.lead) / (b.device - a.device); }
+
+}  // namespace
+
+ClockLine line_by_convex_hull(std::span<const Stamp> stamps, double center) {
+  LowerHull hull;
+  for (const auto& stamp : stamps) hull.add(stamp);
+  const auto vertices = hull.vertices();
+  if (vertices.size() == 1) return line_through(vertices.front(), 0, center);
+  const auto right = std::upper_bound(vertices.begin() + 1, vertices.end() - 1, center,
+                                      [](double t, const Stamp& vertex) { return t < vertex.device; });
+  const double slope = slope_between(right[-1], *right);
+  if (std::abs(slope) <= kMostSkew) return line_through(right[-1], slope, center);
+  const double bound = std::copysign(kMostSkew, slope);
+  return line_through(vertices[support(vertices, bound)], bound, center);
+}
+
+ClockLine line_by_linear_program(std::span<const Stamp> stamps, double center) {
+  if (stamps.front().device == stamps.back().device) {
+    return line_through(stamps[support(stamps, 0)], 0, center);
+  }
+  // height(slope) = min over i of lead_i + slope · (center − device_i) is concave; a stamp that supports the
+  // line left of the center says that a steeper line stands higher, one right of it the contrary.
+  std::size_t left = support(stamps, -kMostSkew);
+  if (stamps[left].device > center) return line_through(stamps[left], -kMostSkew, center);
+  std::size_t right = support(stamps, kMostSkew);
+  if (stamps[right].device <= center) return line_through(stamps[right], kMostSkew, center);
+  while (true) {
+    const double slope = slope_between(stamps[left], stamps[right]);
+    const auto between = stamps.subspan(left, right - left + 1);
+    const std::size_t touched = left + support(between, slope);
+    const double below =
+        stamps[left].lead - stamps[touched].lead - slope * (stamps[left].device - stamps[touched].device);
+    if (touched == left || touched == right || below <= 0) {
+      return line_through(stamps[left], slope, center);
+    }
+    (stamps[touched].device <= center ? left : right) = touched;
+  }
+}
+
+}  // namespace crisp

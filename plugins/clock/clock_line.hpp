@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+namespace crisp {
+
+/// One pair of times: when a device says that it sent something, and by how much later than that, on the
+/// hub's clock, it came in. Both relative to the first stamp of a run, so that no digits are lost.
+struct Stamp {
+  double device = 0;  ///< [s] device time
+  double lead = 0;    ///< [s] hub's receipt time − device time
+};
+
+/// The straight line lead = at_center + slope · (device − center): a clock without its delays.
+struct ClockLine {
+  double center = 0;     ///< [s] device time
+  double at_center = 0;  ///< [s]
+  double slope = 0;      ///< hub seconds gained a device second: the skew
+
+  double lead(double device) const { return at_center + slope * (device - center); }
+};
+
+/// The skew beyond which no crystal goes; an edge between two stamps that are close can be any steep.
+inline constexpr double kMostSkew = 1e-3;
+
+/// The line that lies below all stamps and passes as high as possible at `center`. With the mean of the
+/// stamps' device times as `center` it is the line whose summed distance to them is least.
+///
+/// By the lower convex hull of the stamps (Zhang, Liu, Xia: Clock synchronization algorithms for network
+/// measurements, INFOCOM 2002): the line is the hull's edge above or below which `center` lies. O(n).
+///
+/// @param stamps at least one, ascending in device time; equal times are allowed
+/// @param center [s] device time, within the stamps' times
+/// @return |slope| ≤ kMostSkew
+ClockLine line_by_convex_hull(std::span<const Stamp> stamps, double center);
+
+/// The same line as the solution of the linear programme: maximise the line's height at `center` such that
+/// it passes below all stamps (Moon, Skelly, Towsley: Estimation and removal of clock skew from network
+/// delay measurements, INFOCOM 1999). Solved in its dual, a concave function of the slope alone, by cutting
+/// planes: no hull is built. O(n log n) on usual stamps.
+ClockLine line_by_linear_program(std::span<const Stamp> stamps, double center);
+
+/// The standard errors of a line below stamps.
+struct LineErrors {
+  double at_center = 0;  ///< [s]
+  double slope = 0;
+};
+
+/// How far the line may be from the clock, estimated from how the stamps thin out towards it.
+///
+/// @param stamps  those that the line was fitted to
+/// @param quantum [s] the resolution of the stamps
+LineErrors errors_of_line(std::span<const Stamp> stamps, const ClockLine& line, double quantum = 1e-6);
+
+}  // namespace crisp

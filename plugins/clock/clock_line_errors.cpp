@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "plugins/clock/clock_line.hpp"
+#include "plugins/clock/lower_hull.hpp"
+
+namespace crisp {
+namespace {
+
+std::vector<double> block_minima(std::span<const Stamp> stamps, const ClockLine& line, std::size_t blocks) {
+  std::vector<double> minima(blocks, HUGE_VAL);
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    double& least = minima[i * blocks / stamps.size()];
+    least = std::min(least, stamps[i].lead - line.lead(stamps[i].device));
+  }
+  return minima;
+}
+
+std::vector<double> paired_minima(const std::vector<double>& fine) {
+  std::vector<double> coarse(fine.size() / 2);
+  for (std::size_t i = 0; i < coarse.size(); ++i) coarse[i] = std::min(fine[2 * i], fine[2 * i + 1]);
+  return coarse;
+}
+
+/// A block's typical least delay. The two blocks that the line rests on say nothing, and a quarter may have
+/// had a bad time.
+double typical(std::vector<double> minima) {
+  std::sort(minima.begin(), minima.end());
+  const std::size_t end = minima.size() - (minima.size() - 2) / 4;
+  double sum = 0;
+  for (std::size_t i = 2; i < end; ++i) sum += minima[i];
+  constexpr double kLowerThreeQuarters = 0.5945;  // their mean over the whole mean, of an exponential law
+  return sum / static_cast<double>(end - 2) / kLowerThreeQuarters;
+}
+
+/// How far above a line of known slope the lowest of all stamps is expected. From blocks to halves as many,
+/// the least delay falls by a power that depends on the law of the delays; followed down to one block.
+double lowest_delay(std::span<const Stamp> stamps, const ClockLine& line) {
+  constexpr std::size_t kBlocks = 32;
+  constexpr double kUsualDelay = 1e-3;  // [s] where there are too few stamps to tell
+  if (stamps.size() < 4) return kUsualDelay;
+  if (stamps.size() < 2 * kBlocks) return typical(block_minima(stamps, line, stamps.size()));
+  const auto fine = block_minima(stamps, line, kBlocks);
+  const auto middle = paired_minima(fine);
+  const double of_fine = typical(fine);
+  const double of_middle = typical(middle);
+  const double of_coarse = typical(paired_minima(middle));
+  if (of_coarse <= 0) return 0;
+  const double power = std::clamp(std::log2(of_fine / of_coarse) / 2, 0.0, 1.2);
+  return std::cbrt(of_fine * of_middle * of_coarse) * std::pow(kBlocks / 2, -power);
+}
+
+/// The weight exp(height/scale) of all slopes in an interval, and its moments about an origin.
+struct Moments {
+  double mass = 0;
+  double second = 0;
+
+  /// The weight falls from `at_edge` at `edge` in direction `away` (±1) with `rate`, over `length`.
+  void add_falling(double at_edge, double edge, double away, double rate, double length) {
+    const double q = rate * length;
+    double s0 = length;
+    double s1 = length * length / 2;
+    double s2 = length * length * length / 3;
+    if (q > 1e-3) {
+      const double rest = std::exp(-q);
+      s0 = (1 - rest) / rate;
+      s1 = (1 - rest * (1 + q)) / (rate * rate);
+      s2 = (2 - rest * (q * q + 2 * q + 2)) / (rate * rate * rate);
+    }
+    mass += at_edge * s0;
+    second += at_edge * (edge * edge * s0 + 2 * edge * away * s1 + s2);
+  }
+};
+
+/// The spread of all lines below the stamps, each weighted by how probable it makes it that no stamp lies
+/// between it and the hull: exp(height at the center / scale). For a slope, the highest line is a support of
+/// the hull; its height is linear in the slope as long as it touches the same vertex.
+double slope_spread(std::span<const Stamp> vertices, const ClockLine& line, double scale) {
+  const auto slope_before = [&](std::size_t i) {
+    const double rise = vertices[i].lead - vertices[i - 1].lead;
+    return std::clamp(rise / (vertices[i].device - vertices[i - 1].device), -kMostSkew, kMostSkew);
+  };
+  Moments moments;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const double low = i == 0 ? -kMostSkew : slope_before(i);
+    const double high = i + 1 == vertices.size() ? kMostSkew : slope_before(i + 1);
+    if (low >= high) continue;
+    const double ahead = line.center - vertices[i].device;
+    const double edge = ahead > 0 ? high : low;
+    const double height = vertices[i].lead + edge * ahead - line.at_center;
+    moments.add_falling(std::exp(height / scale), edge - line.slope, ahead > 0 ? -1 : 1,
+                        std::abs(ahead) / scale, high - low);
+  }
+  return std::sqrt(moments.second / moments.mass);
+}
+
+}  // namespace
+
+LineErrors errors_of_line(std::span<const Stamp> stamps, const ClockLine& line, double quantum) {
+  const double scale = std::max(lowest_delay(stamps, line), quantum);
+  LowerHull hull;
+  for (const auto& stamp : stamps) hull.add(stamp);
+  return {.at_center = scale, .slope = slope_spread(hull.vertices(), line, scale)};
+}
+
+}  // namespace crisp

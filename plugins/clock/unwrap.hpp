@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace crisp {
+
+/// The number nearest to `expected` that leaves `residue` when divided by `modulus`.
+std::int64_t nearest_congruent(std::int64_t residue, std::int64_t modulus, double expected);
+
+/// Makes a counter of 16 bits count on past 65535, also across a gap of several wraps.
+class CounterUnwrapper {
+ public:
+  /// @param raw       the counter as sent
+  /// @param expected  how far it should have come since the one before, by any other clock
+  /// @return how far it has come: the possible number nearest to `expected`, negative for one that is late
+  std::int64_t advance(std::uint16_t raw, double expected) const;
+  void accept(std::uint16_t raw) { last_ = raw; }
+
+ private:
+  std::uint16_t last_ = 0;
+};
+
+/// How a device's stamp follows the stamps before it.
+enum class StampKind {
+  next,      ///< later than all before it
+  repeated,  ///< the same once more, or out of order: of no use
+  reset,     ///< the device's clock began anew, or jumped: nothing connects it to the stamps before it
+};
+
+/// Makes the 32-bit microsecond clock of a device count on past its wraps (every 71.6 minutes), with the
+/// hub's time at hand: a wrap, several wraps in a gap, and a power cycle look alike in the counter alone.
+///
+/// Three clocks vote: the device's, the hub's (late by up to half a minute when the network stalls), and the
+/// count of telegrams. A stamp is a reset when the device's clock goes back, or when it agrees with neither
+/// of the others, or when those two agree with one another against it.
+class TimeUnwrapper {
+ public:
+  struct Unwrapped {
+    StampKind kind = StampKind::next;
+    std::int64_t device_us = 0;  ///< [µs] ascending; after a reset it goes on by the hub's elapsed time
+  };
+
+  /// @param device the rig's name of the device, for errors
+  explicit TimeUnwrapper(std::string device) : device_(std::move(device)) {}
+
+  /// @param raw_us      [µs] the device's clock, modulo 2³²
+  /// @param receipt_ns  [ns] the hub's clock
+  /// @param counted_s   [s] time since the stamp before it by the count of telegrams and their rate, if known
+  /// @throws Error if the clock wraps every second: which second is meant cannot be told
+  Unwrapped add(std::uint32_t raw_us, std::int64_t receipt_ns,
+                std::optional<double> counted_s = std::nullopt);
+
+ private:
+  StampKind judge(double device_s, double hub_s, std::optional<double> counted_s) const;
+  void refuse_seconds_clock(std::uint32_t raw_us);
+
+  std::string device_;
+  bool any_ = false;
+  std::uint32_t last_raw_us_ = 0;
+  std::int64_t last_us_ = 0;
+  std::int64_t last_receipt_ns_ = 0;
+  std::uint32_t largest_raw_us_ = 0;
+  int falls_ = 0;  ///< how often the counter fell back
+};
+
+}  // namespace crisp
