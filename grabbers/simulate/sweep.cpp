@@ -50,8 +50,9 @@ std::vector<std::uint16_t> fired_beams(const ScannerSettings& settings) {
 
 SweepSimulator::SweepSimulator(const ScannerSettings& settings, const Scene& scene, const Motion& motion,
                                const TermRegistry& terms)
-    : settings_(settings), scene_(&scene), motion_(&motion), caster_(scene), model_(settings.truth, terms) {
+    : settings_(settings), motion_(&motion), caster_(scene), model_(settings.truth, terms) {
   check(settings_);
+  for (const auto& surface : scene.surfaces) reflectances_.push_back(surface.reflectance);
   beams_ = fired_beams(settings_);
   traced_.resize(beams_.size());
   for (std::size_t i = 0; i < settings_.rig.lasers.size(); ++i) {
@@ -107,7 +108,7 @@ void SweepSimulator::measure(Laser& laser, Sweep& sweep) {
     const double noise = range.sigma * laser.noise.normal();
     const auto hit = caster_.cast({traced_[i].origin, traced_[i].direction}, range.max_distance);
     if (!hit) continue;
-    const float strength = remission(scene_->surfaces[hit->surface].reflectance, *hit);
+    const float strength = remission(reflectances_[hit->surface], *hit);
     traced_[i].remission = strength;
     const double measured =
         noise + reported_range(model_.chain(sweep.laser), laser, traced_[i], hit->distance);

@@ -30,8 +30,8 @@ struct Sweep {
 class SweepSimulator {
  public:
   /// @param settings  checked here
-  /// @param scene     in the base's frame; kept by reference, as is `motion`
-  /// @param motion    the plate's true motion, by true time [s]
+  /// @param scene     in the base's frame
+  /// @param motion    the plate's true motion, by true time [s]; kept by reference
   /// @param terms     that the true calibration names
   /// @throws Error    if the settings make no sense, or the truth does not have one laser for each of the rig
   SweepSimulator(const ScannerSettings& settings, const Scene& scene, const Motion& motion,
@@ -54,7 +54,7 @@ class SweepSimulator {
                         double distance) const;
 
   ScannerSettings settings_;
-  const Scene* scene_;
+  std::vector<double> reflectances_;  ///< of the scene's surfaces
   const Motion* motion_;
   RayCaster caster_;
   SensorModel model_;

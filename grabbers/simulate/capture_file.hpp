@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "grabbers/capture/network_frames.hpp"
+#include "grabbers/capture/pcap_writer.hpp"
+#include "grabbers/simulate/random.hpp"
+#include "grabbers/simulate/recording.hpp"
+
+namespace crisp {
+
+/// What befalls frames between the devices and the file.
+struct WireFaults {
+  double lost = 0;      ///< share that the capture does not hold
+  double repeated = 0;  ///< share that is there twice, the second some milliseconds later
+  double damaged = 0;   ///< share with one bit of the payload flipped
+};
+
+/// Applies faults to frames on their way to the next sink.
+class FaultyWire {
+ public:
+  struct Counts {
+    std::uint64_t lost = 0;
+    std::uint64_t repeated = 0;
+    std::uint64_t damaged = 0;
+  };
+
+  /// @throws Error if a share is not between 0 and 1
+  FaultyWire(const WireFaults& faults, std::uint64_t seed, FrameSink sink);
+
+  void push(std::int64_t time_ns, ByteView frame);
+  const Counts& counts() const { return counts_; }
+
+ private:
+  WireFaults faults_;
+  RandomStream random_;
+  FrameSink sink_;
+  Counts counts_;
+};
+
+/// Writes what the hub received as the capture that tcpdump would have made there.
+class CaptureFile {
+ public:
+  /// @param path  takes the capture when it is complete; nothing is there before
+  /// @throws Error if the file cannot be written, or the rig's addresses are none
+  CaptureFile(std::filesystem::path path, const RecordingSettings& settings, const RecordingTruth& truth,
+              const WireFaults& faults = {});
+
+  /// Events must come in the order of receipt.
+  void write(const HubEvent& event);
+
+  /// Ends the connections and gives the file its name. @throws Error if the disk is full
+  void close();
+
+  const FaultyWire::Counts& faults() const { return wire_.counts(); }
+
+ private:
+  struct LaserConnection {
+    std::unique_ptr<TcpConversation> tcp;
+    std::size_t restarts = 0;
+  };
+
+  void connect(std::size_t laser, std::int64_t time_ns);
+  void write(const LaserTelegram& telegram);
+  void write(const PlateReading& reading);
+
+  RecordingSettings settings_;
+  RecordingTruth truth_;
+  PcapWriter file_;
+  FrameSorter sorter_;
+  FaultyWire wire_;
+  std::vector<LaserConnection> lasers_;
+  DatagramSender plate_;
+  std::int64_t latest_ns_ = 0;
+};
+
+}  // namespace crisp

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "grabbers/simulate/random.hpp"
+
+namespace crisp {
+
+/// How long a telegram travels from a device to the hub's network interface.
+struct LinkSettings {
+  double minimum = 1e-3;     ///< [s] shortest way that this kind of device can have
+  double jitter = 1e-4;      ///< [s] mean of an exponentially distributed delay beyond that
+  double stall_rate = 0.2;   ///< [1/s] how often the link stalls: what is sent meanwhile arrives in a burst
+  double stall_time = 5e-3;  ///< [s] mean duration of a stall
+  double seconds_per_byte = 80e-9;  ///< [s] 100 Mbit/s: telegrams follow each other no closer
+};
+
+/// The way of one device's telegrams: in order, late by at least a minimum of its own.
+class Link {
+ public:
+  /// @param minimum  [s] this link's own, in place of the settings'
+  /// @param name     of the device, for its random numbers
+  /// @throws Error if a time or rate is negative
+  Link(const LinkSettings& settings, double minimum, std::uint64_t seed, const std::string& name);
+
+  /// Hub time [s] at which a telegram arrives in full. Telegrams must be sent in order.
+  double arrival(double sent, std::size_t bytes);
+
+ private:
+  LinkSettings settings_;
+  double minimum_;
+  RandomStream jitter_;
+  RandomStream stalls_;
+  double stall_begin_ = 0;
+  double stall_end_ = 0;
+  double last_arrival_;
+};
+
+}  // namespace crisp

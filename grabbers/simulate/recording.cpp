@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "grabbers/wire/scan_conversion.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kMargin = 0.1;  // [s] of readings before the first and after the last sweep
+
+}  // namespace
+
+std::int64_t receipt_ns(const HubEvent& event) {
+  return std::visit([](const auto& received) { return received.receipt_ns; }, event);
+}
+
+RecordingSimulator::RecordingSimulator(const RecordingSettings& settings, const Scene& scene,
+                                       const TermRegistry& terms)
+    : settings_(settings),
+      truth_(draw_devices(settings)),
+      motion_(make_motion(settings.scanner.motion, settings.scanner.duration, settings.scanner.seed)),
+      sweeps_(settings.scanner, scene, motion_, terms),
+      plate_(settings, truth_, motion_, -kMargin) {
+  for (std::size_t i = 0; i < truth_.lasers.size(); ++i) {
+    lasers_.emplace_back(settings, truth_, static_cast<std::uint16_t>(i));
+  }
+  upcoming_ = sweeps_.next();
+  now_ = plate_.next_time();
+}
+
+std::optional<HubEvent> RecordingSimulator::next() {
+  const auto since_start = [&](std::int64_t ns) {
+    return static_cast<double>(ns - settings_.start_ns) * 1e-9;
+  };
+  while (in_flight_.empty() || since_start(in_flight_.begin()->first) >= now_) {
+    if (!fire()) break;
+  }
+  if (in_flight_.empty()) return std::nullopt;
+  return std::move(in_flight_.extract(in_flight_.begin()).mapped());
+}
+
+bool RecordingSimulator::fire() {
+  const double sweep = upcoming_.revolution.begin;
+  const double end = settings_.scanner.duration;
+  if (sweep >= end && plate_.next_time() > end + kMargin) return false;
+  if (sweep < end && sweep <= plate_.next_time()) {
+    if (auto telegram = lasers_[upcoming_.laser].send(upcoming_)) hold(std::move(*telegram));
+    upcoming_ = sweeps_.next();
+  } else if (const auto reading = plate_.send()) {
+    hold(*reading);
+  }
+  now_ = std::min(upcoming_.revolution.begin, plate_.next_time());
+  return true;
+}
+
+void RecordingSimulator::hold(HubEvent event) {
+  const auto received = receipt_ns(event);
+  in_flight_.emplace(received, std::move(event));
+}
+
+double RecordingSimulator::progress() const {
+  return std::clamp(now_ / settings_.scanner.duration, 0.0, 1.0);
+}
+
+Scan to_scan(const LaserTelegram& telegram) {
+  Scan scan;
+  const auto failure = to_scan(telegram.data, telegram.laser, telegram.receipt_ns, scan);
+  if (failure != ScanFailure::None) {
+    throw Error("the simulator made a telegram that holds no scan: " + std::string(to_string(failure)));
+  }
+  return scan;
+}
+
+Recording simulate_recording(const RecordingSettings& settings, const Scene& scene,
+                             const TermRegistry& terms) {
+  RecordingSimulator simulator(settings, scene, terms);
+  Recording recording{.scans = {}, .readings = {}, .truth = simulator.truth()};
+  while (const auto event = simulator.next()) {
+    if (const auto* telegram = std::get_if<LaserTelegram>(&*event)) {
+      recording.scans.push_back(to_scan(*telegram));
+    } else {
+      recording.readings.push_back(std::get<PlateReading>(*event));
+    }
+  }
+  return recording;
+}
+
+}  // namespace crisp

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/recording_settings.hpp"
+
+#include <algorithm>
+
+#include "grabbers/simulate/random.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kWrap = 4294.967296;  // [s] of a 32-bit counter of microseconds
+
+DeviceTruth draw_device(const RecordingSettings& settings, std::size_t index, const std::string& name) {
+  DeviceTruth device{.name = name};
+  if (!settings.clock_overrides.empty()) {
+    device.clock = settings.clock_overrides[index];
+  } else {
+    RandomStream random(settings.scanner.seed, name + ".clock");
+    device.clock.start = random.uniform(0, kWrap);
+    device.clock.skew = random.uniform(-settings.clocks.skew, settings.clocks.skew);
+    device.clock.drift = random.uniform(-settings.clocks.drift, settings.clocks.drift);
+  }
+  for (const auto& restart : settings.faults.restarts) {
+    if (restart.device == name) device.clock.resets.push_back(restart.time);
+  }
+  std::sort(device.clock.resets.begin(), device.clock.resets.end());
+  return device;
+}
+
+void check_names(const RecordingSettings& settings) {
+  const auto& rig = settings.scanner.rig;
+  const auto check = [&](const std::string& name) {
+    const bool laser = std::any_of(rig.lasers.begin(), rig.lasers.end(),
+                                   [&](const auto& known) { return known.name == name; });
+    if (!laser && name != rig.plate.name) {
+      throw Error("a fault is to befall the device '" + name + "', which the rig does not have");
+    }
+  };
+  for (const auto& silence : settings.faults.silences) check(silence.device);
+  for (const auto& restart : settings.faults.restarts) check(restart.device);
+}
+
+void check(const RecordingSettings& settings) {
+  const std::size_t lasers = settings.scanner.rig.lasers.size();
+  if (settings.scanner.truth.lasers.size() != lasers) {
+    throw Error("the simulation's truth does not have as many lasers as the rig");
+  }
+  if (!settings.clock_overrides.empty() && settings.clock_overrides.size() != lasers + 1) {
+    throw Error("the simulation needs one clock a laser and one for the plate, or none at all");
+  }
+  if (!settings.stamp_lags.empty() && settings.stamp_lags.size() != lasers) {
+    throw Error("the simulation needs one stamp lag a laser, or none at all");
+  }
+  check_names(settings);
+}
+
+}  // namespace
+
+bool FaultSettings::silent(const std::string& device, double time) const {
+  return std::any_of(silences.begin(), silences.end(), [&](const Silence& silence) {
+    return silence.device == device && time >= silence.begin && time < silence.begin + silence.duration;
+  });
+}
+
+RecordingTruth draw_devices(const RecordingSettings& settings) {
+  check(settings);
+  const auto& rig = settings.scanner.rig;
+  RecordingTruth truth{.calibration = settings.scanner.truth};
+  truth.plate = draw_device(settings, rig.lasers.size(), rig.plate.name);
+  truth.plate.minimum_delay = settings.plate_link.minimum;
+  for (std::size_t i = 0; i < rig.lasers.size(); ++i) {
+    DeviceTruth& laser = truth.lasers.emplace_back(draw_device(settings, i, rig.lasers[i].name));
+    if (!settings.stamp_lags.empty()) laser.stamp_lag = settings.stamp_lags[i];
+    const double eta = truth.calibration.lasers[i].eta.value;
+    truth.plate.minimum_delay =
+        std::max(truth.plate.minimum_delay, settings.laser_link.minimum + laser.stamp_lag + eta);
+  }
+  for (std::size_t i = 0; i < rig.lasers.size(); ++i) {
+    DeviceTruth& laser = truth.lasers[i];
+    laser.minimum_delay = truth.plate.minimum_delay - laser.stamp_lag - truth.calibration.lasers[i].eta.value;
+  }
+  return truth;
+}
+
+}  // namespace crisp

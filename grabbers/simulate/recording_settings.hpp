@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "grabbers/simulate/device_clock.hpp"
+#include "grabbers/simulate/link.hpp"
+#include "grabbers/simulate/settings.hpp"
+#include "grabbers/wire/cola.hpp"
+#include "pipeline/data/calibration.hpp"
+
+namespace crisp {
+
+/// How the devices' clocks are drawn: each starts anywhere within its 32 bits.
+struct ClockSettings {
+  double skew = 250e-6;  ///< largest |skew|
+  double drift = 0;      ///< [1/s] largest |growth of the skew|
+};
+
+/// Whether telegrams carry remissions, and how wide.
+enum class RemissionChannel { none, bits8, bits16 };
+
+/// What a laser's telegrams look like and when they leave.
+struct TelegramSettings {
+  ColaLanguage language = ColaLanguage::B;
+  RemissionChannel remission = RemissionChannel::bits8;
+  double handover = 3.1e-3;        ///< [s] from the end of the mirror's turn to the transmission stamp
+  double handover_jitter = 29e-6;  ///< [s] its standard deviation
+  unsigned settling_scans = 0;     ///< so many scans after a start have device status 1: motor not at speed
+};
+
+/// From `begin` to `begin + duration` nothing comes from a device.
+struct Silence {
+  std::string device;
+  double begin = 0;     ///< [s]
+  double duration = 1;  ///< [s]
+};
+
+/// A device starts again: clock and counters from zero.
+struct Restart {
+  std::string device;
+  double time = 0;  ///< [s]
+};
+
+/// What goes wrong on the way.
+struct FaultSettings {
+  double lost_scans = 0;     ///< share of the scan telegrams that never arrive
+  double lost_readings = 0;  ///< share of the plate's readings that never arrive
+  std::vector<Silence> silences;
+  std::vector<Restart> restarts;
+
+  /// Whether the device is within one of its silences at this hub time [s].
+  bool silent(const std::string& device, double time) const;
+};
+
+/// One device as it is: what clock alignment and calibration should find.
+struct DeviceTruth {
+  std::string name;
+  DeviceClock clock;
+  double minimum_delay = 0;  ///< [s] of its link
+  double stamp_lag = 0;      ///< [s] how much later the scan's stamp is than the rig's offsets say
+};
+
+/// A recording of the scanner through its devices' clocks and telegrams.
+struct RecordingSettings {
+  ScannerSettings scanner;
+  ClockSettings clocks;
+  LinkSettings laser_link;
+  LinkSettings plate_link{.minimum = 3e-4, .jitter = 5e-5};
+  TelegramSettings telegrams;
+  FaultSettings faults;
+  std::vector<double> stamp_lags;                     ///< [s] one a laser; empty: none
+  std::vector<DeviceClock> clock_overrides;           ///< the lasers' and last the plate's; empty: drawn
+  std::int64_t start_ns = 1'767'225'600'000'000'000;  ///< [ns since the Unix epoch] hub time 0
+};
+
+/// All that a recording hides.
+struct RecordingTruth {
+  Calibration calibration;
+  std::vector<DeviceTruth> lasers;
+  DeviceTruth plate;
+};
+
+/// Draws the devices' clocks and sets their delays so that each laser has the η of the true calibration:
+///
+///     η = plate's minimum delay − laser's minimum delay − stamp lag
+///
+/// No delay is shorter than its link's minimum; the plate's is the shortest that allows this.
+/// @throws Error if the settings make no sense
+RecordingTruth draw_devices(const RecordingSettings& settings);
+
+}  // namespace crisp

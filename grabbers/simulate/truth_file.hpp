@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "grabbers/simulate/recording_settings.hpp"
+#include "pipeline/data/calibration.hpp"
+
+namespace crisp {
+
+/// The truth of a simulation as a calibration that assembly can use, and in its provenance, all as text: the
+/// scene, seed and settings, and what clock alignment should find of each device: `laser1.clock.skew` (hub
+/// seconds a device second − 1), `.clock.start` [s], `.clock.drift` [1/s], `.minimum_delay` [s], `.stamp_lag`
+/// [s].
+Calibration truth_to_write(const RecordingTruth& truth, const RecordingSettings& settings,
+                           const std::string& scene);
+
+/// Writes it; a file is there whole or not at all. @throws Error if it cannot be written
+void write_truth(const std::filesystem::path& file, const RecordingTruth& truth,
+                 const RecordingSettings& settings, const std::string& scene);
+
+}  // namespace crisp

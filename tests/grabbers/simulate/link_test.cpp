@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/link.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+TEST(Link, DelaysByTheMinimumAndAnExponentialJitter) {
+  Link link({.jitter = 1e-4, .stall_rate = 0, .seconds_per_byte = 0}, 2e-3, 1, "laser1");
+  constexpr int kTelegrams = 20'000;
+  double sum = 0;
+  double least = 1;
+  for (int i = 0; i < kTelegrams; ++i) {
+    const double delay = link.arrival(0.02 * i, 2000) - 0.02 * i;
+    sum += delay;
+    least = std::min(least, delay);
+  }
+  EXPECT_GE(least, 2e-3);
+  EXPECT_LT(least, 2e-3 + 1e-6) << "20 000 draws of mean 100 µs come within 5 ns on average";
+  EXPECT_NEAR(sum / kTelegrams, 2.1e-3, 4 * 1e-4 / std::sqrt(kTelegrams));
+}
+
+TEST(Link, KeepsTelegramsInOrderAndApartByTheirLength) {
+  Link link({.jitter = 5e-3, .stall_rate = 1, .stall_time = 0.1, .seconds_per_byte = 1e-6}, 0, 1, "laser1");
+  double last = -1;
+  for (int i = 0; i < 5000; ++i) {
+    const double arrived = link.arrival(0.002 * i, 100);
+    ASSERT_GE(arrived, last + 100e-6 - 1e-12);
+    last = arrived;
+  }
+}
+
+TEST(Link, DeliversWhatWasSentDuringAStallInABurst) {
+  Link link({.jitter = 0, .stall_rate = 0.5, .stall_time = 0.2, .seconds_per_byte = 0}, 1e-3, 3, "laser1");
+  int late = 0;
+  double last = -1;
+  int in_burst = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    const double sent = 0.002 * i;
+    const double arrived = link.arrival(sent, 10);
+    if (arrived - sent > 1.0001e-3) ++late;
+    if (arrived == last) ++in_burst;
+    last = arrived;
+  }
+  // 100 s with a stall every 2.2 s on average of 0.2 s: one in eleven is late, nearly all of these together.
+  EXPECT_NEAR(late / 50'000.0, 1.0 / 11, 0.04);
+  EXPECT_GT(in_burst, late * 9 / 10);
+}
+
+TEST(Link, RefusesNegativeDelays) {
+  EXPECT_THROW(Link({}, -1, 1, "laser1"), Error);
+  EXPECT_THROW(Link({.jitter = -1}, 0, 1, "laser1"), Error);
+}
+
+}  // namespace
+}  // namespace crisp
