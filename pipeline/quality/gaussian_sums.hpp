@@ -2,11 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
-#include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/points.hpp"
-#include "pipeline/quality/tiles.hpp"
 
 namespace crisp {
 
@@ -17,14 +14,5 @@ struct GaussianSums {
   std::uint64_t pairs = 0;   ///< i < j
   std::uint64_t tested = 0;  ///< distances computed to find them
 };
-
-/// The sums in single precision, vectorised and in parallel, each pair once for both of its points where
-/// that pays. An offset errs by some 1e-7 of the radius, a pair's kernel by some 1e-6 at the radius and less
-/// within; of sums of many, less remains.
-///
-/// @param tiles    with a reach of the kernel's radius, and refreshed for these points
-/// @param weights  one a point, about 1
-GaussianSums sum_over_tiles(const Tiles& tiles, const PointsView& points, std::span<const double> weights,
-                            const TruncatedGaussian& kernel, bool gradient);
 
 }  // namespace crisp

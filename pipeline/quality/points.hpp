@@ -14,6 +14,14 @@ struct PointsView {
   std::size_t size() const { return x.size(); }
 };
 
+/// [m²]
+inline double squared_distance(const PointsView& points, std::size_t i, std::size_t j) {
+  const double x = points.x[i] - points.x[j];
+  const double y = points.y[i] - points.y[j];
+  const double z = points.z[i] - points.z[j];
+  return x * x + y * y + z * z;
+}
+
 /// n vectors that are owned, as a struct of arrays.
 struct Vectors {
   std::vector<double> x, y, z;

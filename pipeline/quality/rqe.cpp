@@ -1,34 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/quality/rqe.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <vector>
+#include <utility>
 
 #include "pipeline/data/error.hpp"
-#include "pipeline/quality/gaussian_sums.hpp"
+#include "pipeline/quality/kernel.hpp"
+#include "pipeline/quality/searches.hpp"
+#include "pipeline/quality/spatial_order.hpp"
 
 namespace crisp {
-namespace {}  // namespace
 
 Rqe rqe(const PointsView& points, std::span<const double> weights, const RqeSettings& settings) {
+  GridSearch search;
+  return rqe(points, weights, settings, search);
+}
+
+Rqe rqe(const PointsView& points, std::span<const double> weights, const RqeSettings& settings,
+        Search& search) {
   check(points);
   check_weights(weights, points.size());
   if (points.size() == 0) throw Error("the entropy of a cloud without points is not defined");
   const TruncatedGaussian kernel(settings.sigma, settings.cutoff);
   const auto scaled = with_mean_one(weights, points.size());
-  const SpatialOrder order = spatial_order(points, kernel.radius);
-  const Tiles tiles(points, kernel.radius, order.index);
-  GaussianSums sums = sum_over_tiles(tiles, points, scaled, kernel, settings.gradient);
+  GaussianSums sums = search.sums(points, scaled, kernel, settings.gradient);
 
   Rqe result;
   const auto n = static_cast<double>(points.size());
   result.energy = kernel.peak * sums.kernel / (n * n);
   result.value = -std::log(result.energy);
-  result.error_bound = std::log1p(truncation_bound(kernel, order, scaled) / sums.kernel);
   result.pairs = sums.pairs;
   result.tested = sums.tested;
+  if (settings.error_bound) {
+    const double left_out = truncation_bound(kernel, spatial_order(points, kernel.radius), scaled);
+    result.error_bound = std::log1p(left_out / sums.kernel);
+  }
   result.gradient = std::move(sums.pull);
   // H = −log E, and xᵢ is in both orders of each of its pairs: ∂H/∂xᵢ = 4 · exponent · pull / kernel.
   const double scale = 4 * kernel.exponent / sums.kernel;

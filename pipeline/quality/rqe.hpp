@@ -5,23 +5,25 @@
 #include <span>
 
 #include "pipeline/quality/points.hpp"
+#include "pipeline/quality/search.hpp"
 
 namespace crisp {
 
 struct RqeSettings {
-  double sigma = 0.03;   ///< [m] width of the kernel that stands for each point
-  double cutoff = 7;     ///< [σ] distance beyond which a pair counts as 0
-  bool gradient = true;  ///< whether to compute it
+  double sigma = 0.03;      ///< [m] width of the kernel that stands for each point
+  double cutoff = 7;        ///< [σ] distance beyond which a pair counts as 0
+  bool gradient = true;     ///< whether to compute it
+  bool error_bound = true;  ///< whether to compute it
 };
 
 /// Rényi's quadratic entropy of a cloud; the lower the crisper.
 struct Rqe {
-  double value = 0;          ///< H = −log E [nat; E in 1/m³]
-  double energy = 0;         ///< E [1/m³]: the chance density that two points drawn at random coincide
-  double error_bound = 0;    ///< H without truncation lies in [value − error_bound, value]
-  Vectors gradient;          ///< ∂H/∂x of each point [1/m]; empty if it was not asked for
+  double value = 0;        ///< H = −log E [nat; E in 1/m³]
+  double energy = 0;       ///< E [1/m³]: the chance density that two points drawn at random coincide
+  double error_bound = 0;  ///< H without truncation lies in [value − error_bound, value]; 0 if not asked for
+  Vectors gradient;        ///< ∂H/∂x of each point [1/m]; empty if it was not asked for
   std::uint64_t pairs = 0;   ///< pairs i < j nearer than the cut-off
-  std::uint64_t tested = 0;  ///< distances computed to find them
+  std::uint64_t tested = 0;  ///< distances computed to find them, see Search::sums
 };
 
 /// Rényi's quadratic entropy with isotropic Gaussian kernels, equations (10) and (11) of Sheehan, Harrison
@@ -38,5 +40,10 @@ struct Rqe {
 /// @throws Error   for no points, coordinates or weights that are no numbers, and settings out of range.
 /// The result is the same, to the last bit, on any number of threads.
 Rqe rqe(const PointsView& points, std::span<const double> weights, const RqeSettings& settings);
+
+/// The same with another search than "grid". One that is used again for points that have moved a little may
+/// save work; the result then depends, in its rounding, on what it was used for before.
+Rqe rqe(const PointsView& points, std::span<const double> weights, const RqeSettings& settings,
+        Search& search);
 
 }  // namespace crisp

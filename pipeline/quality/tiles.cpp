@@ -96,20 +96,35 @@ bool Tiles::refresh(const PointsView& points) {
   return compact;
 }
 
+/// What near_below() looks for: boxes of one level near a box, and where to list them.
+struct Tiles::Query {
+  const Boxes& boxes;
+  std::size_t box;
+  std::size_t level;
+  std::vector<std::uint32_t>& near;
+};
+
 void Tiles::near_groups(std::size_t group, std::vector<std::uint32_t>& near) const {
   near.clear();
-  near_below(levels_.size() - 1, 0, group, near);
+  near_below(levels_.size() - 1, 0, {levels_[1], group, 1, near});
 }
 
-void Tiles::near_below(std::size_t level, std::size_t box, std::size_t group,
-                       std::vector<std::uint32_t>& near) const {
-  if (squared_gap(levels_[level], box, levels_[1], group) > reach_ * reach_) return;
-  if (level == 1) {
-    near.push_back(static_cast<std::uint32_t>(box));
+void Tiles::near_tiles(const std::array<double, 3>& at, std::vector<std::uint32_t>& near) const {
+  near.clear();
+  if (order_.empty()) return;
+  Boxes point(1);
+  for (std::size_t axis = 0; axis < 3; ++axis) point.low[axis][0] = point.high[axis][0] = at[axis];
+  near_below(levels_.size() - 1, 0, {point, 0, 0, near});
+}
+
+void Tiles::near_below(std::size_t level, std::size_t box, const Query& query) const {
+  if (squared_gap(levels_[level], box, query.boxes, query.box) > reach_ * reach_) return;
+  if (level == query.level) {
+    query.near.push_back(static_cast<std::uint32_t>(box));
     return;
   }
   for (std::size_t child = box * kFanOut; child < (box + 1) * kFanOut; ++child) {
-    near_below(level - 1, child, group, near);
+    near_below(level - 1, child, query);
   }
 }
 

@@ -48,11 +48,13 @@ class Tiles {
   std::size_t groups() const { return (size() + kFanOut - 1) / kFanOut; }
   /// Groups with a tile that may have points within the reach of a tile of this group, itself included.
   void near_groups(std::size_t group, std::vector<std::uint32_t>& near) const;
+  /// Tiles that may have points within the reach of this one [m].
+  void near_tiles(const std::array<double, 3>& at, std::vector<std::uint32_t>& near) const;
 
  private:
   void cut(const PointsView& points);
-  void near_below(std::size_t level, std::size_t box, std::size_t group,
-                  std::vector<std::uint32_t>& near) const;
+  struct Query;
+  void near_below(std::size_t level, std::size_t box, const Query& query) const;
 
   double reach_;
   std::vector<std::uint32_t> order_;

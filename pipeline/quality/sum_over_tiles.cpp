@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/quality/gaussian_sums.hpp"
+#include "pipeline/quality/sum_over_tiles.hpp"
 
 #include <tbb/parallel_for.h>
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl/common/point_tests.h>
+#include <pcl/pcl_base.h>
+
+#include <pcl/impl/pcl_base.hpp>  // the definitions too: PCL compiles them for its own points only
+#include <utility>
+#include <vector>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/quality/rqe.hpp"
+
+namespace crisp {
+
+/// RQE of a PCL cloud, used as PCL's own classes are:
+///
+///     crisp::PclRqe<pcl::PointXYZ> rqe;
+///     rqe.setInputCloud(cloud);
+///     rqe.setSigma(0.02);
+///     std::cout << rqe.compute().value;
+///
+/// Points whose coordinates are not finite are left out, as are those that setIndices() does not name.
+/// @tparam PointT  any point type with x, y, z [m]
+template <class PointT>
+class PclRqe : public pcl::PCLBase<PointT> {
+ public:
+  /// Width of the kernel that stands for each point [m].
+  void setSigma(double sigma) { settings_.sigma = sigma; }
+  double getSigma() const { return settings_.sigma; }
+
+  /// Distance [σ] beyond which a pair counts as 0.
+  void setCutoff(double cutoff) { settings_.cutoff = cutoff; }
+  double getCutoff() const { return settings_.cutoff; }
+
+  /// How much each point of the input cloud counts; none: all the same.
+  void setWeights(std::vector<double> weights) { weights_ = std::move(weights); }
+
+  /// Whether to compute the gradient; off unless asked for.
+  void setGradient(bool wanted) { settings_.gradient = wanted; }
+
+  /// The points that the last compute() took, as indices of the input cloud: the rows of its gradient.
+  const pcl::Indices& getUsedIndices() const { return used_; }
+
+  /// @throws Error  without an input cloud, without a finite point in it, or for settings out of range
+  Rqe compute() {
+    if (!this->initCompute()) throw Error("there is no cloud", "call setInputCloud() first");
+    Vectors points;
+    std::vector<double> weights;
+    used_.clear();
+    if (!weights_.empty()) check_weights(weights_, this->input_->size());
+    for (const auto index : *this->indices_) {
+      const PointT& point = (*this->input_)[static_cast<std::size_t>(index)];
+      if (!pcl::isFinite(point)) continue;
+      points.x.push_back(point.x);
+      points.y.push_back(point.y);
+      points.z.push_back(point.z);
+      used_.push_back(index);
+      if (!weights_.empty()) weights.push_back(weights_[static_cast<std::size_t>(index)]);
+    }
+    this->deinitCompute();
+    return rqe(points.view(), weights, settings_);
+  }
+
+ private:
+  RqeSettings settings_{.gradient = false};
+  std::vector<double> weights_;
+  pcl::Indices used_;
+};
+
+}  // namespace crisp

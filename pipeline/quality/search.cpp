@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/search.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pipeline/quality/searches.hpp"
+
+namespace crisp {
+namespace {
+
+struct BlockSums {
+  double kernel = 0;
+  std::uint64_t listed = 0;
+};
+
+/// Adds what the neighbours of point i do to it.
+void add_point(const PointsView& points, std::span<const double> weights, const TruncatedGaussian& kernel,
+               std::size_t i, std::span<const std::uint32_t> near, std::span<const double> squared_distance,
+               BlockSums& sums, Vectors& pull) {
+  double sum = 0;
+  std::array<double, 3> own_pull{};
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    const std::uint32_t j = near[k];
+    const double g = std::exp(-kernel.exponent * squared_distance[k]);
+    sum += weights[j] * (g - kernel.floor);
+    own_pull[0] += weights[j] * g * (points.x[i] - points.x[j]);
+    own_pull[1] += weights[j] * g * (points.y[i] - points.y[j]);
+    own_pull[2] += weights[j] * g * (points.z[i] - points.z[j]);
+  }
+  sums.kernel += weights[i] * sum;
+  sums.listed += near.size();
+  if (pull.size() == 0) return;
+  pull.x[i] = weights[i] * own_pull[0];
+  pull.y[i] = weights[i] * own_pull[1];
+  pull.z[i] = weights[i] * own_pull[2];
+}
+
+}  // namespace
+
+GaussianSums Search::sums(const PointsView& points, std::span<const double> weights,
+                          const TruncatedGaussian& kernel, bool gradient) {
+  constexpr std::size_t kBlock = 256;  // points: fixed, so that sums do not depend on the threads
+  const auto neighbours = index(points, kernel.radius);
+  GaussianSums result;
+  if (gradient) result.pull.assign(points.size(), 0);
+  std::vector<BlockSums> blocks((points.size() + kBlock - 1) / kBlock);
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    const std::size_t first = b * kBlock;
+    const std::size_t last = std::min(points.size(), first + kBlock);
+    Neighbours near;
+    neighbours->near(first, last, near);
+    for (std::size_t i = first; i < last; ++i) {
+      const std::size_t begin = near.begin[i - first];
+      const std::size_t count = near.begin[i - first + 1] - begin;
+      add_point(points, weights, kernel, i, std::span(near.index).subspan(begin, count),
+                std::span(near.squared_distance).subspan(begin, count), blocks[b], result.pull);
+    }
+  });
+  for (const BlockSums& block : blocks) {
+    result.kernel += block.kernel;
+    result.tested += block.listed;
+  }
+  result.pairs = (result.tested - points.size()) / 2;  // each from either end, and each point has itself
+  return result;
+}
+
+void register_built_in(SearchRegistry& registry) {
+  registry.add("flann", "a k-d tree (FLANN): the reference", [] { return std::make_unique<FlannSearch>(); });
+  registry.add("grid", "cells along a curve, and pairs in registers: the fast one",
+               [] { return std::make_unique<GridSearch>(); });
+  registry.add("exact", "every pair: for tests, and for few points",
+               [] { return std::make_unique<ExactSearch>(); });
+}
+
+}  // namespace crisp

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "pipeline/quality/gaussian_sums.hpp"
+#include "pipeline/quality/kernel.hpp"
+#include "pipeline/quality/points.hpp"
+#include "pipeline/quality/tiles.hpp"
+
+namespace crisp {
+
+/// The sums in single precision, vectorised and in parallel, each pair once for both of its points where
+/// that pays. An offset errs by some 1e-7 of the radius, a pair's kernel by some 1e-6 at the radius and less
+/// within; of sums of many, less remains.
+///
+/// @param tiles    with a reach of the kernel's radius, and refreshed for these points
+/// @param weights  one a point, about 1
+GaussianSums sum_over_tiles(const Tiles& tiles, const PointsView& points, std::span<const double> weights,
+                            const TruncatedGaussian& kernel, bool gradient);
+
+}  // namespace crisp

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/register.hpp"
+
+#include "plugins/diagnose/crispness_stage.hpp"
+
+namespace crisp {
+
+void register_diagnose(Registrar& registrar) { registrar.stage<CrispnessStage>(); }
+
+}  // namespace crisp
