@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/simulate/capture_file.hpp"
+#include "grabbers/simulate/recorded_capture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,11 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class CaptureFileTest : public testing::Test {
+class RecordedCaptureTest : public testing::Test {
  protected:
   void SetUp() override {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / (std::string("crisp_capture_file_") + test->name());
+    folder_ = fs::path(testing::TempDir()) / (std::string("crisp_recorded_capture_") + test->name());
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     settings_.scanner.duration = 0.3;
@@ -35,7 +35,7 @@ class CaptureFileTest : public testing::Test {
   std::vector<HubEvent> record(const fs::path& file, const WireFaults& faults = {}) {
     const Scene scene = office();
     RecordingSimulator simulator(settings_, scene);
-    CaptureFile capture(file, settings_, simulator.truth(), faults);
+    RecordedCapture capture(file, settings_, simulator.truth(), faults);
     std::vector<HubEvent> events;
     while (auto event = simulator.next()) {
       capture.write(*event);
@@ -90,7 +90,7 @@ std::vector<Frame> parse(const Bytes& file) {
   return frames;
 }
 
-TEST_F(CaptureFileTest, HoldsEveryTelegramAsItWasSentWithItsReceiptTime) {
+TEST_F(RecordedCaptureTest, HoldsEveryTelegramAsItWasSentWithItsReceiptTime) {
   for (const auto language : {ColaLanguage::A, ColaLanguage::B}) {
     settings_.telegrams.language = language;
     const fs::path path = folder_ / (language == ColaLanguage::A ? "a.pcap" : "b.pcap");
@@ -135,7 +135,7 @@ TEST_F(CaptureFileTest, HoldsEveryTelegramAsItWasSentWithItsReceiptTime) {
   }
 }
 
-TEST_F(CaptureFileTest, HasTheSameBytesForTheSameSeed) {
+TEST_F(RecordedCaptureTest, HasTheSameBytesForTheSameSeed) {
   record(folder_ / "a.pcap", {.lost = 0.01, .repeated = 0.01, .damaged = 0.01});
   record(folder_ / "b.pcap", {.lost = 0.01, .repeated = 0.01, .damaged = 0.01});
   const Bytes a = read(folder_ / "a.pcap");
@@ -146,7 +146,7 @@ TEST_F(CaptureFileTest, HasTheSameBytesForTheSameSeed) {
   EXPECT_FALSE(a == read(folder_ / "c.pcap"));
 }
 
-TEST_F(CaptureFileTest, LosesRepeatsAndDamagesFramesAsOftenAsAsked) {
+TEST_F(RecordedCaptureTest, LosesRepeatsAndDamagesFramesAsOftenAsAsked) {
   record(folder_ / "clean.pcap");
   const double clean = static_cast<double>(parse(read(folder_ / "clean.pcap")).size());
   record(folder_ / "faulty.pcap", {.lost = 0.1, .repeated = 0.05, .damaged = 0.02});
@@ -157,25 +157,25 @@ TEST_F(CaptureFileTest, LosesRepeatsAndDamagesFramesAsOftenAsAsked) {
             clean - static_cast<double>(counts_.lost) + static_cast<double>(counts_.repeated));
 }
 
-TEST_F(CaptureFileTest, LeavesNothingBehindWhenItIsNotClosed) {
+TEST_F(RecordedCaptureTest, LeavesNothingBehindWhenItIsNotClosed) {
   const Scene scene = office();
   {
     RecordingSimulator simulator(settings_, scene);
-    CaptureFile capture(folder_ / "hub.pcap", settings_, simulator.truth());
+    RecordedCapture capture(folder_ / "hub.pcap", settings_, simulator.truth());
     capture.write(*simulator.next());
   }
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(CaptureFileTest, RefusesWhatCannotBeWritten) {
+TEST_F(RecordedCaptureTest, RefusesWhatCannotBeWritten) {
   const auto truth = draw_devices(settings_);
-  EXPECT_THROW(CaptureFile(folder_ / "no" / "such" / "folder" / "x.pcap", settings_, truth), Error);
-  EXPECT_THROW(CaptureFile(folder_ / "x.pcap", settings_, truth, {.lost = 2}), Error);
+  EXPECT_THROW(RecordedCapture(folder_ / "no" / "such" / "folder" / "x.pcap", settings_, truth), Error);
+  EXPECT_THROW(RecordedCapture(folder_ / "x.pcap", settings_, truth, {.lost = 2}), Error);
   settings_.scanner.rig.lasers[0].address.ip = "192.168.0.100";
-  EXPECT_THROW(CaptureFile(folder_ / "x.pcap", settings_, truth), Error) << "the hub's own address";
+  EXPECT_THROW(RecordedCapture(folder_ / "x.pcap", settings_, truth), Error) << "the hub's own address";
 }
 
-TEST_F(CaptureFileTest, ItsTruthReadsBackAsTheCalibrationThatItIs) {
+TEST_F(RecordedCaptureTest, ItsTruthReadsBackAsTheCalibrationThatItIs) {
   settings_.scanner.truth.lasers[1].tau.value = 0.2123456789012345;
   settings_.scanner.truth.lasers[1].eta.value = -0.0123;
   const auto truth = draw_devices(settings_);

@@ -44,12 +44,12 @@ class FaultyWire {
 };
 
 /// Writes what the hub received as the capture that tcpdump would have made there.
-class CaptureFile {
+class RecordedCapture {
  public:
   /// @param path  takes the capture when it is complete; nothing is there before
   /// @throws Error if the file cannot be written, or the rig's addresses are none
-  CaptureFile(std::filesystem::path path, const RecordingSettings& settings, const RecordingTruth& truth,
-              const WireFaults& faults = {});
+  RecordedCapture(std::filesystem::path path, const RecordingSettings& settings, const RecordingTruth& truth,
+                  const WireFaults& faults = {});
 
   /// Events must come in the order of receipt.
   void write(const HubEvent& event);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/simulate/capture_file.hpp"
+#include "grabbers/simulate/recorded_capture.hpp"
 
 #include <string_view>
 
@@ -69,8 +69,8 @@ void FaultyWire::push(std::int64_t time_ns, ByteView frame) {
   sink_(time_ns, bytes);
 }
 
-CaptureFile::CaptureFile(std::filesystem::path path, const RecordingSettings& settings,
-                         const RecordingTruth& truth, const WireFaults& faults)
+RecordedCapture::RecordedCapture(std::filesystem::path path, const RecordingSettings& settings,
+                                 const RecordingTruth& truth, const WireFaults& faults)
     : settings_(settings),
       truth_(truth),
       file_(std::move(path), PcapMode::Replace),
@@ -87,7 +87,7 @@ CaptureFile::CaptureFile(std::filesystem::path path, const RecordingSettings& se
   }
 }
 
-void CaptureFile::connect(std::size_t laser, std::int64_t time_ns) {
+void RecordedCapture::connect(std::size_t laser, std::int64_t time_ns) {
   auto& connection = lasers_[laser];
   const Address server = with_port(settings_.scanner.rig.lasers[laser].address, kLaserPort);
   const auto port =
@@ -100,12 +100,12 @@ void CaptureFile::connect(std::size_t laser, std::int64_t time_ns) {
   connection.tcp->send(TcpSide::Server, subscription("sEA", language), time_ns + 2 * kMillisecond);
 }
 
-void CaptureFile::write(const HubEvent& event) {
+void RecordedCapture::write(const HubEvent& event) {
   latest_ns_ = receipt_ns(event);
   std::visit([this](const auto& received) { write(received); }, event);
 }
 
-void CaptureFile::write(const LaserTelegram& telegram) {
+void RecordedCapture::write(const LaserTelegram& telegram) {
   auto& connection = lasers_[telegram.laser];
   const double received = 1e-9 * static_cast<double>(telegram.receipt_ns - settings_.start_ns);
   const auto& device = truth_.lasers[telegram.laser];
@@ -118,11 +118,11 @@ void CaptureFile::write(const LaserTelegram& telegram) {
                        telegram.receipt_ns);
 }
 
-void CaptureFile::write(const PlateReading& reading) {
+void RecordedCapture::write(const PlateReading& reading) {
   plate_.send(as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
 }
 
-void CaptureFile::close() {
+void RecordedCapture::close() {
   for (auto& laser : lasers_) laser.tcp->close(latest_ns_ + 10 * kMillisecond);
   sorter_.finish();
   file_.close();

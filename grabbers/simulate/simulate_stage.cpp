@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/simulate_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <variant>
+
+#include "grabbers/simulate/scene_file.hpp"
+#include "grabbers/simulate/scenes.hpp"
+#include "grabbers/simulate/truth_file.hpp"
+#include "pipeline/data/error.hpp"
+#include "pipeline/files/calibration_file.hpp"
+#include "pipeline/files/quantity.hpp"
+#include "pipeline/model/term.hpp"
+
+namespace crisp {
+namespace {
+
+double seconds(const std::string& what, const std::string& text) {
+  const auto parsed = parse_quantity(text, "s");
+  if (const auto* complaint = std::get_if<Complaint>(&parsed)) {
+    throw Error("'" + what + "' is not understood: " + complaint->text,
+                "write it as laser2@3s+1s (a silence) or laser1@5s (a restart)");
+  }
+  return std::get<double>(parsed);
+}
+
+/// "laser2@3s+1s": device, begin, duration. Without a "+" the duration is missing.
+Silence parse_silence(const std::string& text) {
+  const auto at = text.find('@');
+  const auto plus = text.find('+', at);
+  const std::string begin = at == std::string::npos ? "" : text.substr(at + 1, plus - at - 1);
+  const std::string duration = plus == std::string::npos ? "" : text.substr(plus + 1);
+  return {.device = text.substr(0, at), .begin = seconds(text, begin), .duration = seconds(text, duration)};
+}
+
+Restart parse_restart(const std::string& text) {
+  const auto at = text.find('@');
+  const std::string time = at == std::string::npos ? "" : text.substr(at + 1);
+  return {.device = text.substr(0, at), .time = seconds(text, time)};
+}
+
+/// The terms that the program knows; none where a stage is run without one.
+const TermRegistry& known_terms(const RunSettings& run) {
+  static const TermRegistry none;
+  return run.registrar ? run.registrar->get<TermRegistry>() : none;
+}
+
+void make_folder(const std::filesystem::path& file) {
+  std::error_code failed;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), failed);
+  if (failed) throw Error("cannot make the folder of " + file.string() + ": " + failed.message());
+}
+
+void check_lasers(const Calibration& truth, const Rig& rig, const std::filesystem::path& file) {
+  const bool same = std::equal(truth.lasers.begin(), truth.lasers.end(), rig.lasers.begin(), rig.lasers.end(),
+                               [](const auto& a, const auto& b) { return a.name == b.name; });
+  if (!same) {
+    throw Error(file.string() + " is not a calibration of this rig",
+                "it must name the rig's lasers, in the rig's order");
+  }
+}
+
+}  // namespace
+
+RecordingSettings SimulateStage::settings(const RunSettings& run) const {
+  RecordingSettings result = settings_;
+  result.scanner.rig = run.rig;
+  result.scanner.seed = seed_.value_or(run.seed);
+  for (const auto& text : silences_) result.faults.silences.push_back(parse_silence(text));
+  for (const auto& text : restarts_) result.faults.restarts.push_back(parse_restart(text));
+  return result;
+}
+
+Calibration SimulateStage::truth(Calibration start, const RunSettings& run) const {
+  for (const auto& effect : effects_) add_effect(start, effect, known_terms(run));
+  return start;
+}
+
+Scene SimulateStage::scene(Context& context) const {
+  if (scene_file_.empty()) return built_in_scene(scene_);
+  context.reads(scene_file_);
+  return read_scene(scene_file_);
+}
+
+void SimulateStage::check(const RunSettings& run) const {
+  RecordingSettings planned = settings(run);
+  planned.scanner.truth =
+      truth(draw_truth(nominal_calibration(run.rig), departures_, planned.scanner.seed), run);
+  draw_devices(planned);
+  make_motion(planned.scanner.motion, planned.scanner.duration, planned.scanner.seed);
+  planned.scanner.field.beams();
+}
+
+void SimulateStage::process(const Inputs&, Outputs& out, Context& context) {
+  simulated_ = settings(context.run());
+  const bool drawn = calibration_file_.empty();
+  Calibration start =
+      drawn ? draw_truth(nominal_calibration(context.rig()), departures_, simulated_.scanner.seed)
+            : read_calibration(calibration_file_);
+  if (!drawn) {
+    context.reads(calibration_file_);
+    check_lasers(start, context.rig(), calibration_file_);
+  }
+  simulated_.scanner.truth = truth(std::move(start), context.run());
+  const Scene surroundings = scene(context);
+  simulated_scene_ = surroundings.name;
+
+  RecordingSimulator simulator(simulated_, surroundings, known_terms(context.run()));
+  truth_ = simulator.truth();
+  if (!capture_file_.empty()) {
+    make_folder(capture_file_);
+    capture_ = std::make_unique<RecordedCapture>(capture_file_, simulated_, truth_, wire_faults_);
+  }
+  std::size_t scans = 0;
+  std::size_t readings = 0;
+  while (const auto event = simulator.next()) {
+    if (context.interrupted()) return;
+    if (capture_) capture_->write(*event);
+    if (const auto* telegram = std::get_if<LaserTelegram>(&*event)) {
+      out.give(to_scan(*telegram));
+      if (++scans % 64 == 0) context.progress(simulator.progress(), "simulating");
+    } else {
+      out.give(std::get<PlateReading>(*event));
+      ++readings;
+    }
+  }
+  context.report({{"scene", simulated_scene_},
+                  {"seed", simulated_.scanner.seed},
+                  {"scans", scans},
+                  {"readings", readings}});
+  context.say(fmt::format("simulated {:g} s in the {} (seed {}): {} scans, {} readings of the plate",
+                          simulated_.scanner.duration, simulated_scene_, simulated_.scanner.seed, scans,
+                          readings));
+}
+
+void SimulateStage::finish(Outputs&, Context& context) {
+  if (capture_) {
+    capture_->close();
+    context.wrote(capture_file_);
+    context.count("frames left out on purpose", capture_->faults().lost);
+    context.count("frames repeated on purpose", capture_->faults().repeated);
+    context.count("frames damaged on purpose", capture_->faults().damaged);
+    capture_.reset();
+  }
+  if (!truth_file_.empty()) {
+    write_truth(truth_file_, truth_, simulated_, simulated_scene_);
+    context.wrote(truth_file_);
+  }
+}
+
+void register_simulate(Registrar& registrar) { registrar.stage<SimulateStage>(); }
+
+}  // namespace crisp

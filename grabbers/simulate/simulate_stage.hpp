@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grabbers/simulate/departures.hpp"
+#include "grabbers/simulate/recorded_capture.hpp"
+#include "grabbers/simulate/recording.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+/// `grabber.simulate`: gives what the hub would have received from a scanner in a known scene, and writes the
+/// capture and the truth where it is told to.
+class SimulateStage final : public Stage {
+ public:
+  static void describe(StageDescription<SimulateStage>& d);
+
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  using Description = StageDescription<SimulateStage>;
+  static constexpr double kDegree = std::numbers::pi / 180;
+  static void describe_scanner(Description& d);
+  static void describe_plate(Description& d);
+  static void describe_truth(Description& d);
+  static void describe_lasers(Description& d);
+  static void describe_stamps(Description& d);
+  static void describe_links(Description& d);
+  static void describe_faults(Description& d);
+
+  // What the options are declared on.
+  ScannerSettings& scanner() { return settings_.scanner; }
+  RangeSettings& range() { return settings_.scanner.range; }
+  FieldOfView& field() { return settings_.scanner.field; }
+  MirrorSettings& mirror() { return settings_.scanner.mirror; }
+  MotionSettings& motion() { return settings_.scanner.motion; }
+
+  /// The settings for this run, all but the truth, which a file may hold.
+  RecordingSettings settings(const RunSettings& run) const;
+  /// Departures and effects put on top of where they start from.
+  Calibration truth(Calibration start, const RunSettings& run) const;
+  Scene scene(Context& context) const;
+
+  RecordingSettings settings_;
+  Departures departures_{.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04};
+  WireFaults wire_faults_;
+  std::string scene_ = "office";
+  std::filesystem::path scene_file_;
+  std::filesystem::path calibration_file_;
+  std::vector<std::string> effects_;
+  std::vector<std::string> silences_;
+  std::vector<std::string> restarts_;
+  std::optional<std::uint64_t> seed_;
+  std::filesystem::path capture_file_;
+  std::filesystem::path truth_file_;
+
+  std::unique_ptr<RecordedCapture> capture_;
+  RecordingTruth truth_;
+  RecordingSettings simulated_;
+  std::string simulated_scene_;
+};
+
+/// The simulator's stages.
+void register_simulate(Registrar& registrar);
+
+}  // namespace crisp

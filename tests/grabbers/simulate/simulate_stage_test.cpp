@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/simulate_stage.hpp"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/files/calibration_file.hpp"
+#include "pipeline/stage/pipeline_file.hpp"
+#include "pipeline/stage/runner.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// Takes what the simulator gives, and counts it.
+struct Tally final : Stage {
+  static inline int scans = 0;
+  static inline int readings = 0;
+  static inline std::int64_t last = 0;
+  static inline std::atomic<bool>* stop_after_100 = nullptr;
+  static void describe(StageDescription<Tally>& d) {
+    d.name("test.tally").summary("counts").takes<Scan>().takes<PlateReading>();
+  }
+  void process(const Inputs& in, Outputs&, Context&) override {
+    const auto* scan = in.find<Scan>();
+    const auto receipt = scan ? scan->receipt_ns : in.get<PlateReading>().receipt_ns;
+    EXPECT_GE(receipt, last);
+    last = receipt;
+    ++(scan ? scans : readings);
+    if (stop_after_100 && scans + readings == 100) *stop_after_100 = true;
+  }
+};
+
+class SimulateStageTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("crisp_simulate_stage_") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    Tally::scans = Tally::readings = 0;
+    Tally::stop_after_100 = nullptr;
+    registrar_.attach(terms_);
+    register_simulate(registrar_);
+    registrar_.stage<Tally>();
+    run_.registrar = &registrar_;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::vector<NodeResult> run(const std::string& options, const RunHooks& hooks = {}) {
+    Tally::last = 0;
+    const fs::path file = folder_ / "pipeline.yaml";
+    std::ofstream(file) << "crisp: 1\npipeline:\n  - stage: grabber.simulate\n    with: {" << options
+                        << "}\n  - stage: test.tally\n";
+    auto loaded = load_pipeline(file, {.output = folder_}, run_);
+    return run_pipeline(loaded.pipeline, run_, hooks);
+  }
+  std::string complaint(const std::string& options) {
+    try {
+      run(options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing";
+  }
+  static std::string read(const fs::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+  }
+
+  fs::path folder_;
+  TermRegistry terms_;
+  Registrar registrar_;
+  RunSettings run_;
+};
+
+TEST_F(SimulateStageTest, GivesScansAndReadingsInTheOrderOfReceipt) {
+  const auto results = run("duration: 0.5s, scene: hall, mirror_slowest: 0, mirror_wander: 0");
+  EXPECT_NEAR(Tally::scans, 3 * 25, 3);
+  EXPECT_NEAR(Tally::readings, 0.7 * 500, 2);
+  EXPECT_EQ(results[0].report.section["scene"], "hall");
+}
+
+TEST_F(SimulateStageTest, WritesTheSameCaptureAndTruthForTheSameSeed) {
+  run("duration: 0.2s, capture: a/hub.pcap, truth: a/truth.yaml");
+  run("duration: 0.2s, capture: b/hub.pcap, truth: b/truth.yaml");
+  run("duration: 0.2s, capture: c/hub.pcap, truth: c/truth.yaml, seed: 2");
+  EXPECT_GT(fs::file_size(folder_ / "a/hub.pcap"), 30'000U);
+  EXPECT_EQ(read(folder_ / "a/hub.pcap"), read(folder_ / "b/hub.pcap"));
+  EXPECT_EQ(read(folder_ / "a/truth.yaml"), read(folder_ / "b/truth.yaml"));
+  EXPECT_NE(read(folder_ / "a/hub.pcap"), read(folder_ / "c/hub.pcap"));
+  const Calibration truth = read_calibration(folder_ / "a/truth.yaml");
+  EXPECT_NE(truth.lasers[1].tau.value, 0.20) << "drawn around nominal";
+  EXPECT_NEAR(truth.lasers[1].tau.value, 0.20, 0.02);
+}
+
+TEST_F(SimulateStageTest, TakesItsTruthFromACalibration) {
+  Calibration truth = nominal_calibration(default_rig());
+  truth.lasers[2].alpha.value = 0.0123;
+  write_calibration(folder_ / "known.yaml", truth);
+  run("duration: 0.1s, calibration: known.yaml, truth: truth.yaml");
+  EXPECT_EQ(read_calibration(folder_ / "truth.yaml").lasers[2].alpha.value, 0.0123);
+  truth.lasers.pop_back();
+  write_calibration(folder_ / "other.yaml", truth);
+  EXPECT_THAT(complaint("duration: 0.1s, calibration: other.yaml"),
+              HasSubstr("not a calibration of this rig"));
+}
+
+TEST_F(SimulateStageTest, LeavesNoFilesWhenItIsInterrupted) {
+  std::atomic<bool> stop = false;
+  Tally::stop_after_100 = &stop;
+  EXPECT_THROW(run("duration: 100s, capture: out/hub.pcap, truth: out/truth.yaml", {.stop = &stop}),
+               Interrupted);
+  EXPECT_LT(Tally::scans + Tally::readings, 200);
+  EXPECT_TRUE(fs::is_empty(folder_ / "out"));
+}
+
+TEST_F(SimulateStageTest, LosesWhatItsFaultsSay) {
+  run("duration: 2s, last_angle: -44deg, silences: [laser2@0.5s+1s], restarts: [laser1@1s]");
+  EXPECT_NEAR(Tally::scans, 100 + 50 + 100, 6);
+  EXPECT_THAT(complaint("duration: 2s, silences: [laser9@0.5s+1s]"), HasSubstr("laser9"));
+  EXPECT_THAT(complaint("duration: 2s, silences: [laser1@now+1s]"), HasSubstr("laser2@3s+1s"));
+  EXPECT_THAT(complaint("duration: 2s, silences: [laser1]"), HasSubstr("laser2@3s+1s"));
+}
+
+TEST_F(SimulateStageTest, RefusesBeforeItRunsWhatMakesNoSense) {
+  EXPECT_THAT(complaint("min_rate: 3Hz"), HasSubstr("slowest rate must not exceed"));
+  EXPECT_THAT(complaint("last_angle: -90deg"), HasSubstr("field of view"));
+  EXPECT_THAT(complaint("effects: [mirror.coin.kappa=3]"), HasSubstr("mirror.coin"));
+  EXPECT_THAT(complaint("stamp_lags: [1ms]"), HasSubstr("stamp lag"));
+  EXPECT_THAT(complaint("scene: beach"), HasSubstr("office"));
+  EXPECT_THAT(complaint("scene_file: nowhere.yaml"), HasSubstr("nowhere.yaml"));
+}
+
+}  // namespace
+}  // namespace crisp
