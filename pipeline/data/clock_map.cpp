@@ -12,7 +12,7 @@ double ClockMap::to_hub(double device_time) const {
   return piece.hub_begin + piece.rate * (device_time - piece.device_begin);
 }
 
-double ClockMap::skew_ppm(double device_end) const {
+double ClockMap::skew_ppm() const {
   const double duration = device_end - pieces.front().device_begin;
   if (duration <= 0) return 1e6 * (pieces.front().rate - 1);
   double sum = 0;

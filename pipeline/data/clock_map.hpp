@@ -18,6 +18,8 @@ struct ClockPiece {
 struct ClockMap {
   std::string device;              ///< the rig's name of it, "laser1" or "plate"
   std::vector<ClockPiece> pieces;  ///< ascending in device_begin
+  double device_end = 0;           ///< [s] unwrapped device time of the last stamp
+  double skew_std_error = 0;       ///< standard error of the mean skew, as a ratio
   double residual_median = 0;      ///< [s] median delay of the stamps above the line
   double residual_95 = 0;          ///< [s] 95 % quantile of it
   std::size_t stamps = 0;          ///< pairs (device time, receipt time) that the map is fitted to
@@ -25,8 +27,8 @@ struct ClockMap {
   /// @param device_time [s] unwrapped device time; outside the pieces the first or last is extended
   /// @return [s since the run's epoch]
   double to_hub(double device_time) const;
-  /// Mean skew over all pieces, weighted by their duration, in parts per million.
-  double skew_ppm(double device_end) const;
+  /// Mean skew over all pieces, weighted by their duration up to device_end, in parts per million.
+  double skew_ppm() const;
 };
 
 }  // namespace crisp

@@ -5,13 +5,14 @@
 #include <cmath>
 
 #include "pipeline/data/error.hpp"
+#include "plugins/clock/clock_line.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr std::int64_t kTimeModulus = std::int64_t{1} << 32;
-constexpr double kMostDelay = 30;      // [s] a stalled TCP connection hands out its scans that late
-constexpr double kMostSkew = 1e-3;     // of a crystal, with a wide margin
+constexpr double kMostDelay = 30;      // [s] a stalled TCP connection hands out its scans that late,
+constexpr double kOddDelay = 1;        // [s] but with their counters in order: if not, it is no stall
 constexpr double kMostDisorder = 0.5;  // [s] datagrams overtake each other, but not by more
 constexpr double kLeastStep = 0.25;    // [s] a clock that two others contradict by this much has jumped
 constexpr std::uint32_t kSecond_us = 1'000'000;
@@ -30,44 +31,54 @@ std::int64_t CounterUnwrapper::advance(std::uint16_t raw, double expected) const
 TimeUnwrapper::Unwrapped TimeUnwrapper::add(std::uint32_t raw_us, std::int64_t receipt_ns,
                                             std::optional<double> counted_s) {
   largest_raw_us_ = std::max(largest_raw_us_, raw_us);
-  const double hub_s = any_ ? 1e-9 * static_cast<double>(receipt_ns - last_receipt_ns_) : 0;
-  std::int64_t advance_us = nearest_congruent(std::int64_t{raw_us} - last_raw_us_, kTimeModulus, 1e6 * hub_s);
-  StampKind kind = StampKind::next;
-  if (any_) {
-    kind = judge(1e-6 * static_cast<double>(advance_us), hub_s, counted_s);
-  } else {
-    advance_us = raw_us;
+  const auto go_on = [&](StampKind kind, std::int64_t device_us) {
+    if (kind != StampKind::reset) before_reset_.reset();
+    last_ = {.raw_us = raw_us, .device_us = device_us, .receipt_ns = receipt_ns};
+    return Unwrapped{kind, device_us};
+  };
+  if (!last_) return go_on(StampKind::next, raw_us);
+  const Step step = step_from(*last_, raw_us, receipt_ns);
+  const StampKind kind = judge(step, counted_s);
+  if (kind == StampKind::next) return go_on(kind, last_->device_us + step.device_us);
+  if (kind == StampKind::repeated) return {kind, last_->device_us + step.device_us};
+  if (before_reset_) {
+    const Step back = step_from(*before_reset_, raw_us, receipt_ns);
+    if (judge(back, std::nullopt) == StampKind::next) {
+      return go_on(StampKind::returned, before_reset_->device_us + back.device_us);
+    }
   }
-  if (kind == StampKind::repeated) return {kind, last_us_ + advance_us};
-  if (kind == StampKind::reset) {
-    refuse_seconds_clock(raw_us);
-    advance_us = std::max<std::int64_t>(1, std::llround(1e6 * hub_s));
-  }
-  any_ = true;
-  last_raw_us_ = raw_us;
-  last_us_ += advance_us;
-  last_receipt_ns_ = receipt_ns;
-  return {kind, last_us_};
+  refuse_seconds_clock(raw_us);
+  before_reset_ = last_;
+  return go_on(kind,
+               last_->device_us + kResetGap_us + std::max<std::int64_t>(0, std::llround(1e6 * step.hub_s)));
 }
 
-StampKind TimeUnwrapper::judge(double device_s, double hub_s, std::optional<double> counted_s) const {
+TimeUnwrapper::Step TimeUnwrapper::step_from(const State& state, std::uint32_t raw_us,
+                                             std::int64_t receipt_ns) {
+  const double hub_s = 1e-9 * static_cast<double>(receipt_ns - state.receipt_ns);
+  return {hub_s, nearest_congruent(std::int64_t{raw_us} - state.raw_us, kTimeModulus, 1e6 * hub_s)};
+}
+
+StampKind TimeUnwrapper::judge(const Step& step, std::optional<double> counted_s) {
+  const double device_s = 1e-6 * static_cast<double>(step.device_us);
   if (device_s <= 0) return device_s >= -kMostDisorder ? StampKind::repeated : StampKind::reset;
-  const double off_hub = std::abs(device_s - hub_s);
+  const double off_hub = std::abs(device_s - step.hub_s);
   if (counted_s) {
     const double off_count = std::abs(device_s - *counted_s);
-    const double others = std::abs(hub_s - *counted_s);
+    const double others = std::abs(step.hub_s - *counted_s);
     if (std::min(off_hub, off_count) > std::max(kLeastStep, 2 * others)) return StampKind::reset;
   }
-  const bool as_hub = off_hub <= kMostDelay + kMostSkew * std::abs(hub_s);
+  const double most_delay = counted_s ? kOddDelay : kMostDelay;
+  const bool as_hub = off_hub <= most_delay + kMostSkew * std::abs(step.hub_s);
   const bool as_count = counted_s && std::abs(device_s - *counted_s) <= 0.1 + 0.01 * *counted_s;
   return as_hub || as_count ? StampKind::next : StampKind::reset;
 }
 
 void TimeUnwrapper::refuse_seconds_clock(std::uint32_t raw_us) {
-  if (raw_us < last_raw_us_) ++falls_;
+  if (raw_us < last_->raw_us) ++falls_;
   if (falls_ < 2 || largest_raw_us_ >= kSecond_us) return;
   throw Error("the clock of " + device_ + " wraps every second: it never reached 1 s and fell back twice",
-              "update the firmware of " + device_ + ", or align by receipt times with clock.receipt");
+              "update the firmware of " + device_ + ": which second a stamp belongs to cannot be told");
 }
 
 }  // namespace crisp

@@ -28,7 +28,12 @@ enum class StampKind {
   next,      ///< later than all before it
   repeated,  ///< the same once more, or out of order: of no use
   reset,     ///< the device's clock began anew, or jumped: nothing connects it to the stamps before it
+  returned,  ///< connects to the stamps before the last one, whose reset was none: that one was damaged
 };
+
+/// What the unwrapped time skips at a reset, so that no two times of a device that are before and after it
+/// can be mistaken for one another, nor a scan's stamp for one before the reset of its transmission.
+inline constexpr std::int64_t kResetGap_us = 2'000'000;
 
 /// Makes the 32-bit microsecond clock of a device count on past its wraps (every 71.6 minutes), with the
 /// hub's time at hand: a wrap, several wraps in a gap, and a power cycle look alike in the counter alone.
@@ -40,7 +45,8 @@ class TimeUnwrapper {
  public:
   struct Unwrapped {
     StampKind kind = StampKind::next;
-    std::int64_t device_us = 0;  ///< [µs] ascending; after a reset it goes on by the hub's elapsed time
+    std::int64_t device_us =
+        0;  ///< [µs] ascending; after a reset it goes on by the hub's time and kResetGap_us
   };
 
   /// @param device the rig's name of the device, for errors
@@ -54,14 +60,22 @@ class TimeUnwrapper {
                 std::optional<double> counted_s = std::nullopt);
 
  private:
-  StampKind judge(double device_s, double hub_s, std::optional<double> counted_s) const;
+  struct State {
+    std::uint32_t raw_us = 0;
+    std::int64_t device_us = 0;
+    std::int64_t receipt_ns = 0;
+  };
+  struct Step {
+    double hub_s = 0;
+    std::int64_t device_us = 0;
+  };
+  static Step step_from(const State& state, std::uint32_t raw_us, std::int64_t receipt_ns);
+  static StampKind judge(const Step& step, std::optional<double> counted_s);
   void refuse_seconds_clock(std::uint32_t raw_us);
 
   std::string device_;
-  bool any_ = false;
-  std::uint32_t last_raw_us_ = 0;
-  std::int64_t last_us_ = 0;
-  std::int64_t last_receipt_ns_ = 0;
+  std::optional<State> last_;
+  std::optional<State> before_reset_;  ///< while the reset hangs on one stamp
   std::uint32_t largest_raw_us_ = 0;
   int falls_ = 0;  ///< how often the counter fell back
 };

@@ -9,7 +9,8 @@ namespace {
 ClockMap two_pieces() {
   return {.device = "laser1",
           .pieces = {{.device_begin = 10, .hub_begin = 100, .rate = 1 + 1e-6},
-                     {.device_begin = 20, .hub_begin = 110 + 10e-6, .rate = 1 - 3e-6}}};
+                     {.device_begin = 20, .hub_begin = 110 + 10e-6, .rate = 1 - 3e-6}},
+          .device_end = 50};
 }
 
 TEST(ClockMap, UsesThePieceThatATimeLiesIn) {
@@ -25,7 +26,7 @@ TEST(ClockMap, ExtendsItsEndsAsStraightLines) {
 }
 
 TEST(ClockMap, WeightsTheSkewOfEachPieceByItsDuration) {
-  EXPECT_NEAR(two_pieces().skew_ppm(50), (10 * 1.0 + 30 * -3.0) / 40, 1e-6);
+  EXPECT_NEAR(two_pieces().skew_ppm(), (10 * 1.0 + 30 * -3.0) / 40, 1e-6);
 }
 
 }  // namespace

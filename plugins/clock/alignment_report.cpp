@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "plugins/clock/clock_aligner.hpp"
+
+namespace crisp {
+namespace {
+
+void count_losses(const DeviceReport& device, std::map<std::string, std::uint64_t>& counts) {
+  const auto count = [&](const char* what, std::uint64_t n) {
+    counts[device.clock.device + ": " + what] = n;
+  };
+  count("telegrams lost", device.lost);
+  count("telegrams repeated or out of order", device.repeated);
+  count("telegrams with impossible times", device.damaged);
+  count("clock resets", device.resets);
+  count("silences of a second or more", device.silences.size());
+}
+
+void warn_of_device(const DeviceReport& device, std::vector<std::string>& warnings) {
+  const std::string& name = device.clock.device;
+  if (device.received == 0) {
+    warnings.push_back(name + ": nothing came from it");
+    return;
+  }
+  if (!device.silences.empty()) {
+    const auto longest =
+        std::max_element(device.silences.begin(), device.silences.end(),
+                         [](const SilentTime& a, const SilentTime& b) { return a.duration < b.duration; });
+    warnings.push_back(
+        fmt::format("{}: silent {} time(s) for a second or more, longest {:.1f} s from {:.1f} s on", name,
+                    device.silences.size(), longest->duration, longest->begin));
+  }
+  if (device.resets > 0) {
+    warnings.push_back(fmt::format("{}: its clock was reset {} time(s); each stretch has a line of its own",
+                                   name, device.resets));
+  }
+  if (std::abs(device.clock.skew_ppm()) > 0.99e6 * kMostSkew) {
+    warnings.push_back(
+        fmt::format("{}: its stamps fit no steady clock (skew beyond {:.0f} ppm)", name, 1e6 * kMostSkew));
+  }
+}
+
+}  // namespace
+
+AlignmentReport ClockAligner::report() const {
+  AlignmentReport report;
+  for (const auto& laser : lasers_) {
+    report.devices.push_back(laser.report());
+    report.counts[laser.laser().name + ": scans without ranges"] = laser.without_ranges();
+    if (auto warning = laser.stamp_warning(); !warning.empty()) report.warnings.push_back(std::move(warning));
+  }
+  report.devices.push_back(plate_.report());
+  for (const auto& device : report.devices) {
+    count_losses(device, report.counts);
+    warn_of_device(device, report.warnings);
+  }
+  const std::string& plate = report.devices.back().clock.device;
+  report.counts[plate + ": readings after its zero was lost"] = plate_.after_lost_zero();
+  report.counts[plate + ": readings at one hub time"] = plate_.simultaneous();
+  report.counts["scans of lasers that the rig does not have"] = unknown_lasers_;
+  report.counts["telegrams whose receipt went back in time"] = back_in_time_;
+  if (plate_.after_lost_zero() > 0) {
+    report.warnings.push_back(fmt::format(
+        "{}: it started anew and lost its zero; what came after has no angle in common and is left out",
+        plate));
+  }
+  if (back_in_time_ > 0) {
+    report.warnings.push_back(
+        "the hub's clock went back by more than a second: what came then is not aligned");
+  }
+  return report;
+}
+
+}  // namespace crisp

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/clock/fitted_clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "plugins/clock/unwrap.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kWindowsBack = 2;         // how many windows' stamps before a window bound its line
+constexpr std::size_t kEnoughStamps = 64;  // to judge from them how far they are from the clock
+
+/// The stamps of a window, between those outside it that may bound its line, raised by what the clock may
+/// have drifted until then.
+std::vector<Stamp> with_bounds(std::span<const Stamp> inside, std::span<const Stamp> hull, double bend) {
+  const double first = inside.front().device;
+  const double last = inside.back().device;
+  const auto raised = [bend](Stamp stamp, double edge) {
+    const double outside = stamp.device - edge;
+    stamp.lead += 0.5 * bend * outside * outside;
+    return stamp;
+  };
+  std::vector<Stamp> all;
+  all.reserve(inside.size() + hull.size());
+  for (const auto& stamp : hull) {
+    if (stamp.device < first) all.push_back(raised(stamp, first));
+  }
+  all.insert(all.end(), inside.begin(), inside.end());
+  for (const auto& stamp : hull) {
+    if (stamp.device > last) all.push_back(raised(stamp, last));
+  }
+  return all;
+}
+
+double mean_device(std::span<const Stamp> stamps) {
+  double sum = 0;
+  for (const auto& stamp : stamps) sum += stamp.device - stamps.front().device;
+  return stamps.front().device + sum / static_cast<double>(stamps.size());
+}
+
+}  // namespace
+
+FittedClock::FittedClock(std::string device, LineFinder find, double bend)
+    : find_(std::move(find)), bend_(bend) {
+  map_.device = std::move(device);
+}
+
+void FittedClock::add(std::int64_t device_us, double hub) {
+  if (cut_) {
+    segments_.push_back({.first_us = device_us, .first_hub = hub, .hull = LowerHull(bend_)});
+    cut_ = false;
+  }
+  Segment& segment = segments_.back();
+  const double device = 1e-6 * static_cast<double>(device_us - segment.first_us);
+  const Stamp stamp{.device = device, .lead = hub - segment.first_hub - device};
+  segment.hull.add(stamp);
+  segment.stamps.push_back(stamp);
+  segment.last_device = device;
+  ++map_.stamps;
+}
+
+void FittedClock::drop_last_segment() {
+  if (segments_.size() < 2) {  // the one before is settled and gone
+    cut();
+    return;
+  }
+  map_.stamps -= segments_.back().stamps.size();
+  segments_.pop_back();
+}
+
+std::optional<FittedClock::WindowFit> FittedClock::fit(const Segment& segment, double begin,
+                                                       double end) const {
+  WindowFit fit;
+  for (const auto& stamp : segment.stamps) {
+    const double hub = segment.hub(stamp);
+    if (hub >= begin && hub < end) fit.stamps.push_back(stamp);
+  }
+  if (fit.stamps.empty()) return std::nullopt;
+  fit.line = find_(with_bounds(fit.stamps, segment.hull.vertices(), bend_), mean_device(fit.stamps));
+  fit.errors = errors_of_line(fit.stamps, fit.line);
+  return fit;
+}
+
+double FittedClock::doubt(double begin, double end) const {
+  double doubt = 0;
+  for (const auto& segment : segments_) {
+    const auto window = fit(segment, begin, end);
+    if (window && window->stamps.size() >= kEnoughStamps) doubt = std::max(doubt, window->errors.at_center);
+  }
+  return doubt;
+}
+
+void FittedClock::settle(double begin, double end) {
+  for (auto& segment : segments_) {
+    settle(segment, begin, end);
+    const bool ended = &segment != &segments_.back();
+    if (ended && segment.stamps.empty()) close(segment);
+  }
+  while (segments_.size() > 1 && segments_.front().stamps.empty()) segments_.pop_front();
+}
+
+void FittedClock::settle(Segment& segment, double begin, double end) {
+  const auto window = fit(segment, begin, end);
+  if (!window) return;
+  const auto& [stamps, line, errors] = *window;
+  for (const auto& stamp : stamps) delays_.add(std::abs(stamp.lead - line.lead(stamp.device)));
+  // The map passes through the line at the window's middle, or as near to it as there are stamps.
+  const double rate = 1 + line.slope;
+  const double hub = std::clamp(0.5 * (begin + end), segment.hub(stamps.front()), segment.hub(stamps.back()));
+  const double at_center = segment.first_hub + line.center + line.at_center;
+  const double device = line.center + (hub - at_center) / rate;
+  carry_on(segment, {.device = segment.device(device), .hub = hub, .rate = rate, .errors = errors});
+  std::erase_if(segment.stamps, [&](const Stamp& stamp) { return segment.hub(stamp) < end; });
+  segment.hull.forget_before(end - segment.first_hub - kWindowsBack * (end - begin));
+}
+
+void FittedClock::carry_on(Segment& segment, const Knot& knot) {
+  if (!segment.first_knot) {
+    // A scan's own stamp is earlier than its transmission's, which began the segment.
+    const double begin = segment.device(0) - (map_.pieces.empty() ? 0 : 0.75e-6 * kResetGap_us);
+    map_.pieces.push_back({.device_begin = begin,
+                           .hub_begin = knot.hub - knot.rate * (knot.device - begin),
+                           .rate = knot.rate,
+                           .rate_std_error = knot.errors.slope});
+    segment.first_knot = knot;
+  } else {
+    const Knot& before = *segment.last_knot;
+    const double span = knot.device - before.device;
+    map_.pieces.push_back(
+        {.device_begin = before.device,
+         .hub_begin = before.hub,
+         .rate = (knot.hub - before.hub) / span,
+         .rate_std_error = std::hypot(before.errors.at_center, knot.errors.at_center) / span});
+  }
+  segment.last_knot = knot;
+}
+
+void FittedClock::close(Segment& segment) {
+  if (!segment.last_knot) return;
+  const Knot& first = *segment.first_knot;
+  const Knot& last = *segment.last_knot;
+  double skew_error = last.errors.slope;
+  if (last.device > first.device) {
+    map_.pieces.push_back({.device_begin = last.device,
+                           .hub_begin = last.hub,
+                           .rate = last.rate,
+                           .rate_std_error = last.errors.slope});
+    skew_error = std::hypot(first.errors.at_center, last.errors.at_center) / (last.device - first.device);
+  }
+  map_.device_end = segment.device(segment.last_device);
+  fitted_time_ += segment.last_device;
+  squared_errors_ += std::pow(skew_error * segment.last_device, 2);
+}
+
+bool FittedClock::idle() const {
+  return std::all_of(segments_.begin(), segments_.end(), [](const Segment& s) { return s.stamps.empty(); });
+}
+
+void FittedClock::finish() {
+  for (auto& segment : segments_) close(segment);
+  segments_.clear();
+  cut_ = true;
+  map_.skew_std_error = fitted_time_ > 0 ? std::sqrt(squared_errors_) / fitted_time_ : kMostSkew;
+  map_.residual_median = delays_.quantile(0.5);
+  map_.residual_95 = delays_.quantile(0.95);
+}
+
+}  // namespace crisp

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/data/clock_map.hpp"
+#include "plugins/clock/clock_line.hpp"
+#include "plugins/clock/delay_histogram.hpp"
+#include "plugins/clock/lower_hull.hpp"
+
+namespace crisp {
+
+/// Finds the line of a clock from its stamps, as line_by_convex_hull() does.
+using LineFinder = std::function<ClockLine(std::span<const Stamp> stamps, double center)>;
+
+/// One device's clock, fitted window by window while its stamps come in: the map from device time to hub
+/// time runs straight from the line of one window, at the window's middle, to that of the next.
+///
+/// A window's line lies below the stamps of the window, and below those outside it as far as the clock's
+/// drift cannot explain them: a stamp that lies u outside bounds the line with a slack of bend/2 · u². So a
+/// window that is full of late stamps does not lift the line.
+///
+/// A reset of the device begins a new segment, which has nothing in common with the one before it.
+class FittedClock {
+ public:
+  /// @param bend [1/s] largest change of the clock's rate in a second
+  FittedClock(std::string device, LineFinder find, double bend);
+
+  /// @param device_us [µs] unwrapped device time, later than all before
+  /// @param hub       [s since the epoch] receipt
+  void add(std::int64_t device_us, double hub);
+  /// The next stamp begins a new segment.
+  void cut() { cut_ = true; }
+  /// Takes back the segment of the last stamp, which was its only one: it was damaged, not a reset.
+  void drop_last_segment();
+
+  /// How far the line of a window is from being known [s]; 0 if there are too few stamps to say.
+  double doubt(double begin, double end) const;
+  /// Fits the window of the stamps received from `begin` to before `end` [s since the epoch], forgets what no
+  /// later window needs, and carries the map on to the window's middle.
+  void settle(double begin, double end);
+  /// No stamps come any more: carries the map on to its end.
+  void finish();
+
+  /// Whether all stamps so far are settled.
+  bool idle() const;
+  /// What is settled so far.
+  const ClockMap& map() const { return map_; }
+
+ private:
+  struct Knot {
+    double device = 0;  ///< [s]
+    double hub = 0;     ///< [s since the epoch]
+    double rate = 1;
+    LineErrors errors;
+  };
+  struct Segment {
+    std::int64_t first_us = 0;
+    double first_hub = 0;
+    double last_device = 0;  ///< [s] of the last stamp, since the first
+    LowerHull hull;
+    std::vector<Stamp> stamps;  ///< of the windows that are not yet settled
+    std::optional<Knot> first_knot;
+    std::optional<Knot> last_knot;
+
+    double device(double stamp_device) const { return 1e-6 * static_cast<double>(first_us) + stamp_device; }
+    double hub(const Stamp& stamp) const { return first_hub + stamp.device + stamp.lead; }
+  };
+  struct WindowFit {
+    std::vector<Stamp> stamps;
+    ClockLine line;
+    LineErrors errors;
+  };
+
+  std::optional<WindowFit> fit(const Segment& segment, double begin, double end) const;
+  void settle(Segment& segment, double begin, double end);
+  void carry_on(Segment& segment, const Knot& knot);
+  void close(Segment& segment);
+
+  LineFinder find_;
+  double bend_;
+  bool cut_ = true;
+  std::deque<Segment> segments_;
+  ClockMap map_;
+  DelayHistogram delays_;
+  double fitted_time_ = 0;     ///< [s] spans of the closed segments
+  double squared_errors_ = 0;  ///< [s²] sum of the squares of their skews' errors, times their spans
+};
+
+}  // namespace crisp

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plugins/clock/device_stamps.hpp"
+#include "plugins/clock/mirror_turns.hpp"
+#include "plugins/clock/scan_beams.hpp"
+
+namespace crisp {
+
+/// Where the hub times of measurements come from.
+enum class TimeSource {
+  clock,    ///< the device's time, through the map of its clock
+  receipt,  ///< the hub's receipt time, as it is
+};
+
+/// The scans of one laser on their way to being timed.
+class LaserTrack {
+ public:
+  LaserTrack(const RigLaser& laser, DeviceStamps stamps, TimeSource source, std::size_t mirror_half_width)
+      : laser_(laser), stamps_(std::move(stamps)), source_(source), half_width_(mirror_half_width) {}
+
+  /// @param hub [s since the epoch] receipt
+  /// @throws Error as DeviceStamps::accept
+  void add(std::shared_ptr<const Scan> scan, double hub);
+  /// Hands out the scans that begin before `limit` [s since the epoch], up to which the map must be settled.
+  void take_before(double limit, std::vector<TimedScan>& out);
+
+  bool idle() const { return pending_.empty(); }
+  FittedClock& clock() { return stamps_.clock(); }
+  const FittedClock& clock() const { return stamps_.clock(); }
+  const RigLaser& laser() const { return laser_; }
+  DeviceReport report() const { return stamps_.report(); }
+  std::uint64_t without_ranges() const { return without_ranges_; }
+  /// What the stamps say against the rig's period_offset, or "".
+  std::string stamp_warning() const;
+
+ private:
+  struct Pending {
+    std::shared_ptr<const Scan> scan;
+    MirrorStamp stamp;
+    double stamp_receipt = 0;  ///< [s since the epoch] receipt, less the time from stamp to transmission
+  };
+  double base(const Pending& scan, double device_time) const;
+  std::size_t count_before(double limit) const;
+
+  RigLaser laser_;
+  DeviceStamps stamps_;
+  TimeSource source_;
+  std::size_t half_width_;
+  double nominal_period_ = 0;
+  std::int64_t turn_ = 0;
+  std::deque<Pending> pending_;
+  std::vector<MirrorStamp> taken_;  ///< the last stamps that were handed out: neighbours of the next ones
+  DelayHistogram handovers_;        ///< from stamp to transmission
+  std::uint64_t without_ranges_ = 0;
+};
+
+}  // namespace crisp

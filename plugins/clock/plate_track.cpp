@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/clock/plate_track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace crisp {
+namespace {
+
+constexpr std::ptrdiff_t kForSlopes = 2;  // readings beyond what is asked for, so that its ends are as smooth
+
+/// How far a counter of 32 bits went from one value to another, forwards or back.
+std::int32_t counted(std::uint32_t from, std::uint32_t to) { return static_cast<std::int32_t>(to - from); }
+
+}  // namespace
+
+PlateTrack::PlateTrack(const RigPlate& plate, DeviceStamps stamps, TimeSource source)
+    : step_(2 * std::numbers::pi / plate.counts_per_revolution),
+      stamps_(std::move(stamps)),
+      source_(source) {}
+
+void PlateTrack::add(const PlateReading& reading, double hub) {
+  const auto arrival = stamps_.accept(reading.sequence, reading.device_us, reading.receipt_ns, hub);
+  if (arrival.kind == StampKind::repeated) return;
+  if (arrival.kind == StampKind::reset) {
+    before_reset_ = {.last = last_, .zero_is_lost = zero_is_lost_};
+    zero_is_lost_ = zero_is_lost_ || has_lost_zero(reading, hub);
+  }
+  if (arrival.kind == StampKind::returned) undo_reset();
+  if (source_ == TimeSource::receipt && any_ && hub <= last_.receipt) {
+    ++simultaneous_;
+    return;
+  }
+  if (zero_is_lost_) {
+    ++after_lost_zero_;
+    return;
+  }
+  const double device = 1e-6 * static_cast<double>(arrival.device_us);
+  Reading next{.device = device, .receipt = hub, .count = reading.count};
+  if (any_) {
+    const auto steps = counted(static_cast<std::uint32_t>(last_.count), reading.count);
+    next.count = last_.count + steps;
+    rate_ = steps / std::max(device - last_.device, 1e-6);
+  }
+  any_ = true;
+  last_ = next;
+  readings_.push_back(next);
+}
+
+void PlateTrack::undo_reset() {
+  if (zero_is_lost_ && !before_reset_.zero_is_lost) {
+    --after_lost_zero_;
+  } else if (!readings_.empty() && !zero_is_lost_) {
+    readings_.pop_back();
+  }
+  last_ = before_reset_.last;
+  zero_is_lost_ = before_reset_.zero_is_lost;
+}
+
+bool PlateTrack::has_lost_zero(const PlateReading& reading, double hub) const {
+  const double on = counted(static_cast<std::uint32_t>(last_.count), reading.count);
+  const double off_going_on = std::abs(on - rate_ * (hub - last_.receipt));
+  const double off_anew = std::abs(counted(0, reading.count) - rate_ * 1e-6 * reading.device_us);
+  return off_anew < off_going_on;
+}
+
+double PlateTrack::time(const Reading& reading) const {
+  return source_ == TimeSource::receipt ? reading.receipt : stamps_.map().to_hub(reading.device);
+}
+
+PlateTrajectory PlateTrack::piece(double begin, double end, std::int64_t epoch_ns, double max_gap) {
+  if (readings_.empty() || stamps_.map().pieces.empty()) return {};
+  const auto is_before = [&](double limit) {
+    return [&, limit](const Reading& r) { return time(r) < limit; };
+  };
+  auto first = std::partition_point(readings_.begin(), readings_.end(), is_before(begin));
+  auto last = std::partition_point(first, readings_.end(), is_before(end));
+  first -= std::min(kForSlopes, first - readings_.begin());
+  last += std::min(kForSlopes, readings_.end() - last);
+  std::vector<double> times;
+  std::vector<double> angles;
+  times.reserve(static_cast<std::size_t>(last - first));
+  angles.reserve(static_cast<std::size_t>(last - first));
+  for (auto reading = first; reading != last; ++reading) {
+    const double t = time(*reading);
+    if (!times.empty() && t <= times.back()) continue;  // just after a reset, by the lines' errors
+    times.push_back(t);
+    angles.push_back(static_cast<double>(reading->count) * step_);
+  }
+  return {epoch_ns, std::move(times), std::move(angles), max_gap};
+}
+
+void PlateTrack::forget_before(double hub) {
+  const auto keep = std::find_if(readings_.begin(), readings_.end(),
+                                 [&](const Reading& reading) { return reading.receipt >= hub; });
+  readings_.erase(readings_.begin(), keep);
+}
+
+}  // namespace crisp

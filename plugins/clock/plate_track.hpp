@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+#include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/data/scan.hpp"
+#include "plugins/clock/device_stamps.hpp"
+#include "plugins/clock/laser_track.hpp"
+
+namespace crisp {
+
+/// The readings of the plate on their way to a trajectory.
+class PlateTrack {
+ public:
+  PlateTrack(const RigPlate& plate, DeviceStamps stamps, TimeSource source);
+
+  /// @param hub [s since the epoch] receipt
+  /// @throws Error as DeviceStamps::accept
+  void add(const PlateReading& reading, double hub);
+  /// The plate from the last reading at or before `begin` to the first at or after `end` [s since the epoch],
+  /// as far as there are readings.
+  PlateTrajectory piece(double begin, double end, std::int64_t epoch_ns, double max_gap);
+  /// Forgets the readings before this hub time [s since the epoch].
+  void forget_before(double hub);
+
+  bool idle() const { return readings_.empty(); }
+  FittedClock& clock() { return stamps_.clock(); }
+  const FittedClock& clock() const { return stamps_.clock(); }
+  DeviceReport report() const { return stamps_.report(); }
+  /// Readings that came after the encoder had lost its zero: of no use, the angles have nothing in common.
+  std::uint64_t after_lost_zero() const { return after_lost_zero_; }
+  /// Readings at the same hub time as the one before them.
+  std::uint64_t simultaneous() const { return simultaneous_; }
+
+ private:
+  struct Reading {
+    double device = 0;   ///< [s]
+    double receipt = 0;  ///< [s since the epoch]
+    std::int64_t count = 0;
+  };
+  struct Before {
+    Reading last;
+    bool zero_is_lost = false;
+  };
+  double time(const Reading& reading) const;
+  void undo_reset();
+  bool has_lost_zero(const PlateReading& reading, double hub) const;
+
+  double step_;  ///< [rad] a count
+  DeviceStamps stamps_;
+  TimeSource source_;
+  std::deque<Reading> readings_;
+  Reading last_;
+  double rate_ = 0;  ///< [counts/s] between the last two readings
+  bool any_ = false;
+  bool zero_is_lost_ = false;
+  Before before_reset_;  ///< for a reset that turns out to be none
+  std::uint64_t after_lost_zero_ = 0;
+  std::uint64_t simultaneous_ = 0;
+};
+
+}  // namespace crisp

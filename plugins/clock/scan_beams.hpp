@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/data/rig.hpp"
+#include "pipeline/data/scan.hpp"
+
+namespace crisp {
+
+/// A scan of which it is known when the mirror swept it.
+struct TimedScan {
+  std::shared_ptr<const Scan> scan;
+  double begin = 0;  ///< [s since the epoch] hub time at which the first possible beam, at −45°, was fired
+  double period = 0;  ///< [s] of hub time: a turn of the mirror
+
+  /// [s since the epoch] hub time at which beam k was fired: a whole turn of the mirror takes one period.
+  double beam_time(std::size_t k) const;
+};
+
+/// The measurements of a scan: one for each beam that came back, in the order of firing.
+///
+/// @param timed   with at least one echo; the first is taken
+/// @param laser   says by how much the reported angles are off θ
+/// @param epoch_ns [ns since the Unix epoch]
+Measurements measurements_of(const TimedScan& timed, const RigLaser& laser, std::int64_t epoch_ns);
+
+}  // namespace crisp
