@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/clock/clock_stages.hpp"
+
+#include <fmt/format.h>
+
+namespace crisp {
+namespace {
+
+constexpr double kPpmPerHour = 1e-6 / 3600;  // [1/s]
+
+nlohmann::json to_json(const DeviceReport& device) {
+  auto silences = nlohmann::json::array();
+  for (const auto& silence : device.silences) {
+    silences.push_back({{"begin", silence.begin}, {"duration", silence.duration}});
+  }
+  return {{"device", device.clock.device},
+          {"received", device.received},
+          {"stamps", device.clock.stamps},
+          {"skew_ppm", device.clock.stamps > 0 ? nlohmann::json(device.clock.skew_ppm()) : nlohmann::json()},
+          {"skew_std_error_ppm", 1e6 * device.clock.skew_std_error},
+          {"delay_median", device.clock.residual_median},
+          {"delay_95", device.clock.residual_95},
+          {"lines", device.clock.pieces.size()},
+          {"lost", device.lost},
+          {"repeated", device.repeated},
+          {"damaged", device.damaged},
+          {"resets", device.resets},
+          {"silences", silences}};
+}
+
+std::string table_of(const std::vector<DeviceReport>& devices) {
+  std::string text = fmt::format("{:10} {:>9} {:>9} {:>8} {:>11} {:>11} {:>6} {:>6}", "device", "stamps",
+                                 "skew/ppm", "+-", "median/us", "95 %/us", "lost", "resets");
+  for (const auto& device : devices) {
+    const auto& clock = device.clock;
+    if (clock.stamps == 0) {
+      text += fmt::format("\n{:10} {:>9}", clock.device, 0);
+      continue;
+    }
+    text += fmt::format("\n{:10} {:>9} {:>9.3f} {:>8.3f} {:>11.1f} {:>11.1f} {:>6} {:>6}", clock.device,
+                        clock.stamps, clock.skew_ppm(), 1e6 * clock.skew_std_error,
+                        1e6 * clock.residual_median, 1e6 * clock.residual_95, device.lost, device.resets);
+  }
+  return text;
+}
+
+}  // namespace
+
+template <class S>
+void AlignStage::describe_alignment(StageDescription<S>& d) {
+  d.template takes<Scan>().template takes<PlateReading>();
+  d.template gives<PlateTrajectory>().template gives<Measurements>().template gives<ClockMap>();
+  d.option("window", &AlignStage::settings_, &AlignmentSettings::window,
+           "stretch of stamps that one line is fitted to; what is shorter than 1.5 of it has one line; auto: "
+           "60 s, "
+           "and up to 240 s where delays are rough")
+      .unit("s")
+      .range(1, 3600);
+  d.option("margin", &AlignStage::settings_, &AlignmentSettings::margin,
+           "by how much a piece of the plate's trajectory covers more than its measurements' times")
+      .unit("s")
+      .range(0, 10);
+  d.option("max_gap", &AlignStage::settings_, &AlignmentSettings::max_gap,
+           "longest silence of the encoder to interpolate across")
+      .unit("s")
+      .range(1e-4, 10);
+  d.option(
+       "mirror_smoothing", &AlignStage::settings_, &AlignmentSettings::mirror_half_width,
+       "scans on either side that smooth the motion of a mirror; auto: as many as foretell its stamps best")
+      .range(1, 10);
+}
+
+template <class S>
+void AlignStage::describe_fit(StageDescription<S>& d) {
+  d.option("drift", &AlignStage::drift_,
+           "largest change of a clock's rate, in ppm in an hour; a device that warms up "
+           "faster needs more")
+      .unit("ppm/h")
+      .range(0, 1e5);
+}
+
+void ConvexHullStage::describe(StageDescription<ConvexHullStage>& d) {
+  d.name("clock.convex_hull").summary("puts all stamps on the hub's clock, by the convex hull below them");
+  d.details(
+      "A telegram comes in late, never early: the device's clock is the line below all pairs of transmission "
+      "and receipt time that is nearest to them, an edge of their lower convex hull (Zhang, Liu, Xia 2002). "
+      "Long "
+      "recordings have a line a window; the map between the windows' middles is straight, so that it follows "
+      "a "
+      "clock that drifts. A reset of a device begins a new line.\n\n"
+      "Each beam gets the time at which it was fired: the mirror's motion is taken from the scans' own "
+      "stamps, "
+      "since mirrors turn up to 0.6 % slower than they should, and wander.");
+  describe_alignment(d);
+  describe_fit(d);
+}
+
+void LinearProgramStage::describe(StageDescription<LinearProgramStage>& d) {
+  d.name("clock.linear_program").summary("puts all stamps on the hub's clock, by a linear programme");
+  d.details(
+      "The same line as clock.convex_hull finds, by another algorithm: maximise the height of a line below "
+      "all "
+      "stamps (Moon, Skelly, Towsley 1999). The two agree to rounding; one checks the other.");
+  describe_alignment(d);
+  describe_fit(d);
+}
+
+void ReceiptStage::describe(StageDescription<ReceiptStage>& d) {
+  d.name("clock.receipt").summary("takes the hub's receipt times as they are, delays and all");
+  d.details(
+      "The baseline to compare with: each scan is placed by the receipt of its telegram, less the time from "
+      "its "
+      "stamp to its transmission, and each reading of the plate by its receipt. The clocks are fitted only "
+      "to "
+      "report the delays that are trusted here.");
+  describe_alignment(d);
+}
+
+void AlignStage::process(const Inputs& in, Outputs& out, Context& context) {
+  out_ = &out;
+  if (!aligner_) {
+    settings_.drift = drift_ * kPpmPerHour;
+    aligner_.emplace(
+        context.rig(), settings_,
+        AlignmentSink{.trajectory = [this](PlateTrajectory plate) { out_->give(std::move(plate)); },
+                      .measurements = [this](Measurements scan) { out_->give(std::move(scan)); }});
+  }
+  if (auto scan = in.share<Scan>()) aligner_->add(std::move(scan));
+  if (const auto* reading = in.find<PlateReading>()) aligner_->add(*reading);
+}
+
+void AlignStage::finish(Outputs& out, Context& context) {
+  out_ = &out;
+  if (!aligner_)
+    throw Error("nothing was received: no scan, no reading of the plate", "check the rig's addresses");
+  const AlignmentReport report = aligner_->finish();
+  auto devices = nlohmann::json::array();
+  for (const auto& device : report.devices) devices.push_back(to_json(device));
+  for (const auto& [what, n] : report.counts) context.count(what, n);
+  for (const auto& warning : report.warnings) context.warn(warning);
+  context.report({{"devices", devices}});
+  context.say(table_of(report.devices));
+  for (const auto& device : report.devices) {
+    if (device.clock.stamps > 0) out.give(device.clock);
+  }
+}
+
+}  // namespace crisp

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/clock/register.hpp"
+
+#include "plugins/clock/clock_stages.hpp"
+
+namespace crisp {
+
+void register_clock(Registrar& registrar) {
+  registrar.stage<ConvexHullStage>();
+  registrar.stage<LinearProgramStage>();
+  registrar.stage<ReceiptStage>();
+}
+
+}  // namespace crisp

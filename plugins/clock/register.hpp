@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+/// The stages clock.convex_hull, clock.linear_program and clock.receipt.
+void register_clock(Registrar& registrar);
+
+}  // namespace crisp
