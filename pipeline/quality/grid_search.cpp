@@ -4,6 +4,7 @@
 
 #include "pipeline/quality/searches.hpp"
 #include "pipeline/quality/spatial_order.hpp"
+#include "pipeline/quality/sum_on_lattice.hpp"
 #include "pipeline/quality/sum_over_tiles.hpp"
 
 namespace crisp {
@@ -51,19 +52,35 @@ std::unique_ptr<NeighbourIndex> GridSearch::index(const PointsView& points, doub
   return std::make_unique<GridIndex>(points, radius);
 }
 
-bool GridSearch::still_serves(const PointsView& points, double radius) {
-  constexpr double kMoreTests = 1.3;  // than with fresh tiles: about what the sorting costs
-  return tiles_ && tiles_->points() == points.size() && tiles_->reach() == radius &&
-         tested_last_ <= kMoreTests * tested_when_new_ && tiles_->refresh(points);
+GaussianSums GridSearch::sums(const PointsView& points, std::span<const double> weights,
+                              const TruncatedGaussian& kernel, const SumsWanted& wanted) {
+  if (!(last_ && last_->points == points.size() && last_->radius == kernel.radius)) {
+    last_ =
+        Last{.points = points.size(), .radius = kernel.radius, .on_lattice = lattice_pays(points, kernel)};
+    tiles_.reset();
+  }
+  if (!last_->on_lattice) return over_tiles(points, weights, kernel, wanted);
+  GaussianSums result = sum_on_lattice(points, weights, kernel, wanted.gradient);
+  if (wanted.error) {
+    TruncatedGaussian whole = kernel;
+    whole.floor = kLatticeError;
+    result.error = truncation_bound(whole, spatial_order(points, kernel.radius), weights);
+  }
+  return result;
 }
 
-GaussianSums GridSearch::sums(const PointsView& points, std::span<const double> weights,
-                              const TruncatedGaussian& kernel, bool gradient) {
-  const bool reused = still_serves(points, kernel.radius);
-  if (!reused) tiles_.emplace(points, kernel.radius, spatial_order(points, kernel.radius).index);
-  GaussianSums result = sum_over_tiles(*tiles_, points, weights, kernel, gradient);
-  tested_last_ = static_cast<double>(result.tested);
-  if (!reused) tested_when_new_ = tested_last_;
+GaussianSums GridSearch::over_tiles(const PointsView& points, std::span<const double> weights,
+                                    const TruncatedGaussian& kernel, const SumsWanted& wanted) {
+  constexpr double kMoreTests = 1.3;  // than with fresh tiles: about what sorting costs
+  const bool serves =
+      tiles_ && last_->tested <= kMoreTests * last_->tested_when_new && tiles_->refresh(points);
+  SpatialOrder order;
+  if (!serves || wanted.error) order = spatial_order(points, kernel.radius);
+  if (!serves) tiles_.emplace(points, kernel.radius, order.index);
+  GaussianSums result = sum_over_tiles(*tiles_, points, weights, kernel, wanted.gradient);
+  last_->tested = static_cast<double>(result.tested);
+  if (!serves) last_->tested_when_new = last_->tested;
+  if (wanted.error) result.error = truncation_bound(kernel, order, weights);
   return result;
 }
 

@@ -12,7 +12,7 @@
 
 namespace crisp {
 
-TruncatedGaussian::TruncatedGaussian(double sigma, double cutoff) {
+TruncatedGaussian::TruncatedGaussian(double width, double cutoff) : sigma(width) {
   if (!(std::isfinite(sigma) && sigma > 0)) {
     throw Error(fmt::format("the kernel's width is {} m", sigma), "sigma must be above 0");
   }

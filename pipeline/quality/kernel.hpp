@@ -10,8 +10,9 @@ namespace crisp {
 /// The kernel between two points of a cloud whose points are Gaussians of width σ each: the isotropic normal
 /// density of variance 2σ² in three dimensions, lowered by its value at the cut-off radius and 0 beyond.
 struct TruncatedGaussian {
-  TruncatedGaussian(double sigma, double cutoff);  ///< @throws Error unless 0 < σ [m], 1 ≤ cutoff [σ] ≤ 12
+  TruncatedGaussian(double width, double cutoff);  ///< @throws Error unless 0 < σ [m], 1 ≤ cutoff [σ] ≤ 12
 
+  double sigma = 0;     ///< [m]
   double radius = 0;    ///< [m] R
   double exponent = 0;  ///< [1/m²] 1/(4σ²): G(d) = peak · exp(−exponent · d²)
   double peak = 0;      ///< [1/m³] G(0)

@@ -7,7 +7,6 @@
 #include "pipeline/data/error.hpp"
 #include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/searches.hpp"
-#include "pipeline/quality/spatial_order.hpp"
 
 namespace crisp {
 
@@ -23,7 +22,7 @@ Rqe rqe(const PointsView& points, std::span<const double> weights, const RqeSett
   if (points.size() == 0) throw Error("the entropy of a cloud without points is not defined");
   const TruncatedGaussian kernel(settings.sigma, settings.cutoff);
   const auto scaled = with_mean_one(weights, points.size());
-  GaussianSums sums = search.sums(points, scaled, kernel, settings.gradient);
+  GaussianSums sums = search.sums(points, scaled, kernel, {settings.gradient, settings.error_bound});
 
   Rqe result;
   const auto n = static_cast<double>(points.size());
@@ -31,10 +30,7 @@ Rqe rqe(const PointsView& points, std::span<const double> weights, const RqeSett
   result.value = -std::log(result.energy);
   result.pairs = sums.pairs;
   result.tested = sums.tested;
-  if (settings.error_bound) {
-    const double left_out = truncation_bound(kernel, spatial_order(points, kernel.radius), scaled);
-    result.error_bound = std::log1p(left_out / sums.kernel);
-  }
+  result.error_bound = std::log1p(sums.error / sums.kernel);
   result.gradient = std::move(sums.pull);
   // H = −log E, and xᵢ is in both orders of each of its pairs: ∂H/∂xᵢ = 4 · exponent · pull / kernel.
   const double scale = 4 * kernel.exponent / sums.kernel;

@@ -42,11 +42,11 @@ void add_point(const PointsView& points, std::span<const double> weights, const 
 }  // namespace
 
 GaussianSums Search::sums(const PointsView& points, std::span<const double> weights,
-                          const TruncatedGaussian& kernel, bool gradient) {
+                          const TruncatedGaussian& kernel, const SumsWanted& wanted) {
   constexpr std::size_t kBlock = 256;  // points: fixed, so that sums do not depend on the threads
   const auto neighbours = index(points, kernel.radius);
   GaussianSums result;
-  if (gradient) result.pull.assign(points.size(), 0);
+  if (wanted.gradient) result.pull.assign(points.size(), 0);
   std::vector<BlockSums> blocks((points.size() + kBlock - 1) / kBlock);
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
     const std::size_t first = b * kBlock;
@@ -64,6 +64,7 @@ GaussianSums Search::sums(const PointsView& points, std::span<const double> weig
     result.kernel += block.kernel;
     result.tested += block.listed;
   }
+  if (wanted.error) result.error = truncation_bound(kernel, spatial_order(points, kernel.radius), weights);
   result.pairs = (result.tested - points.size()) / 2;  // each from either end, and each point has itself
   return result;
 }

@@ -45,7 +45,7 @@ class Search {
   ///
   /// @param weights  one a point, about 1
   virtual GaussianSums sums(const PointsView& points, std::span<const double> weights,
-                            const TruncatedGaussian& kernel, bool gradient);
+                            const TruncatedGaussian& kernel, const SumsWanted& wanted);
 };
 
 using SearchRegistry = Registry<Search>;

@@ -20,21 +20,30 @@ class ExactSearch final : public Search {
   std::unique_ptr<NeighbourIndex> index(const PointsView& points, double radius) const override;
 };
 
-/// Tiles of points along a Morton curve through cells, see Tiles. Sums are in single precision (see
-/// sum_over_tiles), and the order of the points is kept from one call to the next while it serves: sums of
-/// points that have moved a little skip the sorting, and are as exact.
+/// The fast one: tiles of points along a Morton curve through cells, see Tiles. Sums are in single precision
+/// (see sum_over_tiles); where a point has so many neighbours that it pays, they are not taken over pairs but
+/// on a lattice (see sum_on_lattice). That choice, and the order of the points, are kept from one call to the
+/// next for as many points and the same radius: sums of points that have moved a little skip the sorting, and
+/// are as exact.
 class GridSearch final : public Search {
  public:
   std::unique_ptr<NeighbourIndex> index(const PointsView& points, double radius) const override;
   GaussianSums sums(const PointsView& points, std::span<const double> weights,
-                    const TruncatedGaussian& kernel, bool gradient) override;
+                    const TruncatedGaussian& kernel, const SumsWanted& wanted) override;
 
  private:
-  bool still_serves(const PointsView& points, double radius);
+  GaussianSums over_tiles(const PointsView& points, std::span<const double> weights,
+                          const TruncatedGaussian& kernel, const SumsWanted& wanted);
 
+  struct Last {
+    std::size_t points = 0;
+    double radius = 0;
+    bool on_lattice = false;
+    double tested_when_new = 0;  // distances that sums cost with fresh tiles
+    double tested = 0;
+  };
+  std::optional<Last> last_;
   std::optional<Tiles> tiles_;
-  double tested_when_new_ = 0;  // distances that sums cost with fresh tiles
-  double tested_last_ = 0;
 };
 
 }  // namespace crisp
