@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/atomic_file.hpp"
 
 namespace crisp {
 namespace {
@@ -58,7 +59,8 @@ std::uint64_t whole_records(const std::filesystem::path& path) {
 }  // namespace
 
 struct PcapWriter::File {
-  std::filesystem::path path, written_path;
+  std::filesystem::path path;            ///< that is written
+  std::unique_ptr<AtomicFile> replaced;  ///< whose aside() that is, when replacing
   Pcap pcap;
   std::unique_ptr<pcap_dumper_t, Free> dump;
   std::uint64_t length = kFileHeader;
@@ -68,38 +70,36 @@ struct PcapWriter::File {
 
   /// Cuts off what was written only in part, and says why.
   [[noreturn]] void fail() {
-    const auto error = cannot_write(written_path, errno);
+    const auto error = cannot_write(path, errno);
     dump.reset();
     std::error_code ignored;
-    std::filesystem::resize_file(written_path, safe_length, ignored);
+    std::filesystem::resize_file(path, safe_length, ignored);
     throw error;
   }
 };
 
 PcapWriter::PcapWriter(std::filesystem::path path, PcapMode mode) : file_(std::make_unique<File>()) {
   auto& f = *file_;
-  f.path = f.written_path = std::move(path);
-  if (mode == PcapMode::Replace) f.written_path += ".part";
+  if (mode == PcapMode::Replace) {
+    f.replaced = std::make_unique<AtomicFile>(std::move(path));
+    f.path = f.replaced->aside();
+  } else {
+    f.path = std::move(path);
+  }
   const bool continued =
-      mode == PcapMode::Grow && std::filesystem::exists(f.path) && !std::filesystem::is_empty(f.path);
+      !f.replaced && std::filesystem::exists(f.path) && std::filesystem::file_size(f.path) > 0;
   if (continued) {
     f.length = f.safe_length = whole_records(f.path);
     std::filesystem::resize_file(f.path, f.length);
   }
   f.pcap.reset(pcap_open_dead_with_tstamp_precision(DLT_EN10MB, kSnapshot, PCAP_TSTAMP_PRECISION_NANO));
   errno = 0;
-  f.dump.reset(continued ? pcap_dump_open_append(f.pcap.get(), f.written_path.c_str())
-                         : pcap_dump_open(f.pcap.get(), f.written_path.c_str()));
-  if (!f.dump) throw cannot_write(f.written_path, errno);
+  f.dump.reset(continued ? pcap_dump_open_append(f.pcap.get(), f.path.c_str())
+                         : pcap_dump_open(f.pcap.get(), f.path.c_str()));
+  if (!f.dump) throw cannot_write(f.path, errno);
 }
 
-PcapWriter::~PcapWriter() {
-  if (!file_ || !file_->dump) return;
-  file_->dump.reset();
-  std::error_code ignored;
-  if (file_->written_path != file_->path) std::filesystem::remove(file_->written_path, ignored);
-}
-
+PcapWriter::~PcapWriter() = default;
 PcapWriter::PcapWriter(PcapWriter&&) noexcept = default;
 PcapWriter& PcapWriter::operator=(PcapWriter&&) noexcept = default;
 
@@ -135,10 +135,7 @@ void PcapWriter::close() {
   if (!f.dump) return;
   flush(true);
   f.dump.reset();
-  if (f.written_path == f.path) return;
-  std::error_code error;
-  std::filesystem::rename(f.written_path, f.path, error);
-  if (error) throw cannot_write(f.path, error.value());
+  if (f.replaced) f.replaced->commit();
 }
 
 }  // namespace crisp

@@ -10,23 +10,14 @@
 #include <tins/udp.h>
 
 #include "pipeline/data/error.hpp"
+#include "tests/grabbers/capture/capture_bytes.hpp"
 
 namespace crisp {
 namespace {
 
 using testing::ElementsAre;
 
-const Address kLaser{"192.168.0.1", 2112}, kHub{"192.168.0.100", 50000};
 const Address kLaser6{"fe80::1", 2112}, kHub6{"fe80::64", 50000};
-
-struct Frame {
-  std::int64_t time_ns;
-  Bytes bytes;
-};
-
-FrameSink into(std::vector<Frame>& frames) {
-  return [&frames](std::int64_t t, ByteView b) { frames.push_back({t, Bytes(b.begin(), b.end())}); };
-}
 
 Tins::TCP tcp(const Frame& frame) {
   return Tins::EthernetII(frame.bytes.data(), static_cast<std::uint32_t>(frame.bytes.size()))
@@ -53,7 +44,7 @@ void expect_right_checksums(const Frame& frame, bool ipv6, std::uint8_t protocol
 
 TEST(TcpConversation, LooksLikeARealOne) {
   std::vector<Frame> frames;
-  TcpConversation conversation(kLaser, kHub, into(frames),
+  TcpConversation conversation(kLaser1, kHub, into(frames),
                                {.server_sequence = 0xFFFFFFF0, .client_sequence = 77});
   conversation.open(1'000'000);
   conversation.send(TcpSide::Client, Bytes(20, 'q'), 2'000'000);
@@ -109,7 +100,7 @@ TEST(NetworkFrames, RefuseAddressesThatAreNone) {
   const FrameSink nowhere = [](std::int64_t, ByteView) {};
   EXPECT_THROW(TcpConversation({"192.168.0.300", 1}, kHub, nowhere), Error);
   EXPECT_THROW(TcpConversation({"laser", 1}, kHub, nowhere), Error);
-  EXPECT_THROW(DatagramSender(kLaser, kHub6, nowhere), Error);
+  EXPECT_THROW(DatagramSender(kLaser1, kHub6, nowhere), Error);
 }
 
 TEST(FrameSorter, PutsFramesIntoTheOrderOfTheirTimes) {

@@ -20,6 +20,19 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// A file that is in memory only: thousands of them cost no disk.
+class MemoryFile {
+ public:
+  explicit MemoryFile(ByteView bytes);
+  ~MemoryFile();
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  std::filesystem::path path() const;
+
+ private:
+  int descriptor_;
+};
+
 Bytes read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, ByteView bytes);
 

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+
+#include "grabbers/wire/bytes.hpp"
+
+namespace crisp {
+
+enum class ByteOrder : std::uint8_t { Little, Big };
+
+/// The unsigned number at `at`, which must lie within `bytes` with all of its width.
+template <std::unsigned_integral T>
+T number_at(ByteView bytes, std::size_t at, ByteOrder order) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    const auto byte = bytes[at + (order == ByteOrder::Big ? i : sizeof(T) - 1 - i)];
+    value = (value << 8) | byte;
+  }
+  return static_cast<T>(value);
+}
+
+/// The same in the order of the network.
+template <std::unsigned_integral T>
+T network_number(ByteView bytes, std::size_t at) {
+  return number_at<T>(bytes, at, ByteOrder::Big);
+}
+
+}  // namespace crisp

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/capture_file.hpp"
+
+#include <cstdlib>
+#include <utility>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+CaptureFile::CaptureFile(const std::filesystem::path& path) : file_(path) {
+  const auto begin = file_.peek(4);
+  if (begin.empty()) throw Error(path.string() + " is empty", "capture it again");
+  if (PcapRecords::recognises(begin)) {
+    records_.emplace<PcapRecords>(file_, losses_);
+  } else if (PcapngBlocks::recognises(begin)) {
+    records_.emplace<PcapngBlocks>(file_, losses_);
+  } else {
+    throw Error(path.string() + " is neither pcap nor pcapng",
+                "captures come from tcpdump, dumpcap or Wireshark");
+  }
+}
+
+void CaptureFile::load(Slot& slot) {
+  if (auto* pcap = std::get_if<PcapRecords>(&records_)) slot.full = pcap->next(slot.packet);
+  if (auto* pcapng = std::get_if<PcapngBlocks>(&records_)) slot.full = pcapng->next(slot.packet);
+  if (!slot.full) return;
+  slot.bytes.assign(slot.packet.bytes.begin(), slot.packet.bytes.end());
+  slot.packet.bytes = slot.bytes;
+}
+
+bool CaptureFile::stamp_is_damaged() const {
+  constexpr std::int64_t kTolerance = 1'000'000'000, kHour = 3600 * kTolerance;
+  const auto time = current_.packet.time_ns;
+  if (!ahead_.full) return before_ns_ && std::abs(time - *before_ns_) > kHour;
+  const auto after = ahead_.packet.time_ns;
+  if (!before_ns_) return time > after + kTolerance;
+  return *before_ns_ <= after && (time < *before_ns_ - kTolerance || time > after + kTolerance);
+}
+
+const Packet* CaptureFile::next() {
+  if (!std::exchange(begun_, true)) load(ahead_);
+  while (true) {
+    std::swap(current_, ahead_);
+    if (!current_.full) return nullptr;
+    load(ahead_);
+    if (!stamp_is_damaged()) break;
+    losses_.add(file_loss::kDamagedStamps);
+  }
+  before_ns_ = current_.packet.time_ns;
+  return &current_.packet;
+}
+
+}  // namespace crisp

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <variant>
+
+#include "grabbers/capture/pcap_records.hpp"
+#include "grabbers/capture/pcapng_blocks.hpp"
+
+namespace crisp {
+
+/// The packets of a pcap or pcapng file, one after the other; memory does not depend on the file's size. A
+/// packet whose time lies by more than a second outside of its neighbours', while these are in order, has a
+/// damaged stamp: it is dropped and counted.
+class CaptureFile {
+ public:
+  /// @throws Error if the file cannot be read or is no capture
+  explicit CaptureFile(const std::filesystem::path& path);
+
+  /// The next packet, valid until the next call; nullptr at the end of the file.
+  const Packet* next();
+
+  const Counts& losses() const { return losses_; }
+  std::uint64_t offset() const { return file_.offset(); }  ///< [bytes] read so far
+  std::uint64_t size() const { return file_.size(); }      ///< [bytes] of the file; 0 for a pipe
+
+ private:
+  struct Slot {  ///< a packet with bytes of its own
+    Packet packet;
+    Bytes bytes;
+    bool full = false;
+  };
+
+  void load(Slot& slot);
+  bool stamp_is_damaged() const;
+
+  FileWindow file_;
+  Counts losses_;
+  std::variant<std::monostate, PcapRecords, PcapngBlocks> records_;
+  Slot current_, ahead_;
+  bool begun_ = false;
+  std::optional<std::int64_t> before_ns_;  ///< time of the packet before the current one
+};
+
+}  // namespace crisp

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/capture_reader.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <unordered_map>
+
+#include "grabbers/capture/capture_file.hpp"
+#include "grabbers/capture/dissect.hpp"
+#include "grabbers/capture/fragments.hpp"
+#include "grabbers/capture/item_merge.hpp"
+
+namespace crisp {
+namespace {
+
+// Captures of several interfaces are slightly out of order.
+constexpr std::int64_t kDisorder = 100'000'000;
+constexpr std::size_t kMostFlows = 4096;
+constexpr std::string_view kPlateMark = "$PPLT,";
+
+}  // namespace
+
+struct CaptureReader::Traffic {
+  Traffic(const std::filesystem::path& path, Devices all, const CaptureSettings& how)
+      : file(path), devices(std::move(all)), settings(how) {}
+
+  CaptureFile file;
+  Devices devices;
+  CaptureSettings settings;
+  FragmentAssembler fragments;
+  std::unordered_map<FlowKey, std::unique_ptr<Flow>> flows;
+  std::vector<Flow*> rig_flows;
+  ItemMerge merge;
+  Flow::Give give = [this](CaptureItem item) { merge.push(std::move(item)); };
+  CaptureStatistics totals;
+  std::int64_t newest_ns = 0, given_ns = 0;
+  bool ended = false;
+
+  bool read_packet();
+  void take_ip(const IpPacket& ip, std::int64_t time_ns);
+  Flow* find_flow(const TransportPacket& packet);
+  void forget_flows();
+  std::int64_t limit_ns();
+  void finish();
+  std::optional<CaptureItem> next();
+};
+
+/// False at the end of the capture.
+bool CaptureReader::Traffic::read_packet() {
+  const auto* packet = file.next();
+  if (packet == nullptr) return false;
+  newest_ns = totals.packets == 0 ? packet->time_ns : std::max(newest_ns, packet->time_ns);
+  totals.first_ns = totals.packets == 0 ? packet->time_ns : std::min(totals.first_ns, packet->time_ns);
+  totals.last_ns = newest_ns;
+  ++totals.packets;
+  totals.bytes += packet->bytes.size();
+  totals.link_types.add(link_type_name(packet->link_type));
+  const auto found = dissect_ip(*packet);
+  if (const auto* reason = std::get_if<NoIp>(&found)) {
+    if (*reason == NoIp::Damaged) totals.losses.add("packets with damaged headers");
+    if (*reason == NoIp::UnknownLinkType) totals.losses.add("packets of link types that are not understood");
+    return true;
+  }
+  const auto& ip = std::get<IpPacket>(found);
+  if (!ip.is_fragment()) {
+    take_ip(ip, packet->time_ns);
+  } else if (const auto whole = fragments.take(ip, packet->time_ns)) {
+    take_ip(*whole, packet->time_ns);
+  }
+  return true;
+}
+
+void CaptureReader::Traffic::take_ip(const IpPacket& ip, std::int64_t time_ns) {
+  bool damaged = false;
+  const auto packet = dissect_transport(ip, damaged);
+  if (damaged) totals.losses.add("packets with damaged headers");
+  if (!packet) return;
+  if (auto* flow = find_flow(*packet)) flow->take(*packet, time_ns);
+}
+
+Flow* CaptureReader::Traffic::find_flow(const TransportPacket& packet) {
+  const auto found = flows.find(packet.key);
+  if (found != flows.end()) return found->second.get();
+  auto* known = devices.known(packet.key);
+  const bool says_something = !packet.payload.empty() || packet.syn;
+  const bool like_a_plate = as_text(packet.payload).find(kPlateMark) != std::string_view::npos;
+  if (known == nullptr && (!says_something || (packet.key.transport == Transport::Udp && !like_a_plate)))
+    return nullptr;
+  if (flows.size() >= kMostFlows) forget_flows();
+  auto flow = std::make_unique<Flow>(packet.key, devices, known, settings, give);
+  if (known != nullptr) rig_flows.push_back(flow.get());
+  return flows.emplace(packet.key, std::move(flow)).first->second.get();
+}
+
+/// Forgets the older half of all flows; one that goes on is taken up again.
+void CaptureReader::Traffic::forget_flows() {
+  std::vector<std::int64_t> ages;
+  for (const auto& [key, flow] : flows) ages.push_back(flow->last_ns());
+  const auto middle = ages.begin() + static_cast<std::ptrdiff_t>(ages.size() / 2);
+  std::nth_element(ages.begin(), middle, ages.end());
+  const auto old = [&](const Flow& flow) { return flow.last_ns() <= *middle; };
+  std::erase_if(rig_flows, [&](const Flow* flow) { return old(*flow); });
+  for (auto& [key, flow] : flows) {
+    if (old(*flow)) flow->finish();
+  }
+  std::erase_if(flows, [&](const auto& entry) { return old(*entry.second); });
+}
+
+/// Items received before this are complete and in order.
+std::int64_t CaptureReader::Traffic::limit_ns() {
+  auto limit = newest_ns - kDisorder;
+  const auto longest = static_cast<std::int64_t>(1e9 * settings.longest_wait);
+  for (auto* flow : rig_flows) {
+    flow->expire(newest_ns);
+    const auto since = flow->waiting_since();
+    if (since && newest_ns - *since <= longest) limit = std::min(limit, *since);
+  }
+  return limit;
+}
+
+void CaptureReader::Traffic::finish() {
+  ended = true;
+  fragments.finish();
+  std::vector<std::pair<FlowKey, Flow*>>
+      ordered;  // so that what ends gives comes in the same order everywhere
+  for (auto& [key, flow] : flows) ordered.emplace_back(key, flow.get());
+  std::sort(ordered.begin(), ordered.end());
+  for (auto& [key, flow] : ordered) flow->finish();
+  rig_flows.clear();
+  flows.clear();
+}
+
+std::optional<CaptureItem> CaptureReader::Traffic::next() {
+  while (true) {
+    if (!merge.empty()) {
+      auto item = ended ? merge.pop() : merge.pop(limit_ns());
+      if (item) {
+        if (receipt_ns(*item) < given_ns)
+          totals.notes.add("items given out of order, because the hub's clock stepped back");
+        given_ns = receipt_ns(*item);
+        return item;
+      }
+    }
+    if (ended) return {};
+    if (!read_packet()) finish();
+  }
+}
+
+CaptureReader::CaptureReader(const std::filesystem::path& file, const Rig& rig,
+                             const CaptureSettings& settings)
+    : traffic_(std::make_unique<Traffic>(file, Devices(rig), settings)) {}
+
+CaptureReader::CaptureReader(std::unique_ptr<Traffic> traffic) : traffic_(std::move(traffic)) {}
+CaptureReader::~CaptureReader() = default;
+CaptureReader::CaptureReader(CaptureReader&&) noexcept = default;
+CaptureReader& CaptureReader::operator=(CaptureReader&&) noexcept = default;
+
+std::optional<CaptureItem> CaptureReader::next() { return traffic_->next(); }
+
+double CaptureReader::progress() const {
+  const auto size = traffic_->file.size();
+  return size == 0 ? 0
+                   : std::min(1.0, static_cast<double>(traffic_->file.offset()) / static_cast<double>(size));
+}
+
+CaptureStatistics CaptureReader::statistics() const {
+  auto statistics = traffic_->totals;
+  statistics.file_bytes = traffic_->file.offset();
+  statistics.losses.add(traffic_->file.losses());
+  statistics.losses.add(traffic_->fragments.losses());
+  statistics.devices = traffic_->devices.statistics();
+  return statistics;
+}
+
+CaptureStatistics inspect_capture(const std::filesystem::path& file, const CaptureSettings& settings) {
+  CaptureReader reader(std::make_unique<CaptureReader::Traffic>(file, Devices(), settings));
+  while (reader.next()) {
+  }
+  return reader.statistics();
+}
+
+}  // namespace crisp

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "grabbers/capture/capture_statistics.hpp"
+#include "grabbers/capture/flow.hpp"
+
+namespace crisp {
+
+/// Reads scans and plate readings from a capture of the hub's network interface, in the order in which the
+/// hub received them: the time of the packet that completes a telegram. Only where the hub's clock itself
+/// stepped back does the order follow the file; that is counted. Memory does not depend on the capture's
+/// size. What is damaged or missing is counted by name; see statistics().
+class CaptureReader {
+ public:
+  /// @throws Error if the file cannot be read or is no capture, or an address of the rig is none
+  CaptureReader(const std::filesystem::path& file, const Rig& rig, const CaptureSettings& settings = {});
+  ~CaptureReader();
+  CaptureReader(CaptureReader&&) noexcept;
+  CaptureReader& operator=(CaptureReader&&) noexcept;
+
+  /// The next item of one of the rig's devices; nothing at the end of the capture.
+  /// @throws Error if the disk fails
+  std::optional<CaptureItem> next();
+
+  /// What was found so far; complete once next() gave nothing.
+  CaptureStatistics statistics() const;
+
+  double progress() const;  ///< 0 … 1, by the bytes of the file
+
+ private:
+  friend CaptureStatistics inspect_capture(const std::filesystem::path&, const CaptureSettings&);
+  struct Traffic;
+  explicit CaptureReader(std::unique_ptr<Traffic> traffic);
+  std::unique_ptr<Traffic> traffic_;
+};
+
+/// What a capture holds, whoever sent it: reads all of it without a rig, and finds lasers and plates by what
+/// they say. @throws Error as CaptureReader
+CaptureStatistics inspect_capture(const std::filesystem::path& file, const CaptureSettings& settings = {});
+
+}  // namespace crisp

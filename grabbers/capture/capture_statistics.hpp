@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grabbers/capture/counts.hpp"
+#include "pipeline/data/rig.hpp"
+
+namespace crisp {
+
+enum class DeviceKind : std::uint8_t { Laser, Plate };
+
+/// How a laser's scans look, as its last telegram had them.
+struct ScanShape {
+  std::size_t beams = 0;
+  double start_angle = 0;  ///< [rad] as the device reports it
+  double angle_step = 0;   ///< [rad]
+  std::size_t echoes = 0;
+  bool remissions = false;
+  bool encoder = false;
+};
+
+/// What a capture holds of one device.
+struct DeviceStatistics {
+  DeviceKind kind = DeviceKind::Laser;
+  std::string name;                           ///< as the rig calls it; empty if the rig does not know it
+  Address address;                            ///< from where its packets came
+  std::uint64_t items = 0;                    ///< different scans or readings
+  Counts telegrams;                           ///< all that it sent, by kind
+  Counts losses;                              ///< what is missing, by reason
+  Counts notes;                               ///< what was out of the ordinary without loss
+  std::int64_t first_ns = 0, last_ns = 0;     ///< [ns since the Unix epoch] receipt of first and last item
+  double longest_silence = 0;                 ///< [s] between two items
+  std::int64_t silence_ns = 0;                ///< [ns since the Unix epoch] when that began
+  std::vector<std::uint32_t> serial_numbers;  ///< of a laser
+  std::optional<double> median_handover;      ///< [s] transmission time − scan time, median
+  std::optional<double> period;  ///< [s] of the mirror, measured by the laser's own clock, median
+  double nominal_frequency = 0;  ///< [Hz] that a laser claims
+  ScanShape shape;
+
+  /// [Hz] items a second, 0 for fewer than two.
+  double rate() const;
+  /// The number of whole mirror periods by which the stamps seem to be late, as a rig's `period_offset`: −1
+  /// where a scan is handed out before it can be over (median handover below 0.75 periods), otherwise 0.
+  int period_hint() const;
+};
+
+/// What a capture holds, and what it lost.
+struct CaptureStatistics {
+  std::uint64_t packets = 0;
+  std::uint64_t bytes = 0;                 ///< of the packets
+  std::uint64_t file_bytes = 0;            ///< read from the file
+  std::int64_t first_ns = 0, last_ns = 0;  ///< [ns since the Unix epoch] of the packets
+  Counts link_types;                       ///< packets by link type
+  Counts losses;                           ///< what the file or the network lost, not attributed to a device
+  Counts notes;
+  std::vector<DeviceStatistics>
+      devices;  ///< the rig's in its order, then the unknown ones in order of address
+};
+
+}  // namespace crisp

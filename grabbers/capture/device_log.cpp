@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/device_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace crisp {
+
+double DeviceStatistics::rate() const {
+  return items < 2 || last_ns <= first_ns
+             ? 0
+             : static_cast<double>(items - 1) / (1e-9 * static_cast<double>(last_ns - first_ns));
+}
+
+int DeviceStatistics::period_hint() const {
+  constexpr double kSweep = 0.75;  // 270° of a turn: no scan is over before
+  return median_handover && period && *median_handover < kSweep * *period ? -1 : 0;
+}
+
+DeviceLog::DeviceLog(DeviceKind kind, std::string name, Address address, std::uint16_t laser)
+    : laser_(laser) {
+  statistics_.kind = kind;
+  statistics_.name = std::move(name);
+  statistics_.address = std::move(address);
+}
+
+DeviceStatistics DeviceLog::statistics() const {
+  auto statistics = statistics_;
+  const bool laser = statistics.kind == DeviceKind::Laser;
+  statistics.losses.add(
+      laser ? "telegrams that never came, by their counter" : "readings that never came, by their sequence",
+      tracker_.lost());
+  statistics.median_handover = handover_.value();
+  statistics.period = period_.value();
+  return statistics;
+}
+
+void DeviceLog::count_telegram(std::string_view kind) {
+  constexpr std::size_t kMostKinds = 256;  // what garbage can cost
+  const bool full = statistics_.telegrams.all().size() >= kMostKinds && statistics_.telegrams.of(kind) == 0;
+  statistics_.telegrams.add(full ? "others" : kind);
+}
+
+bool DeviceLog::is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns) {
+  if (clock_.take(device_us, time_ns)) {
+    note("restarts of the device's clock");
+    tracker_.restart();
+    last_scan_.reset();
+  }
+  const auto verdict = tracker_.take(counter, device_us, time_ns);
+  if (verdict == SequenceTracker::Verdict::Late) note("items that came late");
+  if (verdict == SequenceTracker::Verdict::Duplicate) note("items that came twice");
+  return verdict != SequenceTracker::Verdict::Duplicate;
+}
+
+void DeviceLog::note_time(std::int64_t time_ns) {
+  auto& s = statistics_;
+  if (s.items++ == 0) {
+    s.first_ns = s.last_ns = time_ns;
+    return;
+  }
+  const double silence = 1e-9 * static_cast<double>(time_ns - s.last_ns);
+  if (silence > s.longest_silence) {
+    s.longest_silence = silence;
+    s.silence_ns = s.last_ns;
+  }
+  s.first_ns = std::min(s.first_ns, time_ns);
+  s.last_ns = std::max(s.last_ns, time_ns);
+}
+
+std::optional<Scan> DeviceLog::take(const ColaFrame& frame, EncoderWidths widths) {
+  const auto telegram = parse_cola(frame.payload, frame.language);
+  if (!telegram) {
+    lose("telegrams that begin like none");
+    return {};
+  }
+  if (const auto code = cola_error_code(*telegram)) {
+    count_telegram(fmt::format("sFA {} ({})", *code, cola_error_text(*code)));
+  } else {
+    count_telegram(fmt::format("{} {}", telegram->command, telegram->name));
+  }
+  const bool scan =
+      telegram->name == kScanDataName && (telegram->command == "sSN" || telegram->command == "sRA");
+  return scan ? take_scan(*telegram, frame.completed_ns, widths) : std::nullopt;
+}
+
+std::optional<Scan> DeviceLog::take_scan(const ColaTelegram& telegram, std::int64_t time_ns,
+                                         EncoderWidths widths) {
+  const auto failure = decode_scan_data(telegram, widths, data_);
+  if (failure != FieldFailure::None) {
+    lose(fmt::format("scan telegrams that cannot be read: {}", to_string(failure)));
+    return {};
+  }
+  if (data_.appended > 0) note("scan telegrams with unknown fields at their end");
+  Scan scan;
+  const auto refusal = to_scan(data_, laser_, time_ns, scan);
+  if (refusal != ScanFailure::None) {
+    lose(fmt::format("scan telegrams that hold no scan: {}", to_string(refusal)));
+    return {};
+  }
+  if (!is_new(scan.telegram_counter, scan.transmission_time_us, time_ns)) return {};
+  note_time(time_ns);
+  note_scan(scan);
+  return scan;
+}
+
+void DeviceLog::note_scan(const Scan& scan) {
+  auto& s = statistics_;
+  constexpr std::size_t kMostSerialNumbers = 16;
+  const bool known = std::find(s.serial_numbers.begin(), s.serial_numbers.end(), scan.serial_number) !=
+                     s.serial_numbers.end();
+  if (!known && s.serial_numbers.size() < kMostSerialNumbers) s.serial_numbers.push_back(scan.serial_number);
+  if (scan.device_status != 0) note("scans whose device reported an error or pollution");
+  handover_.add(1e-6 * static_cast<std::uint32_t>(scan.transmission_time_us - scan.scan_time_us));
+  if (last_scan_) {
+    const auto turns = static_cast<std::uint16_t>(scan.scan_counter - last_scan_->first);
+    const auto elapsed = static_cast<std::uint32_t>(scan.scan_time_us - last_scan_->second);
+    if (turns > 0 && turns < 100) period_.add(1e-6 * elapsed / turns);
+  }
+  last_scan_ = {scan.scan_counter, scan.scan_time_us};
+  s.nominal_frequency = scan.scan_frequency;
+  const auto& first = scan.echoes.front();
+  s.shape = {first.ranges.size(), scan.start_angle,          scan.angle_step,
+             scan.echoes.size(),  !first.remissions.empty(), !scan.encoders.empty()};
+}
+
+std::optional<PlateReading> DeviceLog::take(const PlateReading& reading) {
+  count_telegram("PPLT");
+  if (!is_new(reading.sequence, reading.device_us, reading.receipt_ns)) return {};
+  note_time(reading.receipt_ns);
+  return reading;
+}
+
+void DeviceLog::note_repeated(const ColaFrame& frame) {
+  const auto telegram = parse_cola(frame.payload, frame.language);
+  if (!telegram) return;
+  note(telegram->name == kScanDataName && telegram->command == "sSN" ? "scans that TCP sent again"
+                                                                     : "other telegrams that TCP sent again");
+}
+
+}  // namespace crisp

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "grabbers/capture/capture_statistics.hpp"
+#include "grabbers/capture/running_median.hpp"
+#include "grabbers/capture/sequence_tracker.hpp"
+#include "grabbers/wire/cola_framer.hpp"
+#include "grabbers/wire/scan_conversion.hpp"
+#include "pipeline/data/scan.hpp"
+
+namespace crisp {
+
+/// Follows what one device sends: turns its telegrams into scans or readings, each given once, and keeps
+/// count.
+class DeviceLog {
+ public:
+  /// @param laser index of the laser in the rig
+  DeviceLog(DeviceKind kind, std::string name, Address address, std::uint16_t laser = 0);
+
+  /// A telegram of a laser; gives a scan if it holds one that did not come before.
+  std::optional<Scan> take(const ColaFrame& frame, EncoderWidths widths);
+  /// A reading of a plate; gives it if it did not come before.
+  std::optional<PlateReading> take(const PlateReading& reading);
+  /// A telegram that TCP sent again after it had come.
+  void note_repeated(const ColaFrame& frame);
+
+  void lose(std::string_view what, std::uint64_t n = 1) { statistics_.losses.add(what, n); }
+  void note(std::string_view what, std::uint64_t n = 1) { statistics_.notes.add(what, n); }
+  void set_address(const Address& address) { statistics_.address = address; }
+
+  DeviceStatistics statistics() const;
+
+ private:
+  std::optional<Scan> take_scan(const ColaTelegram& telegram, std::int64_t time_ns, EncoderWidths widths);
+  bool is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns);
+  void count_telegram(std::string_view kind);
+  void note_time(std::int64_t time_ns);
+  void note_scan(const Scan& scan);
+
+  DeviceStatistics statistics_;
+  std::uint16_t laser_ = 0;
+  ScanData data_;
+  SequenceTracker tracker_;
+  RestartWatch clock_;
+  RunningMedian handover_, period_;
+  std::optional<std::pair<std::uint16_t, std::uint32_t>> last_scan_;  ///< its counter and time
+};
+
+}  // namespace crisp

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "grabbers/wire/bytes.hpp"
+
+namespace crisp {
+
+/// A file (or pipe) read from front to back through a window of constant size.
+class FileWindow {
+ public:
+  static constexpr std::size_t kLargestPeek = 1 << 20;
+
+  /// @throws Error if the file cannot be opened
+  explicit FileWindow(const std::filesystem::path& path);
+  ~FileWindow();
+  FileWindow(const FileWindow&) = delete;
+  FileWindow& operator=(const FileWindow&) = delete;
+
+  /// The next n bytes without moving on; fewer at the end of the file. Valid until the next peek().
+  /// @param n at most kLargestPeek
+  /// @throws Error if the disk fails
+  ByteView peek(std::size_t n);
+
+  /// Moves on by n bytes, or to the end. What peek() gave stays valid if n does not lead beyond it.
+  void skip(std::uint64_t n);
+
+  std::uint64_t offset() const { return offset_; }  ///< [bytes] from the file's begin
+  std::uint64_t size() const { return size_; }      ///< [bytes] of the file when it was opened; 0 for a pipe
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  void fill(std::size_t wanted);
+
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0, offset_ = 0;
+  std::unique_ptr<std::uint8_t[]> buffer_;
+  std::size_t begin_ = 0, end_ = 0;  ///< of what was read and not passed, in the buffer
+};
+
+}  // namespace crisp

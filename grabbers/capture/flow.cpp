@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/flow.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace crisp {
+namespace {
+
+constexpr std::size_t kPatience = 256 * 1024;  // [bytes] in which a flow must have said something of ours
+
+bool is_request(const ColaTelegram& telegram) {
+  return telegram.command == "sRN" || telegram.command == "sWN" || telegram.command == "sMN" ||
+         telegram.command == "sEN";
+}
+
+}  // namespace
+
+Flow::Flow(const FlowKey& key, Devices& devices, Devices::Device* known, const CaptureSettings& settings,
+           const Give& give)
+    : key_(key),
+      devices_(devices),
+      device_(known),
+      settings_(settings),
+      give_(give),
+      tcp_(*this, static_cast<std::int64_t>(1e9 * settings.longest_wait)) {
+  const bool laser = known == nullptr || known->kind == DeviceKind::Laser;
+  const bool plate = known == nullptr || known->kind == DeviceKind::Plate;
+  if (laser && key.transport == Transport::Tcp) cola_ = std::make_unique<ColaFramer>();
+  if (plate) plate_ = std::make_unique<PlateFramer>();
+  const bool sure = known != nullptr && (known->port != 0 || is_sick_port(key.from.port));
+  if (sure) speech_ = laser ? Speech::Cola : Speech::Plate;
+}
+
+/// Whether to take the packet now. Where checksums are usually right, one with a wrong checksum is damaged,
+/// and the hub did not take it either; where they are usually wrong, some network card is to blame. The first
+/// wrong ones wait until it is clear which.
+bool Flow::trust(const TransportPacket& packet, std::int64_t time_ns) {
+  if (packet.checksum == ChecksumVerdict::Right) {
+    ++right_checksums_;
+    dropped_ += doubtful_.size();
+    doubtful_.clear();
+  }
+  if (packet.checksum != ChecksumVerdict::Wrong) return true;
+  ++wrong_checksums_;
+  constexpr std::uint64_t kMostDoubtful = 3, kFew = 40, kUsually = 20;
+  if (right_checksums_ == 0 && wrong_checksums_ <= kMostDoubtful) {
+    doubtful_.push_back({packet, Bytes(packet.payload.begin(), packet.payload.end()), time_ns});
+    return false;
+  }
+  take_doubtful();
+  const bool few = right_checksums_ + wrong_checksums_ < kFew;
+  const bool damaged = right_checksums_ > (few ? 1 : kUsually) * wrong_checksums_;
+  if (damaged) ++dropped_;
+  return !damaged;
+}
+
+/// Checksums are wrong here as a habit: what waited is good.
+void Flow::take_doubtful() {
+  for (auto& [packet, payload, time_ns] : std::exchange(doubtful_, {})) {
+    packet.payload = payload;
+    take_trusted(packet, time_ns);
+  }
+}
+
+void Flow::take(const TransportPacket& packet, std::int64_t time_ns) {
+  last_ns_ = time_ns;
+  if (trust(packet, time_ns)) take_trusted(packet, time_ns);
+}
+
+void Flow::take_trusted(const TransportPacket& packet, std::int64_t time_ns) {
+  if (packet.missing > 0) ++cut_short_;
+  if (key_.transport == Transport::Tcp) {
+    if (packet.syn && speech_ == Speech::Nothing) {  // a new connection may carry something else
+      speech_ = Speech::Unknown;
+      unconvincing_bytes_ = 0;
+      cola_ = std::make_unique<ColaFramer>();
+      plate_ = std::make_unique<PlateFramer>();
+    }
+    if (speech_ != Speech::Nothing) tcp_.take(packet, time_ns);
+  } else if (plate_) {
+    data(packet.payload, time_ns);
+    gap();
+  }
+}
+
+void Flow::data(ByteView bytes, std::int64_t arrival_ns) {
+  if (cola_) cola_->feed(bytes, arrival_ns, [&](const ColaFrame& frame) { take_frame(frame); });
+  if (plate_) plate_->feed(bytes, arrival_ns, [&](const PlateReading& reading) { take_reading(reading); });
+  if (speech_ != Speech::Unknown) {
+    if (speech_ != Speech::Cola) cola_.reset();
+    if (speech_ != Speech::Plate) plate_.reset();
+    return;
+  }
+  unconvincing_bytes_ += bytes.size();
+  if (unconvincing_bytes_ > kPatience) {
+    speech_ = Speech::Nothing;
+    cola_.reset();
+    plate_.reset();
+  }
+}
+
+void Flow::gap() {
+  if (cola_) cola_->gap([&](const ColaFrame& frame) { take_frame(frame); });
+  if (plate_) plate_->gap();
+}
+
+void Flow::repeated(ByteView bytes) {
+  if (device_ == nullptr || speech_ != Speech::Cola) return;
+  ColaFramer().feed(bytes, 0, [&](const ColaFrame& frame) { device_->log.note_repeated(frame); });
+}
+
+/// Whether the flow speaks this language of a device that is known from now on.
+bool Flow::settle(Speech speech) {
+  if (speech_ == Speech::Unknown) {
+    const auto kind = speech == Speech::Cola ? DeviceKind::Laser : DeviceKind::Plate;
+    if (device_ == nullptr) device_ = devices_.other(key_, kind);
+    speech_ = device_ != nullptr ? speech : Speech::Nothing;
+  }
+  return speech_ == speech;
+}
+
+void Flow::take_frame(const ColaFrame& frame) {
+  if (speech_ == Speech::Unknown && device_ == nullptr) {
+    const auto telegram = parse_cola(frame.payload, frame.language);
+    if (!telegram) return;
+    if (is_request(*telegram)) speech_ = Speech::Nothing;  // the hub's side of a conversation
+  }
+  if (!settle(Speech::Cola)) return;
+  auto scan = device_->log.take(frame, settings_.encoder_widths);
+  if (scan && is_of_rig()) give_(std::move(*scan));
+}
+
+void Flow::take_reading(const PlateReading& reading) {
+  if (!settle(Speech::Plate)) return;
+  const auto fresh = device_->log.take(reading);
+  if (fresh && is_of_rig()) give_(*fresh);
+}
+
+void Flow::expire(std::int64_t now_ns) { tcp_.expire(now_ns); }
+
+std::optional<std::int64_t> Flow::waiting_since() const {
+  auto since = tcp_.waiting_since();
+  const auto framer = cola_ ? cola_->waiting_since() : std::nullopt;
+  if (!framer) return since;
+  return std::min(since.value_or(*framer), *framer);
+}
+
+void Flow::finish() {
+  take_doubtful();
+  tcp_.finish();
+  gap();
+  if (device_ != nullptr && (speech_ == Speech::Cola || speech_ == Speech::Plate)) report();
+}
+
+void Flow::report() {
+  auto& log = device_->log;
+  const auto& tcp = tcp_.counts();
+  log.lose("packets with a wrong checksum", dropped_);
+  log.lose("packets that the capture cut short", cut_short_);
+  log.lose("bytes that TCP carried but the capture lacks", tcp.lost_bytes);
+  log.note("TCP connections", tcp.connections);
+  log.note("TCP segments sent again", tcp.repeated_segments);
+  log.note("TCP segments out of order", tcp.late_segments);
+  log.note("TCP segments that fit nowhere", tcp.strays);
+  if (cola_) {
+    const auto& framer = cola_->counts();
+    log.lose("telegrams with a wrong checksum", framer.checksum_failures);
+    log.lose("telegrams cut by a gap or an end", framer.cut);
+    log.lose("bytes that belong to no whole telegram", framer.skipped_bytes);
+    log.note("times that the next telegram had to be searched", framer.resynchronisations);
+  }
+  if (plate_) {
+    const auto& framer = plate_->counts();
+    for (const auto failure : {PlateFailure::Truncated, PlateFailure::BadChecksum, PlateFailure::BadField}) {
+      log.lose(fmt::format("sentences refused: {}", to_string(failure)), framer.of(failure));
+    }
+    log.note("sentences of other kinds", framer.of(PlateFailure::OtherSentence));
+    log.lose("bytes that belong to no sentence", framer.skipped_bytes);
+  }
+}
+
+}  // namespace crisp

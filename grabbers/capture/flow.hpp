@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "grabbers/capture/devices.hpp"
+#include "grabbers/capture/tcp_stream.hpp"
+#include "grabbers/wire/plate_framer.hpp"
+
+namespace crisp {
+
+/// What a capture gives.
+using CaptureItem = std::variant<Scan, PlateReading>;
+
+/// How the bytes of a capture are understood.
+struct CaptureSettings {
+  EncoderWidths encoder_widths = EncoderWidths::Position32;
+  double longest_wait = 5;  ///< [s] of capture time that a lost TCP segment is waited for
+};
+
+/// One direction of one conversation between two ends: finds out what it carries, and hands telegrams and
+/// readings to the device that sent them.
+class Flow final : public StreamSink {
+ public:
+  using Give = std::function<void(CaptureItem)>;
+
+  /// @param known the rig's device at the flow's beginning, or nullptr
+  /// @param give  takes what a device of the rig measured
+  Flow(const FlowKey& key, Devices& devices, Devices::Device* known, const CaptureSettings& settings,
+       const Give& give);
+
+  void take(const TransportPacket& packet, std::int64_t time_ns);
+  void expire(std::int64_t now_ns);
+  /// The capture ends, or the flow is forgotten: what is incomplete is lost, and the device learns all
+  /// counts.
+  void finish();
+
+  /// [ns] No item still to come from what is here was received earlier. Nothing if nothing is here.
+  std::optional<std::int64_t> waiting_since() const;
+  std::int64_t last_ns() const { return last_ns_; }
+  bool is_of_rig() const { return device_ != nullptr && device_->rig_index.has_value(); }
+
+ private:
+  enum class Speech : std::uint8_t { Unknown, Cola, Plate, Nothing };
+
+  void data(ByteView bytes, std::int64_t arrival_ns) override;
+  void gap() override;
+  void repeated(ByteView bytes) override;
+
+  bool trust(const TransportPacket& packet, std::int64_t time_ns);
+  void take_doubtful();
+  void take_trusted(const TransportPacket& packet, std::int64_t time_ns);
+  void take_frame(const ColaFrame& frame);
+  void take_reading(const PlateReading& reading);
+  bool settle(Speech speech);
+  void report();
+
+  FlowKey key_;
+  Devices& devices_;
+  Devices::Device* device_ = nullptr;
+  CaptureSettings settings_;
+  const Give& give_;
+  Speech speech_ = Speech::Unknown;
+  TcpStream tcp_;
+  std::unique_ptr<ColaFramer> cola_;
+  std::unique_ptr<PlateFramer> plate_;
+  std::size_t unconvincing_bytes_ = 0;
+  struct Doubtful {
+    TransportPacket packet;
+    Bytes payload;
+    std::int64_t time_ns;
+  };
+  std::vector<Doubtful> doubtful_;  ///< with wrong checksums, before any right one came
+  std::uint64_t right_checksums_ = 0, wrong_checksums_ = 0, dropped_ = 0, cut_short_ = 0;
+  std::int64_t last_ns_ = 0;
+};
+
+}  // namespace crisp

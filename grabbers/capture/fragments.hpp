@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "grabbers/capture/counts.hpp"
+#include "grabbers/capture/network.hpp"
+
+namespace crisp {
+
+/// Puts IP packets together that came in fragments, in any order (RFC 791, RFC 8200). Of bytes that came
+/// twice the first are kept. Bounded: at most 64 packets at a time, none for longer than 30 s.
+class FragmentAssembler {
+ public:
+  static constexpr std::string_view kIncomplete = "IP packets whose fragments did not all come";
+
+  /// @param fragment one whose is_fragment() is true
+  /// @return the whole packet if this fragment completes it; its payload is valid until the next call
+  std::optional<IpPacket> take(const IpPacket& fragment, std::int64_t time_ns);
+
+  /// The stream of packets ends: what is incomplete is lost.
+  void finish();
+
+  const Counts& losses() const { return losses_; }
+
+ private:
+  struct Key {
+    IpAddress from, to;
+    std::uint32_t id;
+    std::uint8_t protocol;
+    auto operator<=>(const Key&) const = default;
+  };
+  struct Partial {
+    std::int64_t begun_ns = 0;
+    std::map<std::uint32_t, Bytes> pieces;  ///< by their offset
+    std::optional<std::uint32_t> size;      ///< known from the last fragment
+  };
+
+  void forget_old(std::int64_t now_ns);
+  static std::optional<Bytes> joined(const Partial& partial);
+
+  std::map<Key, Partial> partials_;
+  Bytes whole_;
+  Counts losses_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
+
+#include "grabbers/capture/flow.hpp"
+
+namespace crisp {
+
+/// [ns] When the hub received an item.
+inline std::int64_t receipt_ns(const CaptureItem& item) {
+  return std::visit([](const auto& x) { return x.receipt_ns; }, item);
+}
+
+/// Puts items into the order of their receipt; of equal times the first that came goes first.
+class ItemMerge {
+ public:
+  void push(CaptureItem item) {
+    const auto time = receipt_ns(item);
+    const auto later = [](std::int64_t t, const CaptureItem& other) { return t < receipt_ns(other); };
+    items_.insert(std::upper_bound(items_.begin(), items_.end(), time, later), std::move(item));
+  }
+
+  /// The next item, if it was received before `limit_ns`.
+  std::optional<CaptureItem> pop(std::int64_t limit_ns = std::numeric_limits<std::int64_t>::max()) {
+    if (items_.empty() || receipt_ns(items_.front()) >= limit_ns) return {};
+    auto item = std::move(items_.front());
+    items_.pop_front();
+    return item;
+  }
+
+  bool empty() const { return items_.empty(); }
+
+ private:
+  std::deque<CaptureItem> items_;
+};
+
+}  // namespace crisp

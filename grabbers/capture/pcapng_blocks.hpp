@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "grabbers/capture/byte_order.hpp"
+#include "grabbers/capture/counts.hpp"
+#include "grabbers/capture/file_window.hpp"
+#include "grabbers/capture/packet.hpp"
+
+namespace crisp {
+
+/// The blocks of a pcapng file (draft-ietf-opsawg-pcapng): any number of sections and interfaces, each with
+/// its byte order, link type, time resolution and offset. Not libpcap, because that refuses interfaces of
+/// different link types and sections of different byte orders, and ends at the first damaged block; here the
+/// next good one is looked for, and what lies between is counted.
+class PcapngBlocks {
+ public:
+  /// Whether the file begins like a pcapng file.
+  static bool recognises(ByteView begin);
+
+  PcapngBlocks(FileWindow& file, Counts& losses) : file_(file), losses_(losses) {}
+
+  bool next(Packet& packet);  ///< false at the end of the file
+
+ private:
+  struct Interface {
+    std::uint32_t link_type = 0;
+    std::uint8_t resolution = 6;  ///< if_tsresol: 10^-n s, or with the highest bit 2^-n s
+    std::int64_t offset_s = 0;    ///< if_tsoffset
+    std::uint64_t dropped = 0;    ///< isb_ifdrop, as last reported
+  };
+
+  std::uint32_t u32(ByteView bytes, std::size_t at) const {
+    return number_at<std::uint32_t>(bytes, at, order_);
+  }
+  std::optional<std::size_t> block_size(ByteView begin) const;
+  bool is_block(ByteView bytes, std::size_t at) const;
+  bool enter_section(ByteView begin);
+  bool resynchronise();
+  bool read_packet(std::uint32_t type, ByteView body, Packet& packet);
+  void describe_interface(ByteView body);
+  void read_statistics(ByteView body);
+  template <class Take>
+  void options(ByteView bytes, Take take) const;
+  static std::optional<std::int64_t> to_ns(std::uint64_t ticks, const Interface& interface);
+
+  FileWindow& file_;
+  Counts& losses_;
+  ByteOrder order_ = ByteOrder::Little;
+  std::vector<Interface> interfaces_;
+};
+
+}  // namespace crisp

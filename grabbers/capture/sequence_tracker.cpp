@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/sequence_tracker.hpp"
+
+#include <cmath>
+
+namespace crisp {
+namespace {
+
+/// The number congruent to `residue` modulo `modulus` that is nearest to `expected`.
+double nearest_congruent(double residue, double modulus, double expected) {
+  return residue + modulus * std::round((expected - residue) / modulus);
+}
+
+}  // namespace
+
+std::int64_t SequenceTracker::steps_to(std::uint16_t counter, std::int64_t time_ns) const {
+  const double expected = interval_ns_ > 0 ? static_cast<double>(time_ns - last_ns_) / interval_ns_ : 1;
+  return std::llround(nearest_congruent(static_cast<std::uint16_t>(counter - last_), 65536, expected));
+}
+
+SequenceTracker::Verdict SequenceTracker::begin(std::uint16_t counter, std::uint32_t stamp,
+                                                std::int64_t time_ns) {
+  begun_ = true;
+  last_ = counter;
+  last_ns_ = time_ns;
+  seen_ = 1;
+  stamps_[counter % kRemembered] = stamp;
+  return Verdict::First;
+}
+
+SequenceTracker::Verdict SequenceTracker::take(std::uint16_t counter, std::uint32_t stamp,
+                                               std::int64_t time_ns) {
+  if (!begun_) return begin(counter, stamp, time_ns);
+  const auto steps = steps_to(counter, time_ns);
+  auto& remembered = stamps_[counter % kRemembered];
+  if (steps <= -kRemembered) return begin(counter, stamp, time_ns);  // a counter that was set
+  if (steps <= 0) {
+    const auto bit = std::uint64_t{1} << -steps;
+    const bool seen = (seen_ & bit) != 0;
+    if (seen) return remembered == stamp ? Verdict::Duplicate : Verdict::Next;  // else a counter that stands
+    seen_ |= bit;
+    remembered = stamp;
+    if (lost_ > 0) --lost_;
+    return Verdict::Late;
+  }
+  lost_ += static_cast<std::uint64_t>(steps - 1);
+  seen_ = steps < kRemembered ? (seen_ << steps) | 1 : 1;
+  remembered = stamp;
+  if (steps < kRemembered) {
+    constexpr double kWeight = 1.0 / 16;
+    const double interval = static_cast<double>(time_ns - last_ns_) / static_cast<double>(steps);
+    interval_ns_ = interval_ns_ > 0 ? interval_ns_ + kWeight * (interval - interval_ns_) : interval;
+  }
+  last_ = counter;
+  last_ns_ = time_ns;
+  return Verdict::Next;
+}
+
+bool RestartWatch::take(std::uint32_t device_us, std::int64_t time_ns) {
+  bool restarted = false;
+  if (begun_) {
+    const double hub = 1e-3 * static_cast<double>(time_ns - last_ns_);  // [µs]
+    const double device =
+        nearest_congruent(static_cast<std::uint32_t>(device_us - last_us_), 4294967296.0, hub);
+    constexpr double kBack = 0.5e6, kAhead = 60e6;  // [µs]
+    restarted = device < -kBack || device - hub > kAhead;
+  }
+  begun_ = true;
+  last_us_ = device_us;
+  last_ns_ = time_ns;
+  return restarted;
+}
+
+}  // namespace crisp

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/tcp_stream.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <iterator>
+
+namespace crisp {
+namespace {
+
+constexpr std::int64_t kWindow = 1 << 20;  // [bytes] how far from its stream a segment is believed
+constexpr std::size_t kMostHeld = 4 << 20, kMostSegments = 4096;
+
+}  // namespace
+
+void TcpStream::take(const TransportPacket& segment, std::int64_t time_ns) {
+  expire(time_ns);
+  const auto sequence = segment.sequence + (segment.syn ? 1 : 0);
+  const bool same_begin = begun_ && position_ < std::uint64_t{kWindow} && sequence == first_;
+  if (segment.syn && !same_begin) begin(sequence);
+  if (!segment.payload.empty() || segment.missing > 0) {
+    if (!begun_) begin(sequence);
+    place(sequence, segment.payload, segment.missing, time_ns);
+  }
+  if (segment.reset) finish();
+}
+
+void TcpStream::begin(std::uint32_t sequence) {
+  if (begun_) {
+    finish();
+    sink_.gap();
+  }
+  begun_ = true;
+  first_ = sequence;
+  position_ = 0;
+  ++counts_.connections;
+}
+
+void TcpStream::place(std::uint32_t sequence, ByteView bytes, std::uint32_t missing, std::int64_t time_ns) {
+  const auto expected = static_cast<std::uint32_t>(first_ + position_);
+  const std::int64_t distance = static_cast<std::int32_t>(sequence - expected);
+  if (std::abs(distance) > kWindow) {
+    if (!stray(sequence, bytes, time_ns)) return;
+    return place(sequence, bytes, missing, time_ns);
+  }
+  const auto size = static_cast<std::int64_t>(bytes.size());
+  if (distance + size + missing <= 0) {
+    ++counts_.repeated_segments;
+    sink_.repeated(bytes);
+    return;
+  }
+  if (distance > 0) {
+    const auto before = held_bytes_;
+    hold(position_ + static_cast<std::uint64_t>(distance), bytes, time_ns);
+    ++(held_bytes_ > before ? counts_.late_segments : counts_.repeated_segments);
+    while (held_bytes_ > kMostHeld || held_.size() > kMostSegments) skip_hole();
+    return;
+  }
+  const auto end = position_ + static_cast<std::uint64_t>(distance + size + missing);
+  bytes = bytes.subspan(static_cast<std::size_t>(std::min(-distance, size)));
+  if (held_.empty()) {
+    deliver(bytes, time_ns);
+  } else {  // some of these bytes may have come before
+    hold(position_, bytes, time_ns);
+    release();
+  }
+  if (position_ < end) {  // the capture cut the segment short: nobody will send the rest again
+    jump_to(end);
+    release();
+  }
+}
+
+void TcpStream::deliver(ByteView bytes, std::int64_t arrival_ns) {
+  position_ += bytes.size();
+  if (!bytes.empty()) sink_.data(bytes, arrival_ns);
+}
+
+/// Keeps those of the bytes that are not held already.
+void TcpStream::hold(std::uint64_t offset, ByteView bytes, std::int64_t time_ns) {
+  while (!bytes.empty()) {
+    const auto next = held_.upper_bound(offset);
+    const auto end_before =
+        next == held_.begin() ? 0 : std::prev(next)->first + std::prev(next)->second.bytes.size();
+    auto size = bytes.size();
+    if (end_before > offset) {
+      size = std::min<std::uint64_t>(size, end_before - offset);
+    } else {
+      if (next != held_.end()) size = std::min<std::uint64_t>(size, next->first - offset);
+      held_.emplace_hint(
+          next, offset,
+          Held{Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)), time_ns});
+      held_bytes_ += size;
+    }
+    offset += size;
+    bytes = bytes.subspan(size);
+  }
+}
+
+/// Delivers what was held and is no longer behind a hole.
+void TcpStream::release() {
+  while (!held_.empty() && held_.begin()->first <= position_) {
+    const auto node = held_.extract(held_.begin());
+    const auto& held = node.mapped();
+    held_bytes_ -= held.bytes.size();
+    const auto known = std::min<std::uint64_t>(position_ - node.key(), held.bytes.size());
+    deliver(ByteView(held.bytes).subspan(known), held.arrival_ns);
+  }
+}
+
+void TcpStream::jump_to(std::uint64_t offset) {
+  ++counts_.holes;
+  counts_.lost_bytes += offset - position_;
+  position_ = offset;
+  sink_.gap();
+}
+
+void TcpStream::expire(std::int64_t now_ns) {
+  while (!held_.empty() && now_ns - *oldest_held() > max_wait_ns_) skip_hole();
+  if (stray_ && now_ns - stray_->arrival_ns > max_wait_ns_) drop_stray();
+}
+
+void TcpStream::finish() {
+  while (!held_.empty()) skip_hole();
+  drop_stray();
+}
+
+void TcpStream::skip_hole() {
+  jump_to(held_.begin()->first);
+  release();
+}
+
+void TcpStream::drop_stray() {
+  if (stray_) ++counts_.strays;
+  stray_.reset();
+}
+
+std::optional<std::int64_t> TcpStream::oldest_held() const {
+  std::optional<std::int64_t> oldest;
+  for (const auto& [offset, held] : held_)
+    oldest = std::min(oldest.value_or(held.arrival_ns), held.arrival_ns);
+  return oldest;
+}
+
+std::optional<std::int64_t> TcpStream::waiting_since() const {
+  const auto oldest = oldest_held();
+  if (!stray_) return oldest;
+  return std::min(oldest.value_or(stray_->arrival_ns), stray_->arrival_ns);
+}
+
+/// Whether the stream goes on from the stray segment held before, which this one continues: a new connection.
+bool TcpStream::stray(std::uint32_t sequence, ByteView bytes, std::int64_t time_ns) {
+  const bool continues =
+      stray_ && sequence == static_cast<std::uint32_t>(stray_->sequence + stray_->bytes.size());
+  if (continues) {
+    const auto before = std::move(*stray_);
+    stray_.reset();
+    begin(before.sequence);
+    deliver(before.bytes, before.arrival_ns);
+    return true;
+  }
+  drop_stray();
+  stray_.emplace();
+  stray_->sequence = sequence;
+  stray_->arrival_ns = time_ns;
+  stray_->bytes.assign(bytes.begin(), bytes.end());
+  return false;
+}
+
+}  // namespace crisp

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "grabbers/capture/network.hpp"
+
+namespace crisp {
+
+/// Takes what a TCP stream carries, in the order in which it was sent.
+class StreamSink {
+ public:
+  virtual ~StreamSink() = default;
+  /// The next bytes. @param arrival_ns [ns] capture time of the packet that first brought them
+  virtual void data(ByteView bytes, std::int64_t arrival_ns) = 0;
+  /// Bytes are missing here, or a new connection begins.
+  virtual void gap() = 0;
+  /// A segment whose bytes were all there before.
+  virtual void repeated(ByteView bytes) = 0;
+};
+
+/// One direction of a TCP connection, put in order: segments may come in any order, twice, overlapping, or
+/// not at all, and the capture may begin in mid-connection. Bytes keep the time of the packet that first
+/// brought them. A hole is waited for, but not for longer than `max_wait_ns` of capture time or more than
+/// 4 MiB behind it.
+///
+/// A segment far from where the stream is, is either damaged or of a new connection whose begin was not
+/// captured: it is held until the next one says which.
+class TcpStream {
+ public:
+  struct Counts {
+    std::uint64_t repeated_segments = 0;
+    std::uint64_t late_segments = 0;  ///< brought bytes before those that precede them
+    std::uint64_t lost_bytes = 0;     ///< never came
+    std::uint64_t holes = 0;          ///< in how many places
+    std::uint64_t connections = 0;    ///< begun, seen or not
+    std::uint64_t strays = 0;         ///< segments that fit nowhere
+  };
+
+  TcpStream(StreamSink& sink, std::int64_t max_wait_ns) : sink_(sink), max_wait_ns_(max_wait_ns) {}
+
+  void take(const TransportPacket& segment, std::int64_t time_ns);
+  /// Gives up holes that were waited for too long.
+  void expire(std::int64_t now_ns);
+  /// The capture ends: gives what waits behind holes.
+  void finish();
+
+  /// [ns] Arrival of the oldest byte that waits for others, if any does.
+  std::optional<std::int64_t> waiting_since() const;
+
+  const Counts& counts() const { return counts_; }
+
+ private:
+  struct Held {
+    Bytes bytes;
+    std::int64_t arrival_ns = 0;
+  };
+
+  void begin(std::uint32_t sequence);
+  void place(std::uint32_t sequence, ByteView bytes, std::uint32_t missing, std::int64_t time_ns);
+  void deliver(ByteView bytes, std::int64_t arrival_ns);
+  void hold(std::uint64_t offset, ByteView bytes, std::int64_t time_ns);
+  void release();
+  void skip_hole();
+  void drop_stray();
+  std::optional<std::int64_t> oldest_held() const;
+  void jump_to(std::uint64_t offset);
+  bool stray(std::uint32_t sequence, ByteView bytes, std::int64_t time_ns);
+
+  StreamSink& sink_;
+  std::int64_t max_wait_ns_;
+  bool begun_ = false;
+  std::uint32_t first_ = 0;     ///< sequence number of the first byte
+  std::uint64_t position_ = 0;  ///< of the next byte to deliver, counted from the first
+  std::map<std::uint64_t, Held> held_;
+  std::size_t held_bytes_ = 0;
+  struct Stray : Held {
+    std::uint32_t sequence = 0;
+  };
+  std::optional<Stray> stray_;
+  Counts counts_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "grabbers/capture/capture_reader.hpp"
+#include "tests/grabbers/capture/capture_bytes.hpp"
+
+namespace crisp {
+
+/// A captured run of the default rig without its third laser: n scans of each of two lasers, 50 a second, and
+/// ten times as many plate readings.
+struct Scenario {
+  std::size_t scans = 10;
+  std::size_t beams = 20;
+  ColaLanguage language = ColaLanguage::B;
+  TcpSettings tcp;
+  bool handshake = true;
+
+  std::vector<Frame> frames() const;       ///< what tcpdump would have captured
+  std::vector<CaptureItem> items() const;  ///< what a reader is to find, in order
+};
+
+/// The item in one line: which, when, and its content.
+std::string describe(const CaptureItem& item);
+std::vector<std::string> describe(const std::vector<CaptureItem>& items);
+
+/// What a reader of the default rig gives for this file.
+struct Reading {
+  std::vector<std::string> items;
+  CaptureStatistics statistics;
+  const DeviceStatistics& device(const std::string& name) const;
+};
+Reading read_capture(ByteView file, const CaptureSettings& settings = {});
+Reading read_capture(const std::filesystem::path& file, const Rig& rig = default_rig(),
+                     const CaptureSettings& settings = {});
+
+}  // namespace crisp

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/sequence_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include "grabbers/capture/running_median.hpp"
+
+namespace crisp {
+namespace {
+
+using Verdict = SequenceTracker::Verdict;
+
+constexpr std::int64_t kInterval = 2'000'000;  // 500 a second
+
+/// Sends the counter of item k at its time.
+Verdict send(SequenceTracker& tracker, std::int64_t k) {
+  return tracker.take(static_cast<std::uint16_t>(k), static_cast<std::uint32_t>(k), k * kInterval);
+}
+
+TEST(SequenceTracker, LosesNothingAcrossManyWraps) {
+  SequenceTracker tracker;
+  for (std::int64_t k = 65000; k < 300'000; ++k)
+    ASSERT_EQ(send(tracker, k), k == 65000 ? Verdict::First : Verdict::Next);
+  EXPECT_EQ(tracker.lost(), 0U);
+}
+
+TEST(SequenceTracker, CountsWhatIsMissing) {
+  SequenceTracker tracker;
+  for (std::int64_t k = 0; k < 1000; ++k) {
+    if (k < 100 || k % 10 != 0) send(tracker, k);
+  }
+  EXPECT_EQ(tracker.lost(), 90U);
+}
+
+TEST(SequenceTracker, CountsASilenceOfManyWrapsByItsTime) {
+  SequenceTracker tracker;
+  for (std::int64_t k = 0; k < 1000; ++k) send(tracker, k);
+  send(tracker, 1000 + 300'000);
+  EXPECT_EQ(tracker.lost(), 300'000U);
+}
+
+TEST(SequenceTracker, TellsLateItemsFromRepeatedOnes) {
+  SequenceTracker tracker;
+  for (const std::int64_t k : {0, 1, 2, 5, 6}) send(tracker, k);
+  EXPECT_EQ(tracker.lost(), 2U);
+  EXPECT_EQ(send(tracker, 5), Verdict::Duplicate);
+  EXPECT_EQ(send(tracker, 6), Verdict::Duplicate);
+  EXPECT_EQ(send(tracker, 3), Verdict::Late);
+  EXPECT_EQ(send(tracker, 3), Verdict::Duplicate);
+  EXPECT_EQ(tracker.lost(), 1U);
+  EXPECT_EQ(send(tracker, 7), Verdict::Next);
+}
+
+TEST(SequenceTracker, TakesACounterThatStandsForNoRepetition) {
+  SequenceTracker tracker;
+  tracker.take(7, 100, 0);
+  EXPECT_EQ(tracker.take(7, 200, kInterval), Verdict::Next);
+  EXPECT_EQ(tracker.take(7, 300, 2 * kInterval), Verdict::Next);
+  EXPECT_EQ(tracker.lost(), 0U);
+}
+
+TEST(SequenceTracker, BeginsAnewWhenTold) {
+  SequenceTracker tracker;
+  for (std::int64_t k = 0; k < 100; ++k) send(tracker, k);
+  tracker.restart();
+  EXPECT_EQ(tracker.take(40'000, 1, 1'000'000'000), Verdict::First);
+  EXPECT_EQ(tracker.lost(), 0U);
+}
+
+TEST(RestartWatch, SeesAClockThatWasSetBack) {
+  RestartWatch watch;
+  EXPECT_FALSE(watch.take(3'000'000'000U, 0));
+  EXPECT_FALSE(watch.take(3'000'020'000U, 20'000'000));
+  EXPECT_TRUE(watch.take(100'000U, 10'000'000'000));
+  EXPECT_FALSE(watch.take(120'000U, 10'020'000'000));
+}
+
+TEST(RestartWatch, TakesAWrapAndASilenceForWhatTheyAre) {
+  RestartWatch watch;
+  EXPECT_FALSE(watch.take(4'294'960'000U, 0));
+  EXPECT_FALSE(watch.take(12'704U, 20'000'000)) << "the clock wraps at 2^32";
+  const std::int64_t two_hours_us = 7'200'000'000;
+  EXPECT_FALSE(
+      watch.take(static_cast<std::uint32_t>(12'704 + two_hours_us), 20'000'000 + two_hours_us * 1000));
+}
+
+TEST(RestartWatch, TakesALateDeliveryForNoRestart) {
+  RestartWatch watch;
+  EXPECT_FALSE(watch.take(1'000'000, 0));
+  EXPECT_FALSE(watch.take(1'020'000, 30'000'000'000)) << "held up for 30 s";
+  EXPECT_FALSE(watch.take(31'000'000, 30'000'100'000)) << "and then on time again";
+  EXPECT_FALSE(watch.take(30'999'000, 30'000'200'000)) << "datagrams may change places";
+}
+
+TEST(RunningMedian, IsExactForFewValuesAndCloseForMany) {
+  RunningMedian median;
+  EXPECT_FALSE(median.value());
+  for (int i = 0; i < 101; ++i) median.add((i * 37) % 101);
+  EXPECT_EQ(median.value(), 50);
+  RunningMedian many;
+  for (int i = 0; i < 1'000'000; ++i) many.add((i * 7919LL) % 1'000'003);
+  EXPECT_NEAR(*many.value(), 500'000, 30'000) << "of at least 2048 values: three standard errors";
+}
+
+}  // namespace
+}  // namespace crisp
