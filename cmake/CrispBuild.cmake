@@ -18,6 +18,7 @@ target_compile_options(crisp_settings INTERFACE
   -Wno-missing-field-initializers  # designated initialisers leave the rest to the defaults
   # Optimising, GCC 12 sees overlaps in std::string where there are none (its bug 105651).
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-gnu-anonymous-struct -Wno-nested-anon-types>  # PCL's macro for x, y, z
   $<$<BOOL:${CRISP_WARNINGS_AS_ERRORS}>:-Werror>)
 if(CRISP_SANITIZE)
   add_compile_options(-fsanitize=${CRISP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

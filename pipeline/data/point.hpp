@@ -19,6 +19,10 @@ struct EIGEN_ALIGN16 Point {
   std::uint16_t laser = 0;  ///< index of the laser in the rig
   std::uint16_t beam = 0;   ///< index of the beam in its scan
   double time = 0;          ///< [s since the epoch of the cloud's header]
+  Point() {
+    x = y = z = 0;
+    data[3] = 1;  // homogeneous, as PCL's own points have it
+  }
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 };
 
