@@ -32,7 +32,7 @@ Vector3d checked_normal(const Surface& surface) {
     throw Error("the surface " + surface.name + " has fewer than three corners");
   const Vector3d area = area_vector(surface.corners);
   if (!(area.norm() > 1e-12)) throw Error("the surface " + surface.name + " has no area");
-  const Vector3d normal = area.normalized();
+  Vector3d normal = area.normalized();
   for (const auto& corner : surface.corners) {
     const double off = std::abs(normal.dot(corner - surface.corners.front()));
     if (off > kFlatness) {

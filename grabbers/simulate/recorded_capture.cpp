@@ -69,21 +69,21 @@ void FaultyWire::push(std::int64_t time_ns, ByteView frame) {
   sink_(time_ns, bytes);
 }
 
-RecordedCapture::RecordedCapture(std::filesystem::path path, const RecordingSettings& settings,
-                                 const RecordingTruth& truth, const WireFaults& faults)
-    : settings_(settings),
-      truth_(truth),
+RecordedCapture::RecordedCapture(std::filesystem::path path, RecordingSettings settings, RecordingTruth truth,
+                                 const WireFaults& faults)
+    : settings_(std::move(settings)),
+      truth_(std::move(truth)),
       file_(std::move(path), PcapMode::Replace),
       sorter_([this](std::int64_t ns, ByteView frame) { file_.write(ns, frame); }, kHold),
-      wire_(faults, settings.scanner.seed,
+      wire_(faults, settings_.scanner.seed,
             [this](std::int64_t ns, ByteView frame) { sorter_.push(ns, frame); }),
-      plate_(with_port(settings.scanner.rig.plate.address, kPlatePort),
-             hub_for(settings.scanner.rig.plate.address, kPlatePort),
+      plate_(with_port(settings_.scanner.rig.plate.address, kPlatePort),
+             hub_for(settings_.scanner.rig.plate.address, kPlatePort),
              [this](std::int64_t ns, ByteView frame) { wire_.push(ns, frame); }) {
-  lasers_.resize(settings.scanner.rig.lasers.size());
+  lasers_.resize(settings_.scanner.rig.lasers.size());
   constexpr std::int64_t kBefore = 200 * kMillisecond;  // the plate's readings begin 100 ms before time 0
   for (std::size_t i = 0; i < lasers_.size(); ++i) {
-    connect(i, settings.start_ns - kBefore + static_cast<std::int64_t>(i) * kMillisecond);
+    connect(i, settings_.start_ns - kBefore + static_cast<std::int64_t>(i) * kMillisecond);
   }
 }
 

@@ -48,7 +48,7 @@ class RecordedCapture {
  public:
   /// @param path  takes the capture when it is complete; nothing is there before
   /// @throws Error if the file cannot be written, or the rig's addresses are none
-  RecordedCapture(std::filesystem::path path, const RecordingSettings& settings, const RecordingTruth& truth,
+  RecordedCapture(std::filesystem::path path, RecordingSettings settings, RecordingTruth truth,
                   const WireFaults& faults = {});
 
   /// Events must come in the order of receipt.

@@ -31,6 +31,7 @@ class RecordingSimulator {
   RecordingSimulator(const RecordingSettings& settings, const Scene& scene, const TermRegistry& terms = {});
   RecordingSimulator(const RecordingSimulator&) = delete;
   RecordingSimulator& operator=(const RecordingSimulator&) = delete;
+  ~RecordingSimulator() = default;
 
   /// The next event, or nothing after the last one.
   std::optional<HubEvent> next();

@@ -229,7 +229,7 @@ class SceneReader {
       const auto value = read_number(node.items[i], "m", wrong);
       if (value && std::abs(*value) > kFarthest) wrong = fmt::format("{:g} m cannot be meant", *value);
       if (!wrong.empty()) {
-        fail(node.items[i].place, what + ": " + wrong);
+        fail(node.items[i].place, fmt::format("{}: {}", what, wrong));
       } else {
         result[static_cast<Eigen::Index>(i)] = *value;
       }

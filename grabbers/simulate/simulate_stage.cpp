@@ -47,12 +47,6 @@ const TermRegistry& known_terms(const RunSettings& run) {
   return run.registrar ? run.registrar->get<TermRegistry>() : none;
 }
 
-void make_folder(const std::filesystem::path& file) {
-  std::error_code failed;
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), failed);
-  if (failed) throw Error("cannot make the folder of " + file.string() + ": " + failed.message());
-}
-
 void check_lasers(const Calibration& truth, const Rig& rig, const std::filesystem::path& file) {
   const bool same = std::equal(truth.lasers.begin(), truth.lasers.end(), rig.lasers.begin(), rig.lasers.end(),
                                [](const auto& a, const auto& b) { return a.name == b.name; });
@@ -110,7 +104,6 @@ void SimulateStage::process(const Inputs&, Outputs& out, Context& context) {
   RecordingSimulator simulator(simulated_, surroundings, known_terms(context.run()));
   truth_ = simulator.truth();
   if (!capture_file_.empty()) {
-    make_folder(capture_file_);
     capture_ = std::make_unique<RecordedCapture>(capture_file_, simulated_, truth_, wire_faults_);
   }
   std::size_t scans = 0;

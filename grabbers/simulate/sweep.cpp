@@ -22,6 +22,23 @@ float remission(double reflectance, const Hit& hit) {
   return static_cast<float>(std::round(254 * reflectance * hit.cos_incidence / (1 + share * share)));
 }
 
+/// The range that the model's terms turn into the true distance: found by stepping, since terms are small.
+double reported_range(const LaserChain& chain, std::span<const double> parameters, Beam<double> beam,
+                      double distance) {
+  if (chain.phases[static_cast<std::size_t>(Phase::kRange)].empty()) return distance;
+  constexpr int kSteps = 20;
+  constexpr double kClose = 1e-9;  // [m]
+  beam.measured_range = distance;
+  for (int step = 0; step < kSteps; ++step) {
+    beam.range = beam.measured_range;
+    apply_phase<double>(chain, Phase::kRange, parameters, {&beam, 1});
+    const double miss = distance - beam.range;
+    beam.measured_range += miss;
+    if (std::abs(miss) < kClose) break;
+  }
+  return beam.measured_range;
+}
+
 void check(const ScannerSettings& settings) {
   if (settings.truth.lasers.size() != settings.rig.lasers.size()) {
     throw Error("the simulation's truth has " + std::to_string(settings.truth.lasers.size()) +
@@ -111,30 +128,13 @@ void SweepSimulator::measure(Laser& laser, Sweep& sweep) {
     const float strength = remission(reflectances_[hit->surface], *hit);
     traced_[i].remission = strength;
     const double measured =
-        noise + reported_range(model_.chain(sweep.laser), laser, traced_[i], hit->distance);
+        noise + reported_range(model_.chain(sweep.laser), laser.parameters, traced_[i], hit->distance);
     const double stepped =
         range.quantum > 0 ? range.quantum * std::round(measured / range.quantum) : measured;
     if (!(stepped >= kSmallestRange)) continue;
     sweep.ranges[i] = static_cast<float>(stepped);
     sweep.remissions[i] = strength;
   }
-}
-
-/// The range that the model's terms turn into the true distance: found by stepping, since terms are small.
-double SweepSimulator::reported_range(const LaserChain& chain, const Laser& laser, Beam<double> beam,
-                                      double distance) const {
-  if (chain.phases[static_cast<std::size_t>(Phase::kRange)].empty()) return distance;
-  constexpr int kSteps = 20;
-  constexpr double kClose = 1e-9;  // [m]
-  beam.measured_range = distance;
-  for (int step = 0; step < kSteps; ++step) {
-    beam.range = beam.measured_range;
-    apply_phase<double>(chain, Phase::kRange, laser.parameters, {&beam, 1});
-    const double miss = distance - beam.range;
-    beam.measured_range += miss;
-    if (std::abs(miss) < kClose) break;
-  }
-  return beam.measured_range;
 }
 
 }  // namespace crisp

@@ -50,8 +50,6 @@ class SweepSimulator {
 
   void aim(Laser& laser, Sweep& sweep);
   void measure(Laser& laser, Sweep& sweep);
-  double reported_range(const LaserChain& chain, const Laser& laser, Beam<double> beam,
-                        double distance) const;
 
   ScannerSettings settings_;
   std::vector<double> reflectances_;  ///< of the scene's surfaces

@@ -105,7 +105,7 @@ TEST_F(RecordedCaptureTest, HoldsEveryTelegramAsItWasSentWithItsReceiptTime) {
       last = frame.time_ns;
       if (frame.protocol == 17) {
         plate.feed(frame.payload, frame.time_ns,
-                   [&](const PlateReading& reading) { found.push_back(reading); });
+                   [&](const PlateReading& reading) { found.emplace_back(reading); });
         continue;
       }
       lasers[frame.from].feed(frame.payload, frame.time_ns, [&](const ColaFrame& telegram) {
@@ -115,7 +115,7 @@ TEST_F(RecordedCaptureTest, HoldsEveryTelegramAsItWasSentWithItsReceiptTime) {
         LaserTelegram received{.laser = static_cast<std::uint16_t>((frame.from & 0xff) - 1),
                                .receipt_ns = telegram.completed_ns};
         ASSERT_EQ(decode_scan_data(*parsed, EncoderWidths::Position32, received.data), FieldFailure::None);
-        found.push_back(received);
+        found.emplace_back(received);
       });
     }
     ASSERT_EQ(found.size(), events.size());
