@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -10,17 +9,13 @@
 #include <vector>
 
 #include "plugins/clock/clock_line.hpp"
+#include "tests/grabbers/wire/samples.hpp"
 #include "tests/plugins/clock/simulated_stamps.hpp"
 
 namespace crisp {
 namespace {
 
 using Row = std::vector<std::int64_t>;
-
-std::filesystem::path shared_data() {
-  if (const char* told = std::getenv("CRISP_SHARED_DATA")) return told;
-  return std::filesystem::path(CRISP_SOURCE_DIR).parent_path() / "shared" / "data";
-}
 
 /// The numbers of a CSV file of data/clocks, comments left out; nothing if the file is not there.
 std::vector<Row> read_rows(const std::string& name) {
@@ -48,12 +43,11 @@ std::vector<Stamp> stamps_of(const std::vector<Row>& rows, std::size_t device, s
   return stamps;
 }
 
-#define SKIP_WITHOUT(rows, name) \
-  if ((rows).empty()) GTEST_SKIP() << "needs " << shared_data() / "clocks" / (name)
-
 TEST(RealClocks, OfATiM781SRunFourPartsPerMillionSlow) {
   const auto rows = read_rows("sick_tim781_tcp.csv");
-  SKIP_WITHOUT(rows, "sick_tim781_tcp.csv");
+  if (rows.empty())
+    GTEST_SKIP() << "no shared data: "
+                 << "sick_tim781_tcp.csv";
   const auto stamps = stamps_of(rows, 3, 5, 1000);
   ASSERT_EQ(stamps.size(), 766u);
   const auto line = line_by_convex_hull(stamps, testing::mean_device_time(stamps));
@@ -68,7 +62,9 @@ TEST(RealClocks, OfATiM781SRunFourPartsPerMillionSlow) {
 
 TEST(RealClocks, TwoStreamsOfOneDeviceGiveOneLine) {
   const auto rows = read_rows("sick_tim781_tcp.csv");
-  SKIP_WITHOUT(rows, "sick_tim781_tcp.csv");
+  if (rows.empty())
+    GTEST_SKIP() << "no shared data: "
+                 << "sick_tim781_tcp.csv";
   const auto transmission = stamps_of(rows, 3, 5, 1000);
   const auto start = stamps_of(rows, 2, 5, 1000);
   const auto a = line_by_convex_hull(transmission, testing::mean_device_time(transmission));
@@ -84,7 +80,7 @@ TEST(RealClocks, AcrossWirelessNetworksAgreeWithinTheirErrors) {
   const char* names[] = {"esp32_wifi_A_scan.csv", "esp32_wifi_A_imu.csv", "esp32_wifi_A_ultrasonic.csv"};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto rows = read_rows(names[i]);
-    SKIP_WITHOUT(rows, names[i]);
+    if (rows.empty()) GTEST_SKIP() << "no shared data: " << names[i];
     const auto stamps = stamps_of(rows, 0, 1, 1);
     lines[i] = line_by_convex_hull(stamps, testing::mean_device_time(stamps));
     errors[i] = errors_of_line(stamps, lines[i], 1e-3).slope;  // its clock counts milliseconds
