@@ -33,26 +33,28 @@ Measurements measurements_of(const TimedScan& timed, const RigLaser& laser, std:
 
   Measurements out;
   out.epoch_ns = epoch_ns;
-  out.range.resize(n);
-  out.mirror_angle.resize(n);
-  out.time.resize(n);
-  out.laser.assign(n, scan.laser);
-  out.remission.resize(n);
   out.beam.resize(n);
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < beams && i < n; ++k) {
+    out.beam[i] = static_cast<std::uint16_t>(k);
+    i += came_back(ranges[k]) ? 1 : 0;
+  }
+  const auto of_beams = [&](auto& values, auto&& value_of) {
+    values.resize(n);
+    for (std::size_t j = 0; j < n; ++j) values[j] = value_of(out.beam[j]);
+  };
   const double first_time = timed.beam_time(0);
   const double time_step = scan.angle_step / kTurn * timed.period;
   const double first_angle = scan.start_angle - laser.mount;
-  std::size_t i = 0;
-  for (std::size_t k = 0; k < beams; ++k) {
-    if (!came_back(ranges[k])) continue;
-    const auto along = static_cast<double>(k);
-    out.range[i] = ranges[k];
-    out.mirror_angle[i] = static_cast<float>(first_angle + along * scan.angle_step);
-    out.time[i] = first_time + along * time_step;
-    if (k < remissions.size()) out.remission[i] = remissions[k];
-    out.beam[i] = static_cast<std::uint16_t>(k);
-    ++i;
-  }
+  const double angle_step = scan.angle_step;
+  of_beams(out.range, [&](std::uint16_t k) { return ranges[k]; });
+  of_beams(out.mirror_angle,
+           [=](std::uint16_t k) { return static_cast<float>(first_angle + k * angle_step); });
+  of_beams(out.time, [=](std::uint16_t k) { return first_time + k * time_step; });
+  out.laser.assign(n, scan.laser);
+  const bool complete = remissions.size() >= beams;
+  if (complete) of_beams(out.remission, [&](std::uint16_t k) { return remissions[k]; });
+  out.remission.resize(n);
   return out;
 }
 
