@@ -102,6 +102,15 @@ TEST_F(SimulateStageTest, WritesTheSameCaptureAndTruthForTheSameSeed) {
   EXPECT_NEAR(truth.lasers[1].tau.value, 0.20, 0.02);
 }
 
+TEST_F(SimulateStageTest, RunsThePipelineThatUsersCopy) {
+  const fs::path file = fs::path(CRISP_SOURCE_DIR) / "configs/simulate.yaml";
+  auto loaded =
+      load_pipeline(file, {.output = folder_ / "out", .set = {"grabber.simulate.duration=0.2s"}}, run_);
+  run_pipeline(loaded.pipeline, run_);
+  EXPECT_GT(fs::file_size(folder_ / "out/hub.pcap"), 30'000U);
+  EXPECT_EQ(read_calibration(folder_ / "out/truth.yaml").lasers.size(), 3U);
+}
+
 TEST_F(SimulateStageTest, TakesItsTruthFromACalibration) {
   Calibration truth = nominal_calibration(default_rig());
   truth.lasers[2].alpha.value = 0.0123;
