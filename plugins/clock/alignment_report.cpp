@@ -68,7 +68,7 @@ AlignmentReport ClockAligner::report() const {
         plate));
   }
   if (back_in_time_ > 0) {
-    report.warnings.push_back(
+    report.warnings.emplace_back(
         "the hub's clock went back by more than a second: what came then is not aligned");
   }
   return report;

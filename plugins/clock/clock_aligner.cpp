@@ -56,7 +56,8 @@ void ClockAligner::add(std::shared_ptr<const Scan> scan) {
     return;
   }
   const double hub = arrive(scan->receipt_ns);
-  lasers_[scan->laser].add(std::move(scan), hub);
+  LaserTrack& laser = lasers_[scan->laser];
+  laser.add(std::move(scan), hub);
 }
 
 void ClockAligner::add(const PlateReading& reading) { plate_.add(reading, arrive(reading.receipt_ns)); }

@@ -20,39 +20,37 @@ DeviceStamps::Arrival DeviceStamps::accept(std::uint16_t counter, std::uint32_t 
   ++report_.received;
   std::int64_t steps = 1;
   std::optional<double> counted_s;
-  if (last_) {
-    const double hub_s = 1e-9 * static_cast<double>(receipt_ns - last_->receipt_ns);
-    steps = last_->counter.advance(counter, period_ > 0 ? hub_s / period_ : 1);
+  if (any_) {
+    const double hub_s = 1e-9 * static_cast<double>(receipt_ns - last_.receipt_ns);
+    steps = last_.counter.advance(counter, period_ > 0 ? hub_s / period_ : 1);
     if (period_ > 0) counted_s = static_cast<double>(steps) * period_;
   }
   const auto [kind, device_us] = time_.add(raw_us, receipt_ns, counted_s);
-  if (kind == StampKind::repeated) {
-    ++report_.repeated;
-    return {kind, device_us, steps};
-  }
-  if (kind == StampKind::reset) {
-    ++report_.resets;
-    before_reset_ = *last_;
-    clock_.cut();
-  } else if (kind == StampKind::returned) {
-    --report_.resets;
-    ++report_.damaged;
-    clock_.drop_last_segment();
-    last_ = before_reset_;
-    steps = last_->counter.advance(counter, 1);
-  }
-  if (kind == StampKind::reset) {
-    steps = 1;
-  } else if (last_) {
-    const double device_s = 1e-6 * static_cast<double>(device_us - last_->device_us);
-    steps = plausible_steps(steps, device_s);
-    count_steps(steps, device_s);
+  switch (kind) {
+    case StampKind::repeated:
+      ++report_.repeated;
+      return {kind, device_us, steps};
+    case StampKind::reset:
+      ++report_.resets;
+      before_reset_ = last_;
+      clock_.cut();
+      steps = 1;
+      break;
+    case StampKind::returned:
+      --report_.resets;
+      ++report_.damaged;
+      clock_.drop_last_segment();
+      last_ = before_reset_;
+      steps = count_steps(last_.counter.advance(counter, 1), device_us);
+      break;
+    case StampKind::next:
+      if (any_) steps = count_steps(steps, device_us);
   }
   note_silence(hub);
-  if (!last_) last_.emplace();
-  last_->receipt_ns = receipt_ns;
-  last_->device_us = device_us;
-  last_->counter.accept(counter);
+  any_ = true;
+  last_.receipt_ns = receipt_ns;
+  last_.device_us = device_us;
+  last_.counter.accept(counter);
   clock_.add(device_us, hub);
   return {kind, device_us, steps};
 }
@@ -64,16 +62,19 @@ std::int64_t DeviceStamps::plausible_steps(std::int64_t steps, double device_s) 
   return std::max<std::int64_t>(1, std::llround(device_s / period_));
 }
 
-void DeviceStamps::count_steps(std::int64_t steps, double device_s) {
+std::int64_t DeviceStamps::count_steps(std::int64_t steps, std::int64_t device_us) {
+  const double device_s = 1e-6 * static_cast<double>(device_us - last_.device_us);
+  steps = plausible_steps(steps, device_s);
   counted_time_ += device_s;
   counted_steps_ += steps;
   ++pairs_;
   period_ = counted_time_ / static_cast<double>(counted_steps_);
   smallest_step_ = smallest_step_ == 0 ? steps : std::min(smallest_step_, steps);
+  return steps;
 }
 
 void DeviceStamps::note_silence(double hub) {
-  if (last_ && hub - last_hub_ >= kSilence && report_.silences.size() < kMostSilences) {
+  if (any_ && hub - last_hub_ >= kSilence && report_.silences.size() < kMostSilences) {
     report_.silences.push_back({.begin = last_hub_, .duration = hub - last_hub_});
   }
   last_hub_ = std::max(last_hub_, hub);

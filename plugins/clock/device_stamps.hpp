@@ -60,14 +60,16 @@ class DeviceStamps {
     std::int64_t device_us = 0;
     CounterUnwrapper counter;
   };
+  /// The steps of the counter or, where they contradict the device's time, those that its time makes likely.
   std::int64_t plausible_steps(std::int64_t steps, double device_s) const;
-  void count_steps(std::int64_t steps, double device_s);
+  std::int64_t count_steps(std::int64_t steps, std::int64_t device_us);
   void note_silence(double hub);
 
   TimeUnwrapper time_;
   FittedClock clock_;
   DeviceReport report_;
-  std::optional<Last> last_;
+  bool any_ = false;
+  Last last_;
   Last before_reset_;
   double last_hub_ = 0;
   double period_;  ///< [s] between two counts, as far as it is known

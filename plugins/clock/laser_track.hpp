@@ -22,8 +22,11 @@ enum class TimeSource {
 /// The scans of one laser on their way to being timed.
 class LaserTrack {
  public:
-  LaserTrack(const RigLaser& laser, DeviceStamps stamps, TimeSource source, std::size_t mirror_half_width)
-      : laser_(laser), stamps_(std::move(stamps)), source_(source), half_width_(mirror_half_width) {}
+  LaserTrack(RigLaser laser, DeviceStamps stamps, TimeSource source, std::size_t mirror_half_width)
+      : laser_(std::move(laser)),
+        stamps_(std::move(stamps)),
+        source_(source),
+        half_width_(mirror_half_width) {}
 
   /// @param hub [s since the epoch] receipt
   /// @throws Error as DeviceStamps::accept

@@ -39,7 +39,7 @@ LocalFit fit_about(Stamps run, std::size_t i, std::size_t half_width) {
   if (width < 2) return {};
   double s1 = 0, s2 = 0, s3 = 0, s4 = 0, t0 = 0, t1 = 0, t2 = 0;
   for (std::size_t j = first; j < first + width; ++j) {
-    const double u = static_cast<double>(run[j].turn - run[i].turn);
+    const auto u = static_cast<double>(run[j].turn - run[i].turn);
     const double t = run[j].time - run[i].time;
     s1 += u;
     s2 += u * u;
