@@ -24,7 +24,7 @@ class SimulatedHub final : public Stage {
   }
   void process(const Inputs&, Outputs& out, Context&) override {
     std::multimap<std::int64_t, std::function<void()>> arrivals;
-    for (std::uint16_t i = 0; i < lasers_; ++i) {
+    for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(lasers_); ++i) {
       testing::SimulatedLaser laser;
       laser.clock.skew = [=](double) { return (i + 1) * 50e-6; };
       for (const auto& turn : laser.turns(1, i, kSeconds)) {

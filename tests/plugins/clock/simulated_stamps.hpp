@@ -37,7 +37,7 @@ inline Delays bursty_delays(double mean, double burst, int length, double chance
 
 /// Stamps of a clock with this skew at a rate [Hz] for a duration [s], with delays, to the microsecond.
 inline std::vector<Stamp> simulated_stamps(std::uint64_t seed, double duration, double rate, double skew,
-                                           Delays delays) {
+                                           const Delays& delays) {
   Random random(seed);
   std::vector<Stamp> stamps;
   for (double t = 0; t < duration; t += 1 / rate) {
