@@ -59,12 +59,13 @@ AlignmentReport ClockAligner::report() const {
   }
   const std::string& plate = report.devices.back().clock.device;
   report.counts[plate + ": readings after its zero was lost"] = plate_.after_lost_zero();
+  report.counts[plate + ": readings with an impossible angle"] = plate_.impossible();
   report.counts[plate + ": readings at one hub time"] = plate_.simultaneous();
   report.counts["scans of lasers that the rig does not have"] = unknown_lasers_;
   report.counts["telegrams whose receipt went back in time"] = back_in_time_;
   if (plate_.after_lost_zero() > 0) {
     report.warnings.push_back(fmt::format(
-        "{}: it started anew and lost its zero; what came after has no angle in common and is left out",
+        "{}: the encoder lost its zero; what came after has no angle in common with the rest and is left out",
         plate));
   }
   if (back_in_time_ > 0) {

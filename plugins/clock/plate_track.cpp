@@ -5,9 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/data/error.hpp"
+
 namespace crisp {
 namespace {
 
+constexpr double kFastestChange = 100;  // [turns/s²] no plate spins up faster
+constexpr double kSlack = 0.01;         // [turns] what times and counts may be off otherwise
+constexpr std::uint64_t kJumpsThatCount = 5;
 constexpr std::ptrdiff_t kForSlopes = 2;  // readings beyond what is asked for, so that its ends are as smooth
 
 /// How far a counter of 32 bits went from one value to another, forwards or back.
@@ -16,9 +21,12 @@ std::int32_t counted(std::uint32_t from, std::uint32_t to) { return static_cast<
 }  // namespace
 
 PlateTrack::PlateTrack(const RigPlate& plate, DeviceStamps stamps, TimeSource source)
-    : step_(2 * std::numbers::pi / plate.counts_per_revolution),
-      stamps_(std::move(stamps)),
-      source_(source) {}
+    : counts_per_revolution_(plate.counts_per_revolution), stamps_(std::move(stamps)), source_(source) {
+  if (!(plate.counts_per_revolution > 0)) {
+    throw Error("the encoder of " + plate.name + " must have more than 0 counts a revolution",
+                "correct counts_per_revolution in the rig");
+  }
+}
 
 void PlateTrack::add(const PlateReading& reading, double hub) {
   const auto arrival = stamps_.accept(reading.sequence, reading.device_us, reading.receipt_ns, hub);
@@ -28,7 +36,7 @@ void PlateTrack::add(const PlateReading& reading, double hub) {
     zero_is_lost_ = zero_is_lost_ || has_lost_zero(reading, hub);
   }
   if (arrival.kind == StampKind::returned) undo_reset();
-  if (source_ == TimeSource::receipt && any_ && hub <= last_.receipt) {
+  if (source_ == TimeSource::receipt && taken_ > 0 && hub <= last_.receipt) {
     ++simultaneous_;
     return;
   }
@@ -36,26 +44,56 @@ void PlateTrack::add(const PlateReading& reading, double hub) {
     ++after_lost_zero_;
     return;
   }
-  const double device = 1e-6 * static_cast<double>(arrival.device_us);
-  Reading next{.device = device, .receipt = hub, .count = reading.count};
-  if (any_) {
-    const auto steps = counted(static_cast<std::uint32_t>(last_.count), reading.count);
-    next.count = last_.count + steps;
-    rate_ = steps / std::max(device - last_.device, 1e-6);
+  Reading next{.device = 1e-6 * static_cast<double>(arrival.device_us),
+               .receipt = hub,
+               .count = static_cast<std::int32_t>(reading.count)};
+  if (taken_ > 0) next.count = last_.count + counted(static_cast<std::uint32_t>(last_.count), reading.count);
+  if (taken_ > 0 && has_jumped(last_, next)) {
+    ++impossible_;
+    judge_jump(next);
+  } else {
+    take(next);
   }
-  any_ = true;
+}
+
+void PlateTrack::take(const Reading& next) {
+  if (taken_ > 0) {
+    interval_ = std::max(next.device - last_.device, 1e-6);
+    rate_ = static_cast<double>(next.count - last_.count) / interval_;
+  }
+  jumps_ = 0;
+  ++taken_;
   last_ = next;
   readings_.push_back(next);
 }
 
-void PlateTrack::undo_reset() {
-  if (zero_is_lost_ && !before_reset_.zero_is_lost) {
-    --after_lost_zero_;
-  } else if (!readings_.empty() && !zero_is_lost_) {
-    readings_.pop_back();
+void PlateTrack::judge_jump(const Reading& next) {
+  // One such reading is damaged; several that go on from one another are right, and either the first of all
+  // readings were damaged, or the encoder has a new zero.
+  jumps_ = jumps_ > 0 && !has_jumped(jumped_, next) ? jumps_ + 1 : 1;
+  jumped_ = next;
+  if (jumps_ < kJumpsThatCount) return;
+  if (taken_ < kJumpsThatCount) {
+    readings_.clear();
+    taken_ = 0;
+    take(next);
+  } else {
+    zero_is_lost_ = true;
   }
-  last_ = before_reset_.last;
+}
+
+bool PlateTrack::has_jumped(const Reading& from, const Reading& to) const {
+  const double elapsed = to.device - from.device;
+  const double surprise = std::abs(static_cast<double>(to.count - from.count) - rate_ * elapsed);
+  const double of_whole_counts = 2 * (1 + elapsed / interval_);  // a coarse encoder shows its rate coarsely
+  return surprise > counts_per_revolution_ * (kSlack + kFastestChange * elapsed * elapsed) + of_whole_counts;
+}
+
+void PlateTrack::undo_reset() {
+  if (zero_is_lost_ && !before_reset_.zero_is_lost) --after_lost_zero_;
   zero_is_lost_ = before_reset_.zero_is_lost;
+  last_ = before_reset_.last;
+  while (!readings_.empty() && readings_.back().device > last_.device) readings_.pop_back();
 }
 
 bool PlateTrack::has_lost_zero(const PlateReading& reading, double hub) const {
@@ -78,6 +116,7 @@ PlateTrajectory PlateTrack::piece(double begin, double end, std::int64_t epoch_n
   auto last = std::partition_point(first, readings_.end(), is_before(end));
   first -= std::min(kForSlopes, first - readings_.begin());
   last += std::min(kForSlopes, readings_.end() - last);
+  const double step = 2 * std::numbers::pi / counts_per_revolution_;
   std::vector<double> times;
   std::vector<double> angles;
   times.reserve(static_cast<std::size_t>(last - first));
@@ -86,7 +125,7 @@ PlateTrajectory PlateTrack::piece(double begin, double end, std::int64_t epoch_n
     const double t = time(*reading);
     if (!times.empty() && t <= times.back()) continue;  // just after a reset, by the lines' errors
     times.push_back(t);
-    angles.push_back(static_cast<double>(reading->count) * step_);
+    angles.push_back(static_cast<double>(reading->count) * step);
   }
   return {epoch_ns, std::move(times), std::move(angles), max_gap};
 }

@@ -14,6 +14,7 @@ namespace crisp {
 /// The readings of the plate on their way to a trajectory.
 class PlateTrack {
  public:
+  /// @throws Error if the rig gives no counts a revolution
   PlateTrack(const RigPlate& plate, DeviceStamps stamps, TimeSource source);
 
   /// @param hub [s since the epoch] receipt
@@ -31,6 +32,8 @@ class PlateTrack {
   DeviceReport report() const { return stamps_.report(); }
   /// Readings that came after the encoder had lost its zero: of no use, the angles have nothing in common.
   std::uint64_t after_lost_zero() const { return after_lost_zero_; }
+  /// Readings whose angle the plate cannot have reached since the one before them.
+  std::uint64_t impossible() const { return impossible_; }
   /// Readings at the same hub time as the one before them.
   std::uint64_t simultaneous() const { return simultaneous_; }
 
@@ -46,17 +49,24 @@ class PlateTrack {
   };
   double time(const Reading& reading) const;
   void undo_reset();
+  void take(const Reading& next);
+  void judge_jump(const Reading& next);
+  bool has_jumped(const Reading& from, const Reading& to) const;
   bool has_lost_zero(const PlateReading& reading, double hub) const;
 
-  double step_;  ///< [rad] a count
+  double counts_per_revolution_;
   DeviceStamps stamps_;
   TimeSource source_;
   std::deque<Reading> readings_;
   Reading last_;
-  double rate_ = 0;  ///< [counts/s] between the last two readings
-  bool any_ = false;
+  double rate_ = 0;      ///< [counts/s] between the last two readings
+  double interval_ = 1;  ///< [s] between them
+  std::uint64_t taken_ = 0;
   bool zero_is_lost_ = false;
   Before before_reset_;  ///< for a reset that turns out to be none
+  Reading jumped_;
+  std::uint64_t jumps_ = 0;  ///< in a row, each from the place of the one before it
+  std::uint64_t impossible_ = 0;
   std::uint64_t after_lost_zero_ = 0;
   std::uint64_t simultaneous_ = 0;
 };

@@ -39,8 +39,8 @@ void align(benchmark::State& state, const AlignmentSettings& settings) {
   std::size_t beams = 0;
   for (auto _ : state) {
     ClockAligner aligner(default_rig(), settings,
-                         {.trajectory = [](PlateTrajectory plate) { benchmark::DoNotOptimize(plate.size()); },
-                          .measurements = [&](Measurements scan) { beams += scan.size(); }});
+                         {.trajectory = [](const PlateTrajectory& plate) { benchmark::DoNotOptimize(plate.size()); },
+                          .measurements = [&](const Measurements& scan) { beams += scan.size(); }});
     for (const auto& event : all) std::visit([&](const auto& received) { aligner.add(received); }, event);
     benchmark::DoNotOptimize(aligner.finish());
   }

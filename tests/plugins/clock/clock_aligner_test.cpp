@@ -292,6 +292,34 @@ TEST(ClockAligner, GoesOnWhereOnlyThePlatesClockWasReset) {
   EXPECT_NEAR(trajectory.at(kStart + 8)->angle - before, 3 * 2 * std::numbers::pi, 1e-3);
 }
 
+TEST(ClockAligner, LeavesOutAnAngleThatThePlateCannotHaveReached) {
+  auto readings = SimulatedPlate{}.readings(7, 10);
+  readings[700].count ^= 0x400;
+  readings[1500].count ^= 0x80000000;
+  const auto aligned = align({SimulatedLaser{}.turns(7, 0, 10)}, readings);
+  EXPECT_EQ(aligned.report.counts.at("plate: readings with an impossible angle"), 2u);
+  EXPECT_EQ(aligned.stretches.front().plate.size(), readings.size() - 2);
+  const auto& trajectory = aligned.stretches.front().plate;
+  EXPECT_NEAR(trajectory.at(kStart + 8)->angle - trajectory.at(kStart + 1)->angle, 7 * 2 * std::numbers::pi,
+              1e-3);
+}
+
+TEST(ClockAligner, DoesNotHoldTheRestAgainstADamagedFirstReading) {
+  auto readings = SimulatedPlate{}.readings(7, 4);
+  readings[0].count ^= 0x400000;
+  const auto aligned = align({SimulatedLaser{}.turns(7, 0, 4)}, readings);
+  EXPECT_EQ(aligned.stretches.front().plate.size(), readings.size() - 5);  // it takes five to outvote it
+  EXPECT_THAT(aligned.report.warnings, ::testing::IsEmpty());
+}
+
+TEST(ClockAligner, LeavesOutWhatComesAfterTheCountHasJumped) {
+  auto readings = SimulatedPlate{}.readings(7, 10);
+  for (std::size_t i = 3000; i < readings.size(); ++i) readings[i].count += 5000;
+  const auto aligned = align({SimulatedLaser{}.turns(7, 0, 10)}, readings);
+  EXPECT_EQ(aligned.stretches.front().plate.size(), 3000u);
+  EXPECT_THAT(aligned.report.warnings, Contains(HasSubstr("lost its zero")));
+}
+
 TEST(ClockAligner, LeavesOutADamagedStampInsteadOfCuttingThere) {
   auto turns = SimulatedLaser{}.turns(8, 0, 5);
   turns[100].scan.scan_time_us ^= 0x40000000;
