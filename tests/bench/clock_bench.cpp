@@ -38,9 +38,10 @@ void align(benchmark::State& state, const AlignmentSettings& settings) {
   const auto all = events(duration);
   std::size_t beams = 0;
   for (auto _ : state) {
-    ClockAligner aligner(default_rig(), settings,
-                         {.trajectory = [](const PlateTrajectory& plate) { benchmark::DoNotOptimize(plate.size()); },
-                          .measurements = [&](const Measurements& scan) { beams += scan.size(); }});
+    ClockAligner aligner(
+        default_rig(), settings,
+        {.trajectory = [](const PlateTrajectory& plate) { benchmark::DoNotOptimize(plate.size()); },
+         .measurements = [&](const Measurements& scan) { beams += scan.size(); }});
     for (const auto& event : all) std::visit([&](const auto& received) { aligner.add(received); }, event);
     benchmark::DoNotOptimize(aligner.finish());
   }
