@@ -155,8 +155,10 @@ TEST(ClockAligner, FollowsAClockThatDriftsOverAnHourAndHandsOutAsItGoes) {
   const auto aligned = align({turns}, plate.readings(3, 3600));
   EXPECT_GT(aligned.stretches.size(), 40u);
   const auto errors = beam_time_errors(aligned, 0, laser, turns);
-  EXPECT_LT(errors.median, 3e-6);
-  EXPECT_LT(errors.worst, 15e-6);
+  // A line through 60 s is off by up to 0.6 us from the drift, by 1 to 2 us from the delays, and stamps are
+  // whole us.
+  EXPECT_LT(errors.median, 2e-6);
+  EXPECT_LT(errors.worst, 8e-6);
   double worst_angle = 0;
   for (const auto& stretch : aligned.stretches) {
     if (&stretch != &aligned.stretches.front()) {
