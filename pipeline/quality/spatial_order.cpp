@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -33,8 +34,23 @@ std::uint64_t spread(std::uint64_t bits) {
   return (bits | bits << 2) & 0x1249249249249249;
 }
 
-/// The number of the fine cell along one axis, for each point; the lowest is 0.
-std::vector<std::uint32_t> fine_cells(std::span<const double> values, double fine_side) {
+/// What spread() spread.
+std::uint64_t gather(std::uint64_t bits) {
+  bits &= 0x1249249249249249;
+  bits = (bits | bits >> 2) & 0x10c30c30c30c30c3;
+  bits = (bits | bits >> 4) & 0x100f00f00f00f00f;
+  bits = (bits | bits >> 8) & 0x1f0000ff0000ff;
+  bits = (bits | bits >> 16) & 0x1f00000000ffff;
+  return (bits | bits >> 32) & 0x1fffff;
+}
+
+std::uint64_t interleave(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+  return spread(x) | spread(y) << 1 | spread(z) << 2;
+}
+
+/// The number of the fine cell along one axis, for each point; the lowest whole cell begins at 0, which is
+/// at `low` [m].
+std::vector<std::uint32_t> fine_cells(std::span<const double> values, double fine_side, double& low) {
   constexpr double kMiddle = 1 << (kBits - 1);
   constexpr double kLast = (1 << kBits) - 1;
   const double median = median_of_a_sample(values);
@@ -45,6 +61,7 @@ std::vector<std::uint32_t> fine_cells(std::span<const double> values, double fin
   // Few leading bits make a short sort; whole cells, so that cells stay what they are.
   const std::uint32_t lowest = *std::ranges::min_element(cells) >> kFineBits << kFineBits;
   for (auto& cell : cells) cell -= lowest;
+  low = median + (lowest - kMiddle) * fine_side;
   return cells;
 }
 
@@ -71,6 +88,25 @@ void radix_sort(std::vector<Entry>& entries) {
 
 }  // namespace
 
+CellLattice::Cell CellLattice::cell(double x, double y, double z) const {
+  const auto along = [this](double value, std::size_t axis) {
+    return static_cast<std::int64_t>(std::clamp(std::floor((value - low.at(axis)) / side), -1e9, 1e9));
+  };
+  return {along(x, 0), along(y, 1), along(z, 2)};
+}
+
+std::uint64_t cell_key(const CellLattice::Cell& cell) {
+  const auto outside = [](std::int64_t along) { return along < 0 || along >= 1 << (kBits - kFineBits); };
+  if (std::ranges::any_of(cell, outside)) return ~std::uint64_t{0};
+  return interleave(static_cast<std::uint64_t>(cell[0]), static_cast<std::uint64_t>(cell[1]),
+                    static_cast<std::uint64_t>(cell[2]));
+}
+
+CellLattice::Cell cell_of(std::uint64_t key) {
+  return {static_cast<std::int64_t>(gather(key)), static_cast<std::int64_t>(gather(key >> 1)),
+          static_cast<std::int64_t>(gather(key >> 2))};
+}
+
 SpatialOrder spatial_order(const PointsView& points, double side) {
   const std::size_t n = points.size();
   if (n >= std::numeric_limits<std::uint32_t>::max()) {
@@ -79,12 +115,13 @@ SpatialOrder spatial_order(const PointsView& points, double side) {
   SpatialOrder order;
   if (n == 0) return order;
   const double fine_side = side / (1 << kFineBits);
-  const auto x = fine_cells(points.x, fine_side);
-  const auto y = fine_cells(points.y, fine_side);
-  const auto z = fine_cells(points.z, fine_side);
+  order.lattice.side = side;
+  const auto x = fine_cells(points.x, fine_side, order.lattice.low[0]);
+  const auto y = fine_cells(points.y, fine_side, order.lattice.low[1]);
+  const auto z = fine_cells(points.z, fine_side, order.lattice.low[2]);
   std::vector<Entry> entries(n);
   for (std::size_t i = 0; i < n; ++i) {
-    entries[i] = {spread(x[i]) | spread(y[i]) << 1 | spread(z[i]) << 2, static_cast<std::uint32_t>(i)};
+    entries[i] = {interleave(x[i], y[i], z[i]), static_cast<std::uint32_t>(i)};
   }
   radix_sort(entries);
   order.index.reserve(n);

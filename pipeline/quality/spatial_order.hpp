@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -9,10 +10,25 @@
 
 namespace crisp {
 
+/// Cubic cells, numbered along a Morton curve.
+struct CellLattice {
+  std::array<double, 3> low{};  ///< [m] corner of the cell 0
+  double side = 1;              ///< [m]
+
+  using Cell = std::array<std::int64_t, 3>;  ///< its number along each axis
+  Cell cell(double x, double y, double z) const;
+};
+
+/// A cell's number along the curve; cells below 0 or beyond 2¹⁷ − 1 along an axis share one that no point
+/// has.
+std::uint64_t cell_key(const CellLattice::Cell& cell);
+CellLattice::Cell cell_of(std::uint64_t key);
+
 /// Points in the order of a Morton curve: what is near in space is mostly near in it.
 struct SpatialOrder {
+  CellLattice lattice;
   std::vector<std::uint32_t> index;  ///< of the points, along the curve
-  std::vector<std::uint64_t> cell;   ///< of each, along the curve: equal for points of the same cell
+  std::vector<std::uint64_t> cell;   ///< key of each one's cell, along the curve
 };
 
 /// Sorts points along a Morton curve through cells, finely enough that the order within a cell still is one.

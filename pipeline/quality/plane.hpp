@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+namespace crisp {
+
+/// Sums over points, from which their plane follows; to be added.
+struct Moments {
+  double count = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+
+  void add(const Eigen::Vector3d& point);
+  Moments& operator+=(const Moments& other);
+};
+
+/// The plane that points lie nearest to, all counting the same.
+struct Plane {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d u = Eigen::Vector3d::UnitX();  ///< where the points extend the farthest
+  Eigen::Vector3d v = Eigen::Vector3d::UnitY();
+  /// [m] standard deviation of the points along the normal, v and u: ascending
+  Eigen::Vector3d extent = Eigen::Vector3d::Zero();
+
+  double distance(const Eigen::Vector3d& point) const { return normal.dot(point - middle); }
+};
+
+Plane plane_of(const Moments& moments);
+
+/// What one view sees of a surface, as a plane of its own: sums over its beams.
+struct ViewSums {
+  double count = 0;
+  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();  ///< of 1, u, v and the distance; weighted
+
+  /// @param u, v, distance  [m] from a common plane
+  /// @param weight          [1/m²]
+  void add(double u, double v, double distance, double weight);
+
+  /// Distance [m] at u = v = 0, and its slopes along u and v, of the plane that fits best. Where beams do not
+  /// tell a slope (a single line, a few points), it stays within some degrees of none.
+  Eigen::Vector3d fit() const;
+  double squares_left(const Eigen::Vector3d& fit) const;  ///< weighted, of residuals and of the tilt
+  double freedom() const;                                 ///< beams, less what the fit took
+};
+
+}  // namespace crisp

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/surfel_equations.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/quality/surfel_residuals.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::size_t kChunk = 1024;   // beams whose rows are in memory at once
+constexpr std::size_t kBatch = 16384;  // beams of surfels that are summed in a row; fixed, for the same sums
+
+/// The pseudo-inverse's effect: X with A X = B, where A is symmetric and may be singular.
+Eigen::MatrixXd solve_semidefinite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  if (a.rows() == 0) return b;
+  // To unit diagonal first: parameters come in metres, radians and seconds.
+  const Eigen::VectorXd scale =
+      a.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * a * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  const Eigen::VectorXd inverse =
+      eigen.eigenvalues().unaryExpr([](double value) { return value > 1e-10 ? 1 / value : 0.0; });
+  return scale.asDiagonal() *
+         (eigen.eigenvectors() *
+          (inverse.asDiagonal() * (eigen.eigenvectors().transpose() * (scale.asDiagonal() * b))));
+}
+
+/// Column 0, 1, 2: the plane's parameters; 3: the distance; from 4 on: the derivatives. Weighted.
+Eigen::MatrixXd gram(const Surfel& surfel, std::span<const std::uint32_t> members,
+                     std::span<const SurfelResidual> residuals, std::size_t parameters,
+                     const DerivativeRows& derivatives) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto m = static_cast<Eigen::Index>(parameters);
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(m + 4, m + 4);
+  std::vector<double> range_change;
+  std::vector<double> rows;
+  for (std::size_t begin = 0; begin < members.size(); begin += kChunk) {
+    const std::size_t count = std::min(kChunk, members.size() - begin);
+    range_change.clear();
+    for (std::size_t i = 0; i < count; ++i) range_change.push_back(residuals[begin + i].range_change);
+    rows.assign(count * parameters, 0);
+    derivatives(surfel, members.subspan(begin, count), range_change, rows);
+    Rows all(static_cast<Eigen::Index>(count), m + 4);
+    all.rightCols(m) = Eigen::Map<const Rows>(rows.data(), static_cast<Eigen::Index>(count), m);
+    for (std::size_t i = 0; i < count; ++i) {
+      const SurfelResidual& r = residuals[begin + i];
+      const auto row = static_cast<Eigen::Index>(i);
+      all.row(row).head<4>() = Eigen::RowVector4d(1, r.u / surfel.radius, r.v / surfel.radius, r.distance);
+      all.row(row) *= std::sqrt(r.weight) / r.spread;
+    }
+    sum.selfadjointView<Eigen::Upper>().rankUpdate(all.transpose());
+  }
+  return sum.selfadjointView<Eigen::Upper>();
+}
+
+NormalEquations without_plane(const Eigen::MatrixXd& gram, std::span<const SurfelResidual> residuals) {
+  const Eigen::Index rest = gram.cols() - 3;
+  const Eigen::MatrixXd left = gram.bottomRightCorner(rest, rest) -
+                               gram.bottomLeftCorner(rest, 3) *
+                                   solve_semidefinite(gram.topLeftCorner(3, 3), gram.topRightCorner(3, rest));
+  NormalEquations result(static_cast<std::size_t>(rest - 1));
+  result.chi2 = left(0, 0);
+  result.vector = left.col(0).tail(rest - 1);
+  result.matrix = left.bottomRightCorner(rest - 1, rest - 1);
+  for (const SurfelResidual& r : residuals) {
+    if (r.weight == 0) continue;
+    ++result.beams;
+    result.weight += r.weight;
+    result.influence += std::pow(r.weight * r.distance / r.spread, 2);
+    result.stiffness += std::sqrt(r.weight) * (5 * std::sqrt(r.weight) - 4);  // Tukey's ψ′, by its w
+  }
+  result.freedom = static_cast<double>(result.beams) - 3;
+  return result;
+}
+
+/// First surfel of each batch; and one past the last.
+std::vector<std::size_t> batches(const Surfels& surfels) {
+  std::vector<std::size_t> first{0};
+  std::size_t beams = 0;
+  for (std::size_t s = 0; s < surfels.surfels.size(); ++s) {
+    beams += surfels.surfels[s].end - surfels.surfels[s].begin;
+    if (beams < kBatch) continue;
+    first.push_back(s + 1);
+    beams = 0;
+  }
+  if (first.back() != surfels.surfels.size()) first.push_back(surfels.surfels.size());
+  return first;
+}
+
+}  // namespace
+
+NormalEquations::NormalEquations(std::size_t parameters)
+    : matrix(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(parameters),
+                                   static_cast<Eigen::Index>(parameters))),
+      vector(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters))) {}
+
+NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
+  matrix += other.matrix;
+  vector += other.vector;
+  chi2 += other.chi2;
+  freedom += other.freedom;
+  beams += other.beams;
+  weight += other.weight;
+  influence += other.influence;
+  stiffness += other.stiffness;
+  return *this;
+}
+
+double NormalEquations::covariance_factor() const {
+  const double spent = static_cast<double>(beams) / freedom;  // what the planes took of the residuals
+  return weight * influence * spent / (stiffness * stiffness);
+}
+
+NormalEquations NormalEquations::reduced(const std::vector<std::size_t>& kept,
+                                         const std::vector<std::size_t>& eliminated) const {
+  NormalEquations result = *this;
+  const Eigen::MatrixXd cross = matrix(eliminated, kept);
+  const Eigen::VectorXd gone = vector(eliminated);
+  const Eigen::MatrixXd inner = matrix(eliminated, eliminated);
+  const Eigen::MatrixXd by_cross = solve_semidefinite(inner, cross);
+  result.matrix = matrix(kept, kept) - cross.transpose() * by_cross;
+  result.vector = vector(kept) - by_cross.transpose() * gone;
+  result.chi2 = chi2 - gone.dot(solve_semidefinite(inner, gone).col(0));
+  result.freedom = freedom - static_cast<double>(eliminated.size());
+  return result;
+}
+
+NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
+                                 const DerivativeRows& derivatives, const SurfelSettings& settings) {
+  const auto first = batches(surfels);
+  std::vector<NormalEquations> sums(first.size() - 1, NormalEquations(parameters));
+  tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t b) {
+    for (std::size_t s = first[b]; s < first[b + 1]; ++s) {
+      const Surfel& surfel = surfels.surfels[s];
+      const auto residuals = residuals_of(surfel, surfels, beams, settings);
+      const auto members = std::span(surfels.members).subspan(surfel.begin, surfel.end - surfel.begin);
+      sums[b] += without_plane(gram(surfel, members, residuals, parameters, derivatives), residuals);
+    }
+  });
+  NormalEquations total(parameters);
+  for (const NormalEquations& sum : sums) total += sum;
+  return total;
+}
+
+}  // namespace crisp

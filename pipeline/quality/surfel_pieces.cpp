@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/surfel_pieces.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "pipeline/quality/view_shape.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kThicknessToWidth = 0.1;
+
+/// Looks for flat cells from large to small.
+class PieceFinder {
+ public:
+  PieceFinder(const BeamsView& beams, const SurfelCells& cells, const SurfelSettings& settings)
+      : beams_(beams), cells_(cells), settings_(settings), shape_(beams, settings) {}
+
+  /// @param level  a cell here is 2^level of the smallest wide
+  void find(std::size_t first, std::size_t last, int level) {
+    FlatPiece piece{first, last, {}, {}};
+    for (std::size_t c = first; c < last; ++c) piece.moments += cells_.moments[c];
+    if (piece.moments.count < settings_.min_points) return;
+    piece.plane = plane_of(piece.moments);
+    if (is_flat(piece)) {
+      found_.push_back(std::move(piece));
+      return;
+    }
+    if (level == 0) return;
+    const int shift = 3 * (level - 1);
+    for (std::size_t begin = first; begin < last;) {
+      std::size_t end = begin + 1;
+      while (end < last && cells_.key[end] >> shift == cells_.key[begin] >> shift) ++end;
+      find(begin, end, level - 1);
+      begin = end;
+    }
+  }
+
+  std::vector<FlatPiece> take() { return std::move(found_); }
+
+ private:
+  bool is_flat(const FlatPiece& piece) {
+    const auto& extent = piece.plane.extent;  // across the plane, and along it
+    if (extent[0] > settings_.max_thickness || extent[1] < 4 * std::max(extent[0], settings_.noise)) {
+      return false;
+    }
+    // Views that disagree thicken a surface by what their offset or tilt is; what is thick for its width is
+    // more likely an edge, of which each view sees another side.
+    const double beyond_noise = extent[0] * extent[0] - settings_.noise * settings_.noise;
+    if (beyond_noise > kThicknessToWidth * kThicknessToWidth * extent[1] * extent[1]) return false;
+    const std::span<const std::uint32_t> members(cells_.order.index.begin() + cells_.begin[piece.first_cell],
+                                                 cells_.order.index.begin() + cells_.begin[piece.last_cell]);
+    return shape_.is_flat(members, piece.plane, cells_.origin);
+  }
+
+  const BeamsView& beams_;
+  const SurfelCells& cells_;
+  const SurfelSettings& settings_;
+  ViewShape shape_;
+  std::vector<FlatPiece> found_;
+};
+
+}  // namespace
+
+Eigen::Vector3d SurfelCells::point(const BeamsView& beams, std::uint32_t beam) const {
+  return Eigen::Vector3d(beams.points.x[beam], beams.points.y[beam], beams.points.z[beam]) - origin;
+}
+
+SurfelCells cells_of(const BeamsView& beams, const SurfelSettings& settings) {
+  SurfelCells cells;
+  cells.order = spatial_order(beams.points, settings.smallest);
+  const auto& order = cells.order;
+  if (order.index.empty()) return cells;
+  const std::uint32_t middle = order.index[order.index.size() / 2];
+  cells.origin = cells.point(beams, middle);
+  for (std::uint32_t k = 0; k < order.index.size(); ++k) {
+    if (k == 0 || order.cell[k] != order.cell[k - 1]) {
+      cells.key.push_back(order.cell[k]);
+      cells.begin.push_back(k);
+      cells.moments.emplace_back();
+    }
+    cells.moments.back().add(cells.point(beams, order.index[k]));
+  }
+  cells.begin.push_back(static_cast<std::uint32_t>(order.index.size()));
+  return cells;
+}
+
+std::vector<FlatPiece> flat_pieces(const BeamsView& beams, const SurfelCells& cells,
+                                   const SurfelSettings& settings) {
+  const int levels = static_cast<int>(std::lround(std::log2(settings.largest / settings.smallest)));
+  PieceFinder finder(beams, cells, settings);
+  for (std::size_t begin = 0; begin < cells.size();) {
+    std::size_t end = begin + 1;
+    while (end < cells.size() && cells.key[end] >> (3 * levels) == cells.key[begin] >> (3 * levels)) ++end;
+    finder.find(begin, end, levels);
+    begin = end;
+  }
+  return finder.take();
+}
+
+CellFinder::CellFinder(const SurfelCells& cells) : cells_(cells) {}
+
+std::size_t CellFinder::find(std::uint64_t key) const {
+  const auto at = std::ranges::lower_bound(cells_.key, key);
+  return at != cells_.key.end() && *at == key ? static_cast<std::size_t>(at - cells_.key.begin())
+                                              : cells_.size();
+}
+
+std::vector<std::size_t> CellFinder::around(std::size_t cell) const {
+  std::vector<std::size_t> result;
+  const auto middle = cell_of(cells_.key[cell]);
+  for (std::int64_t dz = -1; dz <= 1; ++dz) {
+    for (std::int64_t dy = -1; dy <= 1; ++dy) {
+      for (std::int64_t dx = -1; dx <= 1; ++dx) {
+        const std::size_t other = find(cell_key({middle[0] + dx, middle[1] + dy, middle[2] + dz}));
+        if (other != cells_.size()) result.push_back(other);
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace crisp

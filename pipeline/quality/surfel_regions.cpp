@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "pipeline/quality/surfel_pieces.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kEdge = 0.95;  // cosine of the angle from which on two surfaces meet at an edge
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+std::vector<std::size_t> piece_of_cells(const std::vector<FlatPiece>& pieces, const SurfelCells& cells) {
+  std::vector<std::size_t> result(cells.size(), kNone);
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    std::fill(result.begin() + static_cast<std::ptrdiff_t>(pieces[p].first_cell),
+              result.begin() + static_cast<std::ptrdiff_t>(pieces[p].last_cell), p);
+  }
+  return result;
+}
+
+/// Which pieces touch which.
+std::vector<std::vector<std::size_t>> contacts(const std::vector<FlatPiece>& pieces,
+                                               const SurfelCells& cells) {
+  const auto piece_of = piece_of_cells(pieces, cells);
+  const CellFinder finder(cells);
+  std::vector<std::vector<std::size_t>> result(pieces.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (piece_of[c] == kNone) continue;
+    for (const std::size_t other : finder.around(c)) {
+      if (piece_of[other] != kNone && piece_of[other] != piece_of[c])
+        result[piece_of[c]].push_back(piece_of[other]);
+    }
+  }
+  for (auto& list : result) {
+    std::ranges::sort(list);
+    const auto rest = std::ranges::unique(list);
+    list.erase(rest.begin(), rest.end());
+  }
+  return result;
+}
+
+/// How well a piece knows its own direction [rad].
+double tilt_error(const FlatPiece& piece, const SurfelSettings& settings) {
+  return settings.noise / (std::sqrt(piece.moments.count) * piece.plane.extent[1]);
+}
+
+/// Whether a piece lies in the plane of a region: its middle near it, its direction alike.
+bool keeps_to(const Plane& plane, const FlatPiece& piece, const SurfelSettings& settings) {
+  const double tilt = std::acos(std::min(1.0, std::abs(plane.normal.dot(piece.plane.normal))));
+  return tilt <= settings.max_tilt + 3 * tilt_error(piece, settings) &&
+         std::abs(plane.distance(piece.plane.middle)) <= settings.max_offset;
+}
+
+/// Says to which region a beam belongs.
+class BeamSorter {
+ public:
+  BeamSorter(const SurfelCells& cells, const std::vector<FlatPiece>& pieces,
+             const std::vector<FlatRegion>& regions, const SurfelSettings& settings)
+      : cells_(cells), regions_(regions), finder_(cells), region_of_cell_(cells.size(), kNoRegion) {
+    for (std::uint32_t r = 0; r < regions.size(); ++r) {
+      gate_.push_back(5 * std::max(regions[r].plane.extent[0], settings.noise));
+      for (const std::size_t p : regions[r].pieces) {
+        for (std::size_t c = pieces[p].first_cell; c < pieces[p].last_cell; ++c) region_of_cell_[c] = r;
+      }
+    }
+  }
+
+  /// Those that have cells among the 27 about this one.
+  std::vector<std::uint32_t> regions_around(std::size_t cell) const {
+    std::vector<std::uint32_t> near;
+    for (const std::size_t other : finder_.around(cell)) {
+      if (region_of_cell_[other] != kNoRegion) near.push_back(region_of_cell_[other]);
+    }
+    std::ranges::sort(near);
+    const auto rest = std::ranges::unique(near);
+    near.erase(rest.begin(), rest.end());
+    return near;
+  }
+
+  std::uint32_t region_of(const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+                          const std::vector<std::uint32_t>& near) const {
+    for (const std::uint32_t r : near) {
+      const Plane& plane = regions_[r].plane;
+      const double distance = plane.distance(point);
+      const double incidence = plane.normal.dot(direction);
+      if (std::abs(distance) > gate_[r] || std::abs(incidence) < 0.05) continue;
+      // Where the beam meets the plane does not depend on the noise of its range, and nor may the choice:
+      // else beams that are too short would be chosen rather than those that are too long.
+      const Eigen::Vector3d foot = point - distance / incidence * direction;
+      if (region_at(foot) == r && !is_near_another(foot, r, near)) return r;
+    }
+    return kNoRegion;
+  }
+
+ private:
+  std::uint32_t region_at(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d at = point + cells_.origin;
+    const std::size_t cell = finder_.find(cell_key(cells_.order.lattice.cell(at.x(), at.y(), at.z())));
+    return cell == cells_.size() ? kNoRegion : region_of_cell_[cell];
+  }
+
+  /// Where two surfaces meet at an edge, each would get beams of the other, all on the same side.
+  bool is_near_another(const Eigen::Vector3d& foot, std::uint32_t own,
+                       const std::vector<std::uint32_t>& near) const {
+    return std::ranges::any_of(near, [&](std::uint32_t r) {
+      return r != own && std::abs(regions_[r].plane.distance(foot)) < gate_[r] &&
+             std::abs(regions_[r].plane.normal.dot(regions_[own].plane.normal)) < kEdge;
+    });
+  }
+
+  const SurfelCells& cells_;
+  const std::vector<FlatRegion>& regions_;
+  CellFinder finder_;
+  std::vector<std::uint32_t> region_of_cell_;
+  std::vector<double> gate_;  // [m] within which beams may end
+};
+
+}  // namespace
+
+std::vector<FlatRegion> joined(const std::vector<FlatPiece>& pieces, const SurfelCells& cells,
+                               const SurfelSettings& settings) {
+  const auto touching = contacts(pieces, cells);
+  std::vector<std::size_t> by_count(pieces.size());
+  std::iota(by_count.begin(), by_count.end(), std::size_t{0});
+  std::ranges::stable_sort(by_count, std::ranges::greater{},
+                           [&](std::size_t p) { return pieces[p].moments.count; });
+  std::vector<bool> taken(pieces.size(), false);
+  std::vector<FlatRegion> regions;
+  for (const std::size_t seed : by_count) {
+    if (taken[seed]) continue;
+    FlatRegion region{{seed}, pieces[seed].moments, pieces[seed].plane};
+    taken[seed] = true;
+    for (std::size_t k = 0; k < region.pieces.size(); ++k) {
+      for (const std::size_t other : touching[region.pieces[k]]) {
+        if (taken[other] || !keeps_to(region.plane, pieces[other], settings)) continue;
+        taken[other] = true;
+        region.pieces.push_back(other);
+        region.moments += pieces[other].moments;
+        region.plane = plane_of(region.moments);
+      }
+    }
+    regions.push_back(std::move(region));
+  }
+  return regions;
+}
+
+std::vector<std::uint32_t> region_of_beams(const BeamsView& beams, const SurfelCells& cells,
+                                           const std::vector<FlatPiece>& pieces,
+                                           const std::vector<FlatRegion>& regions,
+                                           const SurfelSettings& settings) {
+  const BeamSorter sorter(cells, pieces, regions, settings);
+  std::vector<std::uint32_t> result(beams.points.size(), kNoRegion);
+  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t c) {
+    const auto near = sorter.regions_around(c);
+    if (near.empty()) return;
+    for (std::uint32_t k = cells.begin[c]; k < cells.begin[c + 1]; ++k) {
+      const std::uint32_t i = cells.order.index[k];
+      const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
+      result[i] = sorter.region_of(cells.point(beams, i), direction, near);
+    }
+  });
+  return result;
+}
+
+}  // namespace crisp

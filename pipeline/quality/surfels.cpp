@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/surfels.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/quality/surfel_pieces.hpp"
+#include "pipeline/quality/surfel_residuals.hpp"
+
+namespace crisp {
+namespace {
+
+void check(const BeamsView& beams, const SurfelSettings& settings) {
+  check(beams.points);
+  check(beams.directions);
+  const std::size_t n = beams.points.size();
+  if (beams.directions.size() != n || !(beams.views.empty() || beams.views.size() == n)) {
+    throw Error(fmt::format("there are {} points, {} directions and {} views", n, beams.directions.size(),
+                            beams.views.size()),
+                "give one of each a beam, or no views at all");
+  }
+  if (!(settings.smallest > 0 && settings.largest >= settings.smallest && settings.noise > 0 &&
+        settings.floor > 0 && settings.max_thickness > 0 && settings.min_points >= 4)) {
+    throw Error("the settings of surfels are out of range",
+                "0 < smallest <= largest, noise, floor and max_thickness > 0, min_points >= 4");
+  }
+}
+
+Eigen::Vector3d direction_of(const BeamsView& beams, std::uint32_t beam) {
+  return {beams.directions.x[beam], beams.directions.y[beam], beams.directions.z[beam]};
+}
+
+/// The beams of each region, one region after the other.
+void sort_members(const std::vector<std::uint32_t>& region_of, Surfels& result) {
+  for (const std::uint32_t r : region_of) {
+    if (r != kNoRegion) ++result.surfels[r].end;
+  }
+  std::uint32_t total = 0;
+  for (Surfel& surfel : result.surfels) {
+    surfel.begin = total;
+    total += surfel.end;
+    surfel.end = surfel.begin;
+  }
+  result.members.resize(total);
+  for (std::uint32_t i = 0; i < region_of.size(); ++i) {
+    if (region_of[i] != kNoRegion) result.members[result.surfels[region_of[i]].end++] = i;
+  }
+}
+
+/// Sets the surfel's plane to that of its beams.
+void set_plane(Surfel& surfel, std::span<const std::uint32_t> members, const BeamsView& beams,
+               const SurfelCells& cells) {
+  Moments moments;
+  Eigen::Vector3d towards = Eigen::Vector3d::Zero();
+  for (const std::uint32_t beam : members) {
+    moments.add(cells.point(beams, beam));
+    towards -= direction_of(beams, beam);
+  }
+  const Plane plane = plane_of(moments);
+  surfel.middle = plane.middle + cells.origin;
+  surfel.normal = plane.normal.dot(towards) < 0 ? Eigen::Vector3d(-plane.normal) : plane.normal;
+  surfel.u = plane.u;
+  surfel.v = surfel.normal.cross(plane.u);
+  surfel.radius = std::hypot(plane.extent[1], plane.extent[2]);
+  surfel.thickness = plane.extent[0];
+}
+
+/// RMS of a surfel's residuals, in units of their spread.
+double misfit(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams,
+              const SurfelSettings& settings) {
+  double sum = 0;
+  double weight = 0;
+  for (const SurfelResidual& r : residuals_of(surfel, surfels, beams, settings)) {
+    sum += r.weight * std::pow(r.distance / r.spread, 2);
+    weight += r.weight;
+  }
+  return std::sqrt(sum / std::max(weight, 1.0));
+}
+
+/// Leaves out surfels in which views disagree by far more than they do elsewhere. Where each view is but a
+/// line, an edge looks like lines that disagree; a wrong calibration makes them disagree on whole walls too.
+void leave_out_odd_ones(Surfels& found, const BeamsView& beams, const SurfelSettings& settings) {
+  constexpr double kFarMore = 3;
+  std::vector<double> misfits(found.surfels.size());
+  tbb::parallel_for(std::size_t{0}, misfits.size(),
+                    [&](std::size_t s) { misfits[s] = misfit(found.surfels[s], found, beams, settings); });
+  std::vector<std::pair<double, std::uint32_t>> sorted;
+  std::uint64_t all = 0;
+  for (std::size_t s = 0; s < misfits.size(); ++s) {
+    const std::uint32_t count = found.surfels[s].end - found.surfels[s].begin;
+    sorted.emplace_back(misfits[s], count);
+    all += count;
+  }
+  std::ranges::sort(sorted);
+  double median = 0;  // of the beams' surfels
+  std::uint64_t below = 0;
+  for (auto next = sorted.begin(); next != sorted.end() && 2 * below <= all; ++next) {
+    median = next->first;
+    below += next->second;
+  }
+  std::vector<Surfel> kept;
+  for (std::size_t s = 0; s < misfits.size(); ++s) {
+    if (misfits[s] <= kFarMore * std::max(median, 1.0)) kept.push_back(found.surfels[s]);
+  }
+  found.surfels = std::move(kept);
+}
+
+}  // namespace
+
+Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
+  check(beams, settings);
+  const SurfelCells cells = cells_of(beams, settings);
+  const auto pieces = flat_pieces(beams, cells, settings);
+  const auto regions = joined(pieces, cells, settings);
+  Surfels result;
+  result.surfels.resize(regions.size());
+  sort_members(region_of_beams(beams, cells, pieces, regions, settings), result);
+  std::erase_if(result.surfels,
+                [&](const Surfel& surfel) { return surfel.end - surfel.begin < settings.min_points; });
+  tbb::parallel_for(std::size_t{0}, result.surfels.size(), [&](std::size_t s) {
+    Surfel& surfel = result.surfels[s];
+    set_plane(surfel, std::span(result.members).subspan(surfel.begin, surfel.end - surfel.begin), beams,
+              cells);
+    surfel = refined(surfel, result, beams, settings);
+  });
+  leave_out_odd_ones(result, beams, settings);
+  std::ranges::stable_sort(result.surfels, std::ranges::greater{},
+                           [](const Surfel& surfel) { return surfel.end - surfel.begin; });
+  return result;
+}
+
+}  // namespace crisp

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pipeline/quality/points.hpp"
+
+namespace crisp {
+
+/// n beams that met something.
+struct BeamsView {
+  PointsView points;      ///< [m] where
+  PointsView directions;  ///< unit vectors from the laser to there
+  /// Which view each is of. Beams of one view disagree by little but noise, however wrong the calibration is:
+  /// one laser, one half of its sweep. None: all are of one.
+  std::span<const std::uint32_t> views;
+};
+
+struct SurfelSettings {
+  double smallest = 0.25;       ///< [m] side of the cells that a surface must fill
+  double largest = 4;           ///< [m] side of the cells that are tried first
+  double noise = 0.012;         ///< [m] standard deviation of a range
+  double floor = 0.002;         ///< [m] least standard deviation across a surface, however flat it is met
+  double max_thickness = 0.15;  ///< [m] RMS distance from the common plane, up to which views may disagree
+  double max_excess = 1;     ///< by which the variance within views may exceed that of the noise, relatively
+  double max_tilt = 0.05;    ///< [rad] between neighbouring pieces of one surface
+  double max_offset = 0.03;  ///< [m] between neighbouring pieces of one surface
+  std::uint32_t min_points = 20;  ///< of a surfel
+  double outlier = 4.7;  ///< [σ] distance from which a beam no longer counts (Tukey's biweight); 0: all do
+};
+
+/// A piece of a plane, and the beams that met it.
+struct Surfel {
+  Eigen::Vector3d middle;   ///< [m] a point of the plane
+  Eigen::Vector3d normal;   ///< towards the lasers
+  Eigen::Vector3d u, v;     ///< unit vectors in the plane
+  double radius = 0;        ///< [m] RMS distance of its points from the middle
+  double thickness = 0;     ///< [m] RMS distance of its points from the plane
+  std::uint32_t begin = 0;  ///< its beams are members[begin] … members[end − 1]
+  std::uint32_t end = 0;
+};
+
+struct Surfels {
+  std::vector<Surfel> surfels;         ///< the largest first
+  std::vector<std::uint32_t> members;  ///< beams, in ascending order within each surfel
+};
+
+/// Finds flat surfaces. Cells are tried from large to small. Whether one is flat is decided on shape, never
+/// on how well views agree, for that is what is to be judged by the surfels: each view is compared with a
+/// plane of its own, and the common plane may be as thick as max_thickness. Flat cells of one surface are
+/// joined, so that surfels grow to whole walls, and a surfel takes all beams that end near its plane where
+/// its cells are, in which cell they may lie themselves: surfaces that coincide with a boundary of cells are
+/// not split.
+///
+/// @throws Error  for points or directions that are no numbers, lengths that differ, or settings out of range
+/// The result is the same on any number of threads.
+Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings);
+
+}  // namespace crisp

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/view_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crisp {
+namespace {
+
+constexpr double kMostTilt = 0.1;  // [rad] of a view against all: beyond, it sees another side of an edge
+
+}  // namespace
+
+ViewShape::ViewShape(const BeamsView& beams, const SurfelSettings& settings)
+    : beams_(beams), settings_(settings), view_of_(beams.points.size(), 0) {
+  std::vector<std::uint32_t> known(beams.views.begin(), beams.views.end());
+  std::ranges::sort(known);
+  const auto rest = std::ranges::unique(known);
+  known.erase(rest.begin(), rest.end());
+  for (std::size_t i = 0; i < beams.views.size(); ++i) {
+    view_of_[i] = static_cast<std::uint32_t>(std::ranges::lower_bound(known, beams.views[i]) - known.begin());
+  }
+  sums_.resize(std::max<std::size_t>(known.size(), 1));
+}
+
+bool ViewShape::is_flat(std::span<const std::uint32_t> members, const Plane& plane,
+                        const Eigen::Vector3d& origin) {
+  const auto& at = beams_.points;
+  const auto& along = beams_.directions;
+  for (const std::uint32_t i : members) {
+    const Eigen::Vector3d offset = Eigen::Vector3d(at.x[i], at.y[i], at.z[i]) - origin - plane.middle;
+    const double incidence = plane.normal.dot(Eigen::Vector3d(along.x[i], along.y[i], along.z[i]));
+    const double variance = std::pow(settings_.noise * incidence, 2) + std::pow(settings_.floor, 2);
+    ViewSums& sums = sums_[view_of_[i]];
+    if (sums.count == 0) in_use_.push_back(view_of_[i]);
+    sums.add(plane.u.dot(offset), plane.v.dot(offset), plane.normal.dot(offset), 1 / variance);
+  }
+  double left = 0;
+  double freedom = 0;
+  double tilt = 0;
+  for (const std::uint32_t view : in_use_) {
+    const Eigen::Vector3d fit = sums_[view].fit();
+    tilt = std::max(tilt, fit.tail<2>().norm());
+    left += sums_[view].squares_left(fit);
+    freedom += sums_[view].freedom();
+    sums_[view] = {};
+  }
+  in_use_.clear();
+  if (freedom < 3 || tilt > kMostTilt) return false;
+  return left / freedom <= 1 + settings_.max_excess + 3 * std::sqrt(2 / freedom);
+}
+
+}  // namespace crisp

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/surfel_equations.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <Eigen/Dense>
+
+#include "pipeline/quality/surfel_residuals.hpp"
+#include "tests/pipeline/quality/room.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::size_t kParameters = 5;
+
+/// How a room's points move with the shifts of the second and third laser (outwards, along), and with an
+/// offset that all ranges share.
+DerivativeRows derivatives_of(const test::RoomScan& scan) {
+  return [&scan](const Surfel& surfel, std::span<const std::uint32_t> beams, std::span<const double>,
+                 std::span<double> rows) {
+    for (std::size_t k = 0; k < beams.size(); ++k) {
+      const std::uint32_t i = beams[k];
+      const Eigen::Vector3d& out = scan.outwards[i];
+      double* row = &rows[k * kParameters];
+      if (scan.laser[i] > 0) {
+        double* own = row + 2 * (scan.laser[i] - 1);
+        own[0] = surfel.normal.dot(out);
+        own[1] = surfel.normal.dot(Eigen::Vector3d(-out.y(), out.x(), 0));
+      }
+      row[4] = surfel.normal.x() * scan.directions.x[i] + surfel.normal.y() * scan.directions.y[i] +
+               surfel.normal.z() * scan.directions.z[i];
+    }
+  };
+}
+
+NormalEquations equations_of(const test::RoomScan& scan, const SurfelSettings& settings) {
+  const auto surfels = find_surfels(scan.beams(), settings);
+  return normal_equations(surfels, scan.beams(), kParameters, derivatives_of(scan), settings);
+}
+
+struct Estimate {
+  Eigen::VectorXd value, std_error;
+};
+
+/// By how much the parameters are off, in one step.
+Estimate estimate(const NormalEquations& equations) {
+  const Eigen::MatrixXd inverse = equations.matrix.inverse();
+  return {-inverse * equations.vector, (equations.covariance_factor() * inverse).diagonal().cwiseSqrt()};
+}
+
+TEST(SurfelEquations, AreThoseOfAllPlanesAndParametersTogether) {
+  // One great least-squares problem, the planes among its unknowns, solved by QR: no Schur complement.
+  const auto scan = test::scan_room(1500, {{0, 0}, {0.004, 0}, {0, 0.003}}, 0.012, 1);
+  const SurfelSettings settings{.outlier = 0};
+  const auto surfels = find_surfels(scan.beams(), settings);
+  ASSERT_GT(surfels.surfels.size(), 6U);
+  const auto equations = normal_equations(surfels, scan.beams(), kParameters, derivatives_of(scan), settings);
+
+  std::vector<Eigen::VectorXd> rows;
+  std::vector<double> right;
+  const Eigen::Index unknowns = 5 + 3 * static_cast<Eigen::Index>(surfels.surfels.size());
+  for (std::size_t s = 0; s < surfels.surfels.size(); ++s) {
+    const Surfel& surfel = surfels.surfels[s];
+    const auto residuals = residuals_of(surfel, surfels, scan.beams(), settings);
+    for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
+      const SurfelResidual& r = residuals[k - surfel.begin];
+      if (r.weight == 0) continue;
+      Eigen::VectorXd row = Eigen::VectorXd::Zero(unknowns);
+      std::vector<double> own(kParameters, 0);
+      derivatives_of(scan)(surfel, std::span(&surfels.members[k], 1), std::span(&r.range_change, 1), own);
+      row.head(5) = Eigen::Map<const Eigen::VectorXd>(own.data(), 5);
+      row.segment<3>(5 + 3 * static_cast<Eigen::Index>(s)) = Eigen::Vector3d(1, r.u, r.v);
+      rows.push_back(row / r.spread);
+      right.push_back(-r.distance / r.spread);
+    }
+  }
+  Eigen::MatrixXd design(static_cast<Eigen::Index>(rows.size()), unknowns);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    design.row(static_cast<Eigen::Index>(i)) = rows[i].transpose();
+  const Eigen::VectorXd distances = Eigen::Map<const Eigen::VectorXd>(right.data(), design.rows());
+  const Eigen::VectorXd solution = design.householderQr().solve(distances).head(5);
+  const Eigen::VectorXd step = -equations.matrix.inverse() * equations.vector;
+  EXPECT_LT((step - solution).norm(), 1e-9 * solution.norm());
+  const Eigen::MatrixXd covariance = (design.transpose() * design).inverse().topLeftCorner(5, 5);
+  EXPECT_LT((equations.matrix.inverse() - covariance).norm(), 1e-8 * covariance.norm());
+  EXPECT_NEAR(equations.chi2, distances.squaredNorm(), 1e-6 * equations.chi2);
+}
+
+TEST(SurfelEquations, FindWhereLasersAreWithinTheirStandardErrors) {
+  const Eigen::VectorXd truth = (Eigen::VectorXd(5) << 0.01, -0.005, -0.004, 0.008, 0).finished();
+  // Each squared error over its variance is 1 on average: a sum of 40 · 5 has a standard deviation of 20.
+  double sum = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const auto scan = test::scan_room(3000, {{0, 0}, {0.01, -0.005}, {-0.004, 0.008}}, 0.012, seed);
+    const auto found = estimate(equations_of(scan, {.floor = 1e-4}));
+    sum += ((found.value - truth).array() / found.std_error.array()).square().sum();
+  }
+  EXPECT_NEAR(sum, 200, 4 * 20);
+}
+
+TEST(SurfelEquations, DoNotTakeTheNoiseOfRangesForAnOffset) {
+  // With regressors at the noisy points a clean scan shows an offset of decimetres; where points are chosen
+  // by their noise, one of tenths of a millimetre.
+  const auto scan = test::scan_room(100000, {{0, 0}, {0, 0}, {0, 0}}, 0.012, 99);
+  const auto found = estimate(equations_of(scan, {}));
+  EXPECT_LT(found.std_error[4], 1.5e-4);
+  for (Eigen::Index k = 0; k < 5; ++k) EXPECT_LT(std::abs(found.value[k]), 4 * found.std_error[k]) << k;
+}
+
+TEST(SurfelEquations, StandOutliers) {
+  auto scan = test::scan_room(20000, {{0, 0}, {0.01, -0.005}, {-0.004, 0.008}}, 0.012, 5);
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> shorter(0, 1);
+  for (std::size_t i = 0; i < scan.points.size(); i += 20) {
+    const double by = shorter(random);
+    scan.points.x[i] -= by * scan.directions.x[i];
+    scan.points.y[i] -= by * scan.directions.y[i];
+    scan.points.z[i] -= by * scan.directions.z[i];
+  }
+  const auto found = estimate(equations_of(scan, {}));
+  const Eigen::VectorXd truth = (Eigen::VectorXd(5) << 0.01, -0.005, -0.004, 0.008, 0).finished();
+  for (Eigen::Index k = 0; k < 5; ++k) EXPECT_NEAR(found.value[k], truth[k], 4 * found.std_error[k]) << k;
+}
+
+TEST(SurfelEquations, HoldForWhateverNoiseThereIs) {
+  const auto scan = test::scan_room(10000, {{0, 0}, {0, 0}, {0, 0}}, 0.006, 7);
+  const auto finer = estimate(equations_of(scan, {.noise = 0.006, .floor = 1e-4}));
+  const auto thought_coarser = estimate(equations_of(scan, {.noise = 0.012, .floor = 1e-4}));
+  for (Eigen::Index k = 0; k < 5; ++k) {
+    EXPECT_NEAR(thought_coarser.std_error[k] / finer.std_error[k], 1, 0.1) << k;
+  }
+}
+
+TEST(SurfelEquations, ReduceToWhatOtherParametersCannotExplain) {
+  NormalEquations equations(3);
+  equations.matrix << 4, 2, 1, 2, 3, 0.5, 1, 0.5, 2;
+  equations.vector << 1, -1, 0.5;
+  equations.freedom = 10;
+  const auto reduced = equations.reduced({2}, {0, 1});
+  // The inverse's corner is the inverse of what is left; and the solution stays the same.
+  EXPECT_NEAR(reduced.matrix(0, 0), 1 / equations.matrix.inverse()(2, 2), 1e-12);
+  EXPECT_NEAR(-reduced.vector[0] / reduced.matrix(0, 0),
+              -equations.matrix.inverse().row(2).dot(equations.vector), 1e-12);
+  // Two parameters that do the same: nothing is left of one without the other.
+  equations.matrix << 4, 2, 4, 2, 3, 2, 4, 2, 4;
+  equations.vector << 1, -1, 1;
+  EXPECT_NEAR(equations.reduced({2}, {0, 1}).matrix(0, 0), 0, 1e-9);
+  EXPECT_NEAR(equations.reduced({1}, {0, 2}).matrix(0, 0), 2, 1e-9);
+  EXPECT_EQ(equations.reduced({1}, {}).matrix(0, 0), 3);
+}
+
+TEST(SurfelEquations, AreTheSameToTheLastBitOnAnyNumberOfThreads) {
+  const auto scan = test::scan_room(10000, {{0, 0}, {0.01, 0}, {0, 0.01}}, 0.012, 8);
+  const auto many = equations_of(scan, {});
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  const auto one = equations_of(scan, {});
+  EXPECT_EQ(one.matrix, many.matrix);
+  EXPECT_EQ(one.vector, many.vector);
+  EXPECT_EQ(one.chi2, many.chi2);
+}
+
+}  // namespace
+}  // namespace crisp

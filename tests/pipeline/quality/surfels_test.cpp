@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/surfels.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <limits>
+
+#include "pipeline/data/error.hpp"
+#include "tests/pipeline/quality/room.hpp"
+
+namespace crisp {
+namespace {
+
+/// Beams straight down on z = height + slope · x², over a square of this side [m].
+test::RoomScan look_down(std::size_t n, double side, double height, double bend, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> place(-side / 2, side / 2);
+  std::normal_distribution<double> error(0, 0.012);
+  test::RoomScan scan;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = place(random);
+    const double y = place(random);
+    test::add(scan.points, x, y, height + bend * x * x + error(random));
+    test::add(scan.directions, 0, 0, -1);
+  }
+  return scan;
+}
+
+TEST(Surfels, GrowToTheWholeWallsOfARoom) {
+  const auto scan = test::scan_room(30000, {{0, 0}, {0, 0}, {0, 0}}, 0.012, 1);
+  const auto found = find_surfels(scan.beams(), {});
+  ASSERT_GE(found.surfels.size(), 6U);
+  std::vector<int> seen(6, 0);
+  for (std::size_t s = 0; s < 6; ++s) {
+    const Surfel& surfel = found.surfels[s];
+    int axis = 0;
+    surfel.normal.cwiseAbs().maxCoeff(&axis);
+    // Normals point into the room, and the plane is known to the noise over the root of its beams.
+    const bool low = surfel.normal[axis] > 0;
+    ++seen[static_cast<std::size_t>(2 * axis + (low ? 0 : 1))];
+    const double wall = low ? test::kRoomLow[axis] : test::kRoomHigh[axis];
+    const double beams = surfel.end - surfel.begin;
+    EXPECT_NEAR(surfel.middle[axis], wall, 5 * 0.012 / std::sqrt(beams));
+    EXPECT_NEAR(std::abs(surfel.normal[axis]), 1, 1e-5);
+    EXPECT_LT(surfel.thickness, 0.0135);
+  }
+  EXPECT_EQ(seen, std::vector<int>(6, 1));
+  std::size_t in_walls = 0;
+  for (std::size_t s = 0; s < 6; ++s) in_walls += found.surfels[s].end - found.surfels[s].begin;
+  EXPECT_GT(in_walls, 0.9 * static_cast<double>(scan.points.size()));
+}
+
+TEST(Surfels, TakeNoBeamFromBothSidesOfACorner) {
+  const auto scan = test::scan_room(30000, {{0, 0}, {0, 0}, {0, 0}}, 0.012, 2);
+  const auto found = find_surfels(scan.beams(), {});
+  for (std::size_t s = 0; s < 6; ++s) {
+    const Surfel& surfel = found.surfels[s];
+    for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
+      const std::uint32_t i = found.members[k];
+      const Eigen::Vector3d point(scan.points.x[i], scan.points.y[i], scan.points.z[i]);
+      EXPECT_LT(std::abs(surfel.normal.dot(point - surfel.middle)), 0.07);
+    }
+  }
+}
+
+TEST(Surfels, AreNotSplitWhereverASurfaceLiesAmongTheCells) {
+  for (unsigned k = 0; k < 25; ++k) {
+    // A few beams elsewhere move the cells about.
+    auto scan = look_down(4000, 3, 0.01 * k, 0, k);
+    for (unsigned i = 0; i < 4100 + 10 * k; ++i) {
+      test::add(scan.points, 50, 50, -0.3 * i);
+      test::add(scan.directions, 0, 0, -1);
+    }
+    const auto found = find_surfels(scan.beams(), {});
+    ASSERT_EQ(found.surfels.size(), 1U) << k;
+    EXPECT_GT(found.surfels[0].end - found.surfels[0].begin, 3900U) << k;
+    EXPECT_NEAR(found.surfels[0].middle.z(), 0.01 * k, 5 * 0.012 / std::sqrt(4000)) << k;
+  }
+}
+
+TEST(Surfels, AreFlatOnShapeHoweverMuchViewsDisagree) {
+  auto scan = look_down(6000, 3, 0, 0, 3);
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    scan.views.push_back(i % 3);
+    scan.points.z[i] += 0.04 * static_cast<double>(i % 3);  // three sheets
+  }
+  const auto found = find_surfels(scan.beams(), {});
+  ASSERT_EQ(found.surfels.size(), 1U);
+  EXPECT_GT(found.surfels[0].end - found.surfels[0].begin, 5900U);
+  // The same beams as one view are no flat surface, but a thick one.
+  scan.views.clear();
+  EXPECT_EQ(find_surfels(scan.beams(), {}).surfels.size(), 0U);
+}
+
+TEST(Surfels, StaySmallOnWhatIsBent) {
+  const auto bent = look_down(40000, 3, 0, 0.4, 4);  // 90 cm at the rims
+  const auto found = find_surfels(bent.beams(), {});
+  ASSERT_GT(found.surfels.size(), 3U);
+  for (const Surfel& surfel : found.surfels) {
+    EXPECT_NEAR(surfel.middle.z(), 0.4 * surfel.middle.x() * surfel.middle.x(), 0.02);
+    const double slope = -surfel.normal.x() / surfel.normal.z();
+    EXPECT_NEAR(slope, 0.8 * surfel.middle.x(), 0.1);
+  }
+}
+
+TEST(Surfels, AreNotFoundInScatter) {
+  auto scan = look_down(20000, 3, 0, 0, 5);
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> place(-1.5, 1.5);
+  for (double& z : scan.points.z) z = place(random);
+  EXPECT_EQ(find_surfels(scan.beams(), {}).surfels.size(), 0U);
+}
+
+TEST(Surfels, OfNothingAreNone) {
+  EXPECT_EQ(find_surfels({}, {}).surfels.size(), 0U);
+  const auto few = look_down(5, 1, 0, 0, 7);
+  EXPECT_EQ(find_surfels(few.beams(), {}).surfels.size(), 0U);
+}
+
+TEST(Surfels, AreTheSameOnAnyNumberOfThreads) {
+  const auto scan = test::scan_room(5000, {{0, 0}, {0, 0}}, 0.012, 8);
+  const auto many = find_surfels(scan.beams(), {});
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  const auto one = find_surfels(scan.beams(), {});
+  EXPECT_EQ(one.members, many.members);
+  ASSERT_EQ(one.surfels.size(), many.surfels.size());
+  for (std::size_t s = 0; s < one.surfels.size(); ++s)
+    EXPECT_EQ(one.surfels[s].normal, many.surfels[s].normal);
+}
+
+TEST(Surfels, RefuseWhatCannotBe) {
+  auto scan = look_down(100, 1, 0, 0, 9);
+  EXPECT_THROW(find_surfels(scan.beams(), {.smallest = 0}), Error);
+  EXPECT_THROW(find_surfels(scan.beams(), {.largest = 0.1}), Error);
+  EXPECT_THROW(find_surfels(scan.beams(), {.noise = -1}), Error);
+  scan.views = {1, 2, 3};
+  EXPECT_THROW(find_surfels(scan.beams(), {}), Error);
+  scan.views.clear();
+  scan.points.x[3] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(find_surfels(scan.beams(), {}), Error);
+}
+
+}  // namespace
+}  // namespace crisp
