@@ -12,9 +12,9 @@ find_package(TBB REQUIRED)
 find_package(flann REQUIRED)  # link crisp_flann: the packaged target forgets lz4
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
 pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)
-# By pkg-config, since find_package(PCL) drags in far more than crisp needs; pcl_io, with its VTK, only where
-# PCD files are read and written.
+# By pkg-config, since find_package(PCL) drags in far more than crisp needs.
 pkg_check_modules(PCL_COMMON REQUIRED IMPORTED_TARGET pcl_common)
+pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)
 pkg_check_modules(PCAP REQUIRED IMPORTED_TARGET libpcap)
 pkg_check_modules(TINS REQUIRED IMPORTED_TARGET libtins)
 
@@ -26,6 +26,7 @@ endif()
 
 if(CRISP_BUILD_TESTS OR PROJECT_IS_TOP_LEVEL)
   find_package(GTest REQUIRED)
+  find_library(CRISP_PCL_IO pcl_io REQUIRED)  # with its VTK, only where tests hold crisp's PCD files against PCL
   include(GoogleTest)
 endif()
 if(CRISP_BUILD_BENCHMARKS)

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <concepts>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/pcd/pcd_header.hpp"
+
+namespace crisp {
+
+template <class T>
+concept PcdNumber =
+    (std::integral<T> && !std::same_as<T, bool>) || std::same_as<T, float> || std::same_as<T, double>;
+
+/// The points of a PCD file as named columns, and the notes of its header. In memory a column follows the
+/// other, as in a binary_compressed file.
+class PcdTable {
+ public:
+  explicit PcdTable(std::size_t rows) { header_.points = rows; }
+  /// @param columns all the fields' values, one field after the other, as the header says
+  PcdTable(PcdHeader header, std::string columns);
+
+  std::size_t rows() const { return header_.points; }
+  const PcdHeader& header() const { return header_; }
+  std::string_view bytes() const { return columns_; }
+  bool has(std::string_view field) const { return header_.find(field) != nullptr; }
+
+  /// What crisp says in the header's comments; neither may hold blanks.
+  void set_note(const std::string& key, std::string value) { header_.notes[key] = std::move(value); }
+
+  /// Adds a column: `value_of(row)` gives each row's value.
+  template <PcdNumber T, class ValueOf>
+  void add(std::string name, ValueOf value_of) {
+    constexpr char kType = std::floating_point<T> ? 'F' : std::signed_integral<T> ? 'I' : 'U';
+    header_.fields.push_back({.name = std::move(name), .type = kType, .size = sizeof(T)});
+    std::size_t end = columns_.size();
+    columns_.resize(end + rows() * sizeof(T));
+    for (std::size_t row = 0; row < rows(); ++row, end += sizeof(T)) {
+      const T value = value_of(row);
+      std::memcpy(columns_.data() + end, &value, sizeof(T));
+    }
+  }
+
+  /// A column's values as numbers of type T, whatever type the file has them in.
+  /// @throws Error if there is no such column of single elements, or a value is beyond a whole number T
+  template <PcdNumber T>
+  std::vector<T> column(std::string_view name) const;
+
+ private:
+  PcdHeader header_;
+  std::string columns_;
+};
+
+/// Writes a PCD file in the format that is asked for; a binary_compressed one can hold 4 GB. The same table
+/// gives the same bytes.
+/// @param out to which nothing was written; it is not committed
+/// @throws Error if the points are too many for the format, or the disk is full
+void write_pcd(AtomicFile& out, const PcdTable& table, PcdFormat format);
+
+/// Reads a PCD file of any origin.
+/// @throws Error if it cannot be read, its header is wrong, or it does not hold what its header says
+PcdTable read_pcd(const std::filesystem::path& file);
+
+/// The same from memory. Needs no more memory than some 300 times the bytes, whatever the header claims.
+/// @param name of the file, for errors
+PcdTable parse_pcd(std::string_view bytes, const std::string& name);
+
+}  // namespace crisp

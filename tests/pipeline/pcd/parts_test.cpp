@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/pcd/parts.hpp"
+
+#include <gmock/gmock.h>
+
+#include "pipeline/data/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+
+PcdTable one_value(float value) {
+  PcdTable table(1);
+  table.add<float>("x", [=](std::size_t) { return value; });
+  return table;
+}
+
+class Parts : public testing::Test {
+ protected:
+  void write(int n) const {
+    PartsWriter writer(folder_ / "x.pcd", PcdFormat::binary);
+    for (int i = 1; i <= n; ++i) writer.write(one_value(static_cast<float>(i)), i < n);
+    writer.commit();
+  }
+  std::vector<float> read(std::string_view name) const {
+    std::vector<float> values;
+    read_parts(folder_ / name, [&](const PcdTable& table, const fs::path&) {
+      values.push_back(table.column<float>("x").front());
+    });
+    return values;
+  }
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(Parts, OneIsAFileOfTheNameAskedFor) {
+  write(1);
+  EXPECT_TRUE(fs::exists(folder_ / "x.pcd"));
+  EXPECT_THAT(read("x.pcd"), ElementsAre(1));
+}
+
+TEST_F(Parts, SeveralAreNumberedAndReadInOrder) {
+  write(3);
+  EXPECT_FALSE(fs::exists(folder_ / "x.pcd"));
+  EXPECT_THAT(read("x.pcd"), ElementsAre(1, 2, 3));
+  EXPECT_THAT(read("x_0002.pcd"), ElementsAre(2, 3));
+}
+
+TEST_F(Parts, PartsOfAnEarlierLongerRecordingAreNotTakenForThisOnes) {
+  write(3);
+  write(2);
+  EXPECT_THAT(read("x.pcd"), ElementsAre(1, 2));
+}
+
+TEST_F(Parts, AMissingOrRenamedPartIsAnError) {
+  write(3);
+  fs::rename(folder_ / "x_0003.pcd", folder_ / "y_0003.pcd");
+  EXPECT_THROW(read("x.pcd"), Error);
+  fs::rename(folder_ / "x_0001.pcd", folder_ / "x_0007.pcd");
+  EXPECT_THROW(read("x_0007.pcd"), Error);
+}
+
+TEST_F(Parts, AFileAndPartsOfTheSameNameAreAmbiguous) {
+  write(1);
+  write(2);
+  EXPECT_THROW(read("x.pcd"), Error);
+  EXPECT_THAT(read("x_0001.pcd"), ElementsAre(1, 2));
+}
+
+TEST_F(Parts, NothingRemainsOfPartsThatWereNotCommitted) {
+  {
+    PartsWriter writer(folder_ / "x.pcd", PcdFormat::binary);
+    writer.write(one_value(1), true);
+    writer.write(one_value(2), false);
+  }
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
+}
+
+TEST_F(Parts, AFileThatIsNotThereIsNamed) {
+  try {
+    read("none.pcd");
+    FAIL() << "read what is not there";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("none.pcd: No such file"));
+  }
+}
+
+}  // namespace
+}  // namespace crisp

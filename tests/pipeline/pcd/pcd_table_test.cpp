@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/pcd/pcd_table.hpp"
+
+#include <gmock/gmock.h>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/pcd/cloud_table.hpp"
+#include "tests/pipeline/pcd/sample_tables.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::HasSubstr;
+
+std::string written(const PcdTable& table, PcdFormat format) {
+  const test::TemporaryFolder folder;
+  AtomicFile out(folder / "table.pcd");
+  write_pcd(out, table, format);
+  out.commit();
+  return test::bytes_of(out.path());
+}
+
+/// What parse_pcd says of a file; empty if it takes it.
+std::string complaint(std::string_view bytes) {
+  try {
+    parse_pcd(bytes, "x.pcd");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+std::string ascii_file(const std::string& header, const std::string& data) {
+  return header + "\nDATA ascii\n" + data;
+}
+
+class PcdFormats : public testing::TestWithParam<PcdFormat> {};
+
+TEST_P(PcdFormats, TheSamePointsGiveTheSameBytes) {
+  const auto cloud = test::sample_cloud(5000);
+  EXPECT_EQ(written(to_table(cloud), GetParam()), written(to_table(cloud), GetParam()));
+}
+
+TEST_P(PcdFormats, AFileThatIsCutOffAnywhereIsRefused) {
+  const std::string bytes = written(to_table(test::sample_cloud(7)), GetParam());
+  ASSERT_EQ(complaint(bytes), "");
+  // What ends an ASCII file is a line break, which is not missed; without its last digit a number is another.
+  const std::size_t longest = bytes.size() - (GetParam() == PcdFormat::ascii ? 20 : 0);
+  for (std::size_t n = 0; n < longest; ++n) ASSERT_NE(complaint(bytes.substr(0, n)), "") << n;
+}
+
+TEST_P(PcdFormats, AFlippedBitNeverBringsTheReaderDown) {
+  std::string bytes = written(to_table(test::sample_cloud(7)), GetParam());
+  std::size_t refused = 0;
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    const auto flip = static_cast<char>(1 << (bit % 8));
+    bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ flip);
+    refused += complaint(bytes).empty() ? 0 : 1;
+    bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ flip);
+  }
+  EXPECT_GT(refused, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PcdFormats,
+                         testing::Values(PcdFormat::ascii, PcdFormat::binary, PcdFormat::binary_compressed));
+
+TEST(PcdTable, MistakesInAHeaderAreNamedWithTheirLine) {
+  const std::string fields = "VERSION 0.7\nFIELDS x y\n";
+  EXPECT_THAT(complaint("VERSION 0.7\nFIELDS x\n"), HasSubstr("x.pcd:3:1: error: the file ends before"));
+  EXPECT_THAT(complaint(ascii_file(fields + "SIZE 4", "")),
+              HasSubstr("x.pcd:3:1: error: SIZE has 1 values for 2"));
+  EXPECT_THAT(complaint(ascii_file(fields + "SIZE 4 3\nWIDTH 1", "1 2")), HasSubstr("has 3 bytes"));
+  EXPECT_THAT(complaint(ascii_file(fields + "SIZE 4 2\nWIDTH 1", "1 2")), HasSubstr("type F has 2 bytes"));
+  EXPECT_THAT(complaint(ascii_file(fields + "WIDTH 1", "1 2")), HasSubstr("has 0 bytes"));
+  EXPECT_THAT(complaint(ascii_file(fields + "SIZE 4 -4", "")), HasSubstr("'-4' is no whole number"));
+  EXPECT_THAT(complaint(ascii_file(fields + "TYPE F X", "")), HasSubstr("no type 'X'"));
+  EXPECT_THAT(complaint(ascii_file(fields + "COUNT 1 0", "")), HasSubstr("COUNT must be"));
+  EXPECT_THAT(complaint(ascii_file(fields + "SIZE 4 4\nWIDTH 2\nHEIGHT 2\nPOINTS 5", "")),
+              HasSubstr("POINTS is not WIDTH times HEIGHT"));
+  EXPECT_THAT(
+      complaint(ascii_file(fields + "SIZE 4 4\nWIDTH 4294967296\nHEIGHT 4294967297\nPOINTS 4294967296", "")),
+      HasSubstr("too large"));
+  EXPECT_THAT(complaint(ascii_file(fields + "FOO 1", "")), HasSubstr("'FOO' is no key"));
+  EXPECT_THAT(complaint(fields + "DATA zip\n"), HasSubstr("DATA must be"));
+  EXPECT_THAT(complaint(ascii_file("SIZE 4", "")), HasSubstr("for 0 fields"));
+  EXPECT_THAT(complaint(ascii_file("WIDTH 1", "")), HasSubstr("FIELDS is missing"));
+}
+
+TEST(PcdTable, PointsThatAreNotThereAreNotAllocated) {
+  const std::string header = "FIELDS x\nSIZE 8\nTYPE F\nWIDTH 1000000000000000\n";
+  EXPECT_THAT(complaint(header + "DATA ascii\n1\n"), HasSubstr("too short"));
+  EXPECT_THAT(complaint(header + "DATA binary\n12345678"), HasSubstr("too short"));
+  EXPECT_THAT(complaint(header + std::string("DATA binary_compressed\n\1\0\0\0\10\0\0\0x", 32)),
+              HasSubstr("too short"));
+}
+
+TEST(PcdTable, AnAsciiFileOfAnotherProgramIsRead) {
+  const auto table = parse_pcd(
+      "VERSION .7\r\nCOLUMNS x flag n big\r\nSIZE 4 1 2 8\r\nTYPE F U I I\r\nCOUNT 1 1 2 1\r\nWIDTH "
+      "2\r\nDATA ascii\r\n"
+      "nan 255 -1 2 -9007199254740993\r\n 1e-60\t7 3 4 5",
+      "x.pcd");
+  EXPECT_TRUE(std::isnan(table.column<float>("x").at(0)));
+  EXPECT_EQ(table.column<float>("x").at(1), 0);
+  EXPECT_EQ(table.column<std::uint16_t>("flag"), (std::vector<std::uint16_t>{255, 7}));
+  EXPECT_EQ(table.column<double>("big").at(1), 5);
+}
+
+TEST(PcdTable, AValueThatIsNotANumberIsShown) {
+  EXPECT_THAT(complaint(ascii_file("FIELDS x\nSIZE 4\nWIDTH 2", "1\ntwo\n")),
+              HasSubstr("'two' in place of a number, in point 2"));
+  EXPECT_THAT(complaint(ascii_file("FIELDS x\nSIZE 1\nTYPE U\nWIDTH 1", "256\n")), HasSubstr("'256'"));
+}
+
+TEST(PcdTable, ColumnsAreRefusedThatAreNotThereOrDoNotFit) {
+  const auto table = parse_pcd(ascii_file("FIELDS x n\nSIZE 4 4\nTYPE F I\nWIDTH 1", "1 70000\n"), "x.pcd");
+  EXPECT_THROW(table.column<float>("y"), Error);
+  EXPECT_THROW(table.column<std::uint16_t>("n"), Error);
+  EXPECT_EQ(table.column<float>("n").at(0), 70000);
+}
+
+TEST(PcdTable, PointsWithoutAPlaceAreCountedAndLeftOut) {
+  const auto table =
+      parse_pcd(ascii_file("FIELDS x y z\nSIZE 4 4 4\nWIDTH 3", "1 2 3\nnan nan nan\ninf 0 0\n"), "x.pcd");
+  const auto read = cloud_of(table);
+  EXPECT_EQ(read.cloud->size(), 1U);
+  EXPECT_EQ(read.not_finite, 2U);
+}
+
+}  // namespace
+}  // namespace crisp
