@@ -14,7 +14,13 @@
 namespace crisp {
 
 /// What a capture gives.
-using CaptureItem = std::variant<Scan, PlateReading>;
+using CaptureItem = std::variant<std::shared_ptr<const Scan>, PlateReading>;
+
+/// [ns since the Unix epoch] When the hub received an item.
+inline std::int64_t receipt_ns(const CaptureItem& item) {
+  const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item);
+  return scan != nullptr ? (*scan)->receipt_ns : std::get<PlateReading>(item).receipt_ns;
+}
 
 /// How the bytes of a capture are understood.
 struct CaptureSettings {

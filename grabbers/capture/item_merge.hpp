@@ -11,11 +11,6 @@
 
 namespace crisp {
 
-/// [ns] When the hub received an item.
-inline std::int64_t receipt_ns(const CaptureItem& item) {
-  return std::visit([](const auto& x) { return x.receipt_ns; }, item);
-}
-
 /// Puts items into the order of their receipt; of equal times the first that came goes first.
 class ItemMerge {
  public:

@@ -159,10 +159,7 @@ bool TcpStream::stray(std::uint32_t sequence, ByteView bytes, std::int64_t time_
     return true;
   }
   drop_stray();
-  stray_.emplace();
-  stray_->sequence = sequence;
-  stray_->arrival_ns = time_ns;
-  stray_->bytes.assign(bytes.begin(), bytes.end());
+  stray_ = Stray{sequence, Bytes(bytes.begin(), bytes.end()), time_ns};
   return false;
 }
 

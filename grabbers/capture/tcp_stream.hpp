@@ -76,8 +76,10 @@ class TcpStream {
   std::uint64_t position_ = 0;  ///< of the next byte to deliver, counted from the first
   std::map<std::uint64_t, Held> held_;
   std::size_t held_bytes_ = 0;
-  struct Stray : Held {
-    std::uint32_t sequence = 0;
+  struct Stray {  ///< a segment that may begin a new connection
+    std::uint32_t sequence;
+    Bytes bytes;
+    std::int64_t arrival_ns;
   };
   std::optional<Stray> stray_;
   Counts counts_;

@@ -103,15 +103,14 @@ TEST(CaptureReader, StampsATelegramThatARetransmissionCompletesWithThat) {
                    [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; });
   auto items = scenario.items();
   for (auto& item : items) {
-    auto* scan = std::get_if<Scan>(&item);
-    if (scan != nullptr && scan->laser == 0 && scan->telegram_counter == 102) scan->receipt_ns = time;
+    const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item);
+    if (scan == nullptr || (*scan)->laser != 0 || (*scan)->telegram_counter != 102) continue;
+    auto delayed = **scan;
+    delayed.receipt_ns = time;
+    item = std::make_shared<const Scan>(delayed);
   }
-  std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) {
-    const auto time_of = [](const auto& item) {
-      return std::visit([](const auto& x) { return x.receipt_ns; }, item);
-    };
-    return time_of(a) < time_of(b);
-  });
+  std::stable_sort(items.begin(), items.end(),
+                   [](const auto& a, const auto& b) { return receipt_ns(a) < receipt_ns(b); });
   const auto reading = read_capture(pcap_file(frames));
   EXPECT_THAT(reading.items, ElementsAreArray(describe(items)));
   EXPECT_GT(reading.device("laser1").notes.of("TCP segments out of order"), 0U);

@@ -18,7 +18,7 @@ struct Reading {
 Reading read(const std::filesystem::path& path) {
   Reading reading;
   CaptureReader reader(path, default_rig());
-  while (auto item = reader.next()) reading.scans.push_back(std::get<Scan>(std::move(*item)));
+  while (auto item = reader.next()) reading.scans.push_back(*std::get<std::shared_ptr<const Scan>>(*item));
   reading.statistics = reader.statistics();
   return reading;
 }

@@ -73,7 +73,7 @@ std::vector<CaptureItem> Scenario::items() const {
       scan.echoes.resize(1);
       for (const auto raw : data.channels16[0].raw)
         scan.echoes[0].ranges.push_back(static_cast<float>(raw * 1e-3));
-      all.emplace_back(std::move(scan));
+      all.emplace_back(std::make_shared<const Scan>(std::move(scan)));
     }
     for (std::size_t j = 10 * k; j < 10 * k + 10; ++j) {
       auto reading = numbered_reading(static_cast<std::uint16_t>(j));
@@ -81,10 +81,8 @@ std::vector<CaptureItem> Scenario::items() const {
       all.emplace_back(reading);
     }
   }
-  const auto time = [](const CaptureItem& item) {
-    return std::visit([](const auto& x) { return x.receipt_ns; }, item);
-  };
-  std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) { return time(a) < time(b); });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return receipt_ns(a) < receipt_ns(b); });
   return all;
 }
 
@@ -93,7 +91,7 @@ std::string describe(const CaptureItem& item) {
     return fmt::format("{} plate {} {} {}", reading->receipt_ns - kStart, reading->sequence,
                        reading->device_us, reading->count);
   }
-  const auto& scan = std::get<Scan>(item);
+  const auto& scan = *std::get<std::shared_ptr<const Scan>>(item);
   double weighted = 0;
   std::size_t beams = 0;
   for (const auto& echo : scan.echoes) {
