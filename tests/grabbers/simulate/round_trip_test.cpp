@@ -63,7 +63,7 @@ TEST_F(RoundTrip, ACaptureGivesBackEveryScanAndReading) {
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (const auto* telegram = std::get_if<LaserTelegram>(&events[i])) {
       const Scan expected = to_scan(*telegram);
-      const Scan& scan = std::get<Scan>(items[i]);
+      const Scan& scan = *std::get<std::shared_ptr<const Scan>>(items[i]);
       ASSERT_EQ(scan.laser, expected.laser);
       ASSERT_EQ(scan.receipt_ns, expected.receipt_ns);
       ASSERT_EQ(scan.scan_counter, expected.scan_counter);
@@ -99,8 +99,8 @@ TEST_F(RoundTrip, AFaultyWireLosesTelegramsButNothingElse) {
            (events[at].index() != item.index() || receipt_ns(events[at]) != receipt_ns(item)))
       ++at;
     ASSERT_LT(at, events.size()) << "an item that was never sent, or not then";
-    if (const auto* scan = std::get_if<Scan>(&item)) {
-      ASSERT_EQ(scan->echoes[0].ranges, to_scan(std::get<LaserTelegram>(events[at])).echoes[0].ranges);
+    if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
+      ASSERT_EQ((*scan)->echoes[0].ranges, to_scan(std::get<LaserTelegram>(events[at])).echoes[0].ranges);
     }
   }
 }
