@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/searches.hpp"
 
@@ -35,7 +36,9 @@ Rqe rqe(const PointsView& points, std::span<const double> weights, const RqeSett
   // H = −log E, and xᵢ is in both orders of each of its pairs: ∂H/∂xᵢ = 4 · exponent · pull / kernel.
   const double scale = 4 * kernel.exponent / sums.kernel;
   for (auto* axis : {&result.gradient.x, &result.gradient.y, &result.gradient.z}) {
-    for (double& g : *axis) g *= scale;
+    for_blocks(axis->size(), 65536, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) (*axis)[i] *= scale;
+    });
   }
   return result;
 }

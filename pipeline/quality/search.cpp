@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/quality/search.hpp"
 
-#include <tbb/parallel_for.h>
-
-#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/searches.hpp"
 
 namespace crisp {
@@ -43,14 +41,12 @@ void add_point(const PointsView& points, std::span<const double> weights, const 
 
 GaussianSums Search::sums(const PointsView& points, std::span<const double> weights,
                           const TruncatedGaussian& kernel, const SumsWanted& wanted) {
-  constexpr std::size_t kBlock = 256;  // points: fixed, so that sums do not depend on the threads
+  constexpr std::size_t kBlock = 256;  // points
   const auto neighbours = index(points, kernel.radius);
   GaussianSums result;
   if (wanted.gradient) result.pull.assign(points.size(), 0);
-  std::vector<BlockSums> blocks((points.size() + kBlock - 1) / kBlock);
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-    const std::size_t first = b * kBlock;
-    const std::size_t last = std::min(points.size(), first + kBlock);
+  std::vector<BlockSums> blocks(blocks_of(points.size(), kBlock));
+  for_blocks(points.size(), kBlock, [&](std::size_t b, std::size_t first, std::size_t last) {
     Neighbours near;
     neighbours->near(first, last, near);
     for (std::size_t i = first; i < last; ++i) {

@@ -5,16 +5,19 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr int kBits = 21;     // a coordinate's share of a key
 constexpr int kFineBits = 4;  // of these, the ones within a cell
+constexpr int kDigitBits = 11;
+constexpr std::uint64_t kDigitMask = (1U << kDigitBits) - 1;
+constexpr std::size_t kBlock = 65536;  // points
 
 double median_of_a_sample(std::span<const double> values) {
   const std::size_t stride = values.size() / 1024 + 1;
@@ -55,12 +58,21 @@ std::vector<std::uint32_t> fine_cells(std::span<const double> values, double fin
   constexpr double kLast = (1 << kBits) - 1;
   const double median = median_of_a_sample(values);
   std::vector<std::uint32_t> cells(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    cells[i] = static_cast<std::uint32_t>(std::clamp((values[i] - median) / fine_side + kMiddle, 0.0, kLast));
-  }
+  std::vector<std::uint32_t> lows(blocks_of(values.size(), kBlock));
+  for_blocks(values.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    std::uint32_t lowest = 1U << kBits;
+    for (std::size_t i = begin; i < end; ++i) {
+      cells[i] =
+          static_cast<std::uint32_t>(std::clamp((values[i] - median) / fine_side + kMiddle, 0.0, kLast));
+      lowest = std::min(lowest, cells[i]);
+    }
+    lows[block] = lowest;
+  });
   // Few leading bits make a short sort; whole cells, so that cells stay what they are.
-  const std::uint32_t lowest = *std::ranges::min_element(cells) >> kFineBits << kFineBits;
-  for (auto& cell : cells) cell -= lowest;
+  const std::uint32_t lowest = *std::ranges::min_element(lows) >> kFineBits << kFineBits;
+  for_blocks(values.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) cells[i] -= lowest;
+  });
   low = median + (lowest - kMiddle) * fine_side;
   return cells;
 }
@@ -70,18 +82,30 @@ struct Entry {
   std::uint32_t index;
 };
 
-/// A stable sort by 11 bits at a time, without the digits that all keys share.
+/// Sorts by one digit of the key, keeping the order of equal ones: each block of entries counts its digits,
+/// and so knows where to put them.
+void sort_by_digit(const std::vector<Entry>& entries, int shift, std::vector<Entry>& sorted) {
+  const auto digit = [shift](const Entry& entry) { return entry.key >> shift & kDigitMask; };
+  std::vector<std::array<std::size_t, kDigitMask + 1>> first(blocks_of(entries.size(), kBlock));
+  for_blocks(entries.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    first[block].fill(0);
+    for (std::size_t i = begin; i < end; ++i) ++first[block].at(digit(entries[i]));
+  });
+  std::size_t total = 0;
+  for (std::size_t d = 0; d <= kDigitMask; ++d) {
+    for (auto& block : first) total += std::exchange(block.at(d), total);
+  }
+  for_blocks(entries.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) sorted[first[block].at(digit(entries[i]))++] = entries[i];
+  });
+}
+
 void radix_sort(std::vector<Entry>& entries) {
-  constexpr int kDigit = 11;
-  constexpr std::uint64_t kMask = (1U << kDigit) - 1;
   std::uint64_t used = 0;
   for (const Entry& entry : entries) used |= entry.key;
   std::vector<Entry> sorted(entries.size());
-  for (int shift = 0; shift < 64 && used >> shift != 0; shift += kDigit) {
-    std::array<std::size_t, kMask + 1> first{};
-    for (const Entry& entry : entries) ++first.at(entry.key >> shift & kMask);
-    std::exclusive_scan(first.begin(), first.end(), first.begin(), std::size_t{0});
-    for (const Entry& entry : entries) sorted[first.at(entry.key >> shift & kMask)++] = entry;
+  for (int shift = 0; shift < 64 && used >> shift != 0; shift += kDigitBits) {
+    sort_by_digit(entries, shift, sorted);
     entries.swap(sorted);
   }
 }
@@ -120,16 +144,20 @@ SpatialOrder spatial_order(const PointsView& points, double side) {
   const auto y = fine_cells(points.y, fine_side, order.lattice.low[1]);
   const auto z = fine_cells(points.z, fine_side, order.lattice.low[2]);
   std::vector<Entry> entries(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    entries[i] = {interleave(x[i], y[i], z[i]), static_cast<std::uint32_t>(i)};
-  }
+  for_blocks(n, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      entries[i] = {interleave(x[i], y[i], z[i]), static_cast<std::uint32_t>(i)};
+    }
+  });
   radix_sort(entries);
-  order.index.reserve(n);
-  order.cell.reserve(n);
-  for (const Entry& entry : entries) {
-    order.index.push_back(entry.index);
-    order.cell.push_back(entry.key >> (3 * kFineBits));
-  }
+  order.index.resize(n);
+  order.cell.resize(n);
+  for_blocks(n, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      order.index[k] = entries[k].index;
+      order.cell[k] = entries[k].key >> (3 * kFineBits);
+    }
+  });
   return order;
 }
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/quality/sum_on_lattice.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/lattice.hpp"
 #include "pipeline/quality/spatial_order.hpp"
 
@@ -86,17 +85,16 @@ bool lattice_pays(const PointsView& points, const TruncatedGaussian& kernel) {
 
 GaussianSums sum_on_lattice(const PointsView& points, std::span<const double> weights,
                             const TruncatedGaussian& kernel, bool gradient) {
-  constexpr std::size_t kBlock = 1024;  // points: fixed, so that sums do not depend on the threads
+  constexpr std::size_t kBlock = 1024;  // points
   const double step = step_for(points, kernel.sigma);
   Lattice field(points, step * kernel.sigma);
   field.spread(points, weights);
   field.convolve(influence_function(step));
   GaussianSums result;
   if (gradient) result.pull.assign(points.size(), 0);
-  std::vector<double> blocks((points.size() + kBlock - 1) / kBlock);
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-    const std::size_t end = std::min(points.size(), (b + 1) * kBlock);
-    for (std::size_t i = b * kBlock; i < end; ++i) {
+  std::vector<double> blocks(blocks_of(points.size(), kBlock));
+  for_blocks(points.size(), kBlock, [&](std::size_t b, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       const Lattice::Value at = field.at(points.x[i], points.y[i], points.z[i]);
       blocks[b] += weights[i] * at.value;
       if (!gradient) continue;

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/quality/sum_over_tiles.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/tile_sums.hpp"
 
 namespace crisp {
@@ -26,9 +25,8 @@ Slots fill_slots(const Tiles& tiles, const PointsView& points, std::span<const d
   Slots slots;
   slots.weight.resize(padded);
   for (auto& axis : slots.offset) axis.resize(padded);
-  tbb::parallel_for(std::size_t{0}, tiles.groups(), [&](std::size_t group) {
-    const std::size_t end = std::min(tiles.size(), (group + 1) * Tiles::kFanOut);
-    for (std::size_t t = group * Tiles::kFanOut; t < end; ++t) {
+  for_blocks(tiles.size(), 1024, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
       for (std::uint32_t slot = tiles.begin()[t]; slot < tiles.begin()[t + 1]; ++slot) {
         const std::uint32_t i = tiles.order()[slot];
         slots.weight[slot] = static_cast<float>(weights[i]);
@@ -55,7 +53,7 @@ simd::TileArrays arrays(const Tiles& tiles, const Slots& slots) {
   return result;
 }
 
-/// Groups of tiles to a task: depends on the data alone, never on the threads, so that the sums do not.
+/// Groups of tiles to a task: depends on the data alone, so that the sums do not depend on the threads.
 std::size_t groups_a_task(const Tiles& tiles) { return std::clamp<std::size_t>(tiles.groups() / 64, 8, 128); }
 
 /// Sums one task; its pulls go to where its points are in the cloud.
@@ -97,9 +95,9 @@ GaussianSums sum_over_tiles(const Tiles& tiles, const PointsView& points, std::s
   GaussianSums result;
   if (gradient) result.pull.assign(points.size(), 0);
   const std::size_t step = groups_a_task(tiles);
-  std::vector<simd::TaskSums> tasks((tiles.groups() + step - 1) / step);
-  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
-    tasks[t] = sum_task(tiles, data, pair, t * step, std::min(tiles.groups(), (t + 1) * step), result.pull);
+  std::vector<simd::TaskSums> tasks(blocks_of(tiles.groups(), step));
+  for_blocks(tiles.groups(), step, [&](std::size_t t, std::size_t first, std::size_t last) {
+    tasks[t] = sum_task(tiles, data, pair, first, last, result.pull);
   });
   std::uint64_t ordered_pairs = 0;
   for (const simd::TaskSums& task : tasks) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "pipeline/quality/blocks.hpp"
+
 namespace crisp {
 namespace {
 
@@ -13,7 +15,21 @@ std::array<std::span<const double>, 3> axes(const PointsView& points) {
   return {points.x, points.y, points.z};
 }
 
+constexpr std::size_t kCutBlock = 65536;  // points
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Each box of a level from the kFanOut below it.
+void set_boxes(const Boxes& below, Boxes& level) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i * Tiles::kFanOut < below.size(); ++i) {
+      const auto some = [&](const std::vector<double>& all) {
+        return std::span(all).subspan(i * Tiles::kFanOut, Tiles::kFanOut);
+      };
+      level.low[axis][i] = *std::ranges::min_element(some(below.low[axis]));
+      level.high[axis][i] = *std::ranges::max_element(some(below.high[axis]));
+    }
+  }
+}
 
 }  // namespace
 
@@ -46,12 +62,23 @@ Tiles::Tiles(const PointsView& points, double reach, std::vector<std::uint32_t> 
 }
 
 void Tiles::cut(const PointsView& points) {
+  std::vector<std::vector<std::uint32_t>> begins(blocks_of(order_.size(), kCutBlock));
+  for_blocks(order_.size(), kCutBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    begins[block] = cut(points, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+  });
+  for (const auto& some : begins) begin_.insert(begin_.end(), some.begin(), some.end());
+  begin_.push_back(static_cast<std::uint32_t>(order_.size()));
+}
+
+std::vector<std::uint32_t> Tiles::cut(const PointsView& points, std::uint32_t begin,
+                                      std::uint32_t end) const {
   constexpr double kLargest = 1.75;  // of the reach: tiles well filled where points are few, small elsewhere
   const auto coordinates = axes(points);
+  std::vector<std::uint32_t> begins;
   std::array<double, 3> low{};
   std::array<double, 3> high{};
-  for (std::uint32_t slot = 0; slot < order_.size(); ++slot) {
-    bool fits = slot > 0 && slot - begin_.back() < kCapacity;
+  for (std::uint32_t slot = begin; slot < end; ++slot) {
+    bool fits = !begins.empty() && slot - begins.back() < kCapacity;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double at = coordinates[axis][order_[slot]];
       low[axis] = std::min(low[axis], at);
@@ -59,41 +86,34 @@ void Tiles::cut(const PointsView& points) {
       fits = fits && high[axis] - low[axis] <= kLargest * reach_;
     }
     if (fits) continue;
-    begin_.push_back(slot);
+    begins.push_back(slot);
     for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = high[axis] = coordinates[axis][order_[slot]];
   }
-  begin_.push_back(static_cast<std::uint32_t>(order_.size()));
+  return begins;
 }
 
 bool Tiles::refresh(const PointsView& points) {
-  bool compact = true;
-  Boxes& tiles = levels_.front();
+  constexpr std::size_t kBlock = 1024;  // tiles
   const auto coordinates = axes(points);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t t = 0; t < size(); ++t) {
-      double low = kInfinity;
-      double high = -kInfinity;
-      for (std::uint32_t slot = begin_[t]; slot < begin_[t + 1]; ++slot) {
-        low = std::min(low, coordinates[axis][order_[slot]]);
-        high = std::max(high, coordinates[axis][order_[slot]]);
-      }
-      tiles.low[axis][t] = low;
-      tiles.high[axis][t] = high;
-      compact = compact && high - low <= 2.5 * reach_;
-    }
-    for (std::size_t level = 1; level < levels_.size(); ++level) {
-      auto& low = levels_[level].low[axis];
-      auto& high = levels_[level].high[axis];
-      for (std::size_t i = 0; i * kFanOut < levels_[level - 1].size(); ++i) {
-        const auto at = static_cast<std::ptrdiff_t>(i * kFanOut);
-        low[i] = *std::min_element(levels_[level - 1].low[axis].begin() + at,
-                                   levels_[level - 1].low[axis].begin() + at + kFanOut);
-        high[i] = *std::max_element(levels_[level - 1].high[axis].begin() + at,
-                                    levels_[level - 1].high[axis].begin() + at + kFanOut);
+  Boxes& tiles = levels_.front();
+  std::vector<char> compact(blocks_of(size(), kBlock), 1);
+  for_blocks(size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t t = begin; t < end; ++t) {
+        double low = kInfinity;
+        double high = -kInfinity;
+        for (std::uint32_t slot = begin_[t]; slot < begin_[t + 1]; ++slot) {
+          low = std::min(low, coordinates[axis][order_[slot]]);
+          high = std::max(high, coordinates[axis][order_[slot]]);
+        }
+        tiles.low[axis][t] = low;
+        tiles.high[axis][t] = high;
+        if (high - low > 2.5 * reach_) compact[block] = 0;
       }
     }
-  }
-  return compact;
+  });
+  for (std::size_t level = 1; level < levels_.size(); ++level) set_boxes(levels_[level - 1], levels_[level]);
+  return std::ranges::all_of(compact, [](char all) { return all != 0; });
 }
 
 /// What near_below() looks for: boxes of one level near a box, and where to list them.

@@ -53,6 +53,7 @@ class Tiles {
 
  private:
   void cut(const PointsView& points);
+  std::vector<std::uint32_t> cut(const PointsView& points, std::uint32_t begin, std::uint32_t end) const;
   struct Query;
   void near_below(std::size_t level, std::size_t box, const Query& query) const;
 
