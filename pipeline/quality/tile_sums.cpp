@@ -68,10 +68,10 @@ struct Partners {
     size += from.begin[b + 1] - slot;
   }
 
-  /// What lies beyond the last partner is out of every kernel's reach.
+  /// What lies beyond the last partner is out of every kernel's reach, and a number: 0 · NaN is not 0.
   HWY_INLINE void close() {
     for (std::size_t k = 0; k < kPadding; k += hn::Lanes(kFloats)) {
-      hn::StoreU(hn::Set(kFloats, 1e15F), kFloats, at[0] + size + k);
+      for (auto& axis : at) hn::StoreU(hn::Set(kFloats, 1e15F), kFloats, axis + size + k);
       hn::StoreU(hn::Zero(kFloats), kFloats, weight + size + k);
     }
   }
