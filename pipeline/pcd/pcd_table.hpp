@@ -70,4 +70,14 @@ PcdTable read_pcd(const std::filesystem::path& file);
 /// @param name of the file, for errors
 PcdTable parse_pcd(std::string_view bytes, const std::string& name);
 
+/// Runs `read`, and puts the file's name before what it complains of.
+template <class Read>
+auto about(const std::filesystem::path& file, Read read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    throw Error(file.string() + ": " + error.message(), error.advice());
+  }
+}
+
 }  // namespace crisp

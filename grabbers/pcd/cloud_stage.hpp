@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// `grabber.cloud`: the cloud of a PCD file of any origin.
+class GrabCloudStage final : public Stage {
+ public:
+  static void describe(StageDescription<GrabCloudStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+
+ private:
+  std::filesystem::path file_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/pcd/measurements_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pipeline/pcd/measurement_tables.hpp"
+#include "pipeline/pcd/parts.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::size_t kAtOnce = 1 << 15;  // measurements in one item: enough that an item costs nothing
+
+Measurements some_of(const Measurements& all, std::size_t begin, std::size_t end) {
+  const auto slice = [&](const auto& values) {
+    return std::remove_cvref_t<decltype(values)>(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                 values.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  return {.epoch_ns = all.epoch_ns,
+          .range = slice(all.range),
+          .mirror_angle = slice(all.mirror_angle),
+          .time = slice(all.time),
+          .laser = slice(all.laser),
+          .remission = slice(all.remission),
+          .beam = slice(all.beam)};
+}
+
+void refuse_other_rigs(const Measurements& beams, const Rig& rig) {
+  const auto largest = std::max_element(beams.laser.begin(), beams.laser.end());
+  if (largest != beams.laser.end() && *largest >= rig.lasers.size()) {
+    throw Error(
+        fmt::format("has measurements of laser {}, but the rig has {}", *largest + 1, rig.lasers.size()),
+        "give the rig that they were taken with: --rig");
+  }
+}
+
+}  // namespace
+
+void GrabMeasurementsStage::describe(StageDescription<GrabMeasurementsStage>& d) {
+  d.name("grabber.pcd").summary("reads raw measurements that an earlier run wrote");
+  d.details(
+      "Gives exactly what write.measurements was given. Where NAME.plate.pcd is missing, the plate's "
+      "trajectory "
+      "is made of the angles that stand beside the measurements; it then ends with them.");
+  d.gives<PlateTrajectory>().gives<Measurements>();
+  d.option("file", &GrabMeasurementsStage::file_, "NAME.pcd, as it was given to write.measurements")
+      .required();
+  d.option("max_gap", &GrabMeasurementsStage::max_gap_,
+           "longest silence of the encoder to interpolate across, where NAME.plate.pcd is missing")
+      .unit("s")
+      .range(1e-4, 10);
+}
+
+void GrabMeasurementsStage::process(const Inputs&, Outputs& out, Context& context) {
+  read_parts(file_, [&](const PcdTable& table, const std::filesystem::path& file) {
+    context.reads(file);
+    const auto [beams, impossible] = about(file, [&] { return measurements_of(table); });
+    context.count("measurements that cannot be", impossible);
+    about(file, [&] { refuse_other_rigs(beams, context.rig()); });
+    auto plate = trajectory(table, file, context);
+    if (plate.epoch_ns() != beams.epoch_ns) {
+      throw Error(fmt::format("{} and {} are of different runs: their epochs differ", file.string(),
+                              plate_path(file).filename().string()));
+    }
+    out.give(std::move(plate));
+    for (std::size_t begin = 0; begin < beams.size() && !context.interrupted(); begin += kAtOnce) {
+      out.give(some_of(beams, begin, std::min(begin + kAtOnce, beams.size())));
+    }
+  });
+}
+
+PlateTrajectory GrabMeasurementsStage::trajectory(const PcdTable& table, const std::filesystem::path& file,
+                                                  Context& context) const {
+  const auto plate_file = plate_path(file);
+  if (!std::filesystem::exists(plate_file)) {
+    context.warn(plate_file.string() +
+                 " is missing: the plate's trajectory is made of the measurements' angles");
+    return about(file, [&] { return trajectory_between(table, max_gap_); });
+  }
+  context.reads(plate_file);
+  const PcdTable readings = read_pcd(plate_file);
+  return about(plate_file, [&] { return trajectory_of(readings); });
+}
+
+}  // namespace crisp

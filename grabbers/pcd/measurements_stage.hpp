@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/pcd/pcd_table.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// `grabber.pcd`: raw measurements that an earlier run wrote, so that a run can stop and go on between
+/// stages.
+class GrabMeasurementsStage final : public Stage {
+ public:
+  static void describe(StageDescription<GrabMeasurementsStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+
+ private:
+  PlateTrajectory trajectory(const PcdTable& table, const std::filesystem::path& file,
+                             Context& context) const;
+
+  std::filesystem::path file_;
+  double max_gap_ = 0.1;
+};
+
+}  // namespace crisp

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/pcd/register.hpp"
+
+#include "grabbers/pcd/cloud_stage.hpp"
+#include "grabbers/pcd/measurements_stage.hpp"
+
+namespace crisp {
+
+void register_pcd(Registrar& registrar) {
+  registrar.stage<GrabCloudStage>();
+  registrar.stage<GrabMeasurementsStage>();
+}
+
+}  // namespace crisp

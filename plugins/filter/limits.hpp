@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/data/cloud.hpp"
+#include "pipeline/data/measurements.hpp"
+
+namespace crisp {
+
+/// From the smallest to the largest value that is kept, both included; empty: no limit.
+using Limits = std::vector<double>;
+
+/// @param name of the option, for the error
+/// @throws Error if the first is above the second, or there is only one
+void check_limits(const Limits& limits, const std::string& name);
+
+/// Where the points are that are kept, in the plate's frame.
+struct CropLimits {
+  Limits x;         ///< [m]
+  Limits y;         ///< [m]
+  Limits z;         ///< [m]
+  Limits distance;  ///< [m] from the plate's centre
+};
+
+/// The points within all limits, in their order. What is not a number is within none that is set.
+Cloud crop(const Cloud& cloud, const CropLimits& limits);
+
+/// The measurements that are kept.
+struct RangeLimits {
+  Limits range;                  ///< [m]
+  Limits mirror_angle;           ///< [rad]
+  std::vector<unsigned> lasers;  ///< indices in the rig; empty: all
+};
+
+/// The measurements within all limits, in their order.
+Measurements within(const Measurements& beams, const RangeLimits& limits);
+
+}  // namespace crisp

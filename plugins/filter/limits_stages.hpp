@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/filter/limits.hpp"
+
+namespace crisp {
+
+/// `filter.crop`: a part of the cloud, by where its points are.
+class CropStage final : public Stage {
+ public:
+  static void describe(StageDescription<CropStage>& d);
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+
+ private:
+  CropLimits limits_;
+};
+
+/// `filter.range`: some of the measurements, by what was measured.
+class RangeStage final : public Stage {
+ public:
+  static void describe(StageDescription<RangeStage>& d);
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+
+ private:
+  RangeLimits limits(const Rig& rig) const;
+
+  Limits range_;
+  Limits mirror_angle_;
+  std::vector<std::string> lasers_;
+};
+
+}  // namespace crisp

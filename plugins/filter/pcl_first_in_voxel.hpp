@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl/filters/filter.h>
+
+#include "plugins/filter/voxels.hpp"
+
+namespace crisp {
+
+/// As pcl::VoxelGrid, but keeps the first point of each voxel as it is, with all its fields (a mean of points
+/// has no time, no laser and no beam), and the order of the points.
+///
+///     crisp::FirstInVoxel<pcl::PointXYZI> thin;
+///     thin.setLeafSize(0.05);
+///     thin.setInputCloud(cloud);
+///     thin.filter(thinned);
+template <class PointT>
+class FirstInVoxel : public pcl::Filter<PointT> {
+ public:
+  FirstInVoxel() { this->filter_name_ = "FirstInVoxel"; }
+
+  /// @param size [m] of a voxel's edge, > 0
+  void setLeafSize(double size) { size_ = size; }
+  double getLeafSize() const { return size_; }
+
+ protected:
+  void applyFilter(pcl::PointCloud<PointT>& output) override {
+    Voxels voxels(size_);
+    output.clear();
+    for (const auto index : *this->indices_) {
+      const PointT& point = (*this->input_)[index];
+      if (voxels.is_first(point.x, point.y, point.z)) output.push_back(point);
+    }
+    output.header = this->input_->header;
+  }
+
+ private:
+  double size_ = 0.05;
+};
+
+}  // namespace crisp

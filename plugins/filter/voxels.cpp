@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/filter/voxels.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace crisp {
+
+std::size_t Voxels::Hash::operator()(const Cell& cell) const {
+  std::uint64_t hash = 0;
+  for (const auto index : cell) {  // one round of splitmix64 an index, so that neighbours lie apart
+    hash += static_cast<std::uint32_t>(index) + 0x9e3779b97f4a7c15ULL;
+    hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebULL;
+    hash ^= hash >> 31;
+  }
+  return hash;
+}
+
+bool Voxels::is_first(float x, float y, float z) {
+  Cell cell{};
+  std::size_t axis = 0;
+  for (const float coordinate : {x, y, z}) {
+    const double index = std::floor(static_cast<double>(coordinate) / size_);
+    if (!(std::abs(index) < std::numeric_limits<std::int32_t>::max())) return false;
+    cell[axis++] = static_cast<std::int32_t>(index);
+  }
+  return taken_.insert(cell).second;
+}
+
+}  // namespace crisp

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/write/measurements_stage.hpp"
+
+#include "pipeline/pcd/measurement_tables.hpp"
+
+namespace crisp {
+
+void WriteMeasurementsStage::describe(StageDescription<WriteMeasurementsStage>& d) {
+  d.name("write.measurements").summary("writes raw measurements, from which another run goes on");
+  d.details(
+      "NAME.pcd holds a row for each measurement: range, mirror_angle, time, plate_angle, laser, beam and "
+      "remission, in metres, radians and seconds since the epoch in the header's comment. NAME.plate.pcd "
+      "holds "
+      "the readings of the plate. No calibration is applied. `grabber.pcd` gives exactly what came in "
+      "here.\n\n"
+      "Where the plate's trajectory comes in pieces (recordings of several minutes), so do the files.");
+  d.takes<Measurements>().holds<PlateTrajectory>();
+  describe_parts(d, &WriteMeasurementsStage::options_);
+}
+
+void WriteMeasurementsStage::process(const Inputs& in, Outputs&, Context&) {
+  if (!writer_) writer_.emplace(options_.file, options_.format);
+  const auto& beams = in.get<Measurements>();
+  if (beams.size() == 0) return;
+  auto plate = in.share<PlateTrajectory>();
+  const bool full =
+      pending_.size() > 0 && (plate != plate_ || options_.is_full(pending_.size() + beams.size() - 1,
+                                                                  pending_.time.front(), beams.time.front()));
+  if (full) write_part(true);
+  plate_ = std::move(plate);
+  pending_.append(beams);
+}
+
+void WriteMeasurementsStage::write_part(bool more) {
+  const auto file = writer_->write(to_table(pending_, *plate_), more);
+  writer_->write_beside(plate_path(file), to_table(*plate_));
+  written_ += pending_.size();
+  pending_ = {};
+}
+
+void WriteMeasurementsStage::finish(Outputs&, Context& context) {
+  if (pending_.size() == 0) {
+    throw Error("no measurement came, so that there is nothing to write",
+                "the counts above say where they were lost");
+  }
+  write_part(false);
+  finish_parts(*writer_, written_, "measurements", context);
+}
+
+}  // namespace crisp

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/write/parts_options.hpp"
+
+#include <fmt/format.h>
+
+namespace crisp {
+
+void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what, Context& context) {
+  const auto files = writer.commit();
+  auto names = nlohmann::json::array();
+  for (const auto& file : files) {
+    names.push_back(file.string());
+    context.wrote(file);
+  }
+  const std::string where =
+      files.size() == 1 ? files.front().string()
+                        : fmt::format("{} to {}", files.front().string(), files.back().filename().string());
+  context.say(fmt::format("{} {} in {}", count, what, where));
+  context.report({{std::string(what), count}, {"files", names}});
+}
+
+}  // namespace crisp

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "pipeline/pcd/parts.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// How PCD files are written, and where a long recording is cut into several.
+struct PartsOptions {
+  std::filesystem::path file;
+  PcdFormat format = PcdFormat::binary_compressed;
+  std::size_t split_points = 5'000'000;  // some 600 MB of memory while a file is being written
+  std::optional<double> split_duration;  ///< [s]
+
+  /// Whether a part of so many points, the first at `begin`, is full before a point at `time` [s].
+  bool is_full(std::size_t points, double begin, double time) const {
+    return points >= split_points ||
+           time - begin >= split_duration.value_or(std::numeric_limits<double>::infinity());
+  }
+};
+
+template <class S>
+void describe_parts(StageDescription<S>& d, PartsOptions S::*options) {
+  d.option("file", options, &PartsOptions::file, "where to write it, NAME.pcd").required();
+  d.option("format", options, &PartsOptions::format, "how the points follow the header")
+      .choices({{"binary_compressed", PcdFormat::binary_compressed},
+                {"binary", PcdFormat::binary},
+                {"ascii", PcdFormat::ascii}});
+  d.option("split_points", options, &PartsOptions::split_points,
+           "most points in one file; what is longer becomes NAME_0001.pcd, NAME_0002.pcd and so on")
+      .range(1, 1e8);
+  d.option("split_duration", options, &PartsOptions::split_duration,
+           "longest time in one file; auto: no limit")
+      .unit("s")
+      .range(1e-3, 1e9);
+}
+
+/// Puts the files in their place and tells the run of them.
+/// @param what they hold, for people: "points"
+void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what, Context& context);
+
+}  // namespace crisp

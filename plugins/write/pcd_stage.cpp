@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/write/pcd_stage.hpp"
+
+#include <pcl/common/point_tests.h>
+
+#include <cmath>
+
+#include "pipeline/pcd/cloud_table.hpp"
+
+namespace crisp {
+
+void WritePcdStage::describe(StageDescription<WritePcdStage>& d) {
+  d.name("write.pcd").summary("writes the cloud as a PCD file");
+  d.details(
+      "All clouds that come become one, with the fields x, y, z, intensity, laser, beam and time: seconds, "
+      "as "
+      "double, since the epoch that the comment `# crisp epoch_ns` in the header gives in nanoseconds since "
+      "1970. PCL and CloudCompare read it. A recording that is too long for one file becomes several, so "
+      "that "
+      "memory does not grow with it. The files appear when all of them are complete.");
+  d.takes<Cloud>();
+  describe_parts(d, &WritePcdStage::options_);
+}
+
+void WritePcdStage::process(const Inputs& in, Outputs&, Context& context) {
+  if (!writer_) writer_.emplace(options_.file, options_.format);
+  const Cloud& cloud = in.get<Cloud>();
+  if (written_ == 0 && pending_.empty()) pending_.header = cloud.header;
+  const double shift =
+      1e-6 * (static_cast<double>(cloud.header.stamp) - static_cast<double>(pending_.header.stamp));
+  std::size_t lost = 0;
+  for (Point point : cloud) {
+    point.time += shift;  // 0 within a run of crisp
+    if (!pcl::isXYZFinite(point) || !std::isfinite(point.time)) {
+      ++lost;
+    } else {
+      add(point);
+    }
+  }
+  context.count("points that are not numbers", lost);
+}
+
+void WritePcdStage::add(const Point& point) {
+  if (!pending_.empty() && options_.is_full(pending_.size(), pending_.front().time, point.time)) {
+    writer_->write(to_table(pending_), true);
+    written_ += pending_.size();
+    pending_.clear();
+  }
+  pending_.push_back(point);
+}
+
+void WritePcdStage::finish(Outputs&, Context& context) {
+  if (pending_.empty()) {
+    throw Error("no point came, so that there is no cloud to write",
+                "the counts above say where they were lost");
+  }
+  writer_->write(to_table(pending_), false);
+  finish_parts(*writer_, written_ + pending_.size(), "points", context);
+}
+
+}  // namespace crisp

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/pcd/measurements_stage.hpp"
+
+#include <gmock/gmock.h>
+
+#include "grabbers/pcd/cloud_stage.hpp"
+#include "pipeline/data/cloud.hpp"
+#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/parts.hpp"
+#include "plugins/write/measurements_stage.hpp"
+#include "tests/pipeline/pcd/sample_tables.hpp"
+#include "tests/support/stage_driver.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+using test::sample_measurements;
+using test::sample_plate;
+using test::StageDriver;
+using testing::HasSubstr;
+
+class GrabMeasurements : public testing::Test {
+ protected:
+  std::map<std::string, OptionValue> file(std::string_view name) const {
+    return {{"file", OptionScalar((folder_ / name).string())}};
+  }
+  StageDriver written(
+      const std::vector<std::pair<Measurements, std::shared_ptr<const PlateTrajectory>>>& items,
+      std::map<std::string, OptionValue> options = {}) const {
+    options.merge(file("run.pcd"));
+    auto stage = StageDriver::of<WriteMeasurementsStage>(options);
+    for (const auto& [beams, plate] : items) stage.feed(beams, plate);
+    stage.finish();
+    return stage;
+  }
+  StageDriver read() const {
+    auto stage = StageDriver::of<GrabMeasurementsStage>(file("run.pcd"));
+    stage.feed();
+    return stage;
+  }
+  std::string complaint() const {
+    try {
+      read();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  }
+  test::TemporaryFolder folder_;
+};
+
+std::shared_ptr<const PlateTrajectory> plate(double seconds) {
+  return std::make_shared<const PlateTrajectory>(sample_plate(seconds));
+}
+
+Measurements joined(const StageDriver& stage) {
+  Measurements all;
+  for (const auto& beams : stage.given<Measurements>()) all.append(*beams);
+  return all;
+}
+
+void expect_same(const Measurements& actual, const Measurements& expected) {
+  EXPECT_EQ(actual.epoch_ns, expected.epoch_ns);
+  EXPECT_EQ(actual.range, expected.range);
+  EXPECT_EQ(actual.mirror_angle, expected.mirror_angle);
+  EXPECT_EQ(actual.time, expected.time);
+  EXPECT_EQ(actual.laser, expected.laser);
+  EXPECT_EQ(actual.remission, expected.remission);
+  EXPECT_EQ(actual.beam, expected.beam);
+}
+
+TEST_F(GrabMeasurements, GivesExactlyWhatWasWritten) {
+  const auto beams = sample_measurements(40000);
+  written({{beams, plate(1)}, {beams, plate(1)}});
+  const auto stage = read();
+  Measurements both = beams;
+  both.append(beams);
+  expect_same(joined(stage), both);
+  const auto last = stage.given<PlateTrajectory>().back();
+  ASSERT_EQ(last->size(), sample_plate(1).size());
+  EXPECT_EQ(last->at(0.77)->angle, sample_plate(1).at(0.77)->angle);
+}
+
+TEST_F(GrabMeasurements, EachPieceOfTheTrajectoryComesBeforeItsMeasurements) {
+  const auto beams = sample_measurements(10);
+  const auto first = plate(1);
+  const auto second = plate(2);
+  const auto writer = written({{beams, first}, {beams, first}, {beams, second}});
+  EXPECT_EQ(writer.report().written.size(), 4U) << "two parts of two files";
+  const auto stage = read();
+  const auto plates = stage.given<PlateTrajectory>();
+  ASSERT_EQ(plates.size(), 2U);
+  EXPECT_EQ(plates[0]->end(), first->end());
+  EXPECT_EQ(plates[1]->end(), second->end());
+  const auto items = stage.given<Measurements>();
+  ASSERT_EQ(items.size(), 2U);
+  EXPECT_EQ(items[0]->size(), 20U);
+  EXPECT_EQ(items[1]->size(), 10U);
+}
+
+TEST_F(GrabMeasurements, ManyMeasurementsAreSplitAndComeBackTheSame) {
+  const auto beams = sample_measurements(100);
+  written({{beams, plate(1)}, {beams, plate(1)}, {beams, plate(1)}},
+          {{"split_points", OptionScalar(std::int64_t{150})}});
+  EXPECT_TRUE(fs::exists(folder_ / "run_0003.plate.pcd"));
+  Measurements all = beams;
+  all.append(beams);
+  all.append(beams);
+  expect_same(joined(read()), all);
+}
+
+TEST_F(GrabMeasurements, WithoutThePlatesFileTheAnglesBesideTheMeasurementsDo) {
+  written({{sample_measurements(2000), plate(1)}});
+  fs::remove(folder_ / "run.plate.pcd");
+  const auto stage = read();
+  EXPECT_EQ(stage.report().warnings.size(), 1U);
+  const double middle = sample_measurements(2000).time[1000] + 5e-6;
+  // Between measurements 18.5 µs apart a cubic is as good as exact.
+  EXPECT_NEAR(stage.given<PlateTrajectory>().at(0)->at(middle)->angle, sample_plate(1).at(middle)->angle,
+              1e-9);
+}
+
+TEST_F(GrabMeasurements, WhatDoesNotBelongTogetherIsRefused) {
+  written({{sample_measurements(10), plate(1)}});
+  PartsWriter writer(folder_ / "run.plate.pcd", PcdFormat::binary);
+  PcdTable table(2);
+  table.set_note("epoch_ns", "5");
+  table.set_note("max_gap", "1");
+  table.add<double>("time", [](std::size_t i) { return static_cast<double>(i); });
+  table.add<double>("angle", [](std::size_t i) { return static_cast<double>(i); });
+  writer.write(table, false);
+  writer.commit();
+  EXPECT_THAT(complaint(), HasSubstr("are of different runs"));
+}
+
+TEST_F(GrabMeasurements, ALaserThatTheRigDoesNotHaveIsRefused) {
+  auto beams = sample_measurements(10);
+  beams.laser[3] = 7;
+  written({{beams, plate(1)}});
+  EXPECT_THAT(complaint(), HasSubstr("run.pcd: has measurements of laser 8, but the rig has 3"));
+}
+
+TEST_F(GrabMeasurements, ACloudInPlaceOfMeasurementsIsRefusedByName) {
+  PartsWriter writer(folder_ / "run.pcd", PcdFormat::binary);
+  writer.write(to_table(test::sample_cloud(3)), false);
+  writer.commit();
+  EXPECT_THAT(complaint(), HasSubstr("run.pcd: there is no field 'range'"));
+}
+
+TEST_F(GrabMeasurements, ACloudIsReadByItsOwnGrabber) {
+  PartsWriter writer(folder_ / "cloud.pcd", PcdFormat::binary);
+  writer.write(to_table(test::sample_cloud(3)), false);
+  writer.commit();
+  auto stage = StageDriver::of<GrabCloudStage>(file("cloud.pcd"));
+  stage.feed();
+  EXPECT_EQ(stage.given<Cloud>().at(0)->at(2).time, test::sample_cloud(3)[2].time);
+  EXPECT_THAT(stage.report().read, testing::ElementsAre(folder_ / "cloud.pcd"));
+}
+
+}  // namespace
+}  // namespace crisp
