@@ -56,8 +56,9 @@ void GrabMeasurementsStage::describe(StageDescription<GrabMeasurementsStage>& d)
 void GrabMeasurementsStage::process(const Inputs&, Outputs& out, Context& context) {
   read_parts(file_, [&](const PcdTable& table, const std::filesystem::path& file) {
     context.reads(file);
-    const auto [beams, impossible] = about(file, [&] { return measurements_of(table); });
-    context.count("measurements that cannot be", impossible);
+    const auto read = about(file, [&] { return measurements_of(table); });
+    const Measurements& beams = read.beams;
+    context.count("measurements that cannot be", read.impossible);
     about(file, [&] { refuse_other_rigs(beams, context.rig()); });
     auto plate = trajectory(table, file, context);
     if (plate.epoch_ns() != beams.epoch_ns) {

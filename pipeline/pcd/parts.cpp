@@ -15,7 +15,7 @@ const std::string kNext = "next_part";
 
 /// The file that a recording begins with.
 fs::path first_file(const fs::path& file) {
-  const fs::path part = part_path(file, 1);
+  fs::path part = part_path(file, 1);
   if (!fs::exists(part)) return file;  // if that is not there either, reading it says so
   if (fs::exists(file)) {
     throw Error(fmt::format("both {} and {} are there", file.string(), part.filename().string()),

@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
-#include <numeric>
 #include <system_error>
 
 #include "pipeline/data/error.hpp"
@@ -86,10 +85,10 @@ class BodyReader {
   }
 
   std::string read_ascii() {
-    const std::size_t values = std::accumulate(header_.fields.begin(), header_.fields.end(), std::size_t{0},
-                                               [](std::size_t n, const auto& f) { return n + f.count; });
+    std::size_t values = 0;
+    for (const auto& field : header_.fields) values += field.count;
     // A value takes a digit and a blank at least, and 8 bytes of ours at most.
-    if (header_.points > (body_.size() + 1) / (2 * values)) {
+    if (header_.points > 0 && values > (body_.size() + 1) / 2 / header_.points) {
       fail(fmt::format("says that it has {} points, but it is too short for them", header_.points));
     }
     std::string columns(header_.points * record_, '\0');

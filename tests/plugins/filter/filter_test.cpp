@@ -79,12 +79,12 @@ TEST(Voxel, PointsThatHaveNoCellAreNotKept) {
 }
 
 TEST(Voxel, ThePclFilterThinsAnyCloudAndHeedsItsIndices) {
-  const pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
+  const auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   for (const float x : {0.1F, 0.2F, 1.1F, 2.1F}) cloud->push_back({x, 0, 0});
   FirstInVoxel<pcl::PointXYZ> filter;
   filter.setLeafSize(1);
   filter.setInputCloud(cloud);
-  filter.setIndices(pcl::IndicesPtr(new pcl::Indices{1, 2}));
+  filter.setIndices(std::make_shared<pcl::Indices>(pcl::Indices{1, 2}));
   pcl::PointCloud<pcl::PointXYZ> thinned;
   filter.filter(thinned);
   ASSERT_EQ(thinned.size(), 2U);
