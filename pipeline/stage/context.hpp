@@ -17,6 +17,15 @@ namespace crisp {
 
 class Registrar;
 
+/// How far a stage is with its own work.
+struct Progress {
+  double done = 0;        ///< of `total`
+  double total = 1;       ///< in `unit`
+  std::string_view unit;  ///< "B", "points"; empty where there is no amount worth telling
+  std::string_view what;  ///< what is being done just now: "sigma 5 cm"
+};
+using ProgressSink = std::function<void(const Progress&)>;
+
 /// What a run was told, the same for all of its stages.
 struct RunSettings {
   Rig rig = default_rig();
@@ -30,6 +39,7 @@ struct RunSettings {
 struct StageReport {
   std::map<std::string, std::uint64_t> counts;
   std::vector<std::string> warnings;
+  std::vector<std::string> doubts;
   nlohmann::json section = nlohmann::json::object();
   std::vector<std::string> lines;
   std::vector<std::filesystem::path> read;
@@ -40,10 +50,8 @@ struct StageReport {
 /// thread that the stage was called in; only interrupted() may be asked from any.
 class Context {
  public:
-  using Progress = std::function<void(double fraction, std::string_view what)>;
-
   Context(const RunSettings& run, StageReport& report, const std::atomic<bool>* stop = nullptr,
-          Progress progress = {})
+          ProgressSink progress = {})
       : run_(&run), report_(&report), stop_(stop), progress_(std::move(progress)) {}
 
   const Rig& rig() const { return run_->rig; }
@@ -55,6 +63,8 @@ class Context {
   void count(const std::string& name, std::uint64_t n = 1) { report_->counts[name] += n; }
   /// Something that a person should know but that does not stop the run.
   void warn(std::string text) { report_->warnings.push_back(std::move(text)); }
+  /// The run goes on, but its result cannot be trusted: the summary says why, and the exit status is not 0.
+  void distrust(std::string why) { report_->doubts.push_back(std::move(why)); }
   /// Adds the keys of this object to the stage's section of summary.json; keys given before are replaced.
   void report(const nlohmann::json& section) { report_->section.update(section); }
   /// Adds lines to what people read at the end of the run; may hold line breaks (a table).
@@ -64,9 +74,13 @@ class Context {
   /// Names a file that was written, once it is complete: a record of its origin is put beside it.
   void wrote(std::filesystem::path file) { report_->written.push_back(std::move(file)); }
 
-  /// How much of the stage's own work is done, 0 to 1; `what` says what is being done ("sigma 5 cm").
+  /// How much of the stage's own work is done, 0 to 1; `what` says what is being done: "sigma 5 cm".
   void progress(double fraction, std::string_view what = {}) const {
-    if (progress_) progress_(fraction, what);
+    progress(Progress{fraction, 1, {}, what});
+  }
+  /// The same with an amount, so that a rate can be shown: {.done = bytes, .total = size, .unit = "B"}.
+  void progress(const Progress& progress) const {
+    if (progress_) progress_(progress);
   }
   /// The run is to stop: return soon. The run then ends without calling finish(), so nothing is written.
   bool interrupted() const { return stop_ && stop_->load(std::memory_order_relaxed); }
@@ -75,7 +89,7 @@ class Context {
   const RunSettings* run_;
   StageReport* report_;
   const std::atomic<bool>* stop_;
-  Progress progress_;
+  ProgressSink progress_;
 };
 
 }  // namespace crisp

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "pipeline/files/quantity.hpp"
 
 namespace crisp {
 namespace {
@@ -31,9 +34,13 @@ std::string type_name(const Option& option) {
 std::string bounds(const Option& option) {
   const bool below = std::isfinite(option.max) && std::abs(option.max) < 9e18;
   const bool above = std::isfinite(option.min) && std::abs(option.min) < 9e18;
-  if (above && below) return fmt::format("{:g} to {:g}", option.min, option.max);
-  if (above) return fmt::format("at least {:g}", option.min);
-  if (below) return fmt::format("at most {:g}", option.max);
+  // Whole numbers in full, others as short as they read well.
+  const auto text = [&](double value) {
+    return option.type == OptionType::integer ? fmt::format("{:.0f}", value) : fmt::format("{:g}", value);
+  };
+  if (above && below) return text(option.min) + " to " + text(option.max);
+  if (above) return "at least " + text(option.min);
+  if (below) return "at most " + text(option.max);
   return {};
 }
 
@@ -50,15 +57,25 @@ bool has_type(const Option& option, const OptionScalar& scalar) {
   }
 }
 
+/// A number as a person would write it: angles in degrees where that is shorter and reads back as the same.
+std::string number_text(double value, const std::string& unit) {
+  const std::string plain = fmt::format("{}{}", value, unit == "1" ? "" : unit);
+  if (unit != "rad") return plain;
+  const std::string degrees = fmt::format("{:.10g}deg", value * 180 / std::numbers::pi);
+  const auto back = parse_quantity(degrees, unit);
+  const bool same = std::holds_alternative<double>(back) && std::get<double>(back) == value;
+  return same && degrees.size() < plain.size() ? degrees : plain;
+}
+
 std::string scalar_text(const Option& option, const OptionScalar& scalar) {
   struct Printer {
     const std::string& unit;
     std::string operator()(bool value) const { return value ? "true" : "false"; }
     std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
-    std::string operator()(double value) const { return fmt::format("{}{}", value, unit); }
+    std::string operator()(double value) const { return number_text(value, unit); }
     std::string operator()(const std::string& value) const { return value; }
   };
-  return std::visit(Printer{option.unit == "1" ? std::string() : option.unit}, scalar);
+  return std::visit(Printer{option.unit}, scalar);
 }
 
 std::optional<std::string> scalar_complaint(const Option& option, const OptionScalar& scalar) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/stage/registry.hpp"
 
+#include <cxxabi.h>
+
 #include <algorithm>
+#include <cstdlib>
+#include <memory>
 #include <set>
 
 namespace crisp {
@@ -44,6 +48,13 @@ void check_flow(const StageType& type) {
       throw Error("stage " + type.name + " takes " + std::string(i->kind.name()) + " twice");
     }
   }
+}
+
+std::string readable(std::type_index type) {
+  int failure = 0;
+  const std::unique_ptr<char, decltype(&std::free)> name(
+      abi::__cxa_demangle(type.name(), nullptr, nullptr, &failure), &std::free);
+  return name ? name.get() : type.name();
 }
 
 }  // namespace
@@ -98,7 +109,7 @@ std::vector<std::string> StageRegistry::givers(const Kind& kind) const {
 
 void* Registrar::other(std::type_index type) const {
   const auto found = others_.find(type);
-  if (found == others_.end()) throw Error(std::string("this program has no registry of ") + type.name());
+  if (found == others_.end()) throw Error("this program has no " + readable(type));
   return found->second;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/stage/description.hpp"
+#include "pipeline/stage/inspector.hpp"
 
 namespace crisp {
 
@@ -39,6 +40,10 @@ class Registrar {
     type.origin = origin_;
     stages_.add(std::move(type));
   }
+  /// For `crisp info`: says what files of one more kind hold. The first that recognises a file is asked.
+  void inspector(Inspector inspector) { inspectors_.push_back(std::move(inspector)); }
+  const Inspectors& inspectors() const { return inspectors_; }
+
   StageRegistry& stages() { return stages_; }
   const StageRegistry& stages() const { return stages_; }
 
@@ -61,6 +66,7 @@ class Registrar {
   void* other(std::type_index type) const;
 
   StageRegistry stages_;
+  Inspectors inspectors_;
   std::map<std::type_index, void*> others_;
   std::string origin_ = "built in";
 };

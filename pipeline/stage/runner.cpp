@@ -205,11 +205,9 @@ class Runner {
     if (is_stopped()) throw Interrupted();
   }
 
-  Context::Progress progress_of(const Worker& worker) const {
+  ProgressSink progress_of(const Worker& worker) const {
     if (!hooks_.progress) return {};
-    return [this, &worker](double fraction, std::string_view what) {
-      hooks_.progress(worker.node->tag, fraction, what);
-    };
+    return [this, &worker](const Progress& progress) { hooks_.progress(worker.node->tag, progress); };
   }
 
   bool is_stopped() const { return hooks_.stop && hooks_.stop->load(std::memory_order_relaxed); }

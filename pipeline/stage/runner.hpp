@@ -33,7 +33,7 @@ struct NodeResult {
 /// How a run can be stopped and watched from outside.
 struct RunHooks {
   const std::atomic<bool>* stop = nullptr;
-  std::function<void(const std::string& tag, double fraction, std::string_view what)> progress = {};
+  std::function<void(const std::string& tag, const Progress& progress)> progress = {};
 };
 
 /// Runs a pipeline to its end in the calling thread: each source gives all that it has, every item runs

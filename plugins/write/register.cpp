@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/write/register.hpp"
 
+#include "plugins/write/calibration_stage.hpp"
 #include "plugins/write/measurements_stage.hpp"
 #include "plugins/write/pcd_stage.hpp"
 
 namespace crisp {
 
 void register_write(Registrar& registrar) {
+  registrar.stage<WriteCalibrationStage>();
   registrar.stage<WriteMeasurementsStage>();
   registrar.stage<WritePcdStage>();
+  registrar.inspector(calibration_inspector());
 }
 
 }  // namespace crisp

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/app/builtin.hpp"
+
+#include "grabbers/pcd/register.hpp"
+#include "grabbers/simulate/simulate_stage.hpp"
+#include "plugins/calibrate/register.hpp"
+#include "plugins/clock/register.hpp"
+#include "plugins/diagnose/register.hpp"
+#include "plugins/filter/register.hpp"
+#include "plugins/write/register.hpp"
+
+namespace crisp {
+
+Builtin::Builtin() {
+  registrar_.attach(terms_);
+  registrar_.attach(searches_);
+  registrar_.attach(measures_);
+  register_built_in(searches_);
+  register_built_in(measures_);
+  register_pcd(registrar_);
+  register_simulate(registrar_);
+  register_clock(registrar_);
+  register_calibrate(registrar_);
+  register_diagnose(registrar_);
+  register_filter(registrar_);
+  register_write(registrar_);
+}
+
+}  // namespace crisp

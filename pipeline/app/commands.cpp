@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/app/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iostream>
+
+#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/nearest.hpp"
+#include "pipeline/files/rig_file.hpp"
+#include "pipeline/stage/reference.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+void print_stage_list(const StageRegistry& stages) {
+  std::string family;
+  for (const auto* type : stages.all()) {
+    const std::string of = type->name.substr(0, type->name.find('.'));
+    if (!family.empty() && of != family) std::cout << "\n";
+    family = of;
+    std::cout << fmt::format("{:<26}{}\n", type->name, type->summary);
+  }
+}
+
+void write_reference(const StageRegistry& stages, const fs::path& folder) {
+  for (const auto* type : stages.all()) write_file(folder / (type->name + ".md"), stage_markdown(*type));
+  write_file(folder / "README.md", index_markdown(stages));
+}
+
+ExitStatus print_one_stage(const StagesRequest& request, const StageRegistry& stages) {
+  const StageType* type = stages.find(request.name);
+  if (!type) {
+    print_errors(Error("there is no stage '" + request.name + "'",
+                       did_you_mean(request.name, stages.names(), "crisp stages lists them")));
+    return ExitStatus::misused;
+  }
+  std::cout << (request.markdown ? stage_markdown(*type) : stage_text(*type));
+  return ExitStatus::done;
+}
+
+std::string head_of(const fs::path& file) {
+  constexpr std::size_t kEnough = 4096;
+  std::ifstream stream(file, std::ios::binary);
+  std::string head(kEnough, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  return head;
+}
+
+}  // namespace
+
+void print_errors(const Error& error) {
+  const std::string text = error.what();
+  // Errors holds its parts' full texts; an "error: " of its own would come before the first of them.
+  if (const auto* several = dynamic_cast<const Errors*>(&error)) {
+    for (const auto& one : several->all()) std::cerr << one.what() << "\n";
+    if (several->all().size() > 1) std::cerr << several->all().size() << " errors\n";
+  } else {
+    std::cerr << text << "\n";
+  }
+}
+
+ExitStatus validate_command(const fs::path& file, PipelineArguments arguments, const Registrar& registrar) {
+  RunSettings run;
+  run.registrar = &registrar;
+  arguments.only_validate = true;
+  try {
+    const auto loaded = load_pipeline(file, arguments, run);
+    std::cout << fmt::format("{}: right, {} stages\n", file.string(), loaded.pipeline.nodes.size());
+  } catch (const Error& error) {
+    print_errors(error);
+    return ExitStatus::misused;
+  }
+  return ExitStatus::done;
+}
+
+ExitStatus stages_command(const StagesRequest& request, const Registrar& registrar) {
+  const StageRegistry& stages = registrar.stages();
+  if (request.json_schema) {
+    std::cout << pipeline_schema(stages).dump(2) << "\n";
+  } else if (!request.name.empty()) {
+    return print_one_stage(request, stages);
+  } else if (request.names) {
+    for (const auto& name : stages.names()) std::cout << name << "\n";
+  } else if (request.markdown && request.output) {
+    write_reference(stages, *request.output);
+  } else if (request.markdown) {
+    std::cout << index_markdown(stages);
+    for (const auto* type : stages.all()) std::cout << "\n" << stage_markdown(*type);
+  } else {
+    print_stage_list(stages);
+  }
+  return ExitStatus::done;
+}
+
+ExitStatus plugins_command(const PluginLoader& loader) {
+  if (loader.tried().empty()) std::cout << "no plugins: give them with --plugin, or in CRISP_PLUGINS\n";
+  for (const auto& plugin : loader.tried()) {
+    if (!plugin.is_loaded()) {
+      std::cout << fmt::format("{}\n  refused: {}\n", plugin.file.string(), plugin.refusal);
+      continue;
+    }
+    std::cout << fmt::format("{}\n  {} {}\n", plugin.file.string(), plugin.name, plugin.version);
+    for (const auto& stage : plugin.stages) std::cout << fmt::format("  stage {}\n", stage);
+  }
+  return ExitStatus::done;
+}
+
+ExitStatus info_command(const fs::path& file, const std::optional<fs::path>& rig_file, bool json,
+                        const Registrar& registrar) {
+  try {
+    if (!fs::exists(file)) throw Error("there is no file " + file.string());
+    if (!fs::is_regular_file(file)) throw Error(file.string() + " is not a file");
+    const Rig rig = rig_file ? read_rig(*rig_file) : default_rig();
+    const std::string head = head_of(file);
+    std::string known;
+    for (const auto& inspector : registrar.inspectors()) {
+      known += (known.empty() ? "" : ", ") + inspector.kind;
+      if (!inspector.recognises(head)) continue;
+      const Inspection inspection = inspector.inspect(file, rig);
+      if (json)
+        std::cout << inspection.data.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+      else
+        std::cout << file.string() << ": " << inspector.kind << "\n" << inspection.text << "\n";
+      return ExitStatus::done;
+    }
+    throw Error(file.string() + " is none of the kinds of files that are known", "known are " + known);
+  } catch (const Error& error) {
+    print_errors(error);
+    return ExitStatus::failed;
+  }
+}
+
+}  // namespace crisp

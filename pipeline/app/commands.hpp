@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/stage/pipeline_file.hpp"
+#include "pipeline/stage/plugin_loader.hpp"
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+/// How the program ends: documented in `crisp --help` and docs/program.md.
+enum class ExitStatus {
+  done = 0,
+  failed = 1,         ///< the run stopped at an error
+  misused = 2,        ///< the command line, the pipeline or the rig is wrong: nothing was run
+  not_trusted = 3,    ///< the run came to its end, but its result cannot be trusted
+  interrupted = 130,  ///< by SIGINT (SIGTERM: 143)
+  terminated = 143
+};
+
+/// `crisp run`.
+struct RunRequest {
+  std::filesystem::path file;
+  PipelineArguments arguments;
+  unsigned threads = 1;
+  std::uint64_t seed = 1;
+  bool quiet = false;
+  bool verbose = false;
+};
+/// Runs a pipeline; writes its summary to stdout, progress and errors to stderr.
+ExitStatus run_command(const RunRequest& request, const Registrar& registrar);
+
+/// `crisp validate`: prints every mistake of a pipeline to stderr. Opens no file but the pipeline's and the
+/// rig's.
+ExitStatus validate_command(const std::filesystem::path& file, PipelineArguments arguments,
+                            const Registrar& registrar);
+
+/// `crisp stages`.
+struct StagesRequest {
+  std::string name;  ///< empty: all of them
+  bool names = false;
+  bool markdown = false;
+  bool json_schema = false;
+  std::optional<std::filesystem::path> output;  ///< a folder for the pages of the reference
+};
+ExitStatus stages_command(const StagesRequest& request, const Registrar& registrar);
+
+/// `crisp plugins`: every file that was tried, and the reason of each refusal.
+ExitStatus plugins_command(const PluginLoader& loader);
+
+/// `crisp info`: what a file holds.
+ExitStatus info_command(const std::filesystem::path& file, const std::optional<std::filesystem::path>& rig,
+                        bool json, const Registrar& registrar);
+
+/// Prints what is wrong, all of it, to stderr.
+void print_errors(const Error& error);
+
+}  // namespace crisp

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace crisp {
+
+/// What can be written behind one of the program's commands.
+struct CommandWords {
+  std::string name;
+  std::vector<std::string> options;     ///< "--seed", "-i", …
+  std::vector<std::string> with_value;  ///< those of them behind which a value stands
+  bool takes_stage = false;             ///< its argument is a stage's name, else a file
+};
+
+/// A script for bash that completes commands, options, stage names and files; to be sourced, or installed as
+/// /usr/share/bash-completion/completions/crisp.
+std::string bash_completion(const std::vector<CommandWords>& commands);
+
+}  // namespace crisp

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program's command line; the only file that knows CLI11.
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <iostream>
+#include <sstream>
+#include <thread>
+
+#include "pipeline/app/builtin.hpp"
+#include "pipeline/app/commands.hpp"
+#include "pipeline/app/completion.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFooter =
+    "Exit status: 0 done; 1 a run stopped at an error; 2 the command line, the pipeline or the rig is wrong "
+    "and\n"
+    "nothing was run; 3 the run came to its end but its result cannot be trusted (the summary says why);\n"
+    "130 or 143 interrupted. Plugins are also loaded from the files and folders that CRISP_PLUGINS lists.";
+
+/// Everything that can stand on the command line, and where CLI11 puts it.
+struct CommandLine {
+  CLI::App app{"Turns what lasers on a spinning plate measured into one crisp cloud.", "crisp"};
+  std::vector<std::string> plugins;
+  RunRequest run;
+  PipelineArguments validate;
+  StagesRequest stages;
+  fs::path validate_file, info_file;
+  std::optional<fs::path> info_rig;
+  std::string shell;
+  bool info_json = false;
+  CLI::App *run_app, *validate_app, *stages_app, *plugins_app, *info_app, *completion_app;
+
+  CommandLine() {
+    app.set_version_flag("--version", "crisp " CRISP_VERSION);
+    app.footer(kFooter);
+    app.require_subcommand(1);
+    add_run();
+    add_validate();
+    add_stages();
+    plugins_app = command("plugins", "List the plugins that were tried, and why any were refused");
+    add_info();
+    completion_app = command("completion", "Print a script that completes crisp's command line");
+    completion_app->add_option("shell", shell, "The shell")->required()->check(CLI::IsMember({"bash"}));
+  }
+
+ private:
+  CLI::App* command(const std::string& name, const std::string& help) {
+    CLI::App* made = app.add_subcommand(name, help);
+    made->add_option("--plugin", plugins, "Load this plugin, or those of this folder (may be repeated)")
+        ->type_name("PATH")
+        ->allow_extra_args(false);
+    return made;
+  }
+
+  /// The options that decide what a pipeline's file means.
+  static void add_arguments(CLI::App* to, PipelineArguments& arguments) {
+    to->add_option("-i,--input", arguments.input, "What ${input} stands for")->type_name("PATH");
+    to->add_option("-o,--output", arguments.output, "The folder that ${output} stands for")
+        ->type_name("FOLDER");
+    to->add_option("--rig", arguments.rig, "The rig, instead of the one that the pipeline names")
+        ->type_name("FILE");
+    to->add_option("--set", arguments.set,
+                   "An option of a stage, tag.option=value, or a variable, name=value (may be repeated)")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);
+  }
+
+  void add_run() {
+    run_app = command("run", "Run a pipeline");
+    run_app->add_option("pipeline", run.file, "The pipeline's YAML file")->required()->type_name("FILE");
+    add_arguments(run_app, run.arguments);
+    run.threads = std::max(1U, std::thread::hardware_concurrency());
+    run_app->add_option("--threads", run.threads, "How many threads to use; the result does not depend on it")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    run_app->add_option("--seed", run.seed, "Seed of all that is drawn at random")->capture_default_str();
+    CLI::Option* quiet = run_app->add_flag("--quiet", run.quiet, "Print warnings and errors only");
+    run_app->add_flag("--verbose", run.verbose, "Also print options and what flowed")->excludes(quiet);
+  }
+
+  void add_validate() {
+    validate_app = command("validate", "Check a pipeline without running it; exit status 2 on any mistake");
+    validate_app->add_option("pipeline", validate_file, "The pipeline's YAML file")
+        ->required()
+        ->type_name("FILE");
+    add_arguments(validate_app, validate);
+  }
+
+  void add_stages() {
+    stages_app = command("stages", "List the stages, or tell all of one");
+    stages_app->add_option("name", stages.name, "A stage")->type_name("STAGE");
+    stages_app->add_flag("--names", stages.names, "Names only");
+    CLI::Option* markdown = stages_app->add_flag("--markdown", stages.markdown, "As Markdown");
+    stages_app->add_flag("--json-schema", stages.json_schema, "A JSON schema of pipeline files, for editors");
+    stages_app->add_option("--output", stages.output, "Write the pages of the reference into this folder")
+        ->type_name("FOLDER")
+        ->needs(markdown);
+  }
+
+  void add_info() {
+    info_app = command("info", "Say what a file holds: a capture, a cloud, a calibration");
+    info_app->add_option("file", info_file, "The file")->required()->type_name("FILE");
+    info_app->add_option("--rig", info_rig, "The rig whose devices are to be named")->type_name("FILE");
+    info_app->add_flag("--json", info_json, "For programs");
+  }
+};
+
+std::vector<CommandWords> completion_words(const CommandLine& line) {
+  std::vector<CommandWords> commands;
+  for (const CLI::App* sub : line.app.get_subcommands({})) {
+    CommandWords words{sub->get_name(), {}, {}, sub == line.stages_app};
+    for (const CLI::Option* option : sub->get_options()) {
+      std::vector<std::string> names;
+      for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+      for (const auto& name : option->get_snames()) names.push_back("-" + name);
+      words.options.insert(words.options.end(), names.begin(), names.end());
+      if (option->get_items_expected_max() > 0) {
+        words.with_value.insert(words.with_value.end(), names.begin(), names.end());
+      }
+    }
+    commands.push_back(std::move(words));
+  }
+  return commands;
+}
+
+/// The plugins of the environment, then those of the command line, of which a refused one is an error.
+bool load_plugins(const CommandLine& line, PluginLoader& loader) {
+  if (const char* listed = std::getenv("CRISP_PLUGINS")) {
+    std::istringstream paths(listed);
+    for (std::string path; std::getline(paths, path, ':');) {
+      if (!path.empty()) loader.load(path);
+    }
+  }
+  const std::size_t of_environment = loader.tried().size();
+  for (const auto& path : line.plugins) loader.load(path);
+  bool all_loaded = true;
+  for (std::size_t i = of_environment; i < loader.tried().size(); ++i) {
+    const PluginRecord& plugin = loader.tried()[i];
+    if (plugin.is_loaded()) continue;
+    all_loaded = false;
+    print_errors(Error("the plugin " + plugin.file.string() + " was refused: " + plugin.refusal));
+  }
+  return all_loaded;
+}
+
+ExitStatus run_program(const CommandLine& line) {
+  Builtin builtin;
+  Registrar& registrar = builtin.registrar();
+  PluginLoader loader(registrar);
+  const bool all_loaded = load_plugins(line, loader);
+  if (line.plugins_app->parsed()) return plugins_command(loader);
+  if (!all_loaded) return ExitStatus::misused;
+  if (line.run_app->parsed()) return run_command(line.run, registrar);
+  if (line.validate_app->parsed()) return validate_command(line.validate_file, line.validate, registrar);
+  if (line.stages_app->parsed()) return stages_command(line.stages, registrar);
+  if (line.info_app->parsed()) return info_command(line.info_file, line.info_rig, line.info_json, registrar);
+  std::cout << bash_completion(completion_words(line));
+  return ExitStatus::done;
+}
+
+int guarded_main(int count, char** words) {
+  CommandLine line;
+  try {
+    line.app.parse(count, words);
+  } catch (const CLI::ParseError& stop) {
+    return line.app.exit(stop) == 0 ? 0 : static_cast<int>(ExitStatus::misused);
+  }
+  return static_cast<int>(run_program(line));
+}
+
+}  // namespace
+}  // namespace crisp
+
+int main(int count, char** words) {
+  try {
+    return crisp::guarded_main(count, words);
+  } catch (const crisp::Error& error) {
+    crisp::print_errors(error);
+  } catch (const std::exception& error) {
+    std::cerr << "error: " << error.what() << "\n";
+  }
+  return static_cast<int>(crisp::ExitStatus::failed);
+}

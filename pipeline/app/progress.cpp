@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/app/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/app/format.hpp"
+
+namespace crisp {
+
+ProgressPrinter::ProgressPrinter(std::ostream& out, bool terminal, Clock clock)
+    : out_(out), terminal_(terminal), clock_(std::move(clock)) {}
+
+void ProgressPrinter::show(const std::string& tag, const Progress& progress) {
+  constexpr double kRefresh = 0.1;    // [s] on a terminal
+  constexpr double kPlainEvery = 10;  // [s] elsewhere
+  const double now = clock_();
+  const bool begins = tag != tag_;
+  if (!begins && now - shown_ < (terminal_ ? kRefresh : kPlainEvery)) return;
+  if (begins) {
+    tag_ = tag;
+    began_ = now;
+  }
+  shown_ = now;
+  const std::string text = line(progress, now - began_);
+  if (terminal_)
+    out_ << "\r\x1b[K" << text << std::flush;
+  else
+    out_ << text << std::endl;
+  on_screen_ = terminal_;
+}
+
+void ProgressPrinter::clear() {
+  if (on_screen_) out_ << "\r\x1b[K" << std::flush;
+  on_screen_ = false;
+}
+
+std::string ProgressPrinter::line(const Progress& progress, double elapsed) const {
+  constexpr int kWidth = 24;
+  constexpr double kEnoughToJudge = 0.5;  // [s] before a rate or the time left means anything
+  const double ratio = progress.total > 0 ? progress.done / progress.total : 0;
+  const double fraction = std::isfinite(ratio) ? std::clamp(ratio, 0.0, 1.0) : 0;
+  std::string text = fmt::format("{:<22}", tag_);
+  if (terminal_) {
+    const auto full = static_cast<std::size_t>(std::lround(fraction * kWidth));
+    text += fmt::format(" [{:<{}}]", std::string(full, '#'), kWidth);
+  }
+  text += fmt::format(" {:3.0f} %", fraction * 100);
+  if (elapsed >= kEnoughToJudge && !progress.unit.empty()) {
+    text += fmt::format("  {}/s", format_amount(progress.done / elapsed, std::string(progress.unit)));
+  }
+  if (elapsed >= kEnoughToJudge && fraction > 0 && fraction < 1) {
+    text += fmt::format("  {} left", format_duration(elapsed * (1 - fraction) / fraction));
+  }
+  if (!progress.what.empty()) text += fmt::format("  {}", progress.what);
+  return text;
+}
+
+}  // namespace crisp

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <ostream>
+#include <string>
+
+#include "pipeline/stage/context.hpp"
+
+namespace crisp {
+
+/// Shows how far a run is: on a terminal as one line that is refreshed (bar, per cent, rate, time left),
+/// elsewhere as plain lines, when a stage begins to report and then at most every ten seconds.
+class ProgressPrinter {
+ public:
+  using Clock = std::function<double()>;  ///< seconds since any fixed moment
+
+  ProgressPrinter(std::ostream& out, bool terminal, Clock clock);
+  ~ProgressPrinter() { clear(); }
+  ProgressPrinter(const ProgressPrinter&) = delete;
+  ProgressPrinter& operator=(const ProgressPrinter&) = delete;
+
+  void show(const std::string& tag, const Progress& progress);
+  /// Removes the line from the terminal, so that something else can be printed.
+  void clear();
+
+ private:
+  std::string line(const Progress& progress, double elapsed) const;
+
+  std::ostream& out_;
+  bool terminal_;
+  Clock clock_;
+  std::string tag_;
+  double began_ = 0;  ///< when the stage reported first
+  double shown_ = 0;
+  bool on_screen_ = false;
+};
+
+}  // namespace crisp

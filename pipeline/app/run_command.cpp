@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <iostream>
+
+#include "pipeline/app/commands.hpp"
+#include "pipeline/app/progress.hpp"
+#include "pipeline/app/run_record.hpp"
+#include "pipeline/app/signals.hpp"
+#include "pipeline/app/summary.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string utc_now() { return fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr))); }
+
+/// Finds out at once, and not after the work, that nothing can be written there.
+void make_output_folder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (!failure && access(folder.c_str(), W_OK | X_OK) != 0)
+    failure = std::error_code(errno, std::generic_category());
+  if (failure) throw Error("cannot write into the folder " + folder.string() + ": " + failure.message());
+}
+
+void check_input(const std::optional<fs::path>& input) {
+  if (input && !fs::exists(*input)) throw Error("there is no input " + input->string());
+}
+
+RunRecord begin_record(const LoadedPipeline& loaded, const RunSettings& run) {
+  RunRecord record;
+  record.pipeline_file = loaded.file;
+  record.rig_file = loaded.rig_file;
+  record.seed = run.seed;
+  record.threads = run.threads;
+  record.started = utc_now();
+  for (const auto& node : loaded.pipeline.nodes) record.options.push_back(effective_options(node));
+  return record;
+}
+
+std::vector<NodeResult> run_with_progress(Pipeline& pipeline, const RunSettings& run,
+                                          const StopOnSignal& stop, bool quiet) {
+  ProgressPrinter printer(std::cerr, isatty(STDERR_FILENO) == 1, seconds_now);
+  RunHooks hooks{.stop = stop.flag()};
+  if (!quiet) {
+    hooks.progress = [&](const std::string& tag, const Progress& progress) { printer.show(tag, progress); };
+  }
+  return run_pipeline(pipeline, run, hooks);
+}
+
+ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const RunSettings& run) {
+  const StopOnSignal stop;
+  RunRecord record = begin_record(loaded, run);
+  const double began = seconds_now();
+  try {
+    record.nodes = run_with_progress(loaded.pipeline, run, stop, request.quiet);
+    record.seconds = seconds_now() - began;
+    record.inputs = hash_inputs(record);
+    write_records(record, run.output);
+  } catch (const Interrupted&) {
+    std::cerr << "interrupted: files that were not complete were not written\n";
+    return stop.signal() == SIGTERM ? ExitStatus::terminated : ExitStatus::interrupted;
+  } catch (const Error& error) {
+    print_errors(error);
+    return ExitStatus::failed;
+  }
+  if (request.quiet)
+    std::cerr << warnings_text(record);
+  else
+    std::cout << summary_text(record, request.verbose) << std::flush;
+  return record.is_trusted() ? ExitStatus::done : ExitStatus::not_trusted;
+}
+
+}  // namespace
+
+ExitStatus run_command(const RunRequest& request, const Registrar& registrar) {
+  RunSettings run;
+  run.registrar = &registrar;
+  run.threads = request.threads;
+  run.seed = request.seed;
+  std::optional<LoadedPipeline> loaded;
+  try {
+    loaded = load_pipeline(request.file, request.arguments, run);
+    check_input(request.arguments.input);
+    if (!run.output.empty()) make_output_folder(run.output);
+  } catch (const Error& error) {
+    print_errors(error);
+    return ExitStatus::misused;
+  }
+  return run_loaded(std::move(*loaded), request, run);
+}
+
+}  // namespace crisp

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/app/run_record.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/stage/reference.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Json inputs_json(const RunRecord& record) {
+  Json list = Json::array();
+  for (const auto& input : record.inputs) {
+    list.push_back(
+        {{"file", input.file.string()}, {"bytes", input.digest.bytes}, {"sha256", input.digest.sha256}});
+  }
+  return list;
+}
+
+/// What summary and provenance begin with.
+Json head_json(const RunRecord& record) {
+  return {{"crisp", CRISP_VERSION},
+          {"pipeline", record.pipeline_file.string()},
+          {"rig", record.rig_file.empty() ? "default" : record.rig_file.string()},
+          {"seed", record.seed},
+          {"threads", record.threads},
+          {"started", record.started},
+          {"seconds", record.seconds},
+          {"inputs", inputs_json(record)}};
+}
+
+Json outputs_json(const StageReport& report) {
+  Json list = Json::array();
+  for (const auto& file : report.written) list.push_back(file.string());
+  return list;
+}
+
+std::string dump(const Json& json) {
+  // Texts from files may hold anything; what is no UTF-8 is replaced instead of throwing.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+bool RunRecord::is_trusted() const {
+  return std::all_of(nodes.begin(), nodes.end(), [](const auto& node) { return node.report.doubts.empty(); });
+}
+
+Json effective_options(const PipelineNode& node) {
+  auto options = Json::object();
+  for (const auto& option : node.type->options) options[option.name] = to_json(node.value(option));
+  return options;
+}
+
+std::vector<InputRecord> hash_inputs(const RunRecord& record) {
+  std::vector<fs::path> files = {record.pipeline_file};
+  if (!record.rig_file.empty()) files.push_back(record.rig_file);
+  for (const auto& node : record.nodes) {
+    files.insert(files.end(), node.report.read.begin(), node.report.read.end());
+  }
+  std::vector<InputRecord> inputs;
+  for (auto& file : files) {
+    file = fs::absolute(file).lexically_normal();
+    const auto same = [&](const InputRecord& input) { return input.file == file; };
+    std::error_code failure;
+    if (!fs::is_regular_file(file, failure) || std::any_of(inputs.begin(), inputs.end(), same)) continue;
+    inputs.push_back({file, digest_of(file)});
+  }
+  return inputs;
+}
+
+Json summary_json(const RunRecord& record) {
+  Json json = head_json(record);
+  json["trusted"] = record.is_trusted();
+  json["stages"] = Json::array();
+  for (std::size_t i = 0; i < record.nodes.size(); ++i) {
+    const NodeResult& node = record.nodes[i];
+    json["stages"].push_back({{"tag", node.tag},
+                              {"stage", node.stage},
+                              {"seconds", node.seconds},
+                              {"options", record.options[i]},
+                              {"taken", node.taken},
+                              {"given", node.given},
+                              {"counts", node.report.counts},
+                              {"warnings", node.report.warnings},
+                              {"doubts", node.report.doubts},
+                              {"outputs", outputs_json(node.report)},
+                              {"report", node.report.section}});
+  }
+  return json;
+}
+
+Json provenance_json(const RunRecord& record, const fs::path& file) {
+  Json json = {{"file", file.filename().string()}};
+  json.update(head_json(record));
+  json["trusted"] = record.is_trusted();
+  json["stages"] = Json::array();
+  for (std::size_t i = 0; i < record.nodes.size(); ++i) {
+    const NodeResult& node = record.nodes[i];
+    json["stages"].push_back({{"tag", node.tag},
+                              {"stage", node.stage},
+                              {"seconds", node.seconds},
+                              {"options", record.options[i]}});
+  }
+  return json;
+}
+
+void write_records(const RunRecord& record, const fs::path& folder) {
+  for (const auto& node : record.nodes) {
+    for (const auto& file : node.report.written) {
+      write_file(file.string() + ".provenance.json", dump(provenance_json(record, file)));
+    }
+  }
+  if (!folder.empty()) write_file(folder / "summary.json", dump(summary_json(record)));
+}
+
+}  // namespace crisp

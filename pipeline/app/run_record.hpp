@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "pipeline/files/sha256.hpp"
+#include "pipeline/stage/pipeline_file.hpp"
+#include "pipeline/stage/runner.hpp"
+
+namespace crisp {
+
+/// A file that a run read, and what was in it.
+struct InputRecord {
+  std::filesystem::path file;
+  FileDigest digest;
+};
+
+/// All that is to be told of a run once it is over.
+struct RunRecord {
+  std::filesystem::path pipeline_file;
+  std::filesystem::path rig_file;  ///< empty: the default rig
+  std::uint64_t seed = 0;
+  unsigned threads = 0;
+  std::string started;  ///< ISO 8601, UTC
+  double seconds = 0;
+  std::vector<nlohmann::ordered_json> options;  ///< the effective ones of each stage
+  std::vector<NodeResult> nodes;
+  std::vector<InputRecord> inputs;  ///< the pipeline's file, the rig's, and what the stages read; each once
+
+  bool is_trusted() const;  ///< whether no stage had a doubt
+};
+
+/// The effective options of a stage: all of them, with the values that it runs with, in SI.
+nlohmann::ordered_json effective_options(const PipelineNode& node);
+
+/// Hashes what the run read; to be called when it is over. Devices and folders are left out.
+std::vector<InputRecord> hash_inputs(const RunRecord& record);
+
+/// summary.json: everything that is known of the run, each stage with its own section.
+nlohmann::ordered_json summary_json(const RunRecord& record);
+
+/// What is put beside each file that a run wrote: how it came to be.
+nlohmann::ordered_json provenance_json(const RunRecord& record, const std::filesystem::path& file);
+
+/// Writes summary.json into the folder (if it is not empty), and FILE.provenance.json beside every file that
+/// the stages wrote.
+void write_records(const RunRecord& record, const std::filesystem::path& folder);
+
+}  // namespace crisp

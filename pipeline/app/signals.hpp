@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+
+namespace crisp {
+
+/// From its making on, the first SIGINT or SIGTERM asks the run to stop; a second one ends the program at
+/// once.
+class StopOnSignal {
+ public:
+  StopOnSignal();
+  ~StopOnSignal();
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
+
+  const std::atomic<bool>* flag() const;
+  int signal() const;  ///< the signal that came, or 0
+};
+
+}  // namespace crisp

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/data/rig.hpp"
+
+namespace crisp {
+
+/// What a file holds: for people, and for programs.
+struct Inspection {
+  std::string text;     ///< lines, without a line break at the end
+  nlohmann::json data;  ///< the same as an object
+};
+
+/// One that can say what a file of some kind holds: `crisp info`.
+struct Inspector {
+  std::string kind;  ///< "a capture"
+  /// Whether the file is of that kind, by its first bytes (up to 4096 of them).
+  std::function<bool(std::string_view head)> recognises;
+  /// @throws Error if the file cannot be read
+  std::function<Inspection(const std::filesystem::path& file, const Rig& rig)> inspect;
+};
+
+using Inspectors = std::vector<Inspector>;
+
+}  // namespace crisp

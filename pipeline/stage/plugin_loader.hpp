@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+/// One file that was tried as a plugin.
+struct PluginRecord {
+  std::filesystem::path file;
+  std::string name;     ///< empty if it was not found out
+  std::string version;  ///< the plugin's own
+  std::string refusal;  ///< why it is not in use; empty if it is
+  std::vector<std::string> stages;
+
+  bool is_loaded() const { return refusal.empty(); }
+};
+
+/// Loads plugins for as long as the program runs: they are never unloaded.
+///
+/// A file is refused, with the reason in its record, if it is no shared object, has no `crisp_plugin`, was
+/// built with another compiler, C++ library, alignment or version of crisp (told by constants, before any
+/// function of it is called), or if what it registers is refused.
+class PluginLoader {
+ public:
+  explicit PluginLoader(Registrar& registrar) : registrar_(registrar) {}
+
+  /// Loads a file, or the *.so of a folder in the order of their names.
+  void load(const std::filesystem::path& file_or_folder);
+
+  /// All the files that were tried, in order.
+  const std::vector<PluginRecord>& tried() const { return tried_; }
+
+ private:
+  void load_file(const std::filesystem::path& file);
+
+  Registrar& registrar_;
+  std::vector<PluginRecord> tried_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/stage/reference.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace crisp {
+namespace {
+
+struct OptionRow {
+  std::string name;
+  std::string value;
+  std::string fallback;
+  std::string help;
+};
+
+std::vector<OptionRow> rows_of(const StageType& type) {
+  const auto stage = type.make();
+  std::vector<OptionRow> rows;
+  for (const auto& option : type.options) {
+    const std::string fallback =
+        option.required ? "required" : to_text(option, option.get(type.options_object(*stage)));
+    rows.push_back({option.name, expectation(option), fallback.empty() ? "\"\"" : fallback, option.help});
+  }
+  return rows;
+}
+
+std::string_view role_of(const StageInput& input) {
+  if (input.held) return input.required ? "holds the latest" : "holds the latest, if one is given";
+  return input.required ? "takes each" : "takes each, if one is given";
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+/// A text as a cell of a table.
+std::string cell(std::string text) {
+  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) {
+    text.insert(at, "\\");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string stage_text(const StageType& type) {
+  std::string text = fmt::format("{}: {} ({})\n", type.name, type.summary, type.origin);
+  if (!type.details.empty()) text += "\n" + type.details + "\n";
+  text += "\n";
+  for (const auto& input : type.inputs) text += fmt::format("  {} {}\n", role_of(input), input.kind.name());
+  for (const auto& kind : type.outputs) text += fmt::format("  gives {}\n", kind.name());
+  const auto rows = rows_of(type);
+  if (!rows.empty()) text += "\noptions:\n";
+  for (const auto& row : rows) {
+    text +=
+        fmt::format("  {:<16} {}\n{:19}{}; default: {}\n", row.name, row.help, "", row.value, row.fallback);
+  }
+  return text;
+}
+
+std::string stage_markdown(const StageType& type) {
+  std::string text = fmt::format("# {}\n\n{}.\n", type.name, capitalised(type.summary));
+  if (!type.details.empty()) text += "\n" + type.details + "\n";
+  text += "\n| flow | kind |\n|---|---|\n";
+  for (const auto& input : type.inputs)
+    text += fmt::format("| {} | `{}` |\n", role_of(input), input.kind.name());
+  for (const auto& kind : type.outputs) text += fmt::format("| gives | `{}` |\n", kind.name());
+  const auto rows = rows_of(type);
+  if (rows.empty()) return text + "\nIt has no options.\n";
+  text += "\n| option | value | default | meaning |\n|---|---|---|---|\n";
+  for (const auto& row : rows) {
+    text += fmt::format("| `{}` | {} | {} | {} |\n", row.name, cell(row.value), cell(row.fallback),
+                        cell(row.help));
+  }
+  return text;
+}
+
+std::string index_markdown(const StageRegistry& stages) {
+  std::string text =
+      "# Stages\n\nThese pages are written by `crisp stages --markdown --output docs/reference` from what "
+      "the stages "
+      "declare.\n";
+  std::string family;
+  for (const auto* type : stages.all()) {
+    const std::string of = type->name.substr(0, type->name.find('.'));
+    if (of != family) text += fmt::format("\n## {}\n\n| stage | what it does |\n|---|---|\n", of);
+    family = of;
+    text += fmt::format("| [{0}]({0}.md) | {1} |\n", type->name, cell(type->summary));
+  }
+  return text;
+}
+
+nlohmann::json to_json(const OptionValue& value) {
+  const auto scalar_json = [](const OptionScalar& scalar) {
+    return std::visit([](const auto& v) { return nlohmann::json(v); }, scalar);
+  };
+  if (const auto* scalar = std::get_if<OptionScalar>(&value)) return scalar_json(*scalar);
+  if (std::holds_alternative<std::monostate>(value)) return "auto";
+  auto array = nlohmann::json::array();
+  for (const auto& scalar : std::get<std::vector<OptionScalar>>(value)) array.push_back(scalar_json(scalar));
+  return array;
+}
+
+}  // namespace crisp

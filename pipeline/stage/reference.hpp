@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+/// All that is to be said of a stage, for a terminal.
+std::string stage_text(const StageType& type);
+
+/// The same as a page of the reference, in Markdown.
+std::string stage_markdown(const StageType& type);
+
+/// The reference's first page: the stages by family, each a link to its page.
+std::string index_markdown(const StageRegistry& stages);
+
+/// A JSON schema of pipeline files with these stages, for editors that complete and check YAML.
+nlohmann::ordered_json pipeline_schema(const StageRegistry& stages);
+
+/// An option's value for programs: numbers in SI, lists as arrays, "auto".
+nlohmann::json to_json(const OptionValue& value);
+
+}  // namespace crisp

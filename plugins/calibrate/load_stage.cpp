@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/load_stage.hpp"
+
+#include <algorithm>
+
+#include "pipeline/files/calibration_file.hpp"
+
+namespace crisp {
+
+Calibration ordered_as(const Rig& rig, Calibration calibration) {
+  std::vector<LaserCalibration> ordered;
+  for (const auto& laser : rig.lasers) {
+    const LaserCalibration* found = calibration.find(laser.name);
+    if (!found) {
+      throw Error("the calibration has no laser '" + laser.name + "', which the rig has",
+                  "use the calibration of this rig, or give the lasers the same names in both");
+    }
+    ordered.push_back(*found);
+  }
+  calibration.lasers = std::move(ordered);
+  return calibration;
+}
+
+void LoadCalibrationStage::describe(StageDescription<LoadCalibrationStage>& d) {
+  d.name("calibrate.load").summary("gives a calibration that was made before");
+  d.gives<Calibration>();
+  d.option("file", &LoadCalibrationStage::file_, "the calibration's YAML file").required();
+}
+
+void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context) {
+  const Calibration read = read_calibration(file_);
+  context.reads(file_);
+  Calibration calibration = ordered_as(context.rig(), read);
+  if (read.lasers.size() > calibration.lasers.size()) {
+    context.warn("the calibration has lasers that the rig does not have; they are not used");
+  }
+  out.give(std::move(calibration));
+}
+
+}  // namespace crisp

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "pipeline/data/calibration.hpp"
+#include "pipeline/data/rig.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// The calibration with its lasers in the order of the rig; those that the rig does not have are left out.
+/// @throws Error  if a laser of the rig has no calibration
+Calibration ordered_as(const Rig& rig, Calibration calibration);
+
+/// Gives a calibration that was made before.
+class LoadCalibrationStage final : public Stage {
+ public:
+  static void describe(StageDescription<LoadCalibrationStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+
+ private:
+  std::filesystem::path file_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "pipeline/data/calibration.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "pipeline/stage/inspector.hpp"
+
+namespace crisp {
+
+/// Writes the last calibration that it was given, when the run is over.
+class WriteCalibrationStage final : public Stage {
+ public:
+  static void describe(StageDescription<WriteCalibrationStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  std::filesystem::path file_;
+  std::shared_ptr<const Calibration> last_;
+};
+
+/// What `crisp info` says of a calibration's file.
+Inspector calibration_inspector();
+
+}  // namespace crisp

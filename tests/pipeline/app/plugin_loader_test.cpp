@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/stage/plugin_loader.hpp"
+
+#include <gmock/gmock.h>
+
+#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/stage/plugin.hpp"
+#include "tests/pipeline/stage/toy_stages.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(PluginLoader, RegistersTheStagesOfAPluginAndTellsWhereTheyAreFrom) {
+  Registrar registrar;
+  PluginLoader loader(registrar);
+  loader.load(TOY_PLUGIN);
+  ASSERT_EQ(loader.tried().size(), 1u);
+  EXPECT_EQ(loader.tried()[0].refusal, "");
+  EXPECT_EQ(loader.tried()[0].name, "toy");
+  EXPECT_EQ(loader.tried()[0].version, "1.5");
+  EXPECT_THAT(loader.tried()[0].stages, Contains("toy.write"));
+  ASSERT_NE(registrar.stages().find("toy.write"), nullptr);
+  EXPECT_THAT(registrar.stages().find("toy.write")->origin, HasSubstr("toy_plugin.so"));
+  EXPECT_EQ(registrar.origin(), "built in");
+  EXPECT_NE(registrar.stages().find("toy.write")->make(), nullptr);
+}
+
+TEST(PluginLoader, RefusesAPluginOfAnotherCompilerBeforeAnyOfItsCodeRuns) {
+  Registrar registrar;
+  PluginLoader loader(registrar);
+  loader.load(FOREIGN_PLUGIN);
+  EXPECT_EQ(
+      loader.tried().at(0).refusal,
+      "it was built for 'gcc-4 cxx11_abi=0 eigen_align=16 crisp=0.0.1', and this program is '" CRISP_ABI_KEY
+      "'");
+  EXPECT_THAT(registrar.stages().names(), IsEmpty());
+}
+
+TEST(PluginLoader, TakesNothingFromAPluginOfWhichAStageIsRefused) {
+  Registrar registrar;
+  registrar.stage<toy::CountStage>();
+  PluginLoader loader(registrar);
+  loader.load(CLASHING_PLUGIN);
+  EXPECT_THAT(loader.tried().at(0).refusal,
+              HasSubstr("there are two stages toy.count: one built in, one from "));
+  EXPECT_THAT(registrar.stages().names(), ElementsAre("toy.count"));
+}
+
+TEST(PluginLoader, SaysWhyAFileIsNoPlugin) {
+  const fs::path text = fs::path(testing::TempDir()) / "crisp_not_a_plugin.so";
+  write_file(text, "just text");
+  Registrar registrar;
+  PluginLoader loader(registrar);
+  loader.load("/nowhere/x.so");
+  loader.load(text);
+  loader.load("libm.so.6");
+  EXPECT_THAT(loader.tried()[0].refusal, HasSubstr("No such file"));
+  EXPECT_THAT(loader.tried()[1].refusal, HasSubstr("file too short"));
+  EXPECT_FALSE(loader.tried()[2].is_loaded());  // looked for here, and not in the system's folders
+  fs::remove(text);
+}
+
+TEST(PluginLoader, TriesEverySharedObjectOfAFolder) {
+  Registrar registrar;
+  PluginLoader loader(registrar);
+  loader.load(fs::path(TOY_PLUGIN).parent_path());
+  std::vector<std::string> files;
+  for (const auto& plugin : loader.tried()) files.push_back(plugin.file.filename().string());
+  EXPECT_THAT(files, ElementsAre("clashing_plugin.so", "foreign_plugin.so", "toy_plugin.so"));
+}
+
+}  // namespace
+}  // namespace crisp

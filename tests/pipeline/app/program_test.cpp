@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program as people run it, with toy stages from a plugin.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/yaml.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+struct Outcome {
+  int status = -1;
+  std::string out;
+  std::string error;
+};
+
+class ProgramTest : public testing::Test {
+ protected:
+  ProgramTest() {
+    std::string pattern = (fs::temp_directory_path() / "crisp-program-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    write_file(folder_ / "sum.yaml",
+               "crisp: 1\n"
+               "pipeline:\n"
+               "  - {stage: toy.count, with: {n: 4}}\n"
+               "  - stage: toy.sum\n"
+               "  - {stage: toy.write, with: {file: ${output}/sum.txt}}\n");
+  }
+  ~ProgramTest() override { fs::remove_all(folder_); }
+
+  pid_t start(std::vector<std::string> words) {
+    words.insert(words.begin(), CRISP_PROGRAM);
+    if (words.size() > 1 && words[1] != "--help" && words[1] != "--version") {
+      words.insert(words.end(), {"--plugin", TOY_PLUGIN});
+    }
+    std::vector<char*> arguments;
+    for (auto& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC;
+    posix_spawn_file_actions_addopen(&actions, 1, (folder_ / "stdout").c_str(), kFlags, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, (folder_ / "stderr").c_str(), kFlags, 0600);
+    pid_t child = -1;
+    EXPECT_EQ(posix_spawn(&child, CRISP_PROGRAM, &actions, nullptr, arguments.data(), environ), 0);
+    posix_spawn_file_actions_destroy(&actions);
+    return child;
+  }
+
+  Outcome wait_for(pid_t child) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content("stdout"),
+            content("stderr")};
+  }
+
+  Outcome crisp(const std::vector<std::string>& words) { return wait_for(start(words)); }
+
+  std::string content(const std::string& name) const { return read_text_file(folder_ / name, 1 << 24); }
+  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(content(name)); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  fs::path folder_;
+};
+
+TEST_F(ProgramTest, RunsAPipelineAndWritesItsResultSummaryAndProvenance) {
+  const auto run = crisp({"run", path("sum.yaml"), "-o", path("out"), "--seed", "7"});
+  EXPECT_EQ(run.status, 0) << run.error;
+  EXPECT_EQ(content("out/sum.txt"), "10\n");
+  EXPECT_THAT(run.out, HasSubstr("the sum is 10"));
+  EXPECT_THAT(run.out, HasSubstr("warning: it is only a toy"));
+  EXPECT_THAT(run.out, HasSubstr("1  sums\n"));
+  EXPECT_THAT(run.out, Not(HasSubstr("sums that were lost")));
+  EXPECT_THAT(run.out, HasSubstr("wrote " + path("out/sum.txt")));
+
+  const auto summary = json("out/summary.json");
+  EXPECT_EQ(summary["trusted"], true);
+  EXPECT_EQ(summary["seed"], 7);
+  EXPECT_EQ(summary["stages"][0]["options"]["n"], 4);
+  EXPECT_EQ(summary["stages"][0]["options"]["first"], 1);
+  EXPECT_EQ(summary["stages"][0]["given"]["Number"], 4);
+  EXPECT_EQ(summary["stages"][2]["report"]["sum"], 10);
+  EXPECT_EQ(summary["stages"][2]["counts"]["sums that were lost"], 0);
+
+  const auto provenance = json("out/sum.txt.provenance.json");
+  EXPECT_EQ(provenance["file"], "sum.txt");
+  EXPECT_EQ(provenance["stages"][0]["options"]["n"], 4);
+  EXPECT_EQ(provenance["inputs"][0]["file"], path("sum.yaml"));
+  EXPECT_EQ(provenance["inputs"][0]["bytes"], fs::file_size(folder_ / "sum.yaml"));
+}
+
+TEST_F(ProgramTest, LetsSettingsGoBeforeTheFileAndFlagsThatAreNotGivenNot) {
+  const auto run =
+      crisp({"run", path("sum.yaml"), "-o", path("out"), "--set", "toy.count.first=10", "--quiet"});
+  EXPECT_EQ(run.status, 0) << run.error;
+  EXPECT_EQ(content("out/sum.txt"), "46\n");
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(run.error, "warning: toy.write: it is only a toy\n");
+}
+
+TEST_F(ProgramTest, EndsWithThreeWhenTheResultCannotBeTrusted) {
+  const auto run = crisp({"run", path("sum.yaml"), "-o", path("out"), "--set", "toy.write.doubt=true"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_THAT(run.out, HasSubstr("NOT TO BE TRUSTED: the sum was doubted"));
+  EXPECT_EQ(json("out/summary.json")["trusted"], false);
+}
+
+TEST_F(ProgramTest, EndsWithTwoAndEveryMistakeWhenThePipelineIsWrong) {
+  write_file(folder_ / "wrong.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.sum}\n  - {stage: toy.count, with: {m: 4}}\n");
+  const std::string expected =
+      path("wrong.yaml") +
+      ":3:13: error: toy.sum: nothing above it gives the Number that it takes; put one of "
+      "these above it: toy.count, toy.share, toy.throw, toy.wait\n" +
+      path("wrong.yaml") + ":4:31: error: toy.count: there is no option 'm'; did you mean 'n'?\n2 errors\n";
+  for (const std::string command : {"run", "validate"}) {
+    const auto outcome = crisp({command, path("wrong.yaml")});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.error, expected);
+  }
+}
+
+TEST_F(ProgramTest, ValidatesWithoutOpeningInputOrOutput) {
+  const auto outcome = crisp({"validate", path("sum.yaml")});
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(outcome.out, path("sum.yaml") + ": right, 3 stages\n");
+}
+
+TEST_F(ProgramTest, EndsWithOneWhenAStageFailsAndWritesNothing) {
+  write_file(folder_ / "fail.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.throw}\n  - {stage: toy.sum}\n"
+             "  - {stage: toy.write, with: {file: ${output}/sum.txt}}\n");
+  const auto run = crisp({"run", path("fail.yaml"), "-o", path("out")});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.error, path("fail.yaml") + ":4:13: error: toy.throw: it saw a three; avoid threes\n");
+  EXPECT_TRUE(fs::is_empty(folder_ / "out"));
+}
+
+TEST_F(ProgramTest, RefusesWhatCannotBeRun) {
+  EXPECT_THAT(crisp({"run", path("sum.yaml")}).error, HasSubstr("${output} has no value; give it with -o"));
+  EXPECT_THAT(crisp({"run", path("sum.yaml"), "-o", path("sum.yaml")}).error,
+              HasSubstr("cannot write into the folder " + path("sum.yaml")));
+  EXPECT_THAT(crisp({"run", path("sum.yaml"), "-o", path("out"), "-i", path("nowhere")}).error,
+              HasSubstr("there is no input " + path("nowhere")));
+  EXPECT_EQ(crisp({"run", path("nowhere.yaml")}).status, 2);
+  EXPECT_EQ(crisp({"run", path("sum.yaml"), "--threads", "0"}).status, 2);
+  EXPECT_EQ(crisp({"rnu"}).status, 2);
+}
+
+/// The stage is at work, with a half-written file, once that file is there.
+TEST_F(ProgramTest, StopsInGoodOrderOnSignals) {
+  write_file(folder_ / "wait.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.wait, with: {file: ${output}/x.txt}}\n");
+  for (const auto& [signal, status] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}}) {
+    const pid_t child = start({"run", path("wait.yaml"), "-o", path("out")});
+    while (!fs::exists(folder_ / "out") || fs::is_empty(folder_ / "out")) std::this_thread::yield();
+    kill(child, signal);
+    const auto outcome = wait_for(child);
+    EXPECT_EQ(outcome.status, status);
+    EXPECT_THAT(outcome.error, HasSubstr("interrupted: files that were not complete were not written\n"));
+    EXPECT_TRUE(fs::is_empty(folder_ / "out"));
+    fs::remove(folder_ / "out");
+  }
+}
+
+TEST_F(ProgramTest, TellsAllOfAStage) {
+  const auto outcome = crisp({"stages", "toy.write"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("toy.write: writes the sum (from "));
+  EXPECT_THAT(outcome.out, HasSubstr("takes each Sum"));
+  EXPECT_THAT(outcome.out, HasSubstr("true or false; default: false"));
+  EXPECT_THAT(crisp({"stages"}).out, HasSubstr("write.calibration"));
+  const auto wrong = crisp({"stages", "toy.wirte"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_EQ(wrong.error, "error: there is no stage 'toy.wirte'; did you mean 'toy.write'?\n");
+}
+
+TEST_F(ProgramTest, DescribesPipelinesAsAJsonSchema) {
+  const auto schema = nlohmann::json::parse(crisp({"stages", "--json-schema"}).out);
+  for (const auto& stage : schema["properties"]["pipeline"]["items"]["anyOf"]) {
+    if (stage["properties"]["stage"]["const"] != "toy.write") continue;
+    const auto& with = stage["properties"]["with"];
+    EXPECT_EQ(with["required"], nlohmann::json({"file"}));
+    EXPECT_EQ(with["properties"]["doubt"]["default"], false);
+    EXPECT_EQ(stage["required"], nlohmann::json({"stage", "with"}));
+    return;
+  }
+  FAIL() << "toy.write is not in the schema";
+}
+
+TEST_F(ProgramTest, ListsPluginsAndWhyTheyWereRefused) {
+  const auto outcome = crisp({"plugins", "--plugin", FOREIGN_PLUGIN});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("  refused: it was built for 'gcc-4"));
+  EXPECT_THAT(outcome.out, HasSubstr("  toy 1.5\n"));
+  const auto run = crisp({"run", path("sum.yaml"), "-o", path("out"), "--plugin", FOREIGN_PLUGIN});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.error, HasSubstr("was refused"));
+}
+
+TEST_F(ProgramTest, SaysWhatACalibrationHolds) {
+  write_file(folder_ / "c.yaml",
+             "crisp: 1\nlasers:\n  a:\n    lambda: {value: 0, unit: rad}\n"
+             "    tau: {value: 0.25, unit: m, std_error: 0.001, free: true}\n"
+             "    alpha: {value: 0, unit: rad}\n    eta: {value: 0, unit: s}\n");
+  const auto outcome = crisp({"info", path("c.yaml")});
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("a calibration\n"));
+  const auto data = nlohmann::json::parse(crisp({"info", path("c.yaml"), "--json"}).out);
+  EXPECT_EQ(data["parameters"]["a.tau"]["value"], 0.25);
+  EXPECT_EQ(data["parameters"]["a.tau"]["free"], true);
+
+  write_file(folder_ / "noise", "\x01\x02");
+  const auto unknown = crisp({"info", path("noise")});
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_THAT(unknown.error, HasSubstr("is none of the kinds of files that are known"));
+  EXPECT_EQ(crisp({"info", path("nowhere")}).status, 1);
+}
+
+TEST_F(ProgramTest, CompletesItsCommandLineInBash) {
+  const auto completed = [&](const std::string& words, int at) {
+    const std::string script = "source <(" CRISP_PROGRAM " completion bash); COMP_WORDS=(" + words +
+                               "); COMP_CWORD=" + std::to_string(at) +
+                               "; _crisp; printf '%s ' \"${COMPREPLY[@]}\"";
+    write_file(folder_ / "script", script);
+    EXPECT_EQ(std::system(("bash " + path("script") + " > " + path("completed")).c_str()), 0);
+    return content("completed");
+  };
+  EXPECT_EQ(completed(CRISP_PROGRAM " va", 1), "validate ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " run --se", 2), "--set --seed ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " stages write.ca", 2), "write.calibration ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " run --rig x", 3), " ");  // left to bash's own, which knows files
+}
+
+TEST_F(ProgramTest, ExplainsItself) {
+  EXPECT_THAT(crisp({"--help"}).out, HasSubstr("Exit status: 0 done"));
+  EXPECT_EQ(crisp({"--version"}).out, "crisp " CRISP_VERSION "\n");
+  EXPECT_EQ(crisp({}).status, 2);
+}
+
+}  // namespace
+}  // namespace crisp

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include "pipeline/files/yaml.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::set<std::string> pages_of(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  return names;
+}
+
+TEST(Reference, SaysWhatTheStagesDeclare) {
+  const fs::path written = fs::path(CRISP_SOURCE_DIR) / "docs" / "reference";
+  const fs::path fresh = fs::path(testing::TempDir()) / "crisp-reference";
+  fs::remove_all(fresh);
+  ASSERT_EQ(std::system((CRISP_PROGRAM " stages --markdown --output " + fresh.string()).c_str()), 0);
+  const std::string cure =
+      "run: crisp stages --markdown --output docs/reference (and remove pages of stages that are gone)";
+  EXPECT_EQ(pages_of(written), pages_of(fresh)) << cure;
+  constexpr std::size_t kLimit = 1 << 20;
+  for (const auto& page : pages_of(fresh)) {
+    if (!fs::exists(written / page)) continue;
+    EXPECT_EQ(read_text_file(written / page, kLimit), read_text_file(fresh / page, kLimit))
+        << page << ": " << cure;
+  }
+  fs::remove_all(fresh);
+}
+
+}  // namespace
+}  // namespace crisp

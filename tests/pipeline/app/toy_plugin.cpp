@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The tests' toy stages as a plugin, and some that a run of the program needs to be tested.
+#include <chrono>
+#include <thread>
+
+#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/stage/plugin.hpp"
+#include "tests/pipeline/stage/toy_stages.hpp"
+
+namespace crisp::toy {
+
+/// Writes the sum into a file, and doubts it if told to.
+class WriteStage final : public Stage {
+ public:
+  static void describe(StageDescription<WriteStage>& d) {
+    d.name("toy.write").summary("writes the sum").takes<Sum>();
+    d.option("file", &WriteStage::file_, "where to").required();
+    d.option("doubt", &WriteStage::doubt_, "whether to doubt it");
+  }
+  void process(const Inputs& in, Outputs&, Context& context) override {
+    sum_ = in.get<Sum>().value;
+    context.say("the sum is " + std::to_string(sum_));
+    context.report({{"sum", sum_}});
+    context.count("sums", 1);
+    context.count("sums that were lost", 0);
+    context.warn("it is only a toy");
+    if (doubt_) context.distrust("the sum was doubted");
+  }
+  void finish(Outputs&, Context& context) override {
+    write_file(file_, std::to_string(sum_) + "\n");
+    context.wrote(file_);
+  }
+
+ private:
+  std::filesystem::path file_;
+  bool doubt_ = false;
+  int sum_ = 0;
+};
+
+/// Opens a file aside, says so, and waits until it is interrupted.
+class WaitStage final : public Stage {
+ public:
+  static void describe(StageDescription<WaitStage>& d) {
+    d.name("toy.wait").summary("waits for a signal").gives<Number>();
+    d.option("file", &WaitStage::file_, "what it is about to write").required();
+  }
+  void process(const Inputs&, Outputs&, Context& context) override {
+    AtomicFile out(file_);
+    out.write("half");
+    while (!context.interrupted()) {
+      context.progress(0.5, "waiting");
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
+ private:
+  std::filesystem::path file_;
+};
+
+void register_all(Registrar& registrar) {
+  register_toys(registrar);
+  registrar.stage<WriteStage>();
+  registrar.stage<WaitStage>();
+}
+
+}  // namespace crisp::toy
+
+CRISP_PLUGIN("toy", "1.5", crisp::toy::register_all);
