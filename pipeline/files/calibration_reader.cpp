@@ -126,7 +126,11 @@ class CalibrationReader {
         }
         pair.refuse_others();
       } else {
-        calibration_.quality[name] = map.number(name, "", 0);
+        std::string wrong;
+        if (const auto figure = read_number(value, "", wrong))
+          calibration_.quality[name] = *figure;
+        else
+          map.fail(value.place, "'" + name + "': " + wrong);
       }
     }
   }
@@ -146,7 +150,13 @@ class CalibrationReader {
 
   void read_provenance(const YamlNode& node) {
     YamlMap map(node, "provenance", errors_);
-    for (const auto& entry : node.entries) calibration_.provenance[entry.key] = map.text(entry.key, "");
+    for (const auto& [key, place, value] : node.entries) {
+      std::string wrong;
+      if (auto text = read_text(value, wrong))
+        calibration_.provenance[key] = std::move(*text);
+      else
+        map.fail(value.place, "'" + key + "': " + wrong);
+    }
   }
 
   Calibration calibration_;

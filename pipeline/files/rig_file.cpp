@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "pipeline/files/yaml_map.hpp"
 
@@ -43,8 +42,9 @@ class RigReader {
   void read_lasers(const YamlNode& node) {
     YamlMap map(node, "lasers", errors_);
     if (node.kind == YamlNode::Kind::map && node.entries.empty()) map.fail(node.place, "there is none");
-    constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max();
-    if (node.entries.size() > kMost) map.fail(node.place, fmt::format("there are more than {}", kMost));
+    constexpr std::size_t kMost = 1000;
+    if (node.entries.size() > kMost)
+      return map.fail(node.place, fmt::format("there are more than {}", kMost));
     for (const auto& entry : node.entries) {
       if (!is_device_name(entry.key)) {
         map.fail(entry.place, "'" + entry.key + "' is not a name of letters, digits, _ and -");

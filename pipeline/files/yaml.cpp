@@ -112,6 +112,12 @@ class TreeBuilder final : public YAML::EventHandler {
     std::set<std::string> keys;
   };
 
+  void fail(const std::string& what, const std::string& advice, const Place& at) {
+    constexpr std::size_t kEnough = 100;  // nobody reads more, and a file of nothing else shall not take long
+    errors.emplace_back(what, advice, at);
+    if (errors.size() >= kEnough) throw Errors(std::move(errors));
+  }
+
   Place place(const YAML::Mark& mark) const { return {file_, mark.line + 1, mark.column + 1}; }
 
   YamlNode node(const YAML::Mark& mark, YamlNode::Kind kind) const {
@@ -123,11 +129,11 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void check_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) {
     if (anchor == YAML::NullAnchor) return;
-    errors.emplace_back("anchors (&name) are not understood", "use vars:", place(mark));
+    fail("anchors (&name) are not understood", "use vars:", place(mark));
   }
   void check_tag(const YAML::Mark& mark, const std::string& tag) {
     if (tag.empty() || tag == "?" || tag == "!") return;
-    errors.emplace_back("tags (" + tag + ") are not understood", "leave it out", place(mark));
+    fail("tags (" + tag + ") are not understood", "leave it out", place(mark));
   }
 
   void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YamlNode::Kind kind) {
@@ -161,12 +167,12 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void add_key(Level& level, YamlNode key) {
     if (key.kind != YamlNode::Kind::scalar) {
-      errors.emplace_back("a key must be a name, not " + describe(key), "", key.place);
+      fail("a key must be a name, not " + describe(key), "", key.place);
     } else if (!level.keys.insert(key.text).second) {
       const auto same = std::find_if(level.node.entries.begin(), level.node.entries.end(),
                                      [&](const YamlEntry& entry) { return entry.key == key.text; });
-      errors.emplace_back("'" + key.text + "' is given twice",
-                          fmt::format("the first is in line {}", same->place.line), key.place);
+      fail("'" + key.text + "' is given twice", fmt::format("the first is in line {}", same->place.line),
+           key.place);
     }
     level.node.entries.push_back({std::move(key.text), std::move(key.place), {}});
     level.awaits_value = true;
@@ -232,7 +238,7 @@ YamlNode parse_yaml(std::string_view text, const std::string& file) {
 }
 
 YamlNode read_yaml(const std::filesystem::path& file) {
-  constexpr std::size_t kLimit = 16 << 20;
+  constexpr std::size_t kLimit = 4 << 20;
   return parse_yaml(read_text_file(file, kLimit), file.string());
 }
 

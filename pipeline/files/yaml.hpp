@@ -45,7 +45,7 @@ std::string describe(const YamlNode& node);
 ///         are given twice, nesting deeper than 64
 YamlNode parse_yaml(std::string_view text, const std::string& file);
 
-/// Reads a file of at most 16 MiB and parses it.
+/// Reads a file of at most 4 MiB and parses it.
 YamlNode read_yaml(const std::filesystem::path& file);
 
 /// @throws Error if the file cannot be read or is longer than `limit` bytes

@@ -104,6 +104,11 @@ class PlanReader {
     } else if (list.items.empty()) {
       errors_.emplace_back("pipeline: there is no stage in it", "", list.place);
     }
+    constexpr std::size_t kMost = 1000;
+    if (list.items.size() > kMost) {
+      errors_.emplace_back(fmt::format("pipeline: there are more than {} stages", kMost), "", list.place);
+      return;
+    }
     for (const auto& item : list.items) read_stage(item);
   }
 

@@ -15,13 +15,13 @@ void Variables::set(const std::string& name, const std::string& text) {
   set(name, std::move(node));
 }
 
-void Variables::substitute(YamlNode& node, std::vector<Error>& errors) const {
+void Variables::substitute(YamlNode& node, std::vector<Error>& errors) {
   if (node.kind == YamlNode::Kind::scalar) substitute_scalar(node, errors);
   for (auto& item : node.items) substitute(item, errors);
   for (auto& entry : node.entries) substitute(entry.value, errors);
 }
 
-void Variables::substitute_scalar(YamlNode& node, std::vector<Error>& errors) const {
+void Variables::substitute_scalar(YamlNode& node, std::vector<Error>& errors) {
   const std::string text = std::move(node.text);
   node.text.clear();
   std::size_t done = 0;
@@ -43,6 +43,7 @@ void Variables::substitute_scalar(YamlNode& node, std::vector<Error>& errors) co
     done = end + 1;
     const YamlNode* value = find(text.substr(start + 2, end - start - 2), node.place, errors);
     if (!value) continue;
+    count(*value, node.place);
     if (start == 0 && done == text.size()) {  // stands alone: a list or map may take its place
       const Place place = node.place;
       node = *value;
@@ -56,6 +57,14 @@ void Variables::substitute_scalar(YamlNode& node, std::vector<Error>& errors) co
     }
     node.text += value->text;
   }
+}
+
+void Variables::count(const YamlNode& value, const Place& place) {
+  constexpr std::size_t kMost = 1 << 20;
+  put_in_ += 1 + value.text.size();
+  if (put_in_ > kMost) throw Error("the variables grow beyond all measure", "", place);
+  for (const auto& item : value.items) count(item, place);
+  for (const auto& entry : value.entries) count(entry.value, place);
 }
 
 const YamlNode* Variables::find(const std::string& name, const Place& place,

@@ -21,14 +21,18 @@ class Variables {
 
   /// Replaces each `${name}` in every scalar of the tree, once: what is put in is not looked at again.
   /// `$${` stands for `${`. Adds an error for each name that is not known.
-  void substitute(YamlNode& node, std::vector<Error>& errors) const;
+  /// @throws Error  once more than a mebibyte has been put in: variables that double one another grow without
+  /// end
+  void substitute(YamlNode& node, std::vector<Error>& errors);
 
  private:
-  void substitute_scalar(YamlNode& node, std::vector<Error>& errors) const;
+  void substitute_scalar(YamlNode& node, std::vector<Error>& errors);
+  void count(const YamlNode& value, const Place& place);
   const YamlNode* find(const std::string& name, const Place& place, std::vector<Error>& errors) const;
 
   std::map<std::string, YamlNode> values_;
   std::map<std::string, std::string> missing_;
+  std::size_t put_in_ = 0;  ///< characters and nodes
 };
 
 }  // namespace crisp

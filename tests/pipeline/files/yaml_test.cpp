@@ -55,6 +55,12 @@ TEST(Yaml, FindsEveryKeyThatIsGivenTwice) {
                           "f.yaml:3:1: error: 'a' is given twice; the first is in line 1"));
 }
 
+TEST(Yaml, StopsReportingAfterAHundredMistakes) {
+  std::string text;
+  for (int i = 0; i < 100000; ++i) text += "a: 1\n";
+  EXPECT_EQ(errors_of(text).size(), 100u);
+}
+
 TEST(Yaml, RefusesWhatCouldReferToSomethingElse) {
   EXPECT_THAT(errors_of("a: &x 1\nb: *x\n"),
               ElementsAre(HasSubstr("f.yaml:1:4: error: anchors"), HasSubstr("f.yaml:2:4: error: aliases")));

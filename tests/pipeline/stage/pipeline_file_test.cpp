@@ -188,6 +188,19 @@ TEST_F(PipelineFileTest, SaysWhichVariableIsUnknownOrMissing) {
                           HasSubstr("'${open' has no }"), HasSubstr("${l} is a list; let it stand alone")));
 }
 
+TEST_F(PipelineFileTest, StopsVariablesThatDoubleOneAnother) {
+  std::string texts = "crisp: 1\nvars:\n  a0: xxxxxxxxxxxxxxxx\n";
+  std::string lists = "crisp: 1\nvars:\n  a0: [1, 2]\n";
+  for (int i = 1; i < 60; ++i) {
+    const std::string name = "a" + std::to_string(i);
+    const std::string above = "${a" + std::to_string(i - 1) + "}";
+    texts += "  " + name + ": \"" + above + above + "\"\n";
+    lists += "  " + name + ": [" + above + ", " + above + "]\n";
+  }
+  EXPECT_THROW(errors_of(texts), Error);
+  EXPECT_THROW(errors_of(lists), Error);
+}
+
 TEST_F(PipelineFileTest, ValidatesWithoutInputAndOutput) {
   EXPECT_THAT(errors_of(with("file: ${output}/x, word: ${input}"), {.only_validate = true}), IsEmpty());
 }
