@@ -157,6 +157,8 @@ CaptureReader& CaptureReader::operator=(CaptureReader&&) noexcept = default;
 
 std::optional<CaptureItem> CaptureReader::next() { return traffic_->next(); }
 
+std::int64_t CaptureReader::first_ns() const { return traffic_->totals.first_ns; }
+
 double CaptureReader::progress() const {
   const auto size = traffic_->file.size();
   return size == 0 ? 0
@@ -171,6 +173,8 @@ CaptureStatistics CaptureReader::statistics() const {
   statistics.devices = traffic_->devices.statistics();
   return statistics;
 }
+
+void check_addresses(const Rig& rig) { const Devices devices(rig); }
 
 CaptureStatistics inspect_capture(const std::filesystem::path& file, const CaptureSettings& settings) {
   CaptureReader reader(std::make_unique<CaptureReader::Traffic>(file, Devices(), settings));

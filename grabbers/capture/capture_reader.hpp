@@ -29,7 +29,8 @@ class CaptureReader {
   /// What was found so far; complete once next() gave nothing.
   CaptureStatistics statistics() const;
 
-  double progress() const;  ///< 0 … 1, by the bytes of the file
+  double progress() const;        ///< 0 … 1, by the bytes of the file
+  std::int64_t first_ns() const;  ///< [ns since the Unix epoch] time of the first packet; 0 before next()
 
  private:
   friend CaptureStatistics inspect_capture(const std::filesystem::path&, const CaptureSettings&);
@@ -37,6 +38,10 @@ class CaptureReader {
   explicit CaptureReader(std::unique_ptr<Traffic> traffic);
   std::unique_ptr<Traffic> traffic_;
 };
+
+/// Whether a rig's devices can be told apart by their addresses.
+/// @throws Error if an address is none, or two devices have the same
+void check_addresses(const Rig& rig);
 
 /// What a capture holds, whoever sent it: reads all of it without a rig, and finds lasers and plates by what
 /// they say. @throws Error as CaptureReader

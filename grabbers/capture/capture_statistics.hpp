@@ -11,6 +11,10 @@
 
 namespace crisp {
 
+/// The losses that a device's own counter tells.
+inline constexpr std::string_view kTelegramsNeverCame = "telegrams that never came, by their counter";
+inline constexpr std::string_view kReadingsNeverCame = "readings that never came, by their sequence";
+
 enum class DeviceKind : std::uint8_t { Laser, Plate };
 
 /// How a laser's scans look, as its last telegram had them.

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "grabbers/capture/capture_statistics.hpp"
+
+namespace crisp {
+
+/// How a device is called: its name in the rig and its address, "laser1 (192.168.0.1:2112)".
+std::string title(const DeviceStatistics& device);
+
+/// The statistics for programs. Times in s since the Unix epoch, durations in s, angles in rad.
+nlohmann::json to_json(const CaptureStatistics& statistics);
+
+/// One line a device: items, rates, losses, silences, the shape of its scans.
+std::string device_table(const CaptureStatistics& statistics);
+
+/// All of the statistics, for people: the table, telegrams by kind, losses, and what was out of the ordinary.
+/// @param name of the capture
+std::string to_text(const CaptureStatistics& statistics, std::string_view name);
+
+}  // namespace crisp

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/capture_stage.hpp"
+
+#include <fmt/format.h>
+
+#include "grabbers/capture/capture_report.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+void CaptureStage::describe(StageDescription<CaptureStage>& d) {
+  d.name("grabber.capture")
+      .summary("reads scans and plate readings from a capture of the hub's network interface");
+  d.details(
+      "A capture is a pcap or pcapng file as tcpdump, dumpcap or Wireshark write it. Lasers are found by the "
+      "rig's addresses in TCP streams of CoLa-A or CoLa-B telegrams, the plate in UDP datagrams or a TCP "
+      "stream of its "
+      "sentences. Each item carries the time of the packet that completed it, and items come in the order of "
+      "these "
+      "times.\n\n"
+      "What is damaged, lost, repeated or unknown is counted by name; it never ends the reading. Memory does "
+      "not "
+      "depend on the size of the capture.");
+  d.gives<Scan>().gives<PlateReading>();
+  d.option("file", &CaptureStage::file_, "the capture").required();
+  d.option("begin", &CaptureStage::begin_,
+           "what was received earlier than this after the first packet is left out")
+      .unit("s")
+      .at_least(0);
+  d.option("duration", &CaptureStage::duration_, "how much is given from there on; auto: all of it")
+      .unit("s")
+      .at_least(0);
+  d.option("encoder", &CaptureStage::settings_, &CaptureSettings::encoder_widths,
+           "width of the encoder's fields in scan telegrams, on which sources disagree: a position of 32 "
+           "bits with a "
+           "signed speed, or 16 bits each")
+      .choices({{"position32", EncoderWidths::Position32}, {"position16", EncoderWidths::Position16}});
+  d.option("longest_wait", &CaptureStage::settings_, &CaptureSettings::longest_wait,
+           "how long a TCP segment that is missing is waited for, in the capture's time")
+      .unit("s")
+      .range(0, 600);
+}
+
+void CaptureStage::check(const RunSettings& run) const { check_addresses(run.rig); }
+
+void CaptureStage::process(const Inputs&, Outputs& out, Context& context) {
+  context.reads(file_);
+  CaptureReader reader(file_, context.rig(), settings_);
+  std::uint64_t items = 0;
+  while (const auto item = reader.next()) {
+    if (++items % 256 == 0) {
+      if (context.interrupted()) return;
+      context.progress(reader.progress(), "reading the capture");
+    }
+    give(*item, reader.first_ns(), out, context);
+  }
+  report(reader.statistics(), context);
+}
+
+void CaptureStage::give(const CaptureItem& item, std::int64_t first_ns, Outputs& out,
+                        Context& context) const {
+  const double since_begin = 1e-9 * static_cast<double>(receipt_ns(item) - first_ns) - begin_;
+  if (since_begin < 0 || (duration_ && since_begin >= *duration_)) {
+    context.count("items left out because of begin and duration");
+  } else if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
+    out.give(*scan);
+  } else {
+    out.give(std::get<PlateReading>(item));
+  }
+}
+
+void CaptureStage::report(const CaptureStatistics& statistics, Context& context) const {
+  context.report(to_json(statistics));
+  context.say(device_table(statistics));
+  for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
+  std::uint64_t found = 0;
+  std::string others;
+  for (const auto& device : statistics.devices) {
+    const bool known = !device.name.empty();
+    if (known) {
+      found += device.items;
+      for (const auto& [what, n] : device.losses.all()) context.count(device.name + ": " + what, n);
+      if (device.items == 0) context.warn(fmt::format("the capture holds nothing of {}", title(device)));
+    } else {
+      others += (others.empty() ? "" : ", ") + title(device);
+      context.count(fmt::format("items of a {}, which the rig does not know", title(device)), device.items);
+    }
+  }
+  if (!others.empty()) context.warn("not in the rig: " + others);
+  if (found == 0) {
+    throw Error(fmt::format("{} holds no scan and no reading of the rig's devices", file_.string()),
+                others.empty()
+                    ? "no laser and no plate speaks in it at all: was the right interface captured?"
+                    : "it holds " + others + ": correct the addresses in the rig");
+  }
+}
+
+void register_capture(Registrar& registrar) { registrar.stage<CaptureStage>(); }
+
+}  // namespace crisp

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/capture_stage.hpp"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <fstream>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/stage/pipeline_file.hpp"
+#include "pipeline/stage/runner.hpp"
+#include "tests/grabbers/capture/scenario.hpp"
+#include "tests/grabbers/capture/temporary_folder.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+/// Takes what the capture gives.
+struct Taker final : Stage {
+  static inline std::vector<std::string> items;
+  static inline std::atomic<bool>* stop = nullptr;
+  static void describe(StageDescription<Taker>& d) {
+    d.name("test.taker").summary("takes all").takes<Scan>().takes<PlateReading>();
+  }
+  void process(const Inputs& in, Outputs&, Context&) override {
+    if (const auto scan = in.share<Scan>()) items.push_back(crisp::describe(CaptureItem(scan)));
+    if (const auto* reading = in.find<PlateReading>())
+      items.push_back(crisp::describe(CaptureItem(*reading)));
+    if (stop != nullptr) *stop = true;
+  }
+};
+
+class CaptureStageTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    Taker::items.clear();
+    Taker::stop = nullptr;
+    register_capture(registrar_);
+    registrar_.stage<Taker>();
+    run_.registrar = &registrar_;
+    write_file(folder_ / "hub.pcap", pcap_file(scenario_.frames()));
+  }
+
+  NodeResult run(const std::string& options, const RunHooks& hooks = {}) {
+    std::ofstream(folder_ / "pipeline.yaml") << "crisp: 1\npipeline:\n  - stage: grabber.capture\n    with: {"
+                                             << options << "}\n  - stage: test.taker\n";
+    auto loaded = load_pipeline(folder_ / "pipeline.yaml", {}, run_);
+    run_.rig = rig_;
+    return run_pipeline(loaded.pipeline, run_, hooks).at(0);
+  }
+  std::string complaint(const std::string& options) {
+    try {
+      run(options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing";
+  }
+  std::string file() const { return "file: " + (folder_ / "hub.pcap").string(); }
+
+  Scenario scenario_;
+  TemporaryFolder folder_;
+  Registrar registrar_;
+  RunSettings run_;
+  Rig rig_ = default_rig();
+};
+
+TEST_F(CaptureStageTest, GivesWhatTheCaptureHoldsAndReportsIt) {
+  const auto result = run(file());
+  EXPECT_EQ(Taker::items, describe(scenario_.items()));
+  EXPECT_EQ(result.report.section["devices"][0]["items"], 10);
+  EXPECT_EQ(result.report.section["devices"][3]["kind"], "plate");
+  EXPECT_THAT(result.report.lines, Contains(HasSubstr("laser1 (192.168.0.1)")));
+  EXPECT_THAT(result.report.warnings, testing::ElementsAre(HasSubstr("nothing of laser3")));
+  EXPECT_THAT(result.report.read, testing::ElementsAre(folder_ / "hub.pcap"));
+  EXPECT_TRUE(result.report.counts.empty());
+}
+
+TEST_F(CaptureStageTest, NamesLossesByTheirDevice) {
+  auto frames = scenario_.frames();
+  auto damaged = pcap_file(frames);
+  damaged.resize(damaged.size() - 10);
+  write_file(folder_ / "hub.pcap", damaged);
+  const auto result = run(file());
+  EXPECT_THAT(
+      result.report.counts,
+      Contains(testing::Pair("bytes of a record that the end of the file cuts off", testing::Gt(0U))));
+}
+
+TEST_F(CaptureStageTest, GivesAPartOfTheCapture) {
+  run(file() + ", begin: 540ms, duration: 100ms");
+  // The capture begins with a handshake 0.50008 s before kStart: 0.04 s … 0.14 s of the scenario are left.
+  std::vector<std::string> expected;
+  for (const auto& item : scenario_.items()) {
+    const auto since = receipt_ns(item) - (kStart - 500'080'000);
+    if (since >= 540'000'000 && since < 640'000'000) expected.push_back(describe(item));
+  }
+  EXPECT_GT(expected.size(), 50U);
+  EXPECT_EQ(Taker::items, expected);
+}
+
+TEST_F(CaptureStageTest, SaysWhatItFoundInsteadOfTheRigsDevices) {
+  for (auto& laser : rig_.lasers) laser.address.ip.insert(0, "1");  // 1192.168…
+  EXPECT_THAT(complaint(file()), HasSubstr("no IP address"));
+  for (std::size_t i = 0; i < 3; ++i) rig_.lasers[i].address.ip = "10.0.0." + std::to_string(i + 1);
+  rig_.plate.address.ip = "10.0.0.10";
+  EXPECT_THAT(complaint(file()),
+              HasSubstr("laser at 192.168.0.1:2112, laser at 192.168.0.2:2112, plate at 192.168.0.10:4000"));
+}
+
+TEST_F(CaptureStageTest, WarnsOfDevicesThatTheRigDoesNotKnow) {
+  rig_.lasers.pop_back();
+  rig_.lasers.pop_back();
+  const auto result = run(file());
+  EXPECT_THAT(result.report.warnings, Contains("not in the rig: laser at 192.168.0.2:2112"));
+  EXPECT_EQ(result.report.counts.at("items of a laser at 192.168.0.2:2112, which the rig does not know"),
+            10U);
+}
+
+TEST_F(CaptureStageTest, SaysThatTheFileIsMissing) {
+  EXPECT_THAT(complaint("file: nowhere.pcap"),
+              HasSubstr("nowhere.pcap: No such file or directory"));
+  EXPECT_THAT(complaint(""), HasSubstr("file"));
+}
+
+TEST_F(CaptureStageTest, StopsWhenItIsInterrupted) {
+  std::atomic<bool> stop = false;
+  Taker::stop = &stop;
+  EXPECT_ANY_THROW(run(file(), {.stop = &stop}));
+  EXPECT_EQ(Taker::items.size(), 1U);
+}
+
+}  // namespace
+}  // namespace crisp
