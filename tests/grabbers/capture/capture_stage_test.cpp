@@ -121,8 +121,7 @@ TEST_F(CaptureStageTest, WarnsOfDevicesThatTheRigDoesNotKnow) {
 }
 
 TEST_F(CaptureStageTest, SaysThatTheFileIsMissing) {
-  EXPECT_THAT(complaint("file: nowhere.pcap"),
-              HasSubstr("nowhere.pcap: No such file or directory"));
+  EXPECT_THAT(complaint("file: nowhere.pcap"), HasSubstr("nowhere.pcap: No such file or directory"));
   EXPECT_THAT(complaint(""), HasSubstr("file"));
 }
 
