@@ -2,6 +2,7 @@
 #include "grabbers/capture/capture_reader.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <string_view>
 #include <unordered_map>
 
@@ -31,10 +32,11 @@ struct CaptureReader::Traffic {
   std::unordered_map<FlowKey, std::unique_ptr<Flow>> flows;
   std::vector<Flow*> rig_flows;
   ItemMerge merge;
-  Flow::Give give = [this](CaptureItem item) { merge.push(std::move(item)); };
+  Flow::Give give = [this](HubItem item) { merge.push(std::move(item)); };
   CaptureStatistics totals;
   std::int64_t newest_ns = 0, given_ns = 0;
   bool ended = false;
+  std::atomic<bool> interrupted = false;
 
   bool read_packet();
   void take_ip(const IpPacket& ip, std::int64_t time_ns);
@@ -42,7 +44,7 @@ struct CaptureReader::Traffic {
   void forget_flows();
   std::int64_t limit_ns();
   void finish();
-  std::optional<CaptureItem> next();
+  std::optional<HubItem> next();
 };
 
 /// False at the end of the capture.
@@ -130,8 +132,8 @@ void CaptureReader::Traffic::finish() {
   flows.clear();
 }
 
-std::optional<CaptureItem> CaptureReader::Traffic::next() {
-  while (true) {
+std::optional<HubItem> CaptureReader::Traffic::next() {
+  while (!interrupted) {
     if (!merge.empty()) {
       auto item = ended ? merge.pop() : merge.pop(limit_ns());
       if (item) {
@@ -144,6 +146,7 @@ std::optional<CaptureItem> CaptureReader::Traffic::next() {
     if (ended) return {};
     if (!read_packet()) finish();
   }
+  return {};
 }
 
 CaptureReader::CaptureReader(const std::filesystem::path& file, const Rig& rig,
@@ -155,7 +158,9 @@ CaptureReader::~CaptureReader() = default;
 CaptureReader::CaptureReader(CaptureReader&&) noexcept = default;
 CaptureReader& CaptureReader::operator=(CaptureReader&&) noexcept = default;
 
-std::optional<CaptureItem> CaptureReader::next() { return traffic_->next(); }
+std::optional<HubItem> CaptureReader::next() { return traffic_->next(); }
+
+void CaptureReader::interrupt() { traffic_->interrupted = true; }
 
 std::int64_t CaptureReader::first_ns() const { return traffic_->totals.first_ns; }
 

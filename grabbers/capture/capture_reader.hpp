@@ -14,17 +14,19 @@ namespace crisp {
 /// hub received them: the time of the packet that completes a telegram. Only where the hub's clock itself
 /// stepped back does the order follow the file; that is counted. Memory does not depend on the capture's
 /// size. What is damaged or missing is counted by name; see statistics().
-class CaptureReader {
+class CaptureReader final : public ItemSource {
  public:
   /// @throws Error if the file cannot be read or is no capture, or an address of the rig is none
   CaptureReader(const std::filesystem::path& file, const Rig& rig, const CaptureSettings& settings = {});
-  ~CaptureReader();
+  ~CaptureReader() override;
   CaptureReader(CaptureReader&&) noexcept;
   CaptureReader& operator=(CaptureReader&&) noexcept;
 
   /// The next item of one of the rig's devices; nothing at the end of the capture.
   /// @throws Error if the disk fails
-  std::optional<CaptureItem> next();
+  std::optional<HubItem> next() override;
+
+  void interrupt() override;
 
   /// What was found so far; complete once next() gave nothing.
   CaptureStatistics statistics() const;

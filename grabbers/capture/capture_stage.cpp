@@ -57,8 +57,7 @@ void CaptureStage::process(const Inputs&, Outputs& out, Context& context) {
   report(reader.statistics(), context);
 }
 
-void CaptureStage::give(const CaptureItem& item, std::int64_t first_ns, Outputs& out,
-                        Context& context) const {
+void CaptureStage::give(const HubItem& item, std::int64_t first_ns, Outputs& out, Context& context) const {
   const double since_begin = 1e-9 * static_cast<double>(receipt_ns(item) - first_ns) - begin_;
   if (since_begin < 0 || (duration_ && since_begin >= *duration_)) {
     context.count("items left out because of begin and duration");

@@ -20,7 +20,7 @@ class CaptureStage final : public Stage {
   void process(const Inputs& in, Outputs& out, Context& context) override;
 
  private:
-  void give(const CaptureItem& item, std::int64_t first_ns, Outputs& out, Context& context) const;
+  void give(const HubItem& item, std::int64_t first_ns, Outputs& out, Context& context) const;
   void report(const CaptureStatistics& statistics, Context& context) const;
 
   std::filesystem::path file_;

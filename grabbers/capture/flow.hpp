@@ -4,23 +4,14 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <variant>
 #include <vector>
 
 #include "grabbers/capture/devices.hpp"
 #include "grabbers/capture/tcp_stream.hpp"
+#include "grabbers/wire/hub_item.hpp"
 #include "grabbers/wire/plate_framer.hpp"
 
 namespace crisp {
-
-/// What a capture gives.
-using CaptureItem = std::variant<std::shared_ptr<const Scan>, PlateReading>;
-
-/// [ns since the Unix epoch] When the hub received an item.
-inline std::int64_t receipt_ns(const CaptureItem& item) {
-  const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item);
-  return scan != nullptr ? (*scan)->receipt_ns : std::get<PlateReading>(item).receipt_ns;
-}
 
 /// How the bytes of a capture are understood.
 struct CaptureSettings {
@@ -32,7 +23,7 @@ struct CaptureSettings {
 /// readings to the device that sent them.
 class Flow final : public StreamSink {
  public:
-  using Give = std::function<void(CaptureItem)>;
+  using Give = std::function<void(HubItem)>;
 
   /// @param known the rig's device at the flow's beginning, or nullptr
   /// @param give  takes what a device of the rig measured

@@ -7,21 +7,21 @@
 #include <limits>
 #include <optional>
 
-#include "grabbers/capture/flow.hpp"
+#include "grabbers/wire/hub_item.hpp"
 
 namespace crisp {
 
 /// Puts items into the order of their receipt; of equal times the first that came goes first.
 class ItemMerge {
  public:
-  void push(CaptureItem item) {
+  void push(HubItem item) {
     const auto time = receipt_ns(item);
-    const auto later = [](std::int64_t t, const CaptureItem& other) { return t < receipt_ns(other); };
+    const auto later = [](std::int64_t t, const HubItem& other) { return t < receipt_ns(other); };
     items_.insert(std::upper_bound(items_.begin(), items_.end(), time, later), std::move(item));
   }
 
   /// The next item, if it was received before `limit_ns`.
-  std::optional<CaptureItem> pop(std::int64_t limit_ns = std::numeric_limits<std::int64_t>::max()) {
+  std::optional<HubItem> pop(std::int64_t limit_ns = std::numeric_limits<std::int64_t>::max()) {
     if (items_.empty() || receipt_ns(items_.front()) >= limit_ns) return {};
     auto item = std::move(items_.front());
     items_.pop_front();
@@ -31,7 +31,7 @@ class ItemMerge {
   bool empty() const { return items_.empty(); }
 
  private:
-  std::deque<CaptureItem> items_;
+  std::deque<HubItem> items_;
 };
 
 }  // namespace crisp

@@ -26,9 +26,8 @@ struct Taker final : Stage {
     d.name("test.taker").summary("takes all").takes<Scan>().takes<PlateReading>();
   }
   void process(const Inputs& in, Outputs&, Context&) override {
-    if (const auto scan = in.share<Scan>()) items.push_back(crisp::describe(CaptureItem(scan)));
-    if (const auto* reading = in.find<PlateReading>())
-      items.push_back(crisp::describe(CaptureItem(*reading)));
+    if (const auto scan = in.share<Scan>()) items.push_back(crisp::describe(HubItem(scan)));
+    if (const auto* reading = in.find<PlateReading>()) items.push_back(crisp::describe(HubItem(*reading)));
     if (stop != nullptr) *stop = true;
   }
 };

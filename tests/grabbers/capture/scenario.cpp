@@ -58,8 +58,8 @@ std::vector<Frame> Scenario::frames() const {
   return all;
 }
 
-std::vector<CaptureItem> Scenario::items() const {
-  std::vector<CaptureItem> all;
+std::vector<HubItem> Scenario::items() const {
+  std::vector<HubItem> all;
   for (std::size_t k = 0; k < scans; ++k) {
     for (std::size_t laser = 0; laser < 2; ++laser) {
       const auto data = scan_of(laser, k, beams);
@@ -86,7 +86,7 @@ std::vector<CaptureItem> Scenario::items() const {
   return all;
 }
 
-std::string describe(const CaptureItem& item) {
+std::string describe(const HubItem& item) {
   if (const auto* reading = std::get_if<PlateReading>(&item)) {
     return fmt::format("{} plate {} {} {}", reading->receipt_ns - kStart, reading->sequence,
                        reading->device_us, reading->count);
@@ -102,7 +102,7 @@ std::string describe(const CaptureItem& item) {
                      scan.scan_counter, scan.scan_time_us, scan.transmission_time_us, beams, weighted);
 }
 
-std::vector<std::string> describe(const std::vector<CaptureItem>& items) {
+std::vector<std::string> describe(const std::vector<HubItem>& items) {
   std::vector<std::string> lines;
   for (const auto& item : items) lines.push_back(describe(item));
   return lines;

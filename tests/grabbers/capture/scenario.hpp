@@ -15,13 +15,13 @@ struct Scenario {
   TcpSettings tcp;
   bool handshake = true;
 
-  std::vector<Frame> frames() const;       ///< what tcpdump would have captured
-  std::vector<CaptureItem> items() const;  ///< what a reader is to find, in order
+  std::vector<Frame> frames() const;   ///< what tcpdump would have captured
+  std::vector<HubItem> items() const;  ///< what a reader is to find, in order
 };
 
 /// The item in one line: which, when, and its content.
-std::string describe(const CaptureItem& item);
-std::vector<std::string> describe(const std::vector<CaptureItem>& items);
+std::string describe(const HubItem& item);
+std::vector<std::string> describe(const std::vector<HubItem>& items);
 
 /// What a reader of the default rig gives for this file.
 struct Reading {

@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-std::vector<CaptureItem> read_all(CaptureReader& reader) {
-  std::vector<CaptureItem> items;
+std::vector<HubItem> read_all(CaptureReader& reader) {
+  std::vector<HubItem> items;
   while (auto item = reader.next()) items.push_back(std::move(*item));
   return items;
 }

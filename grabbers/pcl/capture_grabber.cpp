@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/pcl/capture_grabber.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "grabbers/pcl/paced_source.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+CaptureGrabber::CaptureGrabber(std::filesystem::path file, Rig rig, PlaySettings settings)
+    : SourceGrabber("CaptureGrabber", [this] { return open(); }),
+      file_(std::move(file)),
+      rig_(std::move(rig)),
+      settings_(settings) {
+  if (!std::isfinite(settings_.speed) || settings_.speed < 0) {
+    throw Error("a capture cannot be played at that speed",
+                "give how many times real time, or 0 for as fast as it goes");
+  }
+}
+
+CaptureGrabber::~CaptureGrabber() noexcept { stop(); }
+
+std::unique_ptr<ItemSource> CaptureGrabber::open() {
+  auto reader = std::make_unique<CaptureReader>(file_, rig_, settings_.capture);
+  reader_ = reader.get();
+  if (settings_.speed == 0) return reader;
+  return std::make_unique<PacedSource>(std::move(reader), settings_.speed);
+}
+
+void CaptureGrabber::end() {
+  const std::lock_guard lock(statistics_mutex_);
+  statistics_ = reader_->statistics();
+}
+
+CaptureStatistics CaptureGrabber::statistics() const {
+  const std::lock_guard lock(statistics_mutex_);
+  return statistics_;
+}
+
+}  // namespace crisp
