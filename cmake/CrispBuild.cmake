@@ -9,6 +9,13 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_CXX_VISIBILITY_PRESET default)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
 
+if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+  find_program(CRISP_CCACHE ccache)
+  if(CRISP_CCACHE)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${CRISP_CCACHE}")
+  endif()
+endif()
+
 option(CRISP_WARNINGS_AS_ERRORS "Treat warnings as errors" ON)
 set(CRISP_SANITIZE "" CACHE STRING "Sanitizers to build with, as for -fsanitize (address,undefined or thread)")
 
@@ -28,23 +35,41 @@ if(CRISP_BUILD_FUZZERS)  # the libraries report their coverage to libFuzzer, who
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
-# crisp_library(<folder's name> [SHARED|STATIC] SOURCES ... [PUBLIC ...] [PRIVATE ...])
-# makes the target crisp_<name> with the alias crisp::<name>. Includes are written from the top of the
-# tree ("pipeline/data/scan.hpp"), here and in an installed package alike.
+# Programs and libraries find each other wherever the whole is put.
+file(RELATIVE_PATH CRISP_LIB_FROM_BIN "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
+set(CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/${CRISP_LIB_FROM_BIN}")
+
+# crisp_library(<folder's name> [SHARED|STATIC|INTERFACE] [SOURCES ...] [PUBLIC ...] [PRIVATE ...])
+# makes the target crisp_<name> with the alias crisp::<name>, and installs it with the folder's headers.
+# Includes are written from the top of the tree ("pipeline/data/scan.hpp"), here and in an installed package
+# alike.
 function(crisp_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "SHARED;STATIC" "" "SOURCES;PUBLIC;PRIVATE")
-  set(kind STATIC)
-  if(arg_SHARED)
-    set(kind SHARED)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SHARED;STATIC;INTERFACE" "" "SOURCES;PUBLIC;PRIVATE")
+  set(target crisp_${name})
+  set(public PUBLIC)
+  if(arg_INTERFACE)
+    add_library(${target} INTERFACE)
+    set(public INTERFACE)
+  elseif(arg_SHARED)
+    add_library(${target} SHARED ${arg_SOURCES})
+  else()
+    add_library(${target} STATIC ${arg_SOURCES})
   endif()
-  add_library(crisp_${name} ${kind} ${arg_SOURCES})
-  add_library(crisp::${name} ALIAS crisp_${name})
-  set_target_properties(crisp_${name} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
+  add_library(crisp::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
                         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  target_include_directories(crisp_${name} PUBLIC
+  target_include_directories(${target} ${public}
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/crisp>)
-  target_compile_features(crisp_${name} PUBLIC cxx_std_20)
-  target_link_libraries(crisp_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:crisp_settings>)
+  target_compile_features(${target} ${public} cxx_std_20)
+  target_link_libraries(${target} ${public} ${arg_PUBLIC})
+  if(NOT arg_INTERFACE)
+    target_link_libraries(${target} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:crisp_settings>)
+  endif()
+
+  file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
+  install(TARGETS ${target} EXPORT crispTargets)
+  install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/crisp/${folder}"
+          FILES_MATCHING PATTERN "*.hpp")
 endfunction()
 
 # crisp_test(<name> SOURCES ... LIBRARIES ...) makes one GoogleTest program of a folder's tests.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The packages crisp stands on. A package that only some folders need is still looked for here, so that
-# configuring fails at once, with everything that is missing on one screen.
+# configuring fails at once. An installed crisp looks for the same ones, for whatever is built on it.
 
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
@@ -26,7 +26,7 @@ if(NOT TARGET yaml-cpp::yaml-cpp)  # yaml-cpp 0.7
   add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
 endif()
 
-if(CRISP_BUILD_TESTS OR PROJECT_IS_TOP_LEVEL)
+if(CRISP_BUILD_TESTS)
   find_package(GTest REQUIRED)
   find_library(CRISP_PCL_IO pcl_io REQUIRED)  # with its VTK, only where tests hold crisp's PCD files against PCL
   include(GoogleTest)

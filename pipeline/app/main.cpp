@@ -19,7 +19,8 @@ constexpr const char* kFooter =
     "Exit status: 0 done; 1 a run stopped at an error; 2 the command line, the pipeline or the rig is wrong "
     "and\n"
     "nothing was run; 3 the run came to its end but its result cannot be trusted (the summary says why);\n"
-    "130 or 143 interrupted. Plugins are also loaded from the files and folders that CRISP_PLUGINS lists.";
+    "130 or 143 interrupted. Plugins are also loaded from <libdir>/crisp/plugins, and from the files\nand "
+    "folders that CRISP_PLUGINS lists.";
 
 /// Everything that can stand on the command line, and where CLI11 puts it.
 struct CommandLine {
@@ -127,18 +128,27 @@ std::vector<CommandWords> completion_words(const CommandLine& line) {
   return commands;
 }
 
-/// The plugins of the environment, then those of the command line, of which a refused one is an error.
+/// Where plugins are installed: beside the program's libraries, wherever the whole was put.
+fs::path plugin_folder() {
+  std::error_code unknown;
+  return (fs::read_symlink("/proc/self/exe", unknown).parent_path() / CRISP_PLUGINS_FROM_BIN)
+      .lexically_normal();
+}
+
+/// The plugins that are installed, those of the environment, then those of the command line, of which a
+/// refused one is an error.
 bool load_plugins(const CommandLine& line, PluginLoader& loader) {
+  if (fs::is_directory(plugin_folder())) loader.load(plugin_folder());
   if (const char* listed = std::getenv("CRISP_PLUGINS")) {
     std::istringstream paths(listed);
     for (std::string path; std::getline(paths, path, ':');) {
       if (!path.empty()) loader.load(path);
     }
   }
-  const std::size_t of_environment = loader.tried().size();
+  const std::size_t not_asked_for = loader.tried().size();
   for (const auto& path : line.plugins) loader.load(path);
   bool all_loaded = true;
-  for (std::size_t i = of_environment; i < loader.tried().size(); ++i) {
+  for (std::size_t i = not_asked_for; i < loader.tried().size(); ++i) {
     const PluginRecord& plugin = loader.tried()[i];
     if (plugin.is_loaded()) continue;
     all_loaded = false;

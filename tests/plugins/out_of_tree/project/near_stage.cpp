@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "example.hpp"
+#include "pipeline/data/cloud.hpp"
+#include "pipeline/stage/context.hpp"
+
+namespace {
+
+/// Drops the points that are far from the spin axis.
+class NearStage final : public crisp::Stage {
+ public:
+  static void describe(crisp::StageDescription<NearStage>& d) {
+    d.name("example.near").summary("drops the points that are far from the spin axis");
+    d.takes<crisp::Cloud>().gives<crisp::Cloud>();
+    d.option("radius", &NearStage::radius_, "largest distance from the axis that is kept")
+        .unit("m")
+        .range(0, 1000);
+  }
+
+  void process(const crisp::Inputs& in, crisp::Outputs& out, crisp::Context& context) override {
+    const auto& cloud = in.get<crisp::Cloud>();
+    crisp::Cloud near;
+    near.header = cloud.header;
+    for (const auto& point : cloud) {
+      if (std::hypot(static_cast<double>(point.x), static_cast<double>(point.y)) <= radius_)
+        near.push_back(point);
+    }
+    context.count("points beyond the radius", cloud.size() - near.size());
+    out.give(std::move(near));
+  }
+
+ private:
+  double radius_ = 10;
+};
+
+}  // namespace
+
+void register_near_stage(crisp::Registrar& registrar) { registrar.stage<NearStage>(); }

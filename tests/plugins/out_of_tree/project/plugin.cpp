@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/stage/plugin.hpp"
+
+#include "example.hpp"
+
+namespace {
+
+void register_all(crisp::Registrar& registrar) {
+  register_near_stage(registrar);
+  register_drift_term(registrar);
+}
+
+}  // namespace
+
+CRISP_PLUGIN("example", "1.0", register_all);

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs the build, moves it, builds the example project against it, and runs crisp with its plugin.
+cmake_minimum_required(VERSION 3.25)
+
+set(work "${build}/tests/out_of_tree")
+set(prefix "${work}/moved")
+set(crisp "${prefix}/bin/crisp")
+set(project "${CMAKE_CURRENT_LIST_DIR}/project")
+unset(ENV{LD_LIBRARY_PATH})
+unset(ENV{CRISP_PLUGINS})
+
+function(run)
+  execute_process(COMMAND ${ARGV} OUTPUT_VARIABLE out ERROR_VARIABLE out RESULT_VARIABLE status)
+  if(status)
+    list(JOIN ARGV " " command)
+    message(FATAL_ERROR "${command}\nended with ${status}:\n${out}")
+  endif()
+  set(output "${out}" PARENT_SCOPE)
+endfunction()
+
+function(expect_output text)
+  string(FIND "${output}" "${text}" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "'${text}' is not in:\n${output}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE "${work}")
+run(${CMAKE_COMMAND} --install "${build}" --prefix "${work}/installed")
+file(RENAME "${work}/installed" "${prefix}")  # nothing may depend on where it was installed
+
+run(${CMAKE_COMMAND} -G Ninja -S "${project}" -B "${work}/build" -D CMAKE_PREFIX_PATH=${prefix}
+    -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_BUILD_TYPE=Debug)
+run(${CMAKE_COMMAND} --build "${work}/build")
+
+# A plugin that is named
+run(${crisp} plugins --plugin "${work}/build/example.so")
+expect_output("example.near")
+run(${crisp} run "${project}/near.yaml" -i "${project}/cloud.pcd" -o "${work}/out" --plugin "${work}/build/example.so")
+file(READ "${work}/out/near.pcd" cloud)
+if(NOT cloud MATCHES "POINTS 2\n.*\n1 1 0 7 2 9 0.25\n0 -2 0 8 0 3 0.5\n$")
+  message(FATAL_ERROR "the example's stage did not keep the two points that are near:\n${cloud}")
+endif()
+
+# An installed plugin is found by itself; its term bends a simulation by as much as it says.
+run(${CMAKE_COMMAND} --install "${work}/build" --prefix "${prefix}")
+run(${crisp} stages example.near)
+expect_output("radius")
+foreach(effects IN ITEMS "" "example.drift.rate=0.1")
+  run(${crisp} run "${project}/drift.yaml" -o "${work}/out${effects}" --set "grabber.simulate.effects=[${effects}]")
+endforeach()
+run("${work}/build/compare" "${work}/out/beams.pcd" "${work}/outexample.drift.rate=0.1/beams.pcd" 0.1)
