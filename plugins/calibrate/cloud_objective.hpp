@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "pipeline/model/sensor_model.hpp"
+#include "pipeline/quality/measure.hpp"
+#include "plugins/calibrate/sample.hpp"
+
+namespace crisp {
+
+/// Value of a cloud's quality and its derivatives with respect to the model's free parameters.
+struct ModelQuality {
+  double value = 0;
+  Eigen::VectorXd gradient;  ///< one a free parameter
+};
+
+/// Where a measure and the sensor model meet: the quality's gradient with respect to every point times every
+/// point's derivative with respect to the free parameters.
+///
+/// @param model   at the parameters to be judged
+/// @param sample  n beams, all of which the plate's readings cover
+/// @param free    indices into model.values()
+/// @param scale   [m] the measure's
+ModelQuality model_quality(const SensorModel& model, const Sample& sample,
+                           const std::vector<std::size_t>& free, Measure& measure, double scale);
+
+/// The value alone.
+double model_quality(const SensorModel& model, const Sample& sample, Measure& measure, double scale);
+
+}  // namespace crisp

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/crispest.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "plugins/calibrate/cloud_objective.hpp"
+
+namespace crisp {
+namespace {
+
+using Motion = Eigen::Matrix<double, 3, 6>;
+
+/// What a shift and a small turn of everything do to a point.
+Motion rigid_motion(const Eigen::Vector3d& x) {
+  Motion motion;
+  motion.leftCols<3>().setIdentity();
+  motion.rightCols<3>() << 0, x.z(), -x.y(), -x.z(), 0, x.x(), x.y(), -x.x(), 0;
+  return motion;
+}
+
+/// Mean square displacement of the points by each pair of parameters, rigid motions projected out.
+Eigen::MatrixXd displacement(const SensorModel& model, const Sample& sample,
+                             const std::vector<std::size_t>& free) {
+  PointDerivatives derivatives;
+  const Placed placed = model.place(sample.beams, *sample.plate, free, derivatives);
+  const auto n = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd mixed = Eigen::MatrixXd::Zero(6, n);
+  Eigen::Matrix<double, 6, 6> rigid =
+      Eigen::Matrix<double, 6, 6>::Identity() * 1e-9;  // points may all coincide
+  for (std::size_t i = 0; i < placed.index.size(); ++i) {
+    const Motion motion = rigid_motion(placed.points.col(static_cast<Eigen::Index>(i)));
+    const auto& columns = derivatives.columns[sample.beams.laser[placed.index[i]]];
+    const auto first = static_cast<Eigen::Index>(i * derivatives.stride);
+    rigid += motion.transpose() * motion;
+    for (std::size_t a = 0; a < columns.size(); ++a) {
+      const auto column = static_cast<Eigen::Index>(columns[a]);
+      const Eigen::Vector3d step = derivatives.values.col(first + static_cast<Eigen::Index>(a));
+      mixed.col(column) += motion.transpose() * step;
+      for (std::size_t b = 0; b < columns.size(); ++b) {
+        own(column, static_cast<Eigen::Index>(columns[b])) +=
+            step.dot(derivatives.values.col(first + static_cast<Eigen::Index>(b)));
+      }
+    }
+  }
+  own -= mixed.transpose() * rigid.ldlt().solve(mixed);
+  return own / static_cast<double>(std::max<std::size_t>(1, placed.index.size()));
+}
+
+/// Columns that each displace the points by `step`.
+Eigen::MatrixXd whitening(const Eigen::MatrixXd& displacement, const Eigen::VectorXd& range, double step) {
+  constexpr double kUnseen = 1e-7;  // of a parameter's own displacement: directions that move next to nothing
+  const Eigen::VectorXd size =
+      displacement.diagonal().cwiseMax(0).cwiseSqrt().cwiseMax(1e-3 * step * range.cwiseInverse());
+  const Eigen::MatrixXd scaled =
+      size.cwiseInverse().asDiagonal() * displacement * size.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
+  const Eigen::VectorXd length = solver.eigenvalues().cwiseMax(kUnseen).cwiseSqrt();
+  return step *
+         (size.cwiseInverse().asDiagonal() * solver.eigenvectors() * length.cwiseInverse().asDiagonal());
+}
+
+Eigen::VectorXd picked(const Eigen::VectorXd& values, const std::vector<std::size_t>& free) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    result[static_cast<Eigen::Index>(i)] = values[static_cast<Eigen::Index>(free[i])];
+  }
+  return result;
+}
+
+SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x) {
+  Eigen::VectorXd values = model.values();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    values[static_cast<Eigen::Index>(free[i])] = x[static_cast<Eigen::Index>(i)];
+  }
+  SensorModel moved = model;
+  moved.set_values(values);
+  return moved;
+}
+
+}  // namespace
+
+double range_of(const SearchRange& range, const std::string& name) {
+  if (name.ends_with(".lambda")) return range.lambda;
+  if (name.ends_with(".tau")) return range.tau;
+  if (name.ends_with(".alpha")) return range.alpha;
+  if (name.ends_with(".eta")) return range.eta;
+  return range.other;
+}
+
+Minimum crispest(SensorModel& model, const Sample& sample, const std::vector<std::size_t>& free,
+                 Measure& measure, double scale, const SearchRange& range,
+                 const MinimiserSettings& settings) {
+  const Eigen::VectorXd start = picked(model.values(), free);
+  Eigen::VectorXd ranges(start.size());
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    ranges[static_cast<Eigen::Index>(i)] = range_of(range, model.names()[free[i]]);
+  }
+  const Box box{.lower = start - ranges,
+                .upper = start + ranges,
+                .basis = whitening(displacement(model, sample, free), ranges, scale)};
+  const Objective objective = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    const auto quality = model_quality(with(model, free, x), sample, free, measure, scale);
+    if (gradient) *gradient = quality.gradient;
+    return quality.value;
+  };
+  const Minimum minimum = minimise(objective, start, box, settings);
+  model = with(model, free, minimum.x);
+  return minimum;
+}
+
+std::vector<double> annealing(double from, double to) {
+  constexpr double kFactor = 0.6;
+  const auto steps = static_cast<int>(std::max(0.0, std::round(std::log(to / from) / std::log(kFactor))));
+  std::vector<double> sigmas;
+  for (int i = 0; i <= steps; ++i) {
+    sigmas.push_back(steps == 0 ? to : from * std::pow(to / from, static_cast<double>(i) / steps));
+  }
+  return sigmas;
+}
+
+}  // namespace crisp

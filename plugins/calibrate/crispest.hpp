@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "pipeline/model/sensor_model.hpp"
+#include "pipeline/quality/measure.hpp"
+#include "plugins/calibrate/minimise.hpp"
+#include "plugins/calibrate/sample.hpp"
+
+namespace crisp {
+
+/// How far from its start each kind of parameter is looked for: also what counts as known beforehand.
+struct SearchRange {
+  double lambda = 0.26;  ///< [rad]
+  double tau = 0.10;     ///< [m]
+  double alpha = 0.35;   ///< [rad]
+  double eta = 0.10;     ///< [s]
+  double other = 0.05;   ///< parameters of terms beyond equation (2), in their units
+};
+
+/// The range that belongs to a parameter by its name.
+double range_of(const SearchRange& range, const std::string& name);
+
+/// Turns the free parameters until the sample's cloud is as crisp as it can be at one scale, and leaves the
+/// model there.
+///
+/// The search works in a basis in which a unit step of any coordinate moves the cloud's points by the scale,
+/// in the root mean square and apart from rigid motions of the whole cloud, which no measure of crispness
+/// sees. Without it λ against α (which differ by τ only) is a valley in which the search creeps.
+Minimum crispest(SensorModel& model, const Sample& sample, const std::vector<std::size_t>& free,
+                 Measure& measure, double scale, const SearchRange& range, const MinimiserSettings& settings);
+
+/// σ from wide to narrow, by a constant factor of about 0.6.
+std::vector<double> annealing(double from, double to);
+
+}  // namespace crisp

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include "plugins/calibrate/crispest.hpp"
+
+namespace crisp {
+
+struct InPlaneSettings {
+  double half_width = 0.0044;  ///< [rad] beams so near to the plate's plane count as in it
+  double sigma_from = 0.5;     ///< [m]
+  double sigma_to = 0.1;       ///< [m]
+  bool eta = true;             ///< whether the plate's speed varied enough to tell η
+  SearchRange range;
+  MinimiserSettings minimiser;
+};
+
+/// A first calibration in the paper's order, from the two beams of each laser that lie in the plate's plane:
+///   1. each η from the front beam alone, with τ and α as they are: the turns of the plate must agree;
+///   2. each laser's τ and α from its front and back beams;
+///   3. each λ against the first laser, from any start: a search over the whole circle, then downhill;
+///   4. all 3n − 1 geometric parameters together.
+/// Leaves the model at what it found.
+///
+/// @param sample  covered for every η in the range
+void calibrate_in_plane(SensorModel& model, const Sample& sample, Measure& measure,
+                        const InPlaneSettings& settings);
+
+}  // namespace crisp

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/minimise.hpp"
+
+#include <IpIpoptApplication.hpp>
+#include <IpTNLP.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+using Ipopt::Index;
+using Ipopt::Number;
+
+/// The problem as Ipopt asks for it: variables y, and the box as linear constraints lower ≤ x(y) ≤ upper.
+class BoxProblem final : public Ipopt::TNLP {
+ public:
+  BoxProblem(const Objective& objective, Eigen::VectorXd start, const Box& box,
+             const MinimiserSettings& settings)
+      : objective_(objective), start_(std::move(start)), box_(box), settings_(settings) {
+    best_.x = start_;
+    best_.value = std::numeric_limits<double>::infinity();
+    evaluate(start_);
+    if (!std::isfinite(best_.value)) throw Error("the cost to be minimised is not a number at the start");
+  }
+
+  const Minimum& best() const { return best_; }
+
+  bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
+    n = m = static_cast<Index>(start_.size());
+    jacobian = n * n;
+    hessian = 0;
+    style = C_STYLE;
+    return true;
+  }
+
+  bool get_bounds_info(Index n, Number* lower, Number* upper, Index m, Number* g_lower,
+                       Number* g_upper) override {
+    constexpr double kUnbounded = 1e19;  // Ipopt's infinity
+    std::fill_n(lower, n, -kUnbounded);
+    std::fill_n(upper, n, kUnbounded);
+    Eigen::Map<Eigen::VectorXd>(g_lower, m) = box_.lower;
+    Eigen::Map<Eigen::VectorXd>(g_upper, m) = box_.upper;
+    return true;
+  }
+
+  bool get_starting_point(Index n, bool, Number* y, bool, Number*, Number*, Index, bool, Number*) override {
+    std::fill_n(y, n, 0.0);
+    return true;
+  }
+
+  bool eval_f(Index n, const Number* y, bool, Number& value) override {
+    value = evaluate(at(n, y));
+    return std::isfinite(value);
+  }
+
+  bool eval_grad_f(Index n, const Number* y, bool, Number* gradient) override {
+    evaluate(at(n, y));
+    Eigen::Map<Eigen::VectorXd>(gradient, n) = box_.basis.transpose() * gradient_;
+    return gradient_.allFinite();
+  }
+
+  bool eval_g(Index n, const Number* y, bool, Index m, Number* g) override {
+    Eigen::Map<Eigen::VectorXd>(g, m) = unclamped(n, y);
+    return true;
+  }
+
+  bool eval_jac_g(Index n, const Number*, bool, Index m, Index, Index* rows, Index* columns,
+                  Number* values) override {
+    for (Index i = 0, k = 0; i < m; ++i) {
+      for (Index j = 0; j < n; ++j, ++k) {
+        if (values) {
+          values[k] = box_.basis(i, j);
+        } else {
+          rows[k] = i;
+          columns[k] = j;
+        }
+      }
+    }
+    return true;
+  }
+
+  bool intermediate_callback(Ipopt::AlgorithmMode, Index iteration, Number, Number, Number, Number, Number,
+                             Number, Number, Number, Index, const Ipopt::IpoptData*,
+                             Ipopt::IpoptCalculatedQuantities*) override {
+    best_.iterations = iteration;
+    return !settings_.interrupted || !settings_.interrupted();
+  }
+
+  void finalize_solution(Ipopt::SolverReturn, Index, const Number*, const Number*, const Number*, Index,
+                         const Number*, const Number*, Number, const Ipopt::IpoptData*,
+                         Ipopt::IpoptCalculatedQuantities*) override {}
+
+ private:
+  Eigen::VectorXd unclamped(Index n, const Number* y) const {
+    return start_ + box_.basis * Eigen::Map<const Eigen::VectorXd>(y, n);
+  }
+
+  /// Trial steps may leave the box, in which alone the objective need make sense.
+  Eigen::VectorXd at(Index n, const Number* y) const {
+    return unclamped(n, y).cwiseMax(box_.lower).cwiseMin(box_.upper);
+  }
+
+  /// Value and gradient come together; Ipopt asks for them one after the other at the same x.
+  double evaluate(const Eigen::VectorXd& x) {
+    if (x_.size() == x.size() && x_ == x) return value_;
+    value_ = objective_(x, &gradient_);
+    x_ = x;
+    if (value_ < best_.value) {
+      best_.value = value_;
+      best_.x = x;
+    }
+    return value_;
+  }
+
+  const Objective& objective_;
+  Eigen::VectorXd start_;
+  const Box& box_;
+  const MinimiserSettings& settings_;
+  Eigen::VectorXd x_;
+  Eigen::VectorXd gradient_;
+  double value_ = 0;
+  Minimum best_;
+};
+
+std::string in_words(Ipopt::ApplicationReturnStatus status) {
+  switch (status) {
+    case Ipopt::Solve_Succeeded:
+      return "converged";
+    case Ipopt::Solved_To_Acceptable_Level:
+      return "converged to an acceptable level";
+    case Ipopt::Search_Direction_Becomes_Too_Small:
+      return "the steps became too small to improve further";
+    case Ipopt::Maximum_Iterations_Exceeded:
+      return "stopped after the most iterations allowed";
+    case Ipopt::User_Requested_Stop:
+      return "interrupted";
+    default:
+      return "stopped with Ipopt's status " + std::to_string(static_cast<int>(status));
+  }
+}
+
+/// MUMPS, the linear solver, crashes when two solves run at once.
+std::mutex& solver_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+}  // namespace
+
+Minimum minimise(const Objective& objective, const Eigen::VectorXd& start, const Box& box,
+                 const MinimiserSettings& settings) {
+  const auto n = start.size();
+  if (box.lower.size() != n || box.upper.size() != n || box.basis.rows() != n || box.basis.cols() != n) {
+    throw Error("a minimisation was given a start and a box of different sizes");
+  }
+  const std::scoped_lock lock(solver_mutex());
+  const Eigen::VectorXd inside = start.cwiseMax(box.lower).cwiseMin(box.upper);
+  Ipopt::SmartPtr<BoxProblem> problem = new BoxProblem(objective, inside, box, settings);
+  if (n == 0) return problem->best();
+
+  Ipopt::SmartPtr<Ipopt::IpoptApplication> solver = IpoptApplicationFactory();
+  auto options = solver->Options();
+  options->SetIntegerValue("print_level", 0);
+  options->SetStringValue("sb", "yes");
+  options->SetStringValue("option_file_name", "");  // an ipopt.opt lying about must not change results
+  options->SetStringValue("hessian_approximation", "limited-memory");
+  options->SetIntegerValue("max_iter", settings.max_iterations);
+  options->SetNumericValue("tol", settings.tolerance);
+  options->SetStringValue("jac_c_constant", "yes");
+  options->SetStringValue("jac_d_constant", "yes");
+  options->SetNumericValue("acceptable_tol", 1e3);  // what ends the search is that the cost no longer falls
+  options->SetNumericValue("acceptable_obj_change_tol", settings.tolerance);
+  options->SetIntegerValue("acceptable_iter", 4);
+  options->SetNumericValue("mu_init", 1e-8);  // the start is believed: the barrier must not push it away
+  solver->Initialize();
+  const auto status = solver->OptimizeTNLP(problem);
+
+  Minimum minimum = problem->best();
+  minimum.status = in_words(status);
+  minimum.converged = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level ||
+                      status == Ipopt::Search_Direction_Becomes_Too_Small;
+  return minimum;
+}
+
+}  // namespace crisp

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+
+namespace crisp {
+
+/// A function to be minimised: returns its value at x and, where `gradient` is not null, sets it.
+using Objective = std::function<double(const Eigen::VectorXd& x, Eigen::VectorXd* gradient)>;
+
+/// The box in which a minimum is looked for, and a basis in which the cost is about equally curved in every
+/// direction: the optimiser works on y with x = start + basis * y. A unit of y should be a typical step.
+struct Box {
+  Eigen::VectorXd lower;
+  Eigen::VectorXd upper;
+  Eigen::MatrixXd basis;  ///< n × n, regular
+};
+
+struct MinimiserSettings {
+  int max_iterations = 60;
+  double tolerance = 1e-5;  ///< change of the cost, relative to 1 or its value, below which the search ends
+  std::function<bool()> interrupted = {};  ///< asked once an iteration; stops the search where it is
+};
+
+struct Minimum {
+  Eigen::VectorXd x;
+  double value = 0;
+  int iterations = 0;
+  bool converged = false;
+  std::string status;  ///< Ipopt's verdict in words
+};
+
+/// Looks for the minimum of `objective` in `box` from `start`, with Ipopt's interior-point method and a
+/// limited-memory approximation of the Hessian (Wächter and Biegler 2006). Calls from several threads wait
+/// for one another: the linear solver is not re-entrant.
+///
+/// @param start  n values; moved into the box where it lies outside
+/// @throws Error  if the sizes differ or the objective is not finite at the start
+Minimum minimise(const Objective& objective, const Eigen::VectorXd& start, const Box& box,
+                 const MinimiserSettings& settings);
+
+}  // namespace crisp

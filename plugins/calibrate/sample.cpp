@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace crisp {
+namespace {
+
+/// A number in [0, 1) that depends on nothing but the seed and the index (Steele's SplitMix64).
+double uniform(std::uint64_t seed, std::uint64_t index) {
+  std::uint64_t z = seed * 0x9E3779B97F4A7C15U + (index + 1) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+  z ^= z >> 31U;
+  return static_cast<double>(z >> 11U) * 0x1.0p-53;
+}
+
+/// The factor c for which Σ min(1, c · area) is `count`.
+double inclusion_factor(const std::vector<double>& areas, double count) {
+  double low = 0;
+  double high = 1;
+  const auto expected = [&](double factor) {
+    double sum = 0;
+    for (const double area : areas) sum += std::min(1.0, factor * area);
+    return sum;
+  };
+  constexpr int kDoublings = 60;
+  for (int i = 0; i < kDoublings && expected(high) < count; ++i) high *= 2;
+  for (int i = 0; i < kDoublings; ++i) {
+    const double middle = (low + high) / 2;
+    (expected(middle) < count ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+Sample select(const Sample& sample, const std::function<bool(std::size_t)>& keep) {
+  Sample kept{.plate = sample.plate};
+  const Measurements& from = sample.beams;
+  Measurements& to = kept.beams;
+  to.epoch_ns = from.epoch_ns;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (!keep(i)) continue;
+    to.range.push_back(from.range[i]);
+    to.mirror_angle.push_back(from.mirror_angle[i]);
+    to.time.push_back(from.time[i]);
+    to.laser.push_back(from.laser[i]);
+    to.remission.push_back(from.remission[i]);
+    to.beam.push_back(from.beam[i]);
+  }
+  return kept;
+}
+
+Sample covered(const Sample& sample, double earliest, double latest) {
+  PlateTrajectory::Cursor early(*sample.plate);
+  PlateTrajectory::Cursor middle(*sample.plate);
+  PlateTrajectory::Cursor late(*sample.plate);
+  return select(sample, [&](std::size_t i) {
+    const double t = sample.beams.time[i];
+    return early.at(t + earliest) && middle.at(t) && late.at(t + latest);
+  });
+}
+
+Sample in_plane(const Sample& sample, double half_width, Half half) {
+  constexpr double kRight = std::numbers::pi / 2;
+  return select(sample, [&](std::size_t i) {
+    const double theta = sample.beams.mirror_angle[i];
+    const bool front = std::abs(theta + kRight) <= half_width;
+    const bool back = std::abs(theta - kRight) <= half_width;
+    return (front && half != Half::kBack) || (back && half != Half::kFront);
+  });
+}
+
+Sample thin_by_area(const Sample& sample, const SensorModel& model, std::size_t count, std::uint64_t seed) {
+  const std::size_t n = sample.beams.size();
+  if (n <= count) return sample;
+  const Placed placed = model.place(sample.beams, *sample.plate);
+  std::vector<double> areas(n, 0.0);
+  for (std::size_t k = 0; k < placed.index.size(); ++k) {
+    const auto point = placed.points.col(static_cast<Eigen::Index>(k));
+    areas[placed.index[k]] = sample.beams.range[placed.index[k]] * std::hypot(point.x(), point.y());
+  }
+  const double factor = inclusion_factor(areas, static_cast<double>(count));
+  return select(sample, [&](std::size_t i) { return uniform(seed, i) < factor * areas[i]; });
+}
+
+Sample thin_evenly(const Sample& sample, std::size_t count, std::uint64_t seed) {
+  const double share =
+      static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, sample.beams.size()));
+  return select(sample, [&](std::size_t i) { return uniform(seed, i) < share; });
+}
+
+PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>& pieces) {
+  if (pieces.empty()) return {};
+  std::vector<double> times;
+  std::vector<double> angles;
+  for (const auto& piece : pieces) {
+    for (std::size_t i = 0; i < piece->size(); ++i) {
+      if (!times.empty() && piece->times()[i] <= times.back()) continue;
+      times.push_back(piece->times()[i]);
+      angles.push_back(piece->angles()[i]);
+    }
+  }
+  return {pieces.front()->epoch_ns(), std::move(times), std::move(angles), pieces.front()->max_gap()};
+}
+
+}  // namespace crisp

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "pipeline/model/sensor_model.hpp"
+
+namespace crisp {
+
+/// The measurements that a calibration looks at, with the plate's motion beneath them.
+struct Sample {
+  Measurements beams;
+  const PlateTrajectory* plate = nullptr;
+};
+
+/// The beams for which `keep(index)` holds, in their order.
+Sample select(const Sample& sample, const std::function<bool(std::size_t)>& keep);
+
+/// Those whose plate angle is known for every η between `earliest` and `latest` [s]: calibration may then
+/// turn η without points coming and going.
+Sample covered(const Sample& sample, double earliest, double latest);
+
+/// The two beams of each scan that lie in the plate's plane (θ = ±90°), or as near to it as the angular step
+/// allows. `half` says which.
+enum class Half { kFront, kBack, kBoth };  ///< θ < 0 (reported −45° with the usual mount), θ > 0 (135°), both
+Sample in_plane(const Sample& sample, double half_width, Half half);
+
+/// Thins a sample to about `count` beams, evenly over the surfaces that they hit: a beam is kept with a
+/// probability in proportion to the area it stands for, range × distance from the spin axis, up to certainty.
+/// Beams crowd at the spin axis, where an entropy over all of them would draw the whole cloud onto it.
+///
+/// @param model  places the beams; a rough calibration will do
+Sample thin_by_area(const Sample& sample, const SensorModel& model, std::size_t count, std::uint64_t seed);
+
+/// Thins to about `count` beams, each as likely to be kept as any other.
+Sample thin_evenly(const Sample& sample, std::size_t count, std::uint64_t seed);
+
+/// Joins pieces of a trajectory that overlap or follow one another.
+PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>& pieces);
+
+}  // namespace crisp
