@@ -13,10 +13,9 @@ class FlannIndex final : public NeighbourIndex {
  public:
   FlannIndex(const PointsView& points, double radius) : points_(points), radius2_(radius * radius) {
     if (points.size() == 0) return;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      coordinates_.insert(coordinates_.end(), {points.x[i], points.y[i], points.z[i]});
-    }
-    tree_ = std::make_unique<Tree>(rows(0, points.size()), flann::KDTreeSingleIndexParams());
+    coordinates_ = coordinates(0, points.size());
+    tree_ = std::make_unique<Tree>(flann::Matrix<double>(coordinates_.data(), points.size(), 3),
+                                   flann::KDTreeSingleIndexParams());
     tree_->buildIndex();
   }
 
@@ -30,7 +29,9 @@ class FlannIndex final : public NeighbourIndex {
     const float enough = std::nextafter(static_cast<float>(radius2_), std::numeric_limits<float>::infinity());
     std::vector<std::vector<std::size_t>> lists;
     std::vector<std::vector<double>> distances;
-    tree_->radiusSearch(rows(first, last), lists, distances, enough, all);
+    auto queries = coordinates(first, last);
+    tree_->radiusSearch(flann::Matrix<double>(queries.data(), last - first, 3), lists, distances, enough,
+                        all);
     for (auto& list : lists) {
       const std::size_t i = first + result.begin.size() - 1;
       std::ranges::sort(list);
@@ -47,14 +48,19 @@ class FlannIndex final : public NeighbourIndex {
  private:
   using Tree = flann::KDTreeSingleIndex<flann::L2_Simple<double>>;
 
-  flann::Matrix<double> rows(std::size_t first, std::size_t last) const {
-    // FLANN's matrices are never const; it does not write to these.
-    return {const_cast<double*>(coordinates_.data()) + 3 * first, last - first, 3};
+  /// FLANN's matrices are never const, so that it gets a copy.
+  std::vector<double> coordinates(std::size_t first, std::size_t last) const {
+    std::vector<double> result;
+    result.reserve(3 * (last - first));
+    for (std::size_t i = first; i < last; ++i) {
+      result.insert(result.end(), {points_.x[i], points_.y[i], points_.z[i]});
+    }
+    return result;
   }
 
   PointsView points_;
   double radius2_;
-  std::vector<double> coordinates_;
+  std::vector<double> coordinates_;  // which the tree does not own
   std::unique_ptr<Tree> tree_;
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "pipeline/quality/once.hpp"
 #include "pipeline/quality/surfel_pieces.hpp"
 
 namespace crisp {
@@ -38,9 +39,7 @@ std::vector<std::vector<std::size_t>> contacts(const std::vector<FlatPiece>& pie
     }
   }
   for (auto& list : result) {
-    std::ranges::sort(list);
-    const auto rest = std::ranges::unique(list);
-    list.erase(rest.begin(), rest.end());
+    sort_once(list);
   }
   return result;
 }
@@ -77,9 +76,7 @@ class BeamSorter {
     for (const std::size_t other : finder_.around(cell)) {
       if (region_of_cell_[other] != kNoRegion) near.push_back(region_of_cell_[other]);
     }
-    std::ranges::sort(near);
-    const auto rest = std::ranges::unique(near);
-    near.erase(rest.begin(), rest.end());
+    sort_once(near);
     return near;
   }
 

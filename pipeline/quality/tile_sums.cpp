@@ -9,8 +9,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace crisp::simd {
-namespace HWY_NAMESPACE {
+namespace crisp::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, kPadding>;
@@ -224,8 +223,7 @@ void exp2_minus_all(const float* t, std::size_t n, float* result) {
 
 const char* instruction_set() { return hwy::TargetName(HWY_TARGET); }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace crisp::simd
+}  // namespace crisp::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

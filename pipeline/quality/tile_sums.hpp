@@ -29,10 +29,10 @@ struct PairKernel {
 /// The sums of one task: a run of tiles, in whole groups of 8. Pairs within the run are computed once for
 /// both; of a pair that leaves it, only its own point's share.
 struct TaskSums {
-  std::size_t first_tile;
-  std::size_t last_tile;  ///< one past
-  float* pull[3];  ///< slot − first slot of the task → Σⱼ wⱼ G(xᵢ − xⱼ)/G(0) · (xᵢ − xⱼ) [kernel units];
-                   ///< null: unwanted
+  std::size_t first_tile = 0;
+  std::size_t last_tile = 0;  ///< one past
+  float* pull[3] = {};  ///< slot − first slot of the task → Σⱼ wⱼ G(xᵢ − xⱼ)/G(0) · (xᵢ − xⱼ) [kernel units];
+                        ///< null: unwanted
   double kernel = 0;  ///< Σᵢ Σⱼ wᵢ wⱼ (G/G(0) − floor) over the i of this task and all j in the radius
   std::uint64_t pairs = 0;   ///< such ordered pairs (i, j)
   std::uint64_t tested = 0;  ///< distances computed

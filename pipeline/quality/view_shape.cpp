@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/quality/once.hpp"
+
 namespace crisp {
 namespace {
 
@@ -14,9 +16,7 @@ constexpr double kMostTilt = 0.1;  // [rad] of a view against all: beyond, it se
 ViewShape::ViewShape(const BeamsView& beams, const SurfelSettings& settings)
     : beams_(beams), settings_(settings), view_of_(beams.points.size(), 0) {
   std::vector<std::uint32_t> known(beams.views.begin(), beams.views.end());
-  std::ranges::sort(known);
-  const auto rest = std::ranges::unique(known);
-  known.erase(rest.begin(), rest.end());
+  sort_once(known);
   for (std::size_t i = 0; i < beams.views.size(); ++i) {
     view_of_[i] = static_cast<std::uint32_t>(std::ranges::lower_bound(known, beams.views[i]) - known.begin());
   }

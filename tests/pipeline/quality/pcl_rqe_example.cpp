@@ -2,11 +2,12 @@
 // How crisp is a PCL cloud? Prints the entropy of a wall, and of the same wall seen twice, 5 cm apart.
 #include <pcl/point_types.h>
 
+#include <exception>
 #include <iostream>
 
 #include "pipeline/quality/pcl_rqe.hpp"
 
-int main() {
+int main() try {
   const auto once = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   const auto twice = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   for (int i = 0; i < 100; ++i) {
@@ -24,4 +25,7 @@ int main() {
   const double double_wall = rqe.compute().value;
   std::cout << "crisp: " << crisp_wall << ", doubled: " << double_wall << '\n';
   return crisp_wall < double_wall ? 0 : 1;
+} catch (const std::exception& error) {
+  std::cerr << error.what() << '\n';
+  return 2;
 }

@@ -33,8 +33,11 @@ std::map<std::string, Vectors> awkward_clouds() {
   clouds["129 points, one more than a group"] = test::random_cube(129, 0.5, 9);
   for (int i = 0; i < 200; ++i) {
     test::add(clouds["all points equal"], 3, 3, 3);
-    test::add(clouds["each point twice"], 0.01 * (i / 2), 1, 0.03 * (i / 2 % 7));
-    test::add(clouds["a lattice as wide as the radius"], 0.1 * (i % 6), 0.1 * (i / 6 % 6), 0.1 * (i / 36));
+    const int half = i / 2;
+    const int row = i / 6;
+    const int layer = i / 36;
+    test::add(clouds["each point twice"], 0.01 * half, 1, 0.03 * (half % 7));
+    test::add(clouds["a lattice as wide as the radius"], 0.1 * (i % 6), 0.1 * (row % 6), 0.1 * layer);
     test::add(clouds["a line"], 0.013 * i, 0, 0);
   }
   clouds["huge coordinates"] = test::random_cube(600, 1, 10);

@@ -71,7 +71,7 @@ TEST(SurfelEquations, AreThoseOfAllPlanesAndParametersTogether) {
       derivatives_of(scan)(surfel, std::span(&surfels.members[k], 1), std::span(&r.range_change, 1), own);
       row.head(5) = Eigen::Map<const Eigen::VectorXd>(own.data(), 5);
       row.segment<3>(5 + 3 * static_cast<Eigen::Index>(s)) = Eigen::Vector3d(1, r.u, r.v);
-      rows.push_back(row / r.spread);
+      rows.emplace_back(row / r.spread);
       right.push_back(-r.distance / r.spread);
     }
   }

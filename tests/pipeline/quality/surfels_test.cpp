@@ -38,7 +38,7 @@ TEST(Surfels, GrowToTheWholeWallsOfARoom) {
     surfel.normal.cwiseAbs().maxCoeff(&axis);
     // Normals point into the room, and the plane is known to the noise over the root of its beams.
     const bool low = surfel.normal[axis] > 0;
-    ++seen[static_cast<std::size_t>(2 * axis + (low ? 0 : 1))];
+    ++seen.at(2 * static_cast<std::size_t>(axis) + (low ? 0 : 1));
     const double wall = low ? test::kRoomLow[axis] : test::kRoomHigh[axis];
     const double beams = surfel.end - surfel.begin;
     EXPECT_NEAR(surfel.middle[axis], wall, 5 * 0.012 / std::sqrt(beams));
