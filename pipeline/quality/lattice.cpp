@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/quality/lattice.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
+
+#include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
 namespace {
@@ -113,8 +113,8 @@ void Lattice::spread(const PointsView& points, std::span<const double> weights) 
     members[first / kSlab].push_back(static_cast<std::uint32_t>(i));
   }
   for (const std::size_t parity : {0, 1}) {
-    tbb::parallel_for(std::size_t{0}, (slabs + 1 - parity) / 2,
-                      [&](std::size_t s) { spread_slab(points, weights, members[2 * s + parity]); });
+    for_each_index((slabs + 1 - parity) / 2,
+                   [&](std::size_t s) { spread_slab(points, weights, members[2 * s + parity]); });
   }
 }
 
@@ -141,7 +141,7 @@ void Lattice::convolve(std::span<const double> half) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t stride = block / nodes_[axis];
     const std::size_t chunks = (block + kChunk - 1) / kChunk;
-    tbb::parallel_for(std::size_t{0}, field_.size() / block * chunks, [&](std::size_t unit) {
+    for_each_index(field_.size() / block * chunks, [&](std::size_t unit) {
       const std::size_t start = unit / chunks * block;
       const std::size_t begin = unit % chunks * kChunk;
       convolve_chunk({&field_[start], block}, stride, half, begin,

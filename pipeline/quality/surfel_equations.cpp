@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/quality/surfel_equations.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 
 namespace crisp {
@@ -134,7 +133,7 @@ NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams,
                                  const DerivativeRows& derivatives, const SurfelSettings& settings) {
   const auto first = batches(surfels);
   std::vector<NormalEquations> sums(first.size() - 1, NormalEquations(parameters));
-  tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t b) {
+  for_each_index(sums.size(), [&](std::size_t b) {
     for (std::size_t s = first[b]; s < first[b + 1]; ++s) {
       const Surfel& surfel = surfels.surfels[s];
       const auto residuals = residuals_of(surfel, surfels, beams, settings);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
+#include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/once.hpp"
 #include "pipeline/quality/surfel_pieces.hpp"
 
@@ -153,7 +152,7 @@ std::vector<std::uint32_t> region_of_beams(const BeamsView& beams, const SurfelC
                                            const SurfelSettings& settings) {
   const BeamSorter sorter(cells, pieces, regions, settings);
   std::vector<std::uint32_t> result(beams.points.size(), kNoRegion);
-  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t c) {
+  for_each_index(cells.size(), [&](std::size_t c) {
     const auto near = sorter.regions_around(c);
     if (near.empty()) return;
     for (std::uint32_t k = cells.begin[c]; k < cells.begin[c + 1]; ++k) {

@@ -2,7 +2,6 @@
 #include "pipeline/quality/surfels.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_pieces.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 
@@ -88,8 +88,8 @@ double misfit(const Surfel& surfel, const Surfels& surfels, const BeamsView& bea
 void leave_out_odd_ones(Surfels& found, const BeamsView& beams, const SurfelSettings& settings) {
   constexpr double kFarMore = 3;
   std::vector<double> misfits(found.surfels.size());
-  tbb::parallel_for(std::size_t{0}, misfits.size(),
-                    [&](std::size_t s) { misfits[s] = misfit(found.surfels[s], found, beams, settings); });
+  for_each_index(misfits.size(),
+                 [&](std::size_t s) { misfits[s] = misfit(found.surfels[s], found, beams, settings); });
   std::vector<std::pair<double, std::uint32_t>> sorted;
   std::uint64_t all = 0;
   for (std::size_t s = 0; s < misfits.size(); ++s) {
@@ -123,7 +123,7 @@ Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
   sort_members(region_of_beams(beams, cells, pieces, regions, settings), result);
   std::erase_if(result.surfels,
                 [&](const Surfel& surfel) { return surfel.end - surfel.begin < settings.min_points; });
-  tbb::parallel_for(std::size_t{0}, result.surfels.size(), [&](std::size_t s) {
+  for_each_index(result.surfels.size(), [&](std::size_t s) {
     Surfel& surfel = result.surfels[s];
     set_plane(surfel, std::span(result.members).subspan(surfel.begin, surfel.end - surfel.begin), beams,
               cells);
