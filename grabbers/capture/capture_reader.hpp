@@ -19,6 +19,8 @@ class CaptureReader final : public ItemSource {
   /// @throws Error if the file cannot be read or is no capture, or an address of the rig is none
   CaptureReader(const std::filesystem::path& file, const Rig& rig, const CaptureSettings& settings = {});
   ~CaptureReader() override;
+  CaptureReader(const CaptureReader&) = delete;
+  CaptureReader& operator=(const CaptureReader&) = delete;
   CaptureReader(CaptureReader&&) noexcept;
   CaptureReader& operator=(CaptureReader&&) noexcept;
 

@@ -38,6 +38,7 @@ nlohmann::json to_json(const DeviceStatistics& device) {
                            {"notes", to_json(device.notes)},
                            {"first", seconds(device.first_ns)},
                            {"last", seconds(device.last_ns)},
+                           {"skew_ppm", device.skew ? nlohmann::json(1e6 * *device.skew) : nlohmann::json()},
                            {"longest_silence", device.longest_silence},
                            {"longest_silence_begin", seconds(device.silence_ns)}};
   if (!laser) return object;
@@ -76,6 +77,8 @@ std::string list(std::string_view what, const Counts& counts) {
 std::string details(const DeviceStatistics& device) {
   auto text = "\n" + title(device);
   for (const auto number : device.serial_numbers) text += fmt::format(", serial number {}", number);
+  if (device.skew)
+    text += fmt::format("\n  clock: {:+.1f} ppm against the hub's, at a first look", 1e6 * *device.skew);
   if (device.period) {
     text += fmt::format("\n  mirror: {:.3f} ms a turn ({:.2f} Hz, {:.2f} Hz claimed)", 1e3 * *device.period,
                         1 / *device.period, device.nominal_frequency);
@@ -125,9 +128,9 @@ std::string device_table(const CaptureStatistics& statistics) {
   return text;
 }
 
-std::string to_text(const CaptureStatistics& statistics, std::string_view name) {
-  auto text = fmt::format("{}: {} packets, {:.1f} MB", name, statistics.packets,
-                          1e-6 * static_cast<double>(statistics.bytes));
+std::string to_text(const CaptureStatistics& statistics) {
+  auto text =
+      fmt::format("{} packets, {:.1f} MB", statistics.packets, 1e-6 * static_cast<double>(statistics.bytes));
   if (statistics.packets > 0) {
     const auto first = static_cast<std::time_t>(statistics.first_ns / 1'000'000'000);
     text += fmt::format(", {:.3f} s from {:%Y-%m-%d %H:%M:%S} UTC",

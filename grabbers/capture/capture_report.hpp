@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 
 #include "grabbers/capture/capture_statistics.hpp"
 
@@ -19,7 +18,6 @@ nlohmann::json to_json(const CaptureStatistics& statistics);
 std::string device_table(const CaptureStatistics& statistics);
 
 /// All of the statistics, for people: the table, telegrams by kind, losses, and what was out of the ordinary.
-/// @param name of the capture
-std::string to_text(const CaptureStatistics& statistics, std::string_view name);
+std::string to_text(const CaptureStatistics& statistics);
 
 }  // namespace crisp

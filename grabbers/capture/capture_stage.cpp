@@ -94,6 +94,4 @@ void CaptureStage::report(const CaptureStatistics& statistics, Context& context)
   }
 }
 
-void register_capture(Registrar& registrar) { registrar.stage<CaptureStage>(); }
-
 }  // namespace crisp

@@ -7,7 +7,6 @@
 #include "grabbers/capture/capture_reader.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
-#include "pipeline/stage/registry.hpp"
 
 namespace crisp {
 
@@ -28,8 +27,5 @@ class CaptureStage final : public Stage {
   double begin_ = 0;
   std::optional<double> duration_;
 };
-
-/// The stage grabber.capture.
-void register_capture(Registrar& registrar);
 
 }  // namespace crisp

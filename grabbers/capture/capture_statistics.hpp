@@ -42,6 +42,7 @@ struct DeviceStatistics {
   std::vector<std::uint32_t> serial_numbers;  ///< of a laser
   std::optional<double> median_handover;      ///< [s] transmission time − scan time, median
   std::optional<double> period;  ///< [s] of the mirror, measured by the laser's own clock, median
+  std::optional<double> skew;    ///< hub seconds per second of its clock, less 1: a first look
   double nominal_frequency = 0;  ///< [Hz] that a laser claims
   ScanShape shape;
 

@@ -33,6 +33,7 @@ DeviceStatistics DeviceLog::statistics() const {
       tracker_.lost());
   statistics.median_handover = handover_.value();
   statistics.period = period_.value();
+  statistics.skew = clock_.skew();
   return statistics;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "grabbers/capture/capture_statistics.hpp"
+#include "grabbers/capture/rough_clock.hpp"
 #include "grabbers/capture/running_median.hpp"
 #include "grabbers/capture/sequence_tracker.hpp"
 #include "grabbers/wire/cola_framer.hpp"
@@ -43,7 +44,7 @@ class DeviceLog {
   std::uint16_t laser_ = 0;
   ScanData data_;
   SequenceTracker tracker_;
-  RestartWatch clock_;
+  RoughClock clock_;
   RunningMedian handover_, period_;
   std::optional<std::pair<std::uint16_t, std::uint32_t>> last_scan_;  ///< its counter and time
 };

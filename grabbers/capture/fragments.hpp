@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <tuple>
 
 #include "grabbers/capture/counts.hpp"
 #include "grabbers/capture/network.hpp"
@@ -31,7 +31,9 @@ class FragmentAssembler {
     IpAddress from, to;
     std::uint32_t id;
     std::uint8_t protocol;
-    auto operator<=>(const Key&) const = default;
+    bool operator<(const Key& other) const {
+      return std::tie(from, to, id, protocol) < std::tie(other.from, other.to, other.id, other.protocol);
+    }
   };
   struct Partial {
     std::int64_t begun_ns = 0;

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "grabbers/wire/bytes.hpp"
 #include "pipeline/data/rig.hpp"
@@ -24,7 +24,8 @@ std::string to_string(const IpAddress& ip);
 struct Endpoint {
   IpAddress ip{};
   std::uint16_t port = 0;
-  auto operator<=>(const Endpoint&) const = default;
+  bool operator==(const Endpoint&) const = default;
+  bool operator<(const Endpoint& other) const { return std::tie(ip, port) < std::tie(other.ip, other.port); }
 };
 
 /// What to_string(ip) and the port make.
@@ -36,7 +37,10 @@ enum class Transport : std::uint8_t { Tcp = 6, Udp = 17 };
 struct FlowKey {
   Endpoint from, to;
   Transport transport = Transport::Tcp;
-  auto operator<=>(const FlowKey&) const = default;
+  bool operator==(const FlowKey&) const = default;
+  bool operator<(const FlowKey& other) const {
+    return std::tie(from, to, transport) < std::tie(other.from, other.to, other.transport);
+  }
 };
 
 /// RFC 1071's sum over 16-bit words, not yet inverted. @param sum of what came before

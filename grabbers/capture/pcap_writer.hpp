@@ -23,6 +23,8 @@ class PcapWriter {
   ///         machine's byte order
   PcapWriter(std::filesystem::path path, PcapMode mode);
   ~PcapWriter();  ///< closes a growing file; drops a replacing one that was not closed
+  PcapWriter(const PcapWriter&) = delete;
+  PcapWriter& operator=(const PcapWriter&) = delete;
   PcapWriter(PcapWriter&&) noexcept;
   PcapWriter& operator=(PcapWriter&&) noexcept;
 

@@ -3,16 +3,9 @@
 
 #include <cmath>
 
+#include "grabbers/capture/congruent.hpp"
+
 namespace crisp {
-namespace {
-
-/// The number congruent to `residue` modulo `modulus` that is nearest to `expected`.
-double nearest_congruent(double residue, double modulus, double expected) {
-  return residue + modulus * std::round((expected - residue) / modulus);
-}
-
-}  // namespace
-
 std::int64_t SequenceTracker::steps_to(std::uint16_t counter, std::int64_t time_ns) const {
   const double expected = interval_ns_ > 0 ? static_cast<double>(time_ns - last_ns_) / interval_ns_ : 1;
   return std::llround(nearest_congruent(static_cast<std::uint16_t>(counter - last_), 65536, expected));
@@ -54,21 +47,6 @@ SequenceTracker::Verdict SequenceTracker::take(std::uint16_t counter, std::uint3
   last_ = counter;
   last_ns_ = time_ns;
   return Verdict::Next;
-}
-
-bool RestartWatch::take(std::uint32_t device_us, std::int64_t time_ns) {
-  bool restarted = false;
-  if (begun_) {
-    const double hub = 1e-3 * static_cast<double>(time_ns - last_ns_);  // [µs]
-    const double device =
-        nearest_congruent(static_cast<std::uint32_t>(device_us - last_us_), 4294967296.0, hub);
-    constexpr double kBack = 0.5e6, kAhead = 60e6;  // [µs]
-    restarted = device < -kBack || device - hub > kAhead;
-  }
-  begun_ = true;
-  last_us_ = device_us;
-  last_ns_ = time_ns;
-  return restarted;
 }
 
 }  // namespace crisp

@@ -37,17 +37,4 @@ class SequenceTracker {
   std::uint64_t lost_ = 0;
 };
 
-/// Watches a device's clock of microseconds that wraps at 2^32, to see when the device began anew.
-class RestartWatch {
- public:
-  /// @return whether the clock was set since the last item: it fell back by more than 0.5 s, or ran ahead of
-  ///         the hub's by more than a minute
-  bool take(std::uint32_t device_us, std::int64_t time_ns);
-
- private:
-  bool begun_ = false;
-  std::uint32_t last_us_ = 0;
-  std::int64_t last_ns_ = 0;
-};
-
 }  // namespace crisp

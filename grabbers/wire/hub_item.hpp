@@ -23,6 +23,8 @@ inline std::int64_t receipt_ns(const HubItem& item) {
 class ItemSource {
  public:
   ItemSource() = default;
+  ItemSource(const ItemSource&) = delete;
+  ItemSource& operator=(const ItemSource&) = delete;
   ItemSource(ItemSource&&) noexcept = default;
   ItemSource& operator=(ItemSource&&) noexcept = default;
   virtual ~ItemSource() = default;

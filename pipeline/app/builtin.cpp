@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/app/builtin.hpp"
 
+#include "grabbers/capture/register.hpp"
 #include "grabbers/pcd/register.hpp"
 #include "grabbers/simulate/simulate_stage.hpp"
 #include "plugins/calibrate/register.hpp"
@@ -17,6 +18,7 @@ Builtin::Builtin() {
   registrar_.attach(measures_);
   register_built_in(searches_);
   register_built_in(measures_);
+  register_capture(registrar_);
   register_pcd(registrar_);
   register_simulate(registrar_);
   register_clock(registrar_);

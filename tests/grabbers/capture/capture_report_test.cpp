@@ -14,9 +14,9 @@ using testing::HasSubstr;
 
 TEST(CaptureReport, TellsPeopleWhatACaptureHolds) {
   const MemoryFile file(pcap_file(Scenario{.scans = 20, .beams = 541}.frames()));
-  const auto text = to_text(inspect_capture(file.path()), "hub.pcap");
-  EXPECT_THAT(text,
-              AllOf(HasSubstr("hub.pcap: 2"), HasSubstr("2023-11-14 22:13:19 UTC"), HasSubstr("Ethernet")));
+  const auto text = to_text(inspect_capture(file.path()));
+  EXPECT_THAT(text, AllOf(HasSubstr(" packets, 0.1 MB"), HasSubstr("2023-11-14 22:13:19 UTC"),
+                          HasSubstr("Ethernet")));
   EXPECT_THAT(text, AllOf(HasSubstr("laser at 192.168.0.1:2112"), HasSubstr("plate at 192.168.0.10:4000")));
   EXPECT_THAT(text, AllOf(HasSubstr("541 beams from -45 by 0.5 deg"), HasSubstr("serial number 1001"),
                           HasSubstr("20.000 ms a turn"), HasSubstr("17.00 ms after its stamp")));
@@ -26,13 +26,13 @@ TEST(CaptureReport, TellsPeopleWhatACaptureHolds) {
 
 TEST(CaptureReport, SaysThatACaptureHoldsNothing) {
   const MemoryFile file(pcap_file({}));
-  EXPECT_THAT(to_text(inspect_capture(file.path()), "a.pcap"), HasSubstr("no lasers and no plate"));
+  EXPECT_THAT(to_text(inspect_capture(file.path())), HasSubstr("no lasers and no plate"));
 }
 
 TEST(CaptureReport, HintsAtStampsThatAreATurnLate) {
   CaptureStatistics statistics;
   statistics.devices.push_back({.items = 3, .median_handover = 3.1e-3, .period = 20.1e-3});
-  EXPECT_THAT(to_text(statistics, "a.pcap"), HasSubstr("period_offset: -1"));
+  EXPECT_THAT(to_text(statistics), HasSubstr("period_offset: -1"));
   EXPECT_EQ(to_json(statistics)["devices"][0]["period_hint"], -1);
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/capture/capture_stage.hpp"
-
 #include <gmock/gmock.h>
 
 #include <atomic>
 #include <fstream>
 
+#include "grabbers/capture/register.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/stage/pipeline_file.hpp"
 #include "pipeline/stage/runner.hpp"

@@ -71,6 +71,8 @@ TEST(RealCaptures, OfATim781sGiveTheTimesThatAnIndependentReaderFound) {
     ASSERT_EQ(reading.scans[i].echoes[0].remissions.size(), 811U);
   }
   EXPECT_EQ(i, 766U);
+  EXPECT_NEAR(*reading.statistics.devices[0].skew, 4.1e-6, 0.5e-6)
+      << "of the transmission times, found independently";
 }
 
 }  // namespace

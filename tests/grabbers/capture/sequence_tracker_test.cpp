@@ -67,31 +67,6 @@ TEST(SequenceTracker, BeginsAnewWhenTold) {
   EXPECT_EQ(tracker.lost(), 0U);
 }
 
-TEST(RestartWatch, SeesAClockThatWasSetBack) {
-  RestartWatch watch;
-  EXPECT_FALSE(watch.take(3'000'000'000U, 0));
-  EXPECT_FALSE(watch.take(3'000'020'000U, 20'000'000));
-  EXPECT_TRUE(watch.take(100'000U, 10'000'000'000));
-  EXPECT_FALSE(watch.take(120'000U, 10'020'000'000));
-}
-
-TEST(RestartWatch, TakesAWrapAndASilenceForWhatTheyAre) {
-  RestartWatch watch;
-  EXPECT_FALSE(watch.take(4'294'960'000U, 0));
-  EXPECT_FALSE(watch.take(12'704U, 20'000'000)) << "the clock wraps at 2^32";
-  const std::int64_t two_hours_us = 7'200'000'000;
-  EXPECT_FALSE(
-      watch.take(static_cast<std::uint32_t>(12'704 + two_hours_us), 20'000'000 + two_hours_us * 1000));
-}
-
-TEST(RestartWatch, TakesALateDeliveryForNoRestart) {
-  RestartWatch watch;
-  EXPECT_FALSE(watch.take(1'000'000, 0));
-  EXPECT_FALSE(watch.take(1'020'000, 30'000'000'000)) << "held up for 30 s";
-  EXPECT_FALSE(watch.take(31'000'000, 30'000'100'000)) << "and then on time again";
-  EXPECT_FALSE(watch.take(30'999'000, 30'000'200'000)) << "datagrams may change places";
-}
-
 TEST(RunningMedian, IsExactForFewValuesAndCloseForMany) {
   RunningMedian median;
   EXPECT_FALSE(median.value());

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/register.hpp"
+
+#include "grabbers/capture/capture_inspector.hpp"
+#include "grabbers/capture/capture_stage.hpp"
+
+namespace crisp {
+
+void register_capture(Registrar& registrar) {
+  registrar.stage<CaptureStage>();
+  registrar.inspector(capture_inspector());
+}
+
+}  // namespace crisp
