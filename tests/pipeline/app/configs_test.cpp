@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "pipeline/files/yaml.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_pipeline(const fs::path& file) {
+  return file.extension() == ".yaml" && read_yaml(file).find("pipeline") != nullptr;
+}
+
+TEST(Configs, AreRight) {
+  int pipelines = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(CRISP_SOURCE_DIR "/configs")) {
+    if (!is_pipeline(entry.path())) continue;
+    ++pipelines;
+    EXPECT_EQ(std::system((CRISP_PROGRAM " validate " + entry.path().string()).c_str()), 0) << entry.path();
+  }
+  EXPECT_GT(pipelines, 0);
+}
+
+}  // namespace
+}  // namespace crisp
