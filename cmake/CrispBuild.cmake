@@ -72,14 +72,20 @@ function(crisp_library name)
           FILES_MATCHING PATTERN "*.hpp")
 endfunction()
 
-# crisp_test(<name> SOURCES ... LIBRARIES ...) makes one GoogleTest program of a folder's tests.
+# crisp_test(<name> [THREADS] SOURCES ... LIBRARIES ...) makes one GoogleTest program of a folder's tests. With
+# THREADS they are also what the thread sanitizer runs (target threaded_tests, label threads).
 function(crisp_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS" "" "SOURCES;LIBRARIES")
   add_executable(${name}_test ${arg_SOURCES})
   target_link_libraries(${name}_test PRIVATE ${arg_LIBRARIES} GTest::gmock GTest::gtest_main crisp_settings)
   target_compile_definitions(${name}_test PRIVATE CRISP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set_target_properties(${name}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
-  gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+  set(properties TIMEOUT 600)
+  if(arg_THREADS)
+    list(APPEND properties LABELS threads)
+    add_dependencies(threaded_tests ${name}_test)
+  endif()
+  gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST PROPERTIES ${properties})
 endfunction()
 
 # crisp_fuzz(<name> SOURCES ... LIBRARIES ...) makes one fuzz target, <name>_fuzz, of sources that define

@@ -11,7 +11,7 @@ function(crisp_add_plugin name)
   target_link_libraries(${name} PRIVATE crisp::stage ${arg_LIBRARIES})
   # What is missing is said when it is linked, not when a user loads it.
   target_link_options(${name} PRIVATE -Wl,--no-undefined)
-  set_target_properties(${name} PROPERTIES PREFIX "" CXX_EXTENSIONS OFF)
+  set_target_properties(${name} PROPERTIES PREFIX "" CXX_EXTENSIONS OFF INSTALL_RPATH "$ORIGIN/../..")
   include(GNUInstallDirs)
   install(TARGETS ${name} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/crisp/plugins")
 endfunction()
