@@ -51,6 +51,12 @@ void ViewSums::add(double u, double v, double distance, double weight) {
   count += 1;
 }
 
+ViewSums& ViewSums::operator+=(const ViewSums& other) {
+  squares += other.squares;
+  count += other.count;
+  return *this;
+}
+
 Eigen::Vector3d ViewSums::fit() const { return damped(squares).solve(squares.topRightCorner<3, 1>()); }
 
 double ViewSums::squares_left(const Eigen::Vector3d& fit) const {

@@ -38,6 +38,8 @@ struct ViewSums {
   /// @param weight          [1/m²]
   void add(double u, double v, double distance, double weight);
 
+  ViewSums& operator+=(const ViewSums& other);
+
   /// Distance [m] at u = v = 0, and its slopes along u and v, of the plane that fits best. Where beams do not
   /// tell a slope (a single line, a few points), it stays within some degrees of none.
   Eigen::Vector3d fit() const;

@@ -12,7 +12,8 @@ namespace crisp {
 namespace {
 
 constexpr std::size_t kChunk = 1024;   // beams whose rows are in memory at once
-constexpr std::size_t kBatch = 16384;  // beams of surfels that are summed in a row; fixed, for the same sums
+constexpr std::size_t kBlock = 8192;   // beams of one surfel that are summed in a row
+constexpr std::size_t kBatch = 16384;  // beams of surfels that are
 
 /// The pseudo-inverse's effect: X with A X = B, where A is symmetric and may be singular.
 Eigen::MatrixXd solve_semidefinite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -29,31 +30,45 @@ Eigen::MatrixXd solve_semidefinite(const Eigen::MatrixXd& a, const Eigen::Matrix
           (inverse.asDiagonal() * (eigen.eigenvectors().transpose() * (scale.asDiagonal() * b))));
 }
 
-/// Column 0, 1, 2: the plane's parameters; 3: the distance; from 4 on: the derivatives. Weighted.
+/// Some beams' rows. Column 0, 1, 2: the plane's parameters; 3: the distance; from 4 on: the derivatives.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Rows weighted_rows(const Surfel& surfel, std::span<const std::uint32_t> members,
+                   std::span<const SurfelResidual> residuals, std::size_t parameters,
+                   const DerivativeRows& derivatives) {
+  std::vector<double> range_change;
+  for (const SurfelResidual& r : residuals) range_change.push_back(r.range_change);
+  std::vector<double> rows(members.size() * parameters, 0);
+  derivatives(surfel, members, range_change, rows);
+  const auto n = static_cast<Eigen::Index>(members.size());
+  const auto m = static_cast<Eigen::Index>(parameters);
+  Rows all(n, m + 4);
+  all.rightCols(m) = Eigen::Map<const Rows>(rows.data(), n, m);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const SurfelResidual& r = residuals[static_cast<std::size_t>(i)];
+    all.row(i).head<4>() = Eigen::RowVector4d(1, r.u / surfel.radius, r.v / surfel.radius, r.distance);
+    all.row(i) *= std::sqrt(r.weight) / r.spread;
+  }
+  return all;
+}
+
+/// Σ rowᵀ row over a surfel's beams.
 Eigen::MatrixXd gram(const Surfel& surfel, std::span<const std::uint32_t> members,
                      std::span<const SurfelResidual> residuals, std::size_t parameters,
                      const DerivativeRows& derivatives) {
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const auto m = static_cast<Eigen::Index>(parameters);
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(m + 4, m + 4);
-  std::vector<double> range_change;
-  std::vector<double> rows;
-  for (std::size_t begin = 0; begin < members.size(); begin += kChunk) {
-    const std::size_t count = std::min(kChunk, members.size() - begin);
-    range_change.clear();
-    for (std::size_t i = 0; i < count; ++i) range_change.push_back(residuals[begin + i].range_change);
-    rows.assign(count * parameters, 0);
-    derivatives(surfel, members.subspan(begin, count), range_change, rows);
-    Rows all(static_cast<Eigen::Index>(count), m + 4);
-    all.rightCols(m) = Eigen::Map<const Rows>(rows.data(), static_cast<Eigen::Index>(count), m);
-    for (std::size_t i = 0; i < count; ++i) {
-      const SurfelResidual& r = residuals[begin + i];
-      const auto row = static_cast<Eigen::Index>(i);
-      all.row(row).head<4>() = Eigen::RowVector4d(1, r.u / surfel.radius, r.v / surfel.radius, r.distance);
-      all.row(row) *= std::sqrt(r.weight) / r.spread;
+  const auto columns = static_cast<Eigen::Index>(parameters + 4);
+  std::vector<Eigen::MatrixXd> blocks(blocks_of(members.size(), kBlock));
+  for_blocks(members.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    blocks[block].setZero(columns, columns);
+    for (std::size_t k = begin; k < end; k += kChunk) {
+      const std::size_t count = std::min(kChunk, end - k);
+      const Rows rows = weighted_rows(surfel, members.subspan(k, count), residuals.subspan(k, count),
+                                      parameters, derivatives);
+      blocks[block].selfadjointView<Eigen::Upper>().rankUpdate(rows.transpose());
     }
-    sum.selfadjointView<Eigen::Upper>().rankUpdate(all.transpose());
-  }
+  });
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns, columns);
+  for (const auto& block : blocks) sum += block;
   return sum.selfadjointView<Eigen::Upper>();
 }
 
@@ -137,8 +152,8 @@ NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams,
     for (std::size_t s = first[b]; s < first[b + 1]; ++s) {
       const Surfel& surfel = surfels.surfels[s];
       const auto residuals = residuals_of(surfel, surfels, beams, settings);
-      const auto members = std::span(surfels.members).subspan(surfel.begin, surfel.end - surfel.begin);
-      sums[b] += without_plane(gram(surfel, members, residuals, parameters, derivatives), residuals);
+      sums[b] += without_plane(gram(surfel, surfels.beams_of(surfel), residuals, parameters, derivatives),
+                               residuals);
     }
   });
   NormalEquations total(parameters);

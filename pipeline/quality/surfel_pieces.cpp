@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
+#include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/view_shape.hpp"
 
 namespace crisp {
@@ -17,8 +19,9 @@ constexpr double kThicknessToWidth = 0.1;
 /// Looks for flat cells from large to small.
 class PieceFinder {
  public:
-  PieceFinder(const BeamsView& beams, const SurfelCells& cells, const SurfelSettings& settings)
-      : beams_(beams), cells_(cells), settings_(settings), shape_(beams, settings) {}
+  PieceFinder(const BeamsView& beams, const ViewNumbers& views, const SurfelCells& cells,
+              const SurfelSettings& settings)
+      : cells_(cells), settings_(settings), shape_(beams, views, settings) {}
 
   /// @param level  a cell here is 2^level of the smallest wide
   void find(std::size_t first, std::size_t last, int level) {
@@ -57,7 +60,6 @@ class PieceFinder {
     return shape_.is_flat(members, piece.plane, cells_.origin);
   }
 
-  const BeamsView& beams_;
   const SurfelCells& cells_;
   const SurfelSettings& settings_;
   ViewShape shape_;
@@ -92,14 +94,20 @@ SurfelCells cells_of(const BeamsView& beams, const SurfelSettings& settings) {
 std::vector<FlatPiece> flat_pieces(const BeamsView& beams, const SurfelCells& cells,
                                    const SurfelSettings& settings) {
   const int levels = static_cast<int>(std::lround(std::log2(settings.largest / settings.smallest)));
-  PieceFinder finder(beams, cells, settings);
-  for (std::size_t begin = 0; begin < cells.size();) {
-    std::size_t end = begin + 1;
-    while (end < cells.size() && cells.key[end] >> (3 * levels) == cells.key[begin] >> (3 * levels)) ++end;
-    finder.find(begin, end, levels);
-    begin = end;
+  std::vector<std::size_t> first;  // of the cells of each largest one
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (c == 0 || cells.key[c] >> (3 * levels) != cells.key[c - 1] >> (3 * levels)) first.push_back(c);
   }
-  return finder.take();
+  const ViewNumbers views(beams);
+  std::vector<std::vector<FlatPiece>> found(first.size());
+  for_each_index(first.size(), [&](std::size_t k) {
+    PieceFinder finder(beams, views, cells, settings);
+    finder.find(first[k], k + 1 < first.size() ? first[k + 1] : cells.size(), levels);
+    found[k] = finder.take();
+  });
+  std::vector<FlatPiece> all;
+  for (auto& some : found) std::ranges::move(some, std::back_inserter(all));
+  return all;
 }
 
 CellFinder::CellFinder(const SurfelCells& cells) : cells_(cells) {}

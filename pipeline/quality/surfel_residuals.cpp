@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/plane.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr double kGrazing = 0.05;  // cosine of the incidence below which a beam runs along the plane
+constexpr std::size_t kBlock = 8192;  // beams
+constexpr double kGrazing = 0.05;     // cosine of the incidence below which a beam runs along the plane
 
 SurfelResidual against(const Surfel& surfel, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                        const SurfelSettings& settings) {
@@ -34,76 +36,108 @@ Eigen::Vector3d basis(const Surfel& surfel, const SurfelResidual& r) {
   return {1, r.u / surfel.radius, r.v / surfel.radius};
 }
 
-Eigen::Vector3d fit(const Surfel& surfel, const std::vector<SurfelResidual>& residuals) {
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d vector = Eigen::Vector3d::Zero();
-  for (const SurfelResidual& r : residuals) {
-    const Eigen::Vector3d row = basis(surfel, r);
-    const double weight = r.weight / (r.spread * r.spread);
-    matrix += weight * row * row.transpose();
-    vector += weight * r.distance * row;
-  }
-  return matrix.completeOrthogonalDecomposition().solve(vector);
+/// Σ over the residuals, made a block at a time.
+template <class Sum, class Add>
+Sum sum_over(std::size_t n, const Sum& zero, const Add& add) {
+  std::vector<Sum> blocks(blocks_of(n, kBlock), zero);
+  for_blocks(n, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) add(blocks[block], i);
+  });
+  Sum total = zero;
+  for (const Sum& block : blocks) total += block;
+  return total;
 }
+
+Eigen::Vector3d fit(const Surfel& surfel, const std::vector<SurfelResidual>& residuals) {
+  using Sum = Eigen::Matrix<double, 3, 4>;  // the normal equations, right side last
+  const Sum sum = sum_over(residuals.size(), Sum(Sum::Zero()), [&](Sum& block, std::size_t i) {
+    const SurfelResidual& r = residuals[i];
+    const Eigen::Vector3d row = basis(surfel, r);
+    Eigen::Vector4d with_distance;
+    with_distance << row, r.distance;
+    block += r.weight / (r.spread * r.spread) * row * with_distance.transpose();
+  });
+  return sum.leftCols<3>().completeOrthogonalDecomposition().solve(sum.col(3));
+}
+
+/// The beams' views, numbered from 0.
+struct Views {
+  std::vector<std::uint32_t> known;
+  std::vector<std::size_t> of;  // each beam
+};
+
+Views views_of(std::span<const std::uint32_t> members, const BeamsView& beams) {
+  Views views;
+  for (const std::uint32_t i : members) {
+    const std::uint32_t view = beams.views.empty() ? 0 : beams.views[i];
+    const auto found = std::ranges::find(views.known, view);
+    views.of.push_back(static_cast<std::size_t>(found - views.known.begin()));
+    if (found == views.known.end()) views.known.push_back(view);
+  }
+  return views;
+}
+
+/// One for each view, to be added.
+struct AllViewSums : std::vector<ViewSums> {
+  using std::vector<ViewSums>::vector;
+  AllViewSums& operator+=(const AllViewSums& other) {
+    for (std::size_t v = 0; v < size(); ++v) (*this)[v] += other[v];
+    return *this;
+  }
+};
 
 /// What is left of each distance [spreads] after a plane of its view's own: however much views disagree, an
 /// outlier is what its own view contradicts.
-std::vector<double> within_views(const std::vector<SurfelResidual>& residuals,
-                                 const std::vector<std::size_t>& view_of, std::size_t views) {
-  std::vector<ViewSums> sums(views);
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    const SurfelResidual& r = residuals[i];
-    if (r.weight > 0) sums[view_of[i]].add(r.u, r.v, r.distance, r.weight / (r.spread * r.spread));
-  }
+std::vector<double> within_views(const std::vector<SurfelResidual>& residuals, const Views& views) {
+  const auto sums =
+      sum_over(residuals.size(), AllViewSums(views.known.size()), [&](auto& block, std::size_t i) {
+        const SurfelResidual& r = residuals[i];
+        if (r.weight > 0) block[views.of[i]].add(r.u, r.v, r.distance, r.weight / (r.spread * r.spread));
+      });
   std::vector<Eigen::Vector3d> planes;
   for (const ViewSums& view : sums) planes.push_back(view.count > 0 ? view.fit() : Eigen::Vector3d::Zero());
-  std::vector<double> left;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    const SurfelResidual& r = residuals[i];
-    left.push_back((r.distance - planes[view_of[i]].dot(Eigen::Vector3d(1, r.u, r.v))) / r.spread);
-  }
+  std::vector<double> left(residuals.size());
+  for_blocks(residuals.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfelResidual& r = residuals[i];
+      left[i] = std::abs(r.distance - planes[views.of[i]].dot(Eigen::Vector3d(1, r.u, r.v))) / r.spread;
+    }
+  });
   return left;
 }
 
-double median_size(std::vector<double> values) {
-  for (double& value : values) value = std::abs(value);
+double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
 }
 
 /// Sets the weights by Tukey's biweight; wider where the noise is.
-void weigh(double outlier, const std::vector<std::size_t>& view_of, std::size_t views,
-           std::vector<SurfelResidual>& residuals) {
+void weigh(double outlier, const Views& views, std::vector<SurfelResidual>& residuals) {
   constexpr int kRounds = 3;  // enough for the few per cent of outliers of a room
   for (int round = 0; round < kRounds; ++round) {
-    const auto left = within_views(residuals, view_of, views);
-    const double end = outlier * std::max(1.0, 1.4826 * median_size(left));
+    const auto left = within_views(residuals, views);
+    const double end = outlier * std::max(1.0, 1.4826 * median(left));
     for (std::size_t i = 0; i < residuals.size(); ++i) {
       if (std::abs(residuals[i].incidence) < kGrazing) continue;
-      const double x = std::min(1.0, std::abs(left[i]) / end);
+      const double x = std::min(1.0, left[i] / end);
       residuals[i].weight = (1 - x * x) * (1 - x * x);
     }
   }
 }
 
-/// The residuals from the surfel's own plane, weighed.
-std::vector<SurfelResidual> weighed(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams,
-                                    const SurfelSettings& settings) {
-  std::vector<SurfelResidual> residuals;
-  std::vector<std::uint32_t> known;
-  std::vector<std::size_t> view_of;
-  for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
-    const std::uint32_t i = surfels.members[k];
-    const Eigen::Vector3d point(beams.points.x[i], beams.points.y[i], beams.points.z[i]);
-    const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
-    residuals.push_back(against(surfel, point, direction, settings));
-    const std::uint32_t view = beams.views.empty() ? 0 : beams.views[i];
-    const auto found = std::ranges::find(known, view);
-    view_of.push_back(static_cast<std::size_t>(found - known.begin()));
-    if (found == known.end()) known.push_back(view);
-  }
-  if (settings.outlier > 0) weigh(settings.outlier, view_of, known.size(), residuals);
+/// The residuals from the surfel's own plane.
+std::vector<SurfelResidual> from_own_plane(const Surfel& surfel, std::span<const std::uint32_t> members,
+                                           const BeamsView& beams, const SurfelSettings& settings) {
+  std::vector<SurfelResidual> residuals(members.size());
+  for_blocks(members.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = members[k];
+      const Eigen::Vector3d point(beams.points.x[i], beams.points.y[i], beams.points.z[i]);
+      const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
+      residuals[k] = against(surfel, point, direction, settings);
+    }
+  });
   return residuals;
 }
 
@@ -111,7 +145,8 @@ std::vector<SurfelResidual> weighed(const Surfel& surfel, const Surfels& surfels
 
 std::vector<SurfelResidual> residuals_of(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams,
                                          const SurfelSettings& settings) {
-  auto residuals = weighed(surfel, surfels, beams, settings);
+  auto residuals = from_own_plane(surfel, surfels.beams_of(surfel), beams, settings);
+  for (std::size_t k = 0; k < residuals.size(); ++k) residuals[k].weight = surfels.weights[surfel.begin + k];
   const Eigen::Vector3d plane = fit(surfel, residuals);
   for (SurfelResidual& r : residuals) {
     r.distance -= plane.dot(basis(surfel, r));
@@ -120,15 +155,16 @@ std::vector<SurfelResidual> residuals_of(const Surfel& surfel, const Surfels& su
   return residuals;
 }
 
-Surfel refined(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams,
-               const SurfelSettings& settings) {
-  const Eigen::Vector3d plane = fit(surfel, weighed(surfel, surfels, beams, settings));
-  Surfel result = surfel;
-  result.middle += plane[0] * surfel.normal;
-  result.normal = (surfel.normal - (plane[1] * surfel.u + plane[2] * surfel.v) / surfel.radius).normalized();
-  result.v = result.normal.cross(surfel.u).normalized();
-  result.u = result.v.cross(result.normal);
-  return result;
+void refine(Surfel& surfel, Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings) {
+  const auto members = surfels.beams_of(surfel);
+  auto residuals = from_own_plane(surfel, members, beams, settings);
+  if (settings.outlier > 0) weigh(settings.outlier, views_of(members, beams), residuals);
+  for (std::size_t k = 0; k < residuals.size(); ++k) surfels.weights[surfel.begin + k] = residuals[k].weight;
+  const Eigen::Vector3d plane = fit(surfel, residuals);
+  surfel.middle += plane[0] * surfel.normal;
+  surfel.normal = (surfel.normal - (plane[1] * surfel.u + plane[2] * surfel.v) / surfel.radius).normalized();
+  surfel.v = surfel.normal.cross(surfel.u).normalized();
+  surfel.u = surfel.v.cross(surfel.normal);
 }
 
 }  // namespace crisp

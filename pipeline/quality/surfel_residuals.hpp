@@ -19,13 +19,13 @@ struct SurfelResidual {
 
 /// The residuals of a surfel's beams, in the order of its members, after a plane has been fitted to them once
 /// more: by weighted least squares in the distances, with the places where the beams meet the plane as
-/// regressors, so that noise along the beams does not tilt it. Beams that their own view contradicts by more
-/// than noise does count less or nothing, those that all but run along the plane nothing.
+/// regressors, so that noise along the beams does not tilt it.
 std::vector<SurfelResidual> residuals_of(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams,
                                          const SurfelSettings& settings);
 
-/// The surfel with its plane moved to where that fit puts it.
-Surfel refined(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams,
-               const SurfelSettings& settings);
+/// Sets the weights of a surfel's beams, and moves its plane to where such a fit puts it. Beams that their
+/// own view contradicts by more than noise does count less or nothing, those that all but run along the plane
+/// nothing.
+void refine(Surfel& surfel, Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings);
 
 }  // namespace crisp

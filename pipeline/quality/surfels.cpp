@@ -48,6 +48,7 @@ void sort_members(const std::vector<std::uint32_t>& region_of, Surfels& result) 
     surfel.end = surfel.begin;
   }
   result.members.resize(total);
+  result.weights.assign(total, 1);
   for (std::uint32_t i = 0; i < region_of.size(); ++i) {
     if (region_of[i] != kNoRegion) result.members[result.surfels[region_of[i]].end++] = i;
   }
@@ -125,9 +126,8 @@ Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
                 [&](const Surfel& surfel) { return surfel.end - surfel.begin < settings.min_points; });
   for_each_index(result.surfels.size(), [&](std::size_t s) {
     Surfel& surfel = result.surfels[s];
-    set_plane(surfel, std::span(result.members).subspan(surfel.begin, surfel.end - surfel.begin), beams,
-              cells);
-    surfel = refined(surfel, result, beams, settings);
+    set_plane(surfel, result.beams_of(surfel), beams, cells);
+    refine(surfel, result, beams, settings);
   });
   leave_out_odd_ones(result, beams, settings);
   std::ranges::stable_sort(result.surfels, std::ranges::greater{},

@@ -46,6 +46,11 @@ struct Surfel {
 struct Surfels {
   std::vector<Surfel> surfels;         ///< the largest first
   std::vector<std::uint32_t> members;  ///< beams, in ascending order within each surfel
+  std::vector<double> weights;         ///< 0 to 1, of each member: how much it counts
+
+  std::span<const std::uint32_t> beams_of(const Surfel& surfel) const {
+    return std::span(members).subspan(surfel.begin, surfel.end - surfel.begin);
+  }
 };
 
 /// Finds flat surfaces. Cells are tried from large to small. Whether one is flat is decided on shape, never

@@ -13,14 +13,13 @@ constexpr double kMostTilt = 0.1;  // [rad] of a view against all: beyond, it se
 
 }  // namespace
 
-ViewShape::ViewShape(const BeamsView& beams, const SurfelSettings& settings)
-    : beams_(beams), settings_(settings), view_of_(beams.points.size(), 0) {
+ViewNumbers::ViewNumbers(const BeamsView& beams) : of_beam(beams.points.size(), 0) {
   std::vector<std::uint32_t> known(beams.views.begin(), beams.views.end());
   sort_once(known);
   for (std::size_t i = 0; i < beams.views.size(); ++i) {
-    view_of_[i] = static_cast<std::uint32_t>(std::ranges::lower_bound(known, beams.views[i]) - known.begin());
+    of_beam[i] = static_cast<std::uint32_t>(std::ranges::lower_bound(known, beams.views[i]) - known.begin());
   }
-  sums_.resize(std::max<std::size_t>(known.size(), 1));
+  count = std::max<std::size_t>(known.size(), 1);
 }
 
 bool ViewShape::is_flat(std::span<const std::uint32_t> members, const Plane& plane,
@@ -31,8 +30,8 @@ bool ViewShape::is_flat(std::span<const std::uint32_t> members, const Plane& pla
     const Eigen::Vector3d offset = Eigen::Vector3d(at.x[i], at.y[i], at.z[i]) - origin - plane.middle;
     const double incidence = plane.normal.dot(Eigen::Vector3d(along.x[i], along.y[i], along.z[i]));
     const double variance = std::pow(settings_.noise * incidence, 2) + std::pow(settings_.floor, 2);
-    ViewSums& sums = sums_[view_of_[i]];
-    if (sums.count == 0) in_use_.push_back(view_of_[i]);
+    ViewSums& sums = sums_[views_.of_beam[i]];
+    if (sums.count == 0) in_use_.push_back(views_.of_beam[i]);
     sums.add(plane.u.dot(offset), plane.v.dot(offset), plane.normal.dot(offset), 1 / variance);
   }
   double left = 0;

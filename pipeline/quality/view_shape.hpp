@@ -11,10 +11,18 @@
 
 namespace crisp {
 
+/// The views of beams, numbered from 0.
+struct ViewNumbers {
+  explicit ViewNumbers(const BeamsView& beams);
+  std::vector<std::uint32_t> of_beam;
+  std::size_t count = 1;
+};
+
 /// Judges by itself what each view sees of a surface.
 class ViewShape {
  public:
-  ViewShape(const BeamsView& beams, const SurfelSettings& settings);
+  ViewShape(const BeamsView& beams, const ViewNumbers& views, const SurfelSettings& settings)
+      : beams_(beams), views_(views), settings_(settings), sums_(views.count) {}
 
   /// Whether these beams met something flat: of each view's distances from the common plane, a plane of the
   /// view's own is taken off, tilted by no more than some degrees; what is left, over all views, is no more
@@ -25,9 +33,9 @@ class ViewShape {
 
  private:
   const BeamsView& beams_;
+  const ViewNumbers& views_;
   const SurfelSettings& settings_;
-  std::vector<std::uint32_t> view_of_;  // of each beam, numbered from 0
-  std::vector<ViewSums> sums_;          // of each view; empty but for those in use
+  std::vector<ViewSums> sums_;  // of each view; empty but for those in use
   std::vector<std::uint32_t> in_use_;
 };
 
