@@ -4,6 +4,7 @@
 #include "grabbers/capture/register.hpp"
 #include "grabbers/pcd/register.hpp"
 #include "grabbers/simulate/simulate_stage.hpp"
+#include "plugins/assemble/register.hpp"
 #include "plugins/calibrate/register.hpp"
 #include "plugins/clock/register.hpp"
 #include "plugins/diagnose/register.hpp"
@@ -22,6 +23,7 @@ Builtin::Builtin() {
   register_pcd(registrar_);
   register_simulate(registrar_);
   register_clock(registrar_);
+  register_assemble(registrar_);
   register_calibrate(registrar_);
   register_diagnose(registrar_);
   register_filter(registrar_);

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "pipeline/data/calibration.hpp"
+#include "pipeline/model/sensor_model.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// `assemble.deskew`: measurements to points, under the calibration that comes from above, or else the rig's
+/// nominal values.
+class DeskewStage final : public Stage {
+ public:
+  static void describe(StageDescription<DeskewStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  const SensorModel& model(std::shared_ptr<const Calibration> calibration, const RunSettings& run);
+
+  std::shared_ptr<const Calibration> calibration_;  ///< from above, of `model_`; null: the nominal one
+  std::optional<SensorModel> model_;
+  std::uint64_t beams_ = 0;
+  std::uint64_t outside_ = 0;
+};
+
+}  // namespace crisp
