@@ -145,7 +145,9 @@ Bytes with_vlan(ByteView ethernet, std::uint16_t tag_type) {
 }
 
 Bytes as_cooked(ByteView ethernet) {
-  Bytes out{0, 0, 0, 1, 0, 6};
+  Bytes out;
+  put(out, 1, 4, ByteOrder::Big);
+  put(out, 6, 2, ByteOrder::Big);
   append(out, ethernet.subspan(6, 6));
   put(out, 0, 2, ByteOrder::Big);
   append(out, ethernet.subspan(12));
