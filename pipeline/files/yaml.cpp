@@ -205,6 +205,10 @@ const YamlNode* YamlNode::find(std::string_view key) const {
   return found == entries.end() ? nullptr : &found->value;
 }
 
+std::filesystem::path path_of(const YamlNode& node, const std::filesystem::path& folder) {
+  return ((node.from_command_line ? std::filesystem::current_path() : folder) / node.text).lexically_normal();
+}
+
 std::string describe(const YamlNode& node) {
   constexpr std::size_t kLongest = 60;
   switch (node.kind) {

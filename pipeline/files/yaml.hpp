@@ -21,8 +21,9 @@ struct YamlNode {
   enum class Kind { null, scalar, sequence, map };
 
   Kind kind = Kind::null;
-  std::string text;     ///< of a scalar
-  bool quoted = false;  ///< whether the scalar was written in quotes
+  std::string text;                ///< of a scalar
+  bool quoted = false;             ///< whether the scalar was written in quotes
+  bool from_command_line = false;  ///< then a path is relative to the current folder, not to the file's
   Place place;
   std::vector<YamlNode> items;     ///< of a sequence
   std::vector<YamlEntry> entries;  ///< of a map, in the order of the file; no key is there twice
@@ -38,6 +39,10 @@ struct YamlEntry {
 
 /// What a node is, for messages: "a list", "a map", "nothing", "'5 cm'".
 std::string describe(const YamlNode& node);
+
+/// The path that a scalar names, made absolute.
+/// @param folder  of the file, which paths in it are relative to
+std::filesystem::path path_of(const YamlNode& node, const std::filesystem::path& folder);
 
 /// Parses one document. `${name}` may stand wherever a plain scalar may, also within `{}` and `[]`.
 /// @param file  the name to give in messages

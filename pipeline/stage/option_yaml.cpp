@@ -31,7 +31,7 @@ std::optional<OptionScalar> read_scalar(const Option& option, const YamlNode& no
   const auto path = read_text(node, wrong);
   if (path && path->empty()) wrong = "the path is empty";
   if (!wrong.empty()) return std::nullopt;
-  return OptionScalar((folder / *path).lexically_normal().string());
+  return OptionScalar(path_of(node, folder).string());
 }
 
 class Reader {

@@ -76,7 +76,7 @@ class PlanReader {
     if (!node) return;
     YamlNode rig = *node;
     variables_.substitute(rig, errors_);
-    if (rig.kind == YamlNode::Kind::scalar) return use_rig(folder_ / rig.text, rig.place);
+    if (rig.kind == YamlNode::Kind::scalar) return use_rig(path_of(rig, folder_), rig.place);
     collect([&] { plan_.rig = parse_rig(rig); }, rig.place);
   }
 

@@ -2,7 +2,6 @@
 #include "pipeline/stage/settings.hpp"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/stage/option_yaml.hpp"
@@ -13,10 +12,11 @@ namespace {
 /// A place that names the setting, without line and column.
 Place place_of(const std::string& text) { return {"--set " + text, 0, 0}; }
 
-void move_to(YamlNode& node, const Place& place) {
+void comes_from_command_line(YamlNode& node, const Place& place) {
   node.place = place;
-  for (auto& item : node.items) move_to(item, place);
-  for (auto& entry : node.entries) move_to(entry.value, place);
+  node.from_command_line = true;
+  for (auto& item : node.items) comes_from_command_line(item, place);
+  for (auto& entry : node.entries) comes_from_command_line(entry.value, place);
 }
 
 /// The value as YAML, or null with an error added if it is none.
@@ -27,7 +27,7 @@ YamlNode parse_value(const std::string& value, const std::string& text, std::vec
   } catch (const Error& error) {
     errors.emplace_back(error.message(), error.advice(), place_of(text));
   }
-  move_to(node, place_of(text));
+  comes_from_command_line(node, place_of(text));
   return node;
 }
 
@@ -98,9 +98,9 @@ void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const Stag
   } else {  // taken as it is: the shell has its own quotes
     node.kind = YamlNode::Kind::scalar;
     node.text = setting.value;
-    node.place = place;
+    comes_from_command_line(node, place);
   }
-  auto value = read_option(*option, node, tag, std::filesystem::current_path(), errors);
+  auto value = read_option(*option, node, tag, {}, errors);
   if (value) spec->with[name] = std::move(*value);
 }
 

@@ -55,6 +55,7 @@ void Variables::substitute_scalar(YamlNode& node, std::vector<Error>& errors) {
                           node.place);
       continue;
     }
+    if (start == 0) node.from_command_line = value->from_command_line;
     node.text += value->text;
   }
 }

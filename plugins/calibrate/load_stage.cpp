@@ -28,6 +28,9 @@ void LoadCalibrationStage::describe(StageDescription<LoadCalibrationStage>& d) {
 }
 
 void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context) {
+  if (!std::filesystem::exists(file_)) {
+    throw Error("there is no calibration " + file_.string(), "calibrate first, or name another file");
+  }
   const Calibration read = read_calibration(file_);
   context.reads(file_);
   Calibration calibration = ordered_as(context.rig(), read);

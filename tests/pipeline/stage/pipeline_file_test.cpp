@@ -219,6 +219,18 @@ TEST_F(PipelineFileTest, LetsTheCommandLineGoBeforeTheFile) {
   EXPECT_EQ(everything().file, fs::current_path() / "sub/x");
 }
 
+TEST_F(PipelineFileTest, PathsOfTheFileAreRelativeToItAndThoseOfTheCommandLineToTheCurrentFolder) {
+  const std::string yaml =
+      "crisp: 1\nvars: {data: here, name: \"${data}/x\"}\n" + with("file: \"${name}\"").substr(9);
+  EXPECT_THAT(errors_of(yaml), IsEmpty());
+  EXPECT_EQ(everything().file, "/there/here/x");
+  EXPECT_THAT(errors_of(yaml, {.set = {"name=there/y"}}), IsEmpty());
+  EXPECT_EQ(everything().file, fs::current_path() / "there/y") << "a variable that is the path";
+  EXPECT_THAT(errors_of(yaml, {.set = {"data=../there"}}), IsEmpty());
+  EXPECT_EQ(everything().file, fs::current_path().parent_path() / "there/x")
+      << "one that the path begins with";
+}
+
 TEST_F(PipelineFileTest, RefusesSettingsOfNoUse) {
   const PipelineArguments arguments = {.set = {"toy.evrything.count=1", "toy.everything.cuont=1",
                                                "toy.everything.count=x", "n=1", "flag",
