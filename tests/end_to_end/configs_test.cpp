@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pipelines that come with crisp, run as they are.
+#include <gmock/gmock.h>
+
+#include "pipeline/files/yaml.hpp"
+#include "tests/end_to_end/workshop.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
+
+TEST(Configs, EachPipelineHasATestThatRunsIt) {
+  std::vector<std::string> pipelines;
+  for (const auto& entry : fs::directory_iterator(CRISP_SOURCE_DIR "/configs")) {
+    if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
+    pipelines.push_back(entry.path().filename().string());
+  }
+  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "simulate.yaml"));
+}
+
+TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
+  const test::Workshop workshop;
+  const auto simulated = workshop.run("simulate.yaml", {}, "made", {"grabber.simulate.duration=1s"});
+  EXPECT_EQ(simulated.status, ExitStatus::done) << simulated.told;
+  EXPECT_THAT(simulated.files, ElementsAre("hub.pcap", "hub.pcap.provenance.json", "summary.json",
+                                           "truth.yaml", "truth.yaml.provenance.json"));
+
+  const auto assembled = workshop.assemble("made", "out");
+  EXPECT_EQ(assembled.status, ExitStatus::done) << assembled.told;
+  EXPECT_THAT(assembled.files, ElementsAre("cloud.pcd", "cloud.pcd.provenance.json", "summary.json"));
+  // 1 s at 50 Hz of 3 lasers with 541 beams each, less the part of a turn at either end, in a closed room.
+  ASSERT_NE(assembled.cloud, nullptr);
+  EXPECT_GT(assembled.cloud->size(), 48U * 3 * 541);
+  EXPECT_LE(assembled.cloud->size(), 50U * 3 * 541);
+  EXPECT_THAT(test::bytes_of(workshop / "out/cloud.pcd").substr(0, 1000),
+              testing::HasSubstr("DATA binary_compressed"));
+}
+
+TEST(Configs, AssembleSaysWhichCalibrationItMisses) {
+  const test::Workshop workshop;
+  workshop.simulate("made", {"duration=1s", "step=2deg"});
+  const auto none = workshop.run("assemble.yaml", workshop / "made/hub.pcap", "out");
+  EXPECT_EQ(none.status, ExitStatus::failed);
+  EXPECT_THAT(none.told, testing::HasSubstr("there is no calibration " + (workshop / "out").string()));
+  EXPECT_THAT(none.files, testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace crisp
