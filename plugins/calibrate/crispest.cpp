@@ -21,7 +21,50 @@ Motion rigid_motion(const Eigen::Vector3d& x) {
   return motion;
 }
 
-/// Mean square displacement of the points by each pair of parameters, rigid motions projected out.
+/// Columns that each displace the points by `step`.
+Eigen::MatrixXd whitening(const Eigen::MatrixXd& displacement, const Eigen::VectorXd& range, double step) {
+  constexpr double kUnseen = 1e-7;  // of a parameter's own displacement: directions that move next to nothing
+  const Eigen::VectorXd size =
+      displacement.diagonal().cwiseMax(0).cwiseSqrt().cwiseMax(1e-3 * step * range.cwiseInverse());
+  const Eigen::MatrixXd scaled =
+      size.cwiseInverse().asDiagonal() * displacement * size.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
+  const Eigen::VectorXd length = solver.eigenvalues().cwiseMax(kUnseen).cwiseSqrt();
+  return step *
+         (size.cwiseInverse().asDiagonal() * solver.eigenvectors() * length.cwiseInverse().asDiagonal());
+}
+
+}  // namespace
+
+double range_of(const SearchRange& range, const std::string& name) {
+  if (name.ends_with(".lambda")) return range.lambda;
+  if (name.ends_with(".tau")) return range.tau;
+  if (name.ends_with(".alpha")) return range.alpha;
+  if (name.ends_with(".eta")) return range.eta;
+  return range.other;
+}
+
+Eigen::VectorXd picked(const SensorModel& model, const std::vector<std::size_t>& free) {
+  return model.values()(free);
+}
+
+Eigen::VectorXd ranges_of(const SearchRange& range, const SensorModel& model,
+                          const std::vector<std::size_t>& free) {
+  Eigen::VectorXd ranges(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    ranges[static_cast<Eigen::Index>(i)] = range_of(range, model.names()[free[i]]);
+  }
+  return ranges;
+}
+
+SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x) {
+  Eigen::VectorXd values = model.values();
+  values(free) = x;
+  SensorModel moved = model;
+  moved.set_values(values);
+  return moved;
+}
+
 Eigen::MatrixXd displacement(const SensorModel& model, const Sample& sample,
                              const std::vector<std::size_t>& free) {
   PointDerivatives derivatives;
@@ -50,58 +93,19 @@ Eigen::MatrixXd displacement(const SensorModel& model, const Sample& sample,
   return own / static_cast<double>(std::max<std::size_t>(1, placed.index.size()));
 }
 
-/// Columns that each displace the points by `step`.
-Eigen::MatrixXd whitening(const Eigen::MatrixXd& displacement, const Eigen::VectorXd& range, double step) {
-  constexpr double kUnseen = 1e-7;  // of a parameter's own displacement: directions that move next to nothing
-  const Eigen::VectorXd size =
-      displacement.diagonal().cwiseMax(0).cwiseSqrt().cwiseMax(1e-3 * step * range.cwiseInverse());
-  const Eigen::MatrixXd scaled =
-      size.cwiseInverse().asDiagonal() * displacement * size.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
-  const Eigen::VectorXd length = solver.eigenvalues().cwiseMax(kUnseen).cwiseSqrt();
-  return step *
-         (size.cwiseInverse().asDiagonal() * solver.eigenvectors() * length.cwiseInverse().asDiagonal());
-}
-
-Eigen::VectorXd picked(const Eigen::VectorXd& values, const std::vector<std::size_t>& free) {
-  Eigen::VectorXd result(static_cast<Eigen::Index>(free.size()));
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    result[static_cast<Eigen::Index>(i)] = values[static_cast<Eigen::Index>(free[i])];
-  }
-  return result;
-}
-
-SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x) {
-  Eigen::VectorXd values = model.values();
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    values[static_cast<Eigen::Index>(free[i])] = x[static_cast<Eigen::Index>(i)];
-  }
-  SensorModel moved = model;
-  moved.set_values(values);
-  return moved;
-}
-
-}  // namespace
-
-double range_of(const SearchRange& range, const std::string& name) {
-  if (name.ends_with(".lambda")) return range.lambda;
-  if (name.ends_with(".tau")) return range.tau;
-  if (name.ends_with(".alpha")) return range.alpha;
-  if (name.ends_with(".eta")) return range.eta;
-  return range.other;
+Eigen::MatrixXd search_basis(const SensorModel& model, const Sample& sample,
+                             const std::vector<std::size_t>& free, const SearchRange& range, double scale) {
+  return whitening(displacement(model, sample, free), ranges_of(range, model, free), scale);
 }
 
 Minimum crispest(SensorModel& model, const Sample& sample, const std::vector<std::size_t>& free,
                  Measure& measure, double scale, const SearchRange& range,
                  const MinimiserSettings& settings) {
-  const Eigen::VectorXd start = picked(model.values(), free);
-  Eigen::VectorXd ranges(start.size());
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    ranges[static_cast<Eigen::Index>(i)] = range_of(range, model.names()[free[i]]);
-  }
+  const Eigen::VectorXd start = picked(model, free);
+  const Eigen::VectorXd ranges = ranges_of(range, model, free);
   const Box box{.lower = start - ranges,
                 .upper = start + ranges,
-                .basis = whitening(displacement(model, sample, free), ranges, scale)};
+                .basis = search_basis(model, sample, free, range, scale)};
   const Objective objective = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
     const auto quality = model_quality(with(model, free, x), sample, free, measure, scale);
     if (gradient) *gradient = quality.gradient;

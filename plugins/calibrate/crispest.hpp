@@ -23,12 +23,29 @@ struct SearchRange {
 /// The range that belongs to a parameter by its name.
 double range_of(const SearchRange& range, const std::string& name);
 
+/// Mean square displacement [m²] of a sample's points by each pair of the free parameters (m × m), rigid
+/// motions of the whole cloud, which no measure of crispness sees, projected out.
+Eigen::MatrixXd displacement(const SensorModel& model, const Sample& sample,
+                             const std::vector<std::size_t>& free);
+
+/// A basis of the free parameters, one direction a column, in which a unit step moves the sample's points by
+/// `scale` [m], in the root mean square and apart from rigid motions.
+Eigen::MatrixXd search_basis(const SensorModel& model, const Sample& sample,
+                             const std::vector<std::size_t>& free, const SearchRange& range, double scale);
+
+/// The model with other values of the free parameters.
+SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x);
+
+/// The values of the parameters in `free`, or the ranges in which they are looked for.
+Eigen::VectorXd picked(const SensorModel& model, const std::vector<std::size_t>& free);
+Eigen::VectorXd ranges_of(const SearchRange& range, const SensorModel& model,
+                          const std::vector<std::size_t>& free);
+
 /// Turns the free parameters until the sample's cloud is as crisp as it can be at one scale, and leaves the
 /// model there.
 ///
-/// The search works in a basis in which a unit step of any coordinate moves the cloud's points by the scale,
-/// in the root mean square and apart from rigid motions of the whole cloud, which no measure of crispness
-/// sees. Without it λ against α (which differ by τ only) is a valley in which the search creeps.
+/// Works in search_basis(): without it λ against α (which differ by τ only) is a valley in which a search
+/// creeps.
 Minimum crispest(SensorModel& model, const Sample& sample, const std::vector<std::size_t>& free,
                  Measure& measure, double scale, const SearchRange& range, const MinimiserSettings& settings);
 

@@ -2,7 +2,7 @@
 #include "plugins/calibrate/in_plane_calibration.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -73,63 +73,102 @@ void search(SensorModel& model, std::size_t parameter, const std::vector<double>
   model = best;
 }
 
-void find_eta(SensorModel& model, std::size_t laser, const Sample& front, Measure& measure,
-              const InPlaneSettings& settings) {
-  const Sample own = of_laser(front, laser);
-  if (own.beams.size() < kFew) return;
-  const auto parameter = slot(model, laser, kEta);
-  const double centre = model.values()[static_cast<Eigen::Index>(parameter)];
-  constexpr int kSteps = 25;  // to either side
-  std::vector<double> grid;
-  for (int i = -kSteps; i <= kSteps; ++i) grid.push_back(centre + settings.range.eta * i / (kSteps + 1));
-  search(model, parameter, grid, false, own, measure, settings);
-}
+/// The four steps, on a model that they move.
+class InPlaneCalibration {
+ public:
+  InPlaneCalibration(SensorModel& model, const std::vector<std::size_t>& free, const Sample& sample,
+                     Measure& measure, const InPlaneSettings& settings)
+      : model_(model),
+        free_(free),
+        front_(in_plane(sample, settings.half_width, Half::kFront)),
+        both_(in_plane(sample, settings.half_width, Half::kBoth)),
+        measure_(measure),
+        settings_(settings) {}
 
-void find_tau_alpha(SensorModel& model, std::size_t laser, const Sample& both, Measure& measure,
-                    const InPlaneSettings& settings) {
-  const Sample own = of_laser(both, laser);
-  if (own.beams.size() < kFew) return;
-  const std::vector<std::size_t> free = {slot(model, laser, kTau), slot(model, laser, kAlpha)};
-  for (const double sigma : annealing(settings.sigma_from, settings.sigma_to)) {
-    crispest(model, own, free, measure, sigma, settings.range, settings.minimiser);
+  void find_eta(std::size_t laser) {
+    const Sample own = of_laser(front_, laser);
+    const auto free = those_free({slot(model_, laser, kEta)});
+    if (own.beams.size() < kFew || free.empty()) return;
+    const double centre = model_.values()[static_cast<Eigen::Index>(free[0])];
+    constexpr int kSteps = 25;  // to either side
+    std::vector<double> grid;
+    for (int i = -kSteps; i <= kSteps; ++i) grid.push_back(centre + settings_.range.eta * i / (kSteps + 1));
+    search(model_, free[0], grid, false, own, measure_, settings_);
   }
-}
 
-void find_lambda(SensorModel& model, std::size_t laser, const Sample& both, Measure& measure,
-                 const InPlaneSettings& settings) {
-  const Sample pair =
-      select(both, [&](std::size_t i) { return both.beams.laser[i] == 0 || both.beams.laser[i] == laser; });
-  if (of_laser(pair, laser).beams.size() < kFew || of_laser(pair, 0).beams.size() < kFew) return;
-  constexpr int kSteps = 120;  // 3°: the valley at σ = 0.5 m is wider in any room
-  std::vector<double> grid;
-  for (int i = 0; i < kSteps; ++i) grid.push_back(2 * std::numbers::pi * i / kSteps);
-  search(model, slot(model, laser, kLambda), grid, true, pair, measure, settings);
-}
+  void find_tau_alpha(std::size_t laser) {
+    const Sample own = of_laser(both_, laser);
+    const auto free = those_free({slot(model_, laser, kTau), slot(model_, laser, kAlpha)});
+    if (own.beams.size() < kFew || free.empty()) return;
+    for (const double sigma : annealing(settings_.sigma_from, settings_.sigma_to)) {
+      crispest(model_, own, free, measure_, sigma, settings_.range, settings_.minimiser);
+    }
+  }
+
+  /// Against the laser whose λ stays where it is.
+  void find_lambda(std::size_t laser, std::size_t reference) {
+    const auto free = those_free({slot(model_, laser, kLambda)});
+    if (free.empty() || of_laser(both_, laser).beams.size() < kFew ||
+        of_laser(both_, reference).beams.size() < kFew) {
+      return;
+    }
+    const Sample pair = select(both_, [&](std::size_t i) {
+      return both_.beams.laser[i] == reference || both_.beams.laser[i] == laser;
+    });
+    constexpr int kSteps = 120;  // 3°: the valley at σ = 0.5 m is wider in any room
+    std::vector<double> grid;
+    for (int i = 0; i < kSteps; ++i) grid.push_back(2 * std::numbers::pi * i / kSteps);
+    search(model_, free[0], grid, true, pair, measure_, settings_);
+  }
+
+  void find_geometry() {
+    std::vector<std::size_t> geometry;
+    for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
+      const auto own =
+          those_free({slot(model_, laser, kLambda), slot(model_, laser, kTau), slot(model_, laser, kAlpha)});
+      if (of_laser(both_, laser).beams.size() >= kFew)
+        geometry.insert(geometry.end(), own.begin(), own.end());
+    }
+    if (geometry.empty()) return;
+    crispest(model_, both_, geometry, measure_, settings_.sigma_to, settings_.range, settings_.minimiser);
+  }
+
+  /// The first laser with a fixed λ.
+  std::size_t reference() const {
+    for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
+      if (those_free({slot(model_, laser, kLambda)}).empty() && of_laser(both_, laser).beams.size() >= kFew) {
+        return laser;
+      }
+    }
+    return 0;
+  }
+
+ private:
+  std::vector<std::size_t> those_free(const std::vector<std::size_t>& slots) const {
+    std::vector<std::size_t> result;
+    std::copy_if(slots.begin(), slots.end(), std::back_inserter(result),
+                 [&](std::size_t s) { return std::find(free_.begin(), free_.end(), s) != free_.end(); });
+    return result;
+  }
+
+  SensorModel& model_;
+  const std::vector<std::size_t>& free_;
+  Sample front_;
+  Sample both_;
+  Measure& measure_;
+  const InPlaneSettings& settings_;
+};
 
 }  // namespace
 
-void calibrate_in_plane(SensorModel& model, const Sample& sample, Measure& measure,
-                        const InPlaneSettings& settings) {
-  const Sample front = in_plane(sample, settings.half_width, Half::kFront);
-  const Sample both = in_plane(sample, settings.half_width, Half::kBoth);
-  if (settings.eta) {
-    for (std::size_t laser = 0; laser < model.lasers(); ++laser)
-      find_eta(model, laser, front, measure, settings);
-  }
-  for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
-    find_tau_alpha(model, laser, both, measure, settings);
-  }
-  std::vector<std::size_t> geometry;
-  for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
-    if (laser > 0) {
-      find_lambda(model, laser, both, measure, settings);
-      geometry.push_back(slot(model, laser, kLambda));
-    }
-    geometry.push_back(slot(model, laser, kTau));
-    geometry.push_back(slot(model, laser, kAlpha));
-  }
-  if (both.beams.size() < kFew) return;
-  crispest(model, both, geometry, measure, settings.sigma_to, settings.range, settings.minimiser);
+void calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free, const Sample& sample,
+                        Measure& measure, const InPlaneSettings& settings) {
+  InPlaneCalibration calibration(model, free, sample, measure, settings);
+  for (std::size_t laser = 0; laser < model.lasers(); ++laser) calibration.find_eta(laser);
+  for (std::size_t laser = 0; laser < model.lasers(); ++laser) calibration.find_tau_alpha(laser);
+  const std::size_t reference = calibration.reference();
+  for (std::size_t laser = 0; laser < model.lasers(); ++laser) calibration.find_lambda(laser, reference);
+  calibration.find_geometry();
 }
 
 }  // namespace crisp

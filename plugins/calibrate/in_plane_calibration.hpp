@@ -11,7 +11,6 @@ struct InPlaneSettings {
   double half_width = 0.0044;  ///< [rad] beams so near to the plate's plane count as in it
   double sigma_from = 0.5;     ///< [m]
   double sigma_to = 0.1;       ///< [m]
-  bool eta = true;             ///< whether the plate's speed varied enough to tell η
   SearchRange range;
   MinimiserSettings minimiser;
 };
@@ -23,8 +22,9 @@ struct InPlaneSettings {
 ///   4. all 3n − 1 geometric parameters together.
 /// Leaves the model at what it found.
 ///
+/// @param free    indices into model.values(); others stay as they are
 /// @param sample  covered for every η in the range
-void calibrate_in_plane(SensorModel& model, const Sample& sample, Measure& measure,
-                        const InPlaneSettings& settings);
+void calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free, const Sample& sample,
+                        Measure& measure, const InPlaneSettings& settings);
 
 }  // namespace crisp

@@ -2,9 +2,15 @@
 #include "plugins/calibrate/register.hpp"
 
 #include "plugins/calibrate/load_stage.hpp"
+#include "plugins/calibrate/refine_stage.hpp"
+#include "plugins/calibrate/rqe_stage.hpp"
 
 namespace crisp {
 
-void register_calibrate(Registrar& registrar) { registrar.stage<LoadCalibrationStage>(); }
+void register_calibrate(Registrar& registrar) {
+  registrar.stage<LoadCalibrationStage>();
+  registrar.stage<RqeStage>();
+  registrar.stage<RefineStage>();
+}
 
 }  // namespace crisp

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "pipeline/data/rig.hpp"
+#include "pipeline/model/sensor_model.hpp"
+
+namespace crisp {
+
+/// What a calibration found: values, and how well they are known.
+struct Outcome {
+  SensorModel model;              ///< at the values that were found
+  std::vector<std::size_t> free;  ///< indices into model.values(): m parameters that were turned
+  Eigen::MatrixXd covariance;     ///< m × m, of these, in their order
+  std::vector<Unobservable> unobservable;
+};
+
+/// The outcome as a calibration: values, standard errors, covariance, and what is unobservable. Each λ is
+/// given within half a turn of the rig's.
+Calibration calibration_of(const Outcome& outcome, const Rig& rig);
+
+/// A table for people: each parameter in mm, degrees and ms, its standard error and its change from the
+/// rig's nominal value.
+std::string table_of(const Calibration& calibration, const Rig& rig);
+
+}  // namespace crisp

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/refine_stage.hpp"
+
+#include <fmt/format.h>
+
+#include "pipeline/stage/registry.hpp"
+#include "plugins/calibrate/free_parameters.hpp"
+#include "plugins/calibrate/report.hpp"
+
+namespace crisp {
+namespace {
+
+/// Squares per freedom from which the model of the sensor does not describe what was measured.
+constexpr double kPoorFit = 2;
+
+}  // namespace
+
+void RefineStage::describe(StageDescription<RefineStage>& d) {
+  d.name("calibrate.refine").summary("refines a calibration by the flat surfaces that all beams show");
+  d.details(
+      "Weighted least squares in the distances of all beams to the surfaces that they meet, with the "
+      "surfaces' "
+      "planes as unknowns. It has none of the bias of an entropy's optimum and a tenth of its scatter, but "
+      "needs a start that is right to some centimetres: calibrate.rqe, or calibrate.load. What the data do "
+      "not "
+      "determine stays as it came.");
+  d.takes<Measurements>().holds<PlateTrajectory>().holds<Calibration>().gives<Calibration>();
+  d.option("noise", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::noise,
+           "standard deviation of a range")
+      .unit("m")
+      .range(1e-6, 1);
+  d.option("smallest", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::smallest,
+           "side of the smallest flat patch that counts")
+      .unit("m")
+      .range(0.01, 10);
+  d.option("largest", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::largest,
+           "side of the patches that are tried first")
+      .unit("m")
+      .range(0.01, 100);
+  d.option("fixed", &RefineStage::settings_, &RefinementSettings::fixed,
+           "parameters that are left as they are: laser1.eta, or eta for that of all lasers");
+  d.option("rounds", &RefineStage::settings_, &RefinementSettings::max_rounds, "most steps that are taken")
+      .range(1, 1000);
+  d.option("sigma", &RefineStage::sigma_, "kernel width of the RQE that judges the result")
+      .unit("m")
+      .range(1e-3, 10);
+}
+
+void RefineStage::check(const RunSettings& run) const {
+  if (settings_.surfels.largest < settings_.surfels.smallest) {
+    throw Error("the largest patch is smaller than the smallest", "give a `largest` above `smallest`");
+  }
+  check_fixed(settings_.fixed, nominal_calibration(run.rig));
+}
+
+void RefineStage::process(const Inputs& in, Outputs&, Context&) {
+  start_ = in.share<Calibration>();
+  collected_.add(in);
+}
+
+void RefineStage::finish(Outputs& out, Context& context) {
+  const Sample sample = collected_.sample();
+  context.count("beams left out of the calibration of a long recording", collected_.left_out());
+  const SensorModel start(*start_, context.run().registrar->get<TermRegistry>());
+  const Refinement refined = refine_by_surfels(start, sample, settings_, [&](int round) {
+    context.progress(static_cast<double>(round) / (round + 4), fmt::format("round {}", round + 1));
+    return !context.interrupted();
+  });
+  if (context.interrupted()) return;
+
+  Calibration calibration = calibration_of(refined.outcome, context.rig());
+  judge(sample, refined, calibration, context);
+  calibration.provenance = start_->provenance;
+  calibration.provenance["refinement"] = "calibrate.refine";
+  tell(calibration, context);
+  out.give(std::move(calibration));
+}
+
+void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibration& calibration,
+                        Context& context) const {
+  const auto& registrar = *context.run().registrar;
+  const auto& terms = registrar.get<TermRegistry>();
+  const auto measure =
+      registrar.get<MeasureRegistry>().make("rqe", MeasureSettings{}, registrar.get<SearchRegistry>());
+  const Crispness crispness(sample, refined.outcome.model, {.sigma = sigma_}, *measure);
+  calibration.quality = {{"rqe_before", crispness.of(SensorModel(nominal_calibration(context.rig()), terms))},
+                         {"rqe_unrefined", crispness.of(SensorModel(*start_, terms))},
+                         {"rqe_after", crispness.of(refined.outcome.model)},
+                         {"rqe_sigma", sigma_},
+                         {"chi2", refined.chi2}};
+  context.report({{"surfels", refined.surfels},
+                  {"beams", refined.beams},
+                  {"chi2", refined.chi2},
+                  {"rounds", refined.rounds},
+                  {"converged", refined.converged}});
+  context.say(fmt::format("{} flat surfaces with {} beams; chi2 {:.3f} per degree of freedom after {} rounds",
+                          refined.surfels, refined.beams, refined.chi2, refined.rounds));
+  if (!refined.converged) {
+    context.warn(fmt::format("the refinement still moved after {} rounds: its standard errors are too small",
+                             refined.rounds));
+  }
+  if (refined.chi2 > kPoorFit) {
+    context.warn(
+        fmt::format("beams miss their surfaces by {:.1f} times the noise of {:g} mm: the noise is larger, or "
+                    "the model of "
+                    "the sensor lacks something",
+                    std::sqrt(refined.chi2), settings_.surfels.noise * 1e3));
+  }
+}
+
+}  // namespace crisp

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/calibrate/collected.hpp"
+#include "plugins/calibrate/surfel_refinement.hpp"
+
+namespace crisp {
+
+/// Makes a calibration as accurate as the data allow, from the flat surfaces that they show.
+class RefineStage final : public Stage {
+ public:
+  static void describe(StageDescription<RefineStage>& d);
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  void judge(const Sample& sample, const Refinement& refined, Calibration& calibration,
+             Context& context) const;
+
+  RefinementSettings settings_;
+  double sigma_ = 0.05;
+  Collected collected_;
+  std::shared_ptr<const Calibration> start_;
+};
+
+}  // namespace crisp

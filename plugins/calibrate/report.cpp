@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "plugins/calibrate/cloud_objective.hpp"
+#include "plugins/calibrate/free_parameters.hpp"
+
+namespace crisp {
+namespace {
+
+/// [s] by how much the η of calibrations that are compared may lie beyond those of the one that chose the
+/// beams.
+constexpr double kMargin = 0.1;
+
+nlohmann::json json_of(const Parameter& p) {
+  return {{"value", p.value}, {"unit", p.unit}, {"std_error", p.std_error}, {"free", p.free}};
+}
+
+}  // namespace
+
+Crispness::Crispness(const Sample& sample, const SensorModel& model, const CrispnessSettings& settings,
+                     Measure& measure)
+    : sigma_(settings.sigma), measure_(measure) {
+  const LagRange lag = lag_range(model, kMargin);
+  beams_ = thin_by_area(covered(sample, lag.earliest, lag.latest), model, settings.points, 1);
+}
+
+double Crispness::of(const SensorModel& model) const {
+  return model_quality(model, beams_, measure_, sigma_);
+}
+
+void tell(const Calibration& calibration, Context& context) {
+  context.say(table_of(calibration, context.rig()));
+  nlohmann::json lasers;
+  for (const auto& laser : calibration.lasers) {
+    for (const auto* p : {&laser.lambda, &laser.tau, &laser.alpha, &laser.eta}) {
+      lasers[laser.name][p->name] = json_of(*p);
+    }
+  }
+  nlohmann::json unobservable = nlohmann::json::array();
+  for (const auto& u : calibration.unobservable) {
+    unobservable.push_back(
+        {{"parameter", u.parameter}, {"reason", u.reason}, {"combination", u.combination}});
+    context.warn(fmt::format("{} is not observable: {}; it is kept at its prior", u.parameter, u.reason));
+  }
+  context.report({{"lasers", lasers}, {"quality", calibration.quality}, {"unobservable", unobservable}});
+  const auto& quality = calibration.quality;
+  if (quality.contains("rqe_before") && quality.contains("rqe_after")) {
+    context.say(fmt::format("RQE {:.4f} before, {:.4f} after (sigma {:g} cm)", quality.at("rqe_before"),
+                            quality.at("rqe_after"), quality.at("rqe_sigma") * 100));
+    if (quality.at("rqe_after") > quality.at("rqe_before")) {
+      context.distrust("the calibration made the cloud less crisp than it was");
+    }
+  }
+}
+
+}  // namespace crisp

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pipeline/quality/measure.hpp"
+#include "pipeline/stage/context.hpp"
+#include "plugins/calibrate/outcome.hpp"
+#include "plugins/calibrate/sample.hpp"
+
+namespace crisp {
+
+struct CrispnessSettings {
+  double sigma = 0.05;         ///< [m]
+  std::size_t points = 60000;  ///< about so many
+};
+
+/// Compares calibrations by the crispness of the same beams, spread evenly over the surfaces.
+class Crispness {
+ public:
+  /// @param model  places the beams to be chosen
+  Crispness(const Sample& sample, const SensorModel& model, const CrispnessSettings& settings,
+            Measure& measure);
+  double of(const SensorModel& model) const;
+
+ private:
+  Sample beams_;
+  double sigma_;
+  Measure& measure_;
+};
+
+/// Puts a calibration into the run's summary: the table for people, all of its numbers for programs, and a
+/// warning for each parameter that is not observable.
+void tell(const Calibration& calibration, Context& context);
+
+}  // namespace crisp

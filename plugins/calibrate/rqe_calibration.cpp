@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/rqe_calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "pipeline/data/error.hpp"
+#include "plugins/calibrate/observability.hpp"
+#include "plugins/calibrate/optimum_scatter.hpp"
+
+namespace crisp {
+namespace {
+
+/// Wide kernels are smooth and need fewer points.
+std::size_t points_at(double sigma, std::size_t most) {
+  constexpr double kWide = 0.1;  // [m]
+  return static_cast<std::size_t>(static_cast<double>(most) * std::min(1.0, kWide / sigma));
+}
+
+/// One calibration from start to end; each step moves the model.
+class RqeCalibration {
+ public:
+  RqeCalibration(const SensorModel& start, const Sample& sample, Measure& measure,
+                 const RqeCalibrationSettings& settings, const Reporter& report)
+      : settings_(settings),
+        measure_(measure),
+        report_(report),
+        model_(start),
+        sample_(with_margin(start, sample, settings.in_plane.range.eta)),
+        parameters_(can_be_told(free_parameters(start, sample.beams, settings.fixed), start,
+                                thin_evenly(sample_, settings.points, settings.seed), settings.in_plane.range,
+                                settings.least_motion)) {
+    if (parameters_.free.empty()) {
+      throw Error("these data leave nothing to calibrate",
+                  "record with more than one laser or with a plate that turns, and see what is fixed");
+    }
+  }
+
+  Outcome run() {
+    in_plane();
+    Sample used = crisp::in_plane(sample_, settings_.in_plane.half_width, Half::kBoth);
+    if (settings_.full_field) used = full_field();
+    tell(0.8, "standard errors");
+    Eigen::MatrixXd covariance = scatter(used);
+    const auto known = observability(covariance.inverse(), parameters_.free, model_.names(),
+                                     ranges_of(settings_.in_plane.range, model_, parameters_.free));
+    if (known.known.size() < parameters_.free.size()) {
+      parameters_.free = known.known;
+      parameters_.unobservable.insert(parameters_.unobservable.end(), known.unobservable.begin(),
+                                      known.unobservable.end());
+      if (parameters_.free.empty()) throw Error("these data determine none of the parameters");
+      covariance = scatter(used);
+    }
+    return {.model = model_,
+            .free = parameters_.free,
+            .covariance = std::move(covariance),
+            .unobservable = parameters_.unobservable};
+  }
+
+ private:
+  static Sample with_margin(const SensorModel& start, const Sample& sample, double margin) {
+    const LagRange lag = lag_range(start, margin);
+    Sample inside = covered(sample, lag.earliest, lag.latest);
+    if (inside.beams.size() == 0) {
+      throw Error("the plate's readings cover none of the beams",
+                  "see crisp info for whether the plate's sentences are in the capture");
+    }
+    return inside;
+  }
+
+  void tell(double done, std::string_view what) const {
+    if (report_) report_(done, what);
+  }
+
+  void in_plane() {
+    tell(0, "beams in the plate's plane");
+    calibrate_in_plane(model_, parameters_.free, sample_, measure_, settings_.in_plane);
+  }
+
+  Sample full_field() {
+    const auto sigmas = annealing(settings_.sigma_from, settings_.sigma_to);
+    Sample thin;
+    for (std::size_t k = 0; k < sigmas.size(); ++k) {
+      tell(0.25 + 0.55 * static_cast<double>(k) / static_cast<double>(sigmas.size()),
+           fmt::format("sigma {:.2g} cm", sigmas[k] * 100));
+      thin = thin_by_area(sample_, model_, points_at(sigmas[k], settings_.points), settings_.seed);
+      crispest(model_, thin, parameters_.free, measure_, sigmas[k], settings_.in_plane.range,
+               settings_.in_plane.minimiser);
+    }
+    return thin;
+  }
+
+  Eigen::MatrixXd scatter(const Sample& used) {
+    const double sigma = settings_.full_field ? settings_.sigma_to : settings_.in_plane.sigma_to;
+    return optimum_scatter(model_, used, parameters_.free, measure_,
+                           {.scale = sigma,
+                            .noise = settings_.noise,
+                            .probes = settings_.probes,
+                            .seed = settings_.seed,
+                            .range = settings_.in_plane.range});
+  }
+
+  const RqeCalibrationSettings& settings_;
+  Measure& measure_;
+  const Reporter& report_;
+  SensorModel model_;
+  Sample sample_;
+  FreeParameters parameters_;
+};
+
+}  // namespace
+
+FreeParameters can_be_told(FreeParameters parameters, const SensorModel& model, const Sample& sample,
+                           const SearchRange& range, double least_motion) {
+  if (parameters.free.empty()) return parameters;
+  const Eigen::MatrixXd motion = displacement(model, sample, parameters.free) / (least_motion * least_motion);
+  const auto told =
+      observability(motion, parameters.free, model.names(), ranges_of(range, model, parameters.free));
+  parameters.free = told.known;
+  for (Unobservable lost : told.unobservable) {
+    lost.reason = "the motion of the plate does not tell it";
+    parameters.unobservable.push_back(std::move(lost));
+  }
+  return parameters;
+}
+
+Outcome calibrate_by_rqe(const SensorModel& start, const Sample& sample, Measure& measure,
+                         const RqeCalibrationSettings& settings, const Reporter& report) {
+  return RqeCalibration(start, sample, measure, settings, report).run();
+}
+
+}  // namespace crisp

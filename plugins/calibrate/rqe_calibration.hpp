@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+#include "plugins/calibrate/free_parameters.hpp"
+#include "plugins/calibrate/in_plane_calibration.hpp"
+#include "plugins/calibrate/outcome.hpp"
+
+namespace crisp {
+
+struct RqeCalibrationSettings {
+  std::vector<std::string> fixed;  ///< parameters to be left alone: see free_parameters()
+  InPlaneSettings in_plane;        ///< of the first calibration; its range holds for all of it
+  bool full_field = true;          ///< whether the whole field of view follows, or that was all
+  double sigma_from = 0.2;         ///< [m] kernel width over the full field at first
+  double sigma_to = 0.05;          ///< [m] and at last
+  std::size_t points = 60000;      ///< about so many beams of the full field are looked at
+  double noise = 0.012;            ///< [m] standard deviation of a range, for the standard errors
+  std::size_t probes = 32;         ///< noisy copies of the data that the standard errors are taken from
+  double least_motion = 0.005;     ///< [m] see can_be_told()
+  std::uint64_t seed = 1;
+};
+
+/// Told what is being done: the fraction of the work so far, and a word for what is next.
+using Reporter = std::function<void(double done, std::string_view what)>;
+
+/// Finds λ, τ, α and η at which the cloud of `sample` is crispest: first from the beams in the plate's plane,
+/// in the paper's order, then from the whole field of view with σ narrowing.
+///
+/// The standard errors are those of the scatter that the ranges' noise causes. The optimum of a smooth
+/// entropy also has a bias that they do not show; calibrate.refine removes it.
+///
+/// @param start   where to start; λ of all but the first laser may be anywhere
+/// @param sample  all beams; need not be covered
+/// @throws Error  if nothing is left to be turned
+Outcome calibrate_by_rqe(const SensorModel& start, const Sample& sample, Measure& measure,
+                         const RqeCalibrationSettings& settings, const Reporter& report = {});
+
+/// Leaves out of `parameters` those that these data cannot tell: directions that move the cloud's points,
+/// over all of the range in which they are looked for and apart from rigid motions, by less than
+/// `least_motion` [m]. So it is with the η of a plate at constant speed, which turns a laser's cloud as its λ
+/// does.
+FreeParameters can_be_told(FreeParameters parameters, const SensorModel& model, const Sample& sample,
+                           const SearchRange& range, double least_motion);
+
+}  // namespace crisp

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/rqe_stage.hpp"
+
+#include "pipeline/stage/registry.hpp"
+#include "plugins/calibrate/cloud_objective.hpp"
+#include "plugins/calibrate/report.hpp"
+
+namespace crisp {
+
+void RqeStage::describe(StageDescription<RqeStage>& d) {
+  d.name("calibrate.rqe")
+      .summary("turns lambda, tau, alpha and eta until the cloud is as crisp as it can be");
+  d.details(
+      "From the data alone, in two steps. First the two beams of each laser that lie in the plate's plane, "
+      "in "
+      "the "
+      "order of Sheehan, Harrison and Newman: each eta, each tau and alpha, each lambda around the whole "
+      "circle. Then the whole field of view, with the kernel narrowing. It starts from the rig's nominal "
+      "values, or from those of a calibrate.load above. The standard errors show the scatter that noise "
+      "causes; a bias of some millimetres, which an entropy's optimum has, is left to calibrate.refine.");
+  d.takes<Measurements>().holds<PlateTrajectory>().holds<Calibration>(Need::optional).gives<Calibration>();
+  d.option("sigma", &RqeStage::sigma_, "kernel width over the whole field of view: at first, and at last")
+      .unit("m")
+      .range(1e-3, 10)
+      .count(2, 2);
+  d.option("in_plane_sigma", &RqeStage::in_plane_sigma_, "and for the beams in the plate's plane")
+      .unit("m")
+      .range(1e-3, 10)
+      .count(2, 2);
+  d.option("in_plane_width", &RqeStage::settings_, &RqeCalibrationSettings::in_plane,
+           &InPlaneSettings::half_width, "largest angle of a beam to that plane")
+      .unit("rad")
+      .range(0, 0.1);
+  d.option("full_field", &RqeStage::settings_, &RqeCalibrationSettings::full_field,
+           "whether the whole field of view follows; the paper has the two beams alone");
+  d.option("points", &RqeStage::settings_, &RqeCalibrationSettings::points,
+           "about so many points are looked at, spread evenly over the surfaces")
+      .range(1000, 1e7);
+  d.option("lambda_range", &RqeStage::range_, &SearchRange::lambda,
+           "how far lambda is turned at a time; where it starts does not matter")
+      .unit("rad")
+      .range(1e-6, 3.2);
+  d.option("tau_range", &RqeStage::range_, &SearchRange::tau, "how far tau may be from its start")
+      .unit("m")
+      .range(1e-6, 10);
+  d.option("alpha_range", &RqeStage::range_, &SearchRange::alpha, "how far alpha may be from its start")
+      .unit("rad")
+      .range(1e-6, 1.5);
+  d.option("eta_range", &RqeStage::range_, &SearchRange::eta, "how far eta may be from its start")
+      .unit("s")
+      .range(1e-6, 1);
+  d.option("fixed", &RqeStage::settings_, &RqeCalibrationSettings::fixed,
+           "parameters that are left as they are: laser1.eta, or eta for that of all lasers");
+  d.option("noise", &RqeStage::settings_, &RqeCalibrationSettings::noise,
+           "standard deviation of a range, for the standard errors")
+      .unit("m")
+      .range(1e-6, 1);
+  d.option("measure", &RqeStage::measure_, "what is lowest when a cloud is crispest: rqe, or a plugin's");
+  d.option("search", &RqeStage::measure_settings_, &MeasureSettings::search,
+           "how neighbours are found: grid, flann, exact, or a plugin's");
+  d.option("cutoff", &RqeStage::measure_settings_, &MeasureSettings::cutoff,
+           "distance in kernel widths beyond which pairs are left out")
+      .range(1, 12);
+}
+
+std::unique_ptr<Measure> RqeStage::make_measure(const RunSettings& run) const {
+  return run.registrar->get<MeasureRegistry>().make(measure_, measure_settings_,
+                                                    run.registrar->get<SearchRegistry>());
+}
+
+void RqeStage::check(const RunSettings& run) const {
+  for (const auto* sigma : {&sigma_, &in_plane_sigma_}) {
+    if ((*sigma)[0] < (*sigma)[1]) {
+      throw Error("the kernel has to become narrower, not wider", "write the larger sigma first");
+    }
+  }
+  check_fixed(settings_.fixed, nominal_calibration(run.rig));
+  make_measure(run);
+}
+
+void RqeStage::process(const Inputs& in, Outputs&, Context&) {
+  if (!start_) start_ = in.share<Calibration>();
+  collected_.add(in);
+}
+
+void RqeStage::finish(Outputs& out, Context& context) {
+  const Sample sample = collected_.sample();
+  context.count("beams left out of the calibration of a long recording", collected_.left_out());
+  RqeCalibrationSettings settings = settings_;
+  settings.sigma_from = sigma_[0];
+  settings.sigma_to = sigma_[1];
+  settings.in_plane.sigma_from = in_plane_sigma_[0];
+  settings.in_plane.sigma_to = in_plane_sigma_[1];
+  settings.in_plane.range = range_;
+  settings.in_plane.minimiser.interrupted = [&] { return context.interrupted(); };
+  settings.seed = context.seed();
+  const auto measure = make_measure(context.run());
+  const auto& terms = context.run().registrar->get<TermRegistry>();
+  const Calibration start = start_ ? *start_ : nominal_calibration(context.rig());
+  const Outcome outcome =
+      calibrate_by_rqe(SensorModel(start, terms), sample, *measure, settings,
+                       [&](double done, std::string_view what) { context.progress(done, what); });
+  if (context.interrupted()) return;
+
+  Calibration calibration = calibration_of(outcome, context.rig());
+  const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
+  const Crispness crispness(sample, outcome.model, {.sigma = sigma, .points = settings.points}, *measure);
+  calibration.quality = {{"rqe_before", crispness.of(SensorModel(start, terms))},
+                         {"rqe_after", crispness.of(outcome.model)},
+                         {"rqe_sigma", sigma}};
+  calibration.provenance["calibration"] = "calibrate.rqe";
+  tell(calibration, context);
+  out.give(std::move(calibration));
+}
+
+}  // namespace crisp

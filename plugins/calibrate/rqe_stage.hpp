@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/calibrate/collected.hpp"
+#include "plugins/calibrate/rqe_calibration.hpp"
+
+namespace crisp {
+
+/// Calibrates by making the cloud as crisp as it can be.
+class RqeStage final : public Stage {
+ public:
+  static void describe(StageDescription<RqeStage>& d);
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  std::unique_ptr<Measure> make_measure(const RunSettings& run) const;
+
+  RqeCalibrationSettings settings_;
+  SearchRange range_;
+  std::vector<double> sigma_{0.2, 0.05};
+  std::vector<double> in_plane_sigma_{0.5, 0.1};
+  std::string measure_ = "rqe";
+  MeasureSettings measure_settings_{.search = "grid", .cutoff = 5};
+  Collected collected_;
+  std::shared_ptr<const Calibration> start_;
+};
+
+}  // namespace crisp

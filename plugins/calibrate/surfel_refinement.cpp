@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/surfel_refinement.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "pipeline/data/error.hpp"
+#include "plugins/calibrate/free_parameters.hpp"
+#include "plugins/calibrate/observability.hpp"
+#include "plugins/calibrate/placed_beams.hpp"
+
+namespace crisp {
+namespace {
+
+Measurements picked_beams(const Measurements& from, std::span<const std::uint32_t> beams,
+                          std::span<const double> range_change) {
+  Measurements to;
+  to.epoch_ns = from.epoch_ns;
+  to.reserve(beams.size());
+  for (std::size_t k = 0; k < beams.size(); ++k) {
+    const std::uint32_t i = beams[k];
+    to.range.push_back(static_cast<float>(static_cast<double>(from.range[i]) + range_change[k]));
+    to.mirror_angle.push_back(from.mirror_angle[i]);
+    to.time.push_back(from.time[i]);
+    to.laser.push_back(from.laser[i]);
+    to.remission.push_back(from.remission[i]);
+    to.beam.push_back(from.beam[i]);
+  }
+  return to;
+}
+
+/// normal · ∂x/∂θ of beams, where they meet the surfel's plane.
+DerivativeRows rows_of(const SensorModel& model, const Sample& sample, const std::vector<std::size_t>& free) {
+  return [&](const Surfel& surfel, std::span<const std::uint32_t> beams, std::span<const double> range_change,
+             std::span<double> rows) {
+    PointDerivatives derivatives;
+    const Measurements some = picked_beams(sample.beams, beams, range_change);
+    const Placed placed = model.place(some, *sample.plate, free, derivatives);
+    for (std::size_t k = 0; k < placed.index.size(); ++k) {
+      const std::size_t row = placed.index[k];
+      const auto& columns = derivatives.columns[some.laser[row]];
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        const auto column = static_cast<Eigen::Index>(k * derivatives.stride + c);
+        rows[row * free.size() + columns[c]] = surfel.normal.dot(derivatives.values.col(column));
+      }
+    }
+  };
+}
+
+/// Equations at a model, with the start as one more observation.
+class Refiner {
+ public:
+  Refiner(const SensorModel& start, const Sample& sample, std::vector<std::size_t> free,
+          const RefinementSettings& settings)
+      : start_(start), model_(start), sample_(sample), free_(std::move(free)), settings_(settings) {}
+
+  /// @return  the length of the step [standard errors]
+  double step() {
+    const PlacedBeams placed(model_, sample_);
+    const Surfels surfels = find_surfels(placed.view(), settings_.surfels);
+    if (surfels.surfels.empty()) {
+      throw Error(
+          "no flat surface is seen by these data",
+          "leave calibrate.refine out where nothing is flat, or look closer with a smaller `smallest`");
+    }
+    const NormalEquations equations = normal_equations(surfels, placed.view(), free_.size(),
+                                                       rows_of(model_, sample_, free_), settings_.surfels);
+    information_ = equations.matrix / equations.covariance_factor();
+    const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
+    const Eigen::VectorXd from_start = picked(model_, free_) - picked(start_, free_);
+    const Eigen::VectorXd pull =
+        equations.vector / equations.covariance_factor() + prior.cwiseProduct(from_start);
+    const auto n = information_.rows();
+    const auto posterior = (information_ + Eigen::MatrixXd(prior.asDiagonal())).eval().ldlt();
+    covariance_ = posterior.solve(Eigen::MatrixXd::Identity(n, n));
+    const Eigen::VectorXd change = -posterior.solve(pull);
+    model_ = with(model_, free_, picked(model_, free_) + change);
+    surfels_ = surfels.surfels.size();
+    beams_ = equations.beams;
+    chi2_ = equations.chi2 / std::max(1.0, equations.freedom);
+    return (change.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
+  }
+
+  /// Keeps at their start those that the data do not tell.
+  std::vector<Unobservable> hold_unknown() {
+    auto told = observability(information_, free_, model_.names(), ranges_of(settings_.prior, model_, free_));
+    if (told.unobservable.empty()) return {};
+    const SensorModel found = model_;
+    model_ = with(start_, told.known, picked(found, told.known));
+    free_ = told.known;
+    return told.unobservable;
+  }
+
+  const SensorModel& model() const { return model_; }
+  const std::vector<std::size_t>& free() const { return free_; }
+
+  Refinement result() const {
+    return {.outcome = {.model = model_, .free = free_, .covariance = covariance_, .unobservable = {}},
+            .surfels = surfels_,
+            .beams = beams_,
+            .chi2 = chi2_};
+  }
+
+ private:
+  SensorModel start_;
+  SensorModel model_;
+  const Sample& sample_;
+  std::vector<std::size_t> free_;
+  const RefinementSettings& settings_;
+  Eigen::MatrixXd information_;
+  Eigen::MatrixXd covariance_;
+  std::size_t surfels_ = 0;
+  std::size_t beams_ = 0;
+  double chi2_ = 0;
+};
+
+}  // namespace
+
+Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
+                             const RefinementSettings& settings, const RoundReporter& report) {
+  const LagRange lag = lag_range(start, settings.prior.eta);
+  const Sample inside = covered(sample, lag.earliest, lag.latest);
+  FreeParameters parameters = free_parameters(start, inside.beams, settings.fixed);
+  Refiner refiner(start, inside, parameters.free, settings);
+  int round = 0;
+  bool converged = false;
+  while (!converged && round < settings.max_rounds && !refiner.free().empty()) {
+    if (report && !report(round)) break;
+    converged = refiner.step() < settings.tolerance;
+    ++round;
+    for (auto& lost : refiner.hold_unknown()) {
+      parameters.unobservable.push_back(std::move(lost));
+      converged = false;  // the others take one more step without it
+    }
+  }
+  if (refiner.free().empty()) throw Error("these data determine none of the parameters");
+  Refinement result = refiner.result();
+  result.outcome.unobservable = std::move(parameters.unobservable);
+  result.rounds = round;
+  result.converged = converged;
+  return result;
+}
+
+}  // namespace crisp

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pipeline/quality/surfel_equations.hpp"
+#include "plugins/calibrate/crispest.hpp"
+#include "plugins/calibrate/outcome.hpp"
+
+namespace crisp {
+
+struct RefinementSettings {
+  std::vector<std::string> fixed;  ///< parameters to be left alone: see free_parameters()
+  SurfelSettings surfels;
+  SearchRange prior{.lambda = 0.05, .tau = 0.03, .alpha = 0.05, .eta = 0.01, .other = 0.05};  ///< see below
+  int max_rounds = 15;
+  double tolerance = 0.02;  ///< [standard errors] steps below which the refinement has converged
+};
+
+struct Refinement {
+  Outcome outcome;
+  std::size_t surfels = 0;  ///< flat surfaces found at last
+  std::size_t beams = 0;    ///< beams on them that count
+  double chi2 = 0;          ///< weighted squares of the distances to them, in units of the noise, per freedom
+  int rounds = 0;
+  bool converged = false;
+};
+
+/// One step of the work: its number, and whether the work is to go on.
+using RoundReporter = std::function<bool(int round)>;
+
+/// Estimates λ, τ, α and η by weighted least squares in the distances of all beams to the flat surfaces that
+/// they meet, whose planes are estimated with them (projected out). Against RQE it has no bias by a kernel's
+/// width and uses all beams; but it needs a start that is right to some centimetres, which RQE gives.
+///
+/// Each round places the beams, finds the surfaces anew and takes one Gauss-Newton step. The start counts as
+/// an observation with the standard deviations `prior`; what the data do not tell better is named and kept.
+///
+/// @param start   right to some centimetres and degrees
+/// @param sample  all beams; need not be covered
+/// @throws Error  if no flat surface is seen, or if nothing is left to be turned
+Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
+                             const RefinementSettings& settings, const RoundReporter& report = {});
+
+}  // namespace crisp
