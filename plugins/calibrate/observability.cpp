@@ -46,7 +46,7 @@ Observability observability(const Eigen::MatrixXd& information, const std::vecto
     if (!(solver.eigenvalues()[0] < 1)) break;
     const Eigen::VectorXd direction = solver.eigenvectors().col(0);
     const double largest = direction.cwiseAbs().maxCoeff();
-    constexpr double kTakesPart = 0.2;
+    constexpr double kTakesPart = 0.05;
     std::size_t held = active.size();
     for (std::size_t i = 0; i < active.size(); ++i) {
       if (std::abs(direction[static_cast<Eigen::Index>(i)]) < kTakesPart * largest) continue;

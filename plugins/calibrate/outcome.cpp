@@ -48,6 +48,7 @@ std::string remark(const Parameter& parameter, const std::string& name, const Ca
 Calibration calibration_of(const Outcome& outcome, const Rig& rig) {
   Calibration calibration = outcome.model.calibration();
   const auto m = static_cast<Eigen::Index>(outcome.free.size());
+  calibration.covariance_order.clear();
   for (const std::size_t slot : outcome.free) {
     calibration.covariance_order.push_back(outcome.model.names()[slot]);
   }

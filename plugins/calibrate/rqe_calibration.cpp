@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "pipeline/data/error.hpp"
+#include "plugins/calibrate/can_be_told.hpp"
 #include "plugins/calibrate/observability.hpp"
 #include "plugins/calibrate/optimum_scatter.hpp"
 
@@ -29,9 +30,8 @@ class RqeCalibration {
         report_(report),
         model_(start),
         sample_(with_margin(start, sample, settings.in_plane.range.eta)),
-        parameters_(can_be_told(free_parameters(start, sample.beams, settings.fixed), start,
-                                thin_evenly(sample_, settings.points, settings.seed), settings.in_plane.range,
-                                settings.least_motion)) {
+        parameters_(can_be_told(free_parameters(start, sample.beams, settings.fixed), start, sample_,
+                                settings.in_plane.range)) {
     if (parameters_.free.empty()) {
       throw Error("these data leave nothing to calibrate",
                   "record with more than one laser or with a plate that turns, and see what is fixed");
@@ -111,20 +111,6 @@ class RqeCalibration {
 };
 
 }  // namespace
-
-FreeParameters can_be_told(FreeParameters parameters, const SensorModel& model, const Sample& sample,
-                           const SearchRange& range, double least_motion) {
-  if (parameters.free.empty()) return parameters;
-  const Eigen::MatrixXd motion = displacement(model, sample, parameters.free) / (least_motion * least_motion);
-  const auto told =
-      observability(motion, parameters.free, model.names(), ranges_of(range, model, parameters.free));
-  parameters.free = told.known;
-  for (Unobservable lost : told.unobservable) {
-    lost.reason = "the motion of the plate does not tell it";
-    parameters.unobservable.push_back(std::move(lost));
-  }
-  return parameters;
-}
 
 Outcome calibrate_by_rqe(const SensorModel& start, const Sample& sample, Measure& measure,
                          const RqeCalibrationSettings& settings, const Reporter& report) {

@@ -20,7 +20,6 @@ struct RqeCalibrationSettings {
   std::size_t points = 60000;      ///< about so many beams of the full field are looked at
   double noise = 0.012;            ///< [m] standard deviation of a range, for the standard errors
   std::size_t probes = 32;         ///< noisy copies of the data that the standard errors are taken from
-  double least_motion = 0.005;     ///< [m] see can_be_told()
   std::uint64_t seed = 1;
 };
 
@@ -38,12 +37,5 @@ using Reporter = std::function<void(double done, std::string_view what)>;
 /// @throws Error  if nothing is left to be turned
 Outcome calibrate_by_rqe(const SensorModel& start, const Sample& sample, Measure& measure,
                          const RqeCalibrationSettings& settings, const Reporter& report = {});
-
-/// Leaves out of `parameters` those that these data cannot tell: directions that move the cloud's points,
-/// over all of the range in which they are looked for and apart from rigid motions, by less than
-/// `least_motion` [m]. So it is with the η of a plate at constant speed, which turns a laser's cloud as its λ
-/// does.
-FreeParameters can_be_told(FreeParameters parameters, const SensorModel& model, const Sample& sample,
-                           const SearchRange& range, double least_motion);
 
 }  // namespace crisp

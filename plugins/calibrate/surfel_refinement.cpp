@@ -3,8 +3,10 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <limits>
 
 #include "pipeline/data/error.hpp"
+#include "plugins/calibrate/can_be_told.hpp"
 #include "plugins/calibrate/free_parameters.hpp"
 #include "plugins/calibrate/observability.hpp"
 #include "plugins/calibrate/placed_beams.hpp"
@@ -28,6 +30,11 @@ Measurements picked_beams(const Measurements& from, std::span<const std::uint32_
   }
   return to;
 }
+
+/// [standard errors] Steps below which the surfaces are no longer found anew, and rounds after which they are
+/// not in any case: beams that join and leave them at their rims keep the steps from getting any smaller.
+constexpr double kSettled = 0.5;
+constexpr int kFindingRounds = 6;
 
 /// normal · ∂x/∂θ of beams, where they meet the surfel's plane.
 DerivativeRows rows_of(const SensorModel& model, const Sample& sample, const std::vector<std::size_t>& free) {
@@ -57,13 +64,14 @@ class Refiner {
   /// @return  the length of the step [standard errors]
   double step() {
     const PlacedBeams placed(model_, sample_);
-    const Surfels surfels = find_surfels(placed.view(), settings_.surfels);
-    if (surfels.surfels.empty()) {
+    if (last_step_ > kSettled && round_++ < kFindingRounds)
+      surfels_ = find_surfels(placed.view(), settings_.surfels);
+    if (surfels_.surfels.empty()) {
       throw Error(
           "no flat surface is seen by these data",
           "leave calibrate.refine out where nothing is flat, or look closer with a smaller `smallest`");
     }
-    const NormalEquations equations = normal_equations(surfels, placed.view(), free_.size(),
+    const NormalEquations equations = normal_equations(surfels_, placed.view(), free_.size(),
                                                        rows_of(model_, sample_, free_), settings_.surfels);
     information_ = equations.matrix / equations.covariance_factor();
     const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
@@ -75,10 +83,10 @@ class Refiner {
     covariance_ = posterior.solve(Eigen::MatrixXd::Identity(n, n));
     const Eigen::VectorXd change = -posterior.solve(pull);
     model_ = with(model_, free_, picked(model_, free_) + change);
-    surfels_ = surfels.surfels.size();
     beams_ = equations.beams;
     chi2_ = equations.chi2 / std::max(1.0, equations.freedom);
-    return (change.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
+    last_step_ = (change.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
+    return last_step_;
   }
 
   /// Keeps at their start those that the data do not tell.
@@ -96,7 +104,7 @@ class Refiner {
 
   Refinement result() const {
     return {.outcome = {.model = model_, .free = free_, .covariance = covariance_, .unobservable = {}},
-            .surfels = surfels_,
+            .surfels = surfels_.surfels.size(),
             .beams = beams_,
             .chi2 = chi2_};
   }
@@ -109,7 +117,9 @@ class Refiner {
   const RefinementSettings& settings_;
   Eigen::MatrixXd information_;
   Eigen::MatrixXd covariance_;
-  std::size_t surfels_ = 0;
+  Surfels surfels_;
+  int round_ = 0;
+  double last_step_ = std::numeric_limits<double>::infinity();
   std::size_t beams_ = 0;
   double chi2_ = 0;
 };
@@ -120,7 +130,8 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
                              const RefinementSettings& settings, const RoundReporter& report) {
   const LagRange lag = lag_range(start, settings.prior.eta);
   const Sample inside = covered(sample, lag.earliest, lag.latest);
-  FreeParameters parameters = free_parameters(start, inside.beams, settings.fixed);
+  FreeParameters parameters =
+      can_be_told(free_parameters(start, inside.beams, settings.fixed), start, inside, SearchRange{});
   Refiner refiner(start, inside, parameters.free, settings);
   int round = 0;
   bool converged = false;

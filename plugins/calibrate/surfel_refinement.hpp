@@ -35,7 +35,8 @@ using RoundReporter = std::function<bool(int round)>;
 /// they meet, whose planes are estimated with them (projected out). Against RQE it has no bias by a kernel's
 /// width and uses all beams; but it needs a start that is right to some centimetres, which RQE gives.
 ///
-/// Each round places the beams, finds the surfaces anew and takes one Gauss-Newton step. The start counts as
+/// Each round places the beams, finds the surfaces (anew until steps are small) and takes one Gauss-Newton
+/// step. The start counts as
 /// an observation with the standard deviations `prior`; what the data do not tell better is named and kept.
 ///
 /// @param start   right to some centimetres and degrees

@@ -28,11 +28,7 @@ TEST(Crispest, MakesTheCloudCrisperThanTheTruthDoesAndEndsNearIt) {
   for (const auto eta : {3, 7, 11}) off[eta] -= 0.003;
   model.set_values(off);
   const Sample sample = thin_by_area(covered(sample_of(recording), -0.11, 0.11), model, 20000, 1);
-  SearchRegistry searches;
-  register_built_in(searches);
-  MeasureRegistry measures;
-  register_built_in(measures);
-  const auto measure = measures.make("rqe", {.search = "grid", .cutoff = 5}, searches);
+  const auto measure = rqe_measure();
   const auto minimum = crispest(model, sample, all_free(), *measure, 0.1, {}, {.tolerance = 1e-7});
   EXPECT_TRUE(minimum.converged) << minimum.status;
   // The minimum of a function is at most its value anywhere, at the truth too.

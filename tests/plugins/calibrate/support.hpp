@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
+#include "pipeline/quality/measure.hpp"
 #include "plugins/calibrate/sample.hpp"
 
 namespace crisp {
@@ -30,6 +32,14 @@ inline ScannerSettings misplaced_scanner(std::uint64_t seed, double duration) {
     laser.eta.value += 0.04 * at(std::numbers::e);
   }
   return scanner;
+}
+
+inline std::unique_ptr<Measure> rqe_measure() {
+  SearchRegistry searches;
+  register_built_in(searches);
+  MeasureRegistry measures;
+  register_built_in(measures);
+  return measures.make("rqe", {.search = "grid", .cutoff = 5}, searches);
 }
 
 inline Sample sample_of(const SimulatedMeasurements& simulated) {

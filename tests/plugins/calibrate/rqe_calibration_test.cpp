@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/rqe_calibration.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/plugins/calibrate/support.hpp"
+
+namespace crisp {
+namespace {
+
+RqeCalibrationSettings quick() { return {.points = 30000, .probes = 4}; }
+
+TEST(CalibrateByRqe, FindsAScannerThatIsOffByCentimetresDegreesAndMilliseconds) {
+  const auto recording = simulate_measurements(misplaced_scanner(2, 5.0), office());
+  SensorModel start(nominal_calibration(default_rig()));
+  const auto measure = rqe_measure();
+  std::vector<double> told;
+  const Outcome outcome = calibrate_by_rqe(start, sample_of(recording), *measure, quick(),
+                                           [&](double done, std::string_view) { told.push_back(done); });
+  const Eigen::VectorXd error = outcome.model.values() - SensorModel(recording.truth).values();
+  for (std::size_t laser = 0; laser < 3; ++laser) {
+    // The bias of the optimum at σ = 5 cm, as far as it goes in the office.
+    const auto first = static_cast<Eigen::Index>(4 * laser);
+    EXPECT_LT(std::abs(std::remainder(error[first], 2 * std::numbers::pi)), 0.6 * kDegree);
+    EXPECT_LT(std::abs(error[first + 1]), 0.010);
+    EXPECT_LT(std::abs(error[first + 2]), 0.6 * kDegree);
+    EXPECT_LT(std::abs(error[first + 3]), 0.0006);
+  }
+  EXPECT_EQ(outcome.free.size(), 11U);
+  EXPECT_TRUE(outcome.unobservable.empty());
+  EXPECT_GT(outcome.covariance.diagonal().minCoeff(), 0);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GT(told.size(), 3U);
+}
+
+TEST(CalibrateByRqe, SaysThatAConstantSpeedDoesNotTellTheLags) {
+  auto scanner = misplaced_scanner(1, 3.0);
+  scanner.motion = {.kind = MotionKind::constant, .max_rate = 0.91};  // no whole number of scans a turn
+  for (auto& laser : scanner.truth.lasers) laser.eta.value = 0;
+  const auto recording = simulate_measurements(scanner, office());
+  SensorModel start(nominal_calibration(default_rig()));
+  const auto measure = rqe_measure();
+  const Outcome outcome = calibrate_by_rqe(start, sample_of(recording), *measure, quick());
+  ASSERT_EQ(outcome.unobservable.size(), 3U);
+  for (const auto& lost : outcome.unobservable) EXPECT_THAT(lost.parameter, testing::EndsWith(".eta"));
+  // λ + ω η is known of each laser against the first.
+  bool combined = false;
+  for (const auto& lost : outcome.unobservable)
+    combined |= lost.combination.find(".lambda") != std::string::npos;
+  EXPECT_TRUE(combined);
+  EXPECT_EQ(outcome.free.size(), 8U);
+  const Eigen::VectorXd error = outcome.model.values() - SensorModel(recording.truth).values();
+  for (const auto lambda : {4, 8}) {
+    EXPECT_LT(std::abs(std::remainder(error[lambda], 2 * std::numbers::pi)), 1.0 * kDegree);
+  }
+}
+
+TEST(CalibrateByRqe, SaysThatAPlateThatStandsStillDoesNotTellTheLags) {
+  auto scanner = misplaced_scanner(1, 1.0);
+  const auto recording = simulate_measurements(scanner, office(), Motion({{.time = 0, .rate = 0}}));
+  SensorModel start(nominal_calibration(default_rig()));
+  const auto measure = rqe_measure();
+  const Outcome outcome = calibrate_by_rqe(start, sample_of(recording), *measure, quick());
+  EXPECT_GE(outcome.unobservable.size(), 3U);
+}
+
+}  // namespace
+}  // namespace crisp
