@@ -73,10 +73,11 @@ function(crisp_library name)
           FILES_MATCHING PATTERN "*.hpp")
 endfunction()
 
-# crisp_test(<name> [THREADS] SOURCES ... LIBRARIES ...) makes one GoogleTest program of a folder's tests. With
-# THREADS they are also what the thread sanitizer runs (target threaded_tests, label threads).
+# crisp_test(<name> [THREADS] [SLOW] SOURCES ... LIBRARIES ...) makes one GoogleTest program of a folder's tests.
+# With THREADS they are also what the thread sanitizer runs (target threaded_tests, label threads); SLOW ones are
+# run by the release build alone (label slow).
 function(crisp_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS" "" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS;SLOW" "" "SOURCES;LIBRARIES")
   add_executable(${name}_test ${arg_SOURCES})
   target_link_libraries(${name}_test PRIVATE ${arg_LIBRARIES} GTest::gmock GTest::gtest_main crisp_settings)
   target_compile_definitions(${name}_test PRIVATE CRISP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
@@ -85,6 +86,9 @@ function(crisp_test name)
   if(arg_THREADS)
     list(APPEND properties LABELS threads)
     add_dependencies(threaded_tests ${name}_test)
+  endif()
+  if(arg_SLOW)
+    list(APPEND properties LABELS slow)
   endif()
   gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST PROPERTIES ${properties})
 endfunction()

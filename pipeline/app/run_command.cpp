@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -90,6 +91,8 @@ ExitStatus run_command(const RunRequest& request, const Registrar& registrar) {
   run.threads = request.threads;
   run.seed = request.seed;
   std::optional<LoadedPipeline> loaded;
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  std::max(1U, request.threads));
   try {
     loaded = load_pipeline(request.file, request.arguments, run);
     check_input(request.arguments.input);

@@ -2,7 +2,11 @@
 // The pipelines that come with crisp, run as they are.
 #include <gmock/gmock.h>
 
+#include <numbers>
+
+#include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/yaml.hpp"
+#include "tests/end_to_end/calibration_errors.hpp"
 #include "tests/end_to_end/workshop.hpp"
 
 namespace crisp {
@@ -18,7 +22,7 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "simulate.yaml"));
+  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "calibrate.yaml", "simulate.yaml"));
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
@@ -37,6 +41,26 @@ TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
   EXPECT_LE(assembled.cloud->size(), 50U * 3 * 541);
   EXPECT_THAT(test::bytes_of(workshop / "out/cloud.pcd").substr(0, 1000),
               testing::HasSubstr("DATA binary_compressed"));
+}
+
+TEST(Configs, CalibrateFindsTheScannerAndMakesTheCloudFromACaptureAlone) {
+  const test::Workshop workshop;
+  workshop.simulate("made", {"duration=3s"});
+  const auto outcome = workshop.run("calibrate.yaml", workshop / "made/hub.pcap", "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  EXPECT_THAT(outcome.files, ElementsAre("calibration.yaml", "calibration.yaml.provenance.json", "cloud.pcd",
+                                         "cloud.pcd.provenance.json", "summary.json"));
+  const auto errors = test::errors_of(read_calibration(workshop / "out/calibration.yaml"),
+                                      read_calibration(workshop / "made/truth.yaml"));
+  constexpr double kDegree = std::numbers::pi / 180;
+  EXPECT_LE(errors.tau, 0.003);
+  EXPECT_LE(errors.lambda, 0.3 * kDegree);
+  EXPECT_LE(errors.alpha, 0.3 * kDegree);
+  EXPECT_LE(errors.eta, 0.4e-3);
+  const auto& quality = outcome.stage("calibrate.refine")["report"]["quality"];
+  EXPECT_LT(quality["rqe_after"].get<double>(), quality["rqe_before"].get<double>());
+  ASSERT_NE(outcome.cloud, nullptr);
+  EXPECT_EQ(outcome.cloud->size(), outcome.stage("assemble.deskew")["report"]["points"]);
 }
 
 TEST(Configs, AssembleSaysWhichCalibrationItMisses) {
