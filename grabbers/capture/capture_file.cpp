@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/capture/capture_file.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -38,6 +39,12 @@ bool CaptureFile::stamp_is_damaged() const {
   return *before_ns_ <= after && (time < *before_ns_ - kTolerance || time > after + kTolerance);
 }
 
+std::int64_t CaptureFile::earliest_receipt() const {
+  const auto time = current_.packet.time_ns;
+  const bool neighbours_in_order = before_ns_ && ahead_.full && *before_ns_ <= ahead_.packet.time_ns;
+  return neighbours_in_order ? std::max(time, *before_ns_) : time;
+}
+
 const Packet* CaptureFile::next() {
   if (!std::exchange(begun_, true)) load(ahead_);
   while (true) {
@@ -47,7 +54,10 @@ const Packet* CaptureFile::next() {
     if (!stamp_is_damaged()) break;
     losses_.add(file_loss::kDamagedStamps);
   }
-  before_ns_ = current_.packet.time_ns;
+  const auto time = current_.packet.time_ns;
+  current_.packet.time_ns = earliest_receipt();
+  if (current_.packet.time_ns != time) notes_.add(file_loss::kBeforeItsTime);
+  before_ns_ = time;
   return &current_.packet;
 }
 

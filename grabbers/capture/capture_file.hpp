@@ -12,7 +12,9 @@ namespace crisp {
 
 /// The packets of a pcap or pcapng file, one after the other; memory does not depend on the file's size. A
 /// packet whose time lies by more than a second outside of its neighbours', while these are in order, has a
-/// damaged stamp: it is dropped and counted.
+/// damaged stamp: it is dropped and counted. One that is earlier than both of its neighbours by less came no
+/// earlier than the packet before it, and gets that one's time: packets are written down as they come, and a
+/// single stamp that is too early would bend the clock of its device, where one that is late does nothing.
 class CaptureFile {
  public:
   /// @throws Error if the file cannot be read or is no capture
@@ -22,6 +24,7 @@ class CaptureFile {
   const Packet* next();
 
   const Counts& losses() const { return losses_; }
+  const Counts& notes() const { return notes_; }
   std::uint64_t offset() const { return file_.offset(); }  ///< [bytes] read so far
   std::uint64_t size() const { return file_.size(); }      ///< [bytes] of the file; 0 for a pipe
 
@@ -34,9 +37,11 @@ class CaptureFile {
 
   void load(Slot& slot);
   bool stamp_is_damaged() const;
+  std::int64_t earliest_receipt() const;  ///< of the current packet: its time, if it is not too early [ns]
 
   FileWindow file_;
   Counts losses_;
+  Counts notes_;
   std::variant<std::monostate, PcapRecords, PcapngBlocks> records_;
   Slot current_, ahead_;
   bool begun_ = false;

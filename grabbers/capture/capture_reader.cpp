@@ -174,6 +174,7 @@ CaptureStatistics CaptureReader::statistics() const {
   auto statistics = traffic_->totals;
   statistics.file_bytes = traffic_->file.offset();
   statistics.losses.add(traffic_->file.losses());
+  statistics.notes.add(traffic_->file.notes());
   statistics.losses.add(traffic_->fragments.losses());
   statistics.devices = traffic_->devices.statistics();
   return statistics;

@@ -22,6 +22,7 @@ inline constexpr std::string_view kDamagedRecords = "damaged records in the file
 inline constexpr std::string_view kSkippedBytes = "bytes skipped in the file to find the next record";
 inline constexpr std::string_view kCutOff = "bytes of a record that the end of the file cuts off";
 inline constexpr std::string_view kDamagedStamps = "packets with a damaged time stamp";
+inline constexpr std::string_view kBeforeItsTime = "packets whose time was before that of the one before";
 inline constexpr std::string_view kNoStamp = "packets without a time stamp";
 inline constexpr std::string_view kUnknownInterface =
     "packets of an interface that the file does not describe";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program's command line; the only file that knows CLI11.
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <sstream>
@@ -186,6 +187,8 @@ int guarded_main(int count, char** words) {
 }  // namespace crisp
 
 int main(int count, char** words) {
+  std::signal(SIGXFSZ,
+              SIG_IGN);  // a file beyond the shell's limit is an error as on a full disk, not the end
   try {
     return crisp::guarded_main(count, words);
   } catch (const crisp::Error& error) {

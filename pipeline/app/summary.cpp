@@ -53,6 +53,16 @@ std::string summary_text(const RunRecord& record, bool verbose) {
   return text;
 }
 
+std::string failure_text(const RunRecord& record) {
+  std::string text;
+  for (const auto& node : record.nodes) {
+    for (const auto& [name, count] : node.report.counts) {
+      if (count > 0) text += fmt::format("{}: {} {}\n", node.tag, format_count(count), name);
+    }
+  }
+  return text + warnings_text(record);
+}
+
 std::string warnings_text(const RunRecord& record) {
   std::string text;
   for (const auto& node : record.nodes) {

@@ -11,6 +11,9 @@ namespace crisp {
 /// @param verbose  also the effective options, what flowed, and counts that are 0
 std::string summary_text(const RunRecord& record, bool verbose);
 
+/// What had been lost and warned of when a run failed: often the reason.
+std::string failure_text(const RunRecord& record);
+
 /// Warnings and doubts only, for those who asked for quiet.
 std::string warnings_text(const RunRecord& record);
 

@@ -63,17 +63,30 @@ class Runner {
   }
 
   std::vector<NodeResult> run() {
+    try {
+      run_all();
+    } catch (const Error&) {
+      if (hooks_.failed) hooks_.failed(results());
+      throw;
+    }
+    return results();
+  }
+
+ private:
+  void run_all() {
     for (const auto source : sources())
       call(source, [&](Worker& w, Outputs& out, Context& context) {
         w.node->stage->process(Inputs({}), out, context);
       });
     for (std::size_t i = 0; i < workers_.size(); ++i) finish(i);
-    std::vector<NodeResult> results;
-    for (auto& worker : workers_) results.push_back(std::move(worker.result));
-    return results;
   }
 
- private:
+  std::vector<NodeResult> results() {
+    std::vector<NodeResult> list;
+    for (auto& worker : workers_) list.push_back(std::move(worker.result));
+    return list;
+  }
+
   void add(PipelineNode& node) {
     const std::size_t index = workers_.size();
     Worker& worker = workers_.emplace_back();

@@ -34,6 +34,8 @@ struct NodeResult {
 struct RunHooks {
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string& tag, const Progress& progress)> progress = {};
+  /// What the stages had done and reported when one of them threw; called before run_pipeline throws.
+  std::function<void(std::vector<NodeResult> until_then)> failed = {};
 };
 
 /// Runs a pipeline to its end in the calling thread: each source gives all that it has, every item runs

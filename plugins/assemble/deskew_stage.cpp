@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "pipeline/data/error.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/assemble/deskew.hpp"
 
@@ -52,6 +53,11 @@ const SensorModel& DeskewStage::model(std::shared_ptr<const Calibration> calibra
 
 void DeskewStage::finish(Outputs&, Context& context) {
   const std::uint64_t points = beams_ - outside_;
+  if (beams_ > 0 && points == 0) {
+    throw Error(
+        fmt::format("none of {} beams could be placed: the plate's readings do not say where it was", beams_),
+        "see whether they were recorded all the time");
+  }
   const bool nominal = calibration_ == nullptr;
   context.report({{"beams", beams_}, {"points", points}, {"calibration", nominal ? "nominal" : "given"}});
   context.say(fmt::format("{} points of {} beams, placed by {}", points, beams_,

@@ -34,6 +34,7 @@ struct AlignmentReport {
   std::vector<DeviceReport> devices;  ///< the lasers in the order of the rig, then the plate
   std::map<std::string, std::uint64_t> counts;
   std::vector<std::string> warnings;
+  std::vector<std::string> doubts;  ///< why the times cannot be trusted
 };
 
 /// Where an alignment puts what it makes: for each stretch of time first the plate's trajectory, then all

@@ -138,6 +138,7 @@ void AlignStage::finish(Outputs& out, Context& context) {
   for (const auto& device : report.devices) devices.push_back(to_json(device));
   for (const auto& [what, n] : report.counts) context.count(what, n);
   for (const auto& warning : report.warnings) context.warn(warning);
+  for (const auto& doubt : report.doubts) context.distrust(doubt);
   context.report({{"devices", devices}});
   context.say(table_of(report.devices));
   for (const auto& device : report.devices) {

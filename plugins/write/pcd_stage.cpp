@@ -51,8 +51,7 @@ void WritePcdStage::add(const Point& point) {
 
 void WritePcdStage::finish(Outputs&, Context& context) {
   if (pending_.empty()) {
-    throw Error("no point came, so that there is no cloud to write",
-                "the counts above say where they were lost");
+    throw Error("no point came, so that there is no cloud to write", "what was lost until then says why");
   }
   writer_->write(to_table(pending_), false);
   finish_parts(*writer_, written_ + pending_.size(), "points", context);

@@ -31,6 +31,8 @@ struct Outcome {
 /// A folder in which the program's own pipelines are run, as `crisp run` does, but within this process.
 class Workshop {
  public:
+  Workshop();
+
   /// `crisp run configs/CONFIG -i INPUT -o OUTPUT --quiet --set …`; OUTPUT is a folder in the workshop, which
   /// is emptied before.
   Outcome run(const std::string& config, const std::filesystem::path& input, const std::string& output,
@@ -47,7 +49,7 @@ class Workshop {
   std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
 
  private:
-  TemporaryFolder folder_;
+  TemporaryFolder folder_;  ///< in memory where there is such a place: every file is put on the disk for sure
 };
 
 }  // namespace crisp::test

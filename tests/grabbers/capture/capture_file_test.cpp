@@ -30,11 +30,13 @@ class CaptureFileTest : public testing::Test {
                        packet->original_size});
     }
     losses_ = capture.losses();
+    notes_ = capture.notes();
     return found;
   }
 
   TemporaryFolder folder_;
   Counts losses_;
+  Counts notes_;
 };
 
 bool same(const Frame& a, const Frame& b) { return a.time_ns == b.time_ns && a.bytes == b.bytes; }
@@ -169,12 +171,17 @@ TEST_F(CaptureFileTest, LosesAtMostTheRecordInWhichABitFlips) {
       auto damaged = file;
       damaged[bit / 8] ^= static_cast<std::uint8_t>(1 << (bit % 8));
       const auto found = read(damaged);
+      std::size_t whole = 0;
       std::size_t right = 0;
       for (const auto& frame : written) {
+        const auto same_bytes = [&](const auto& f) { return f.bytes == frame.bytes; };
+        whole += std::any_of(found.begin(), found.end(), same_bytes) ? 1 : 0;
         right +=
             std::any_of(found.begin(), found.end(), [&](const auto& f) { return same(f, frame); }) ? 1 : 0;
       }
-      ASSERT_GE(right, written.size() - 1) << "bit " << bit;
+      ASSERT_GE(whole, written.size() - 1) << "bit " << bit;
+      // One packet that comes a little late takes the next one along: which of the two is wrong is not known.
+      ASSERT_GE(right, written.size() - 2) << "bit " << bit;
       ASSERT_LE(found.size(), written.size());
       const bool as_names =
           damaged[bit / 8] == 4 && file[bit / 8] == 6;  // a kind of block that is passed over
@@ -191,6 +198,19 @@ TEST_F(CaptureFileTest, DropsAPacketWhoseTimeIsFarFromItsNeighbours) {
     EXPECT_THAT(read(pcap_file(written)), SizeIs(4));
     EXPECT_EQ(losses_.of(file_loss::kDamagedStamps) + losses_.of(file_loss::kDamagedRecords), 1U);
   }
+}
+
+TEST_F(CaptureFileTest, APacketComesNoEarlierThanTheOneBeforeIt) {
+  auto written = packets(5);
+  const auto right = written[1].time_ns;
+  written[2].time_ns = right - 400'000'000;
+  EXPECT_EQ(read(pcap_file(written)).at(2).time_ns, right);
+  EXPECT_EQ(notes_.of(file_loss::kBeforeItsTime), 1U);
+  EXPECT_TRUE(losses_.all().empty());
+
+  written[2].time_ns = right + 900'000'000;  // one that is late makes none of the others late
+  const auto late = read(pcap_file(written));
+  for (const std::size_t i : {0, 1, 3, 4}) EXPECT_EQ(late.at(i).time_ns, written[i].time_ns);
 }
 
 TEST_F(CaptureFileTest, KeepsPacketsAcrossPausesAndSteppedClocks) {

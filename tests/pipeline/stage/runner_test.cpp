@@ -103,6 +103,15 @@ TEST_F(RunnerTest, TellsTheStageThatThrewAndNotTheOneThatFedIt) {
   EXPECT_EQ(message_of(specs), "error: culprit: it saw a three; avoid threes");
 }
 
+TEST_F(RunnerTest, TellsWhatHadBeenDoneWhenAStageThrew) {
+  std::vector<NodeResult> done;
+  const RunHooks hooks{.failed = [&](std::vector<NodeResult> until_then) { done = std::move(until_then); }};
+  EXPECT_THROW(run({{.stage = "toy.count"}, {.stage = "toy.log"}, {.stage = "toy.throw"}}, hooks), Error);
+  ASSERT_EQ(done.size(), 3U);
+  EXPECT_EQ(done[1].report.counts.at("entries"), 3U);
+  EXPECT_EQ(done[2].given.at("Number"), 2U);
+}
+
 TEST_F(RunnerTest, TurnsAnyExceptionIntoAnErrorWithThePlaceOfTheStage) {
   std::vector<StageSpec> specs = {{.stage = "toy.count"}, {.stage = "toy.throw"}};
   specs[1].place = {"p.yaml", 7, 5};

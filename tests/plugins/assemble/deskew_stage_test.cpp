@@ -118,6 +118,11 @@ TEST_F(DeskewStageTest, DropsAndCountsBeamsBeforeBehindAndInGapsOfThePlatesReadi
   EXPECT_THAT(stage_.report().warnings, ElementsAre(HasSubstr("66.7 % of the beams are not in the cloud")));
 }
 
+TEST_F(DeskewStageTest, ThatNoBeamAtAllCanBePlacedIsAnError) {
+  stage_.feed(beams_at({2, 3}), turning(0, 1), with_lambda(0));
+  EXPECT_THROW(stage_.finish(), Error);
+}
+
 TEST_F(DeskewStageTest, TheLagMovesABeamAcrossTheEdgeOfTheReadings) {
   Calibration late = with_lambda(0);
   late.lasers[0].eta.value = 0.03;
