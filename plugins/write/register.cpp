@@ -4,6 +4,7 @@
 #include "plugins/write/calibration_stage.hpp"
 #include "plugins/write/measurements_stage.hpp"
 #include "plugins/write/pcd_stage.hpp"
+#include "plugins/write/picture_stage.hpp"
 
 namespace crisp {
 
@@ -11,6 +12,7 @@ void register_write(Registrar& registrar) {
   registrar.stage<WriteCalibrationStage>();
   registrar.stage<WriteMeasurementsStage>();
   registrar.stage<WritePcdStage>();
+  registrar.stage<WritePictureStage>();
   registrar.inspector(calibration_inspector());
 }
 

@@ -22,7 +22,8 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "calibrate.yaml", "simulate.yaml"));
+  EXPECT_THAT(pipelines,
+              UnorderedElementsAre("assemble.yaml", "calibrate.yaml", "picture.yaml", "simulate.yaml"));
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
@@ -61,6 +62,17 @@ TEST(Configs, CalibrateFindsTheScannerAndMakesTheCloudFromACaptureAlone) {
   EXPECT_LT(quality["rqe_after"].get<double>(), quality["rqe_before"].get<double>());
   ASSERT_NE(outcome.cloud, nullptr);
   EXPECT_EQ(outcome.cloud->size(), outcome.stage("assemble.deskew")["report"]["points"]);
+}
+
+TEST(Configs, PictureShowsTheCloudBeforeAndAfterACalibration) {
+  const test::Workshop workshop;
+  workshop.simulate("made", {"duration=1s"});
+  const auto drawn = workshop.run("picture.yaml", workshop / "made/hub.pcap", "out",
+                                  {"calibration=" + (workshop / "made/truth.yaml").string()});
+  EXPECT_EQ(drawn.status, ExitStatus::done) << drawn.told;
+  EXPECT_THAT(drawn.files, ElementsAre("after.png", "after.png.provenance.json", "before.png",
+                                       "before.png.provenance.json", "summary.json"));
+  EXPECT_NE(test::bytes_of(workshop / "out/before.png"), test::bytes_of(workshop / "out/after.png"));
 }
 
 TEST(Configs, AssembleSaysWhichCalibrationItMisses) {

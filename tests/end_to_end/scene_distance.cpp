@@ -8,9 +8,12 @@
 namespace crisp::test {
 namespace {
 
-double to_segment(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+using Point3 = Eigen::Vector3d;
+
+/// From the nearest point of a segment to x.
+Point3 from_segment(const Point3& x, const Point3& a, const Point3& b) {
   const double along = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (x - a - along * (b - a)).norm();
+  return x - a - along * (b - a);
 }
 
 /// Whether the point's projection lies within the corners, which may go round either way (crossing number).
@@ -27,29 +30,52 @@ bool is_above(const Eigen::Vector3d& x, const Surface& surface, const Eigen::Vec
   return inside;
 }
 
-double to_surface(const Eigen::Vector3d& x, const Surface& surface) {
+/// From the nearest point of a surface to x.
+Point3 from_surface(const Point3& x, const Surface& surface) {
   const auto& corners = surface.corners;
-  const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-  if (is_above(x, surface, normal)) return std::abs(normal.dot(x - corners[0]));
-  double nearest = to_segment(x, corners.back(), corners.front());
+  const Point3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+  if (is_above(x, surface, normal)) return normal.dot(x - corners[0]) * normal;
+  Point3 nearest = from_segment(x, corners.back(), corners.front());
   for (std::size_t i = 1; i < corners.size(); ++i) {
-    nearest = std::min(nearest, to_segment(x, corners[i - 1], corners[i]));
+    const Point3 other = from_segment(x, corners[i - 1], corners[i]);
+    if (other.squaredNorm() < nearest.squaredNorm()) nearest = other;
+  }
+  return nearest;
+}
+
+Point3 from_scene(const Point3& x, const Scene& scene) {
+  Point3 nearest = Point3::Constant(1e9);
+  for (const Surface& surface : scene.surfaces) {
+    const Point3 other = from_surface(x, surface);
+    if (other.squaredNorm() < nearest.squaredNorm()) nearest = other;
   }
   return nearest;
 }
 
 }  // namespace
 
-double rms_distance(const Cloud& cloud, const Scene& scene, std::size_t every, double most) {
-  double sum = 0;
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < cloud.size(); i += every, ++n) {
-    const Eigen::Vector3d x = cloud[i].getVector3fMap().cast<double>();
-    double nearest = most;
-    for (const Surface& surface : scene.surfaces) nearest = std::min(nearest, to_surface(x, surface));
-    sum += nearest * nearest;
+SceneDistance distance_to(const Scene& scene, const Cloud& cloud, std::size_t every, double most) {
+  SceneDistance result;
+  constexpr int kSteps = 3;  // of Gauss and Newton, in the turn
+  for (int step = 0; step <= kSteps; ++step) {
+    const Eigen::AngleAxisd turn(result.turn, Point3::UnitZ());
+    double squares = 0, slope = 0, curvature = 0;
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < cloud.size(); i += every, ++n) {
+      const Point3 x = turn * cloud[i].getVector3fMap().cast<double>();
+      const Point3 away = from_scene(x, scene);
+      const double distance = away.norm();
+      squares += std::min(distance, most) * std::min(distance, most);
+      if (distance == 0 || distance > most) continue;
+      const double moves = away.dot(Point3::UnitZ().cross(x)) / distance;
+      slope += moves * distance;
+      curvature += moves * moves;
+    }
+    result.turned = std::sqrt(squares / static_cast<double>(n));
+    if (step == 0) result.as_it_is = result.turned;
+    if (step < kSteps) result.turn -= slope / curvature;
   }
-  return std::sqrt(sum / static_cast<double>(n));
+  return result;
 }
 
 }  // namespace crisp::test

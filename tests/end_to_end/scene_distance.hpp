@@ -6,9 +6,16 @@
 
 namespace crisp::test {
 
-/// Root of the mean square distance [m] of a cloud's points to the nearest surface of a scene, of every
-/// `every`th point. Distances count up to `most` [m], so that what the scene does not explain is seen but
-/// does not drown the rest.
-double rms_distance(const Cloud& cloud, const Scene& scene, std::size_t every, double most = 0.2);
+/// How far [m, root of the mean square] every `every`th point of a cloud is from the nearest surface of a
+/// scene. Distances count up to `most` [m], so that what the scene does not explain is seen but does not
+/// drown the rest.
+struct SceneDistance {
+  double as_it_is = 0;
+  /// After the turn of the whole cloud about the spin axis that fits best. The azimuth of the first laser,
+  /// which the frame hangs on, is a convention, and no recording tells how its α is shared with it.
+  double turned = 0;
+  double turn = 0;  ///< [rad] this one
+};
+SceneDistance distance_to(const Scene& scene, const Cloud& cloud, std::size_t every, double most = 0.2);
 
 }  // namespace crisp::test

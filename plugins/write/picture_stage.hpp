@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/write/picture.hpp"
+
+namespace crisp {
+
+/// `write.picture`: all clouds that come, drawn into one PNG.
+class WritePictureStage final : public Stage {
+ public:
+  static void describe(StageDescription<WritePictureStage>& d);
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  std::filesystem::path file_;
+  PictureSettings settings_;
+  std::vector<double> depth_;
+  std::vector<double> centre_{0, 0};
+  std::optional<PicturePainter> painter_;
+  std::size_t drawn_ = 0;
+};
+
+}  // namespace crisp
