@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How fast measurements become points, on one core: scan by scan, as a recording streams through the stage.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+
+#include "grabbers/simulate/measurements.hpp"
+#include "grabbers/simulate/scenes.hpp"
+#include "pipeline/data/cloud.hpp"
+#include "pipeline/stage/registry.hpp"
+#include "plugins/assemble/deskew_stage.hpp"
+
+namespace {
+
+using namespace crisp;
+
+constexpr std::size_t kBeams = 541;  // in a scan
+
+/// Ten seconds in the office, a scan an item as clock stages give them.
+struct Recording {
+  std::vector<Item> scans;
+  Item plate;
+  Item calibration;
+
+  Recording()
+      : plate(Item::of<PlateTrajectory>(nullptr)),
+        calibration(
+            Item::of<Calibration>(std::make_shared<const Calibration>(nominal_calibration(default_rig())))) {
+    const auto simulated = simulate_measurements({.truth = nominal_calibration(default_rig())}, office());
+    plate = Item::of<PlateTrajectory>(std::make_shared<const PlateTrajectory>(simulated.plate));
+    const Measurements& all = simulated.beams;
+    for (std::size_t begin = 0; begin < all.size(); begin += kBeams) {
+      const std::size_t end = std::min(begin + kBeams, all.size());
+      const auto part = [&](const auto& values) {
+        return std::remove_cvref_t<decltype(values)>(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                     values.begin() + static_cast<std::ptrdiff_t>(end));
+      };
+      scans.push_back(Item::of<Measurements>(std::make_shared<const Measurements>(
+          Measurements{all.epoch_ns, part(all.range), part(all.mirror_angle), part(all.time), part(all.laser),
+                       part(all.remission), part(all.beam)})));
+    }
+  }
+};
+
+void deskew_scans(benchmark::State& state) {
+  const Recording recording;
+  TermRegistry terms;
+  Registrar registrar;
+  registrar.attach(terms);
+  const RunSettings run{.registrar = &registrar};
+  StageReport report;
+  Context context(run, report);
+  std::size_t points = 0;
+  Outputs out([&](const Item& item) { points += item.as<Cloud>()->size(); });
+  DeskewStage stage;
+  for (auto _ : state) {
+    for (const auto& scan : recording.scans) {
+      const std::array items = {scan, recording.plate, recording.calibration};
+      stage.process(Inputs(items), out, context);
+    }
+  }
+  state.counters["points/s"] = benchmark::Counter(static_cast<double>(points), benchmark::Counter::kIsRate);
+}
+
+BENCHMARK(deskew_scans)->Unit(benchmark::kMillisecond);
+
+}  // namespace
