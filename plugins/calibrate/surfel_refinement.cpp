@@ -81,6 +81,7 @@ class Refiner {
     const auto n = information_.rows();
     const auto posterior = (information_ + Eigen::MatrixXd(prior.asDiagonal())).eval().ldlt();
     covariance_ = posterior.solve(Eigen::MatrixXd::Identity(n, n));
+    covariance_ = covariance_.selfadjointView<Eigen::Lower>();  // to the last bit
     const Eigen::VectorXd change = -posterior.solve(pull);
     model_ = with(model_, free_, picked(model_, free_) + change);
     beams_ = equations.beams;
