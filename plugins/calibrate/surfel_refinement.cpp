@@ -10,49 +10,15 @@
 #include "plugins/calibrate/free_parameters.hpp"
 #include "plugins/calibrate/observability.hpp"
 #include "plugins/calibrate/placed_beams.hpp"
+#include "plugins/calibrate/surfel_rows.hpp"
 
 namespace crisp {
 namespace {
-
-Measurements picked_beams(const Measurements& from, std::span<const std::uint32_t> beams,
-                          std::span<const double> range_change) {
-  Measurements to;
-  to.epoch_ns = from.epoch_ns;
-  to.reserve(beams.size());
-  for (std::size_t k = 0; k < beams.size(); ++k) {
-    const std::uint32_t i = beams[k];
-    to.range.push_back(static_cast<float>(static_cast<double>(from.range[i]) + range_change[k]));
-    to.mirror_angle.push_back(from.mirror_angle[i]);
-    to.time.push_back(from.time[i]);
-    to.laser.push_back(from.laser[i]);
-    to.remission.push_back(from.remission[i]);
-    to.beam.push_back(from.beam[i]);
-  }
-  return to;
-}
 
 /// [standard errors] Steps below which the surfaces are no longer found anew, and rounds after which they are
 /// not in any case: beams that join and leave them at their rims keep the steps from getting any smaller.
 constexpr double kSettled = 0.5;
 constexpr int kFindingRounds = 6;
-
-/// normal · ∂x/∂θ of beams, where they meet the surfel's plane.
-DerivativeRows rows_of(const SensorModel& model, const Sample& sample, const std::vector<std::size_t>& free) {
-  return [&](const Surfel& surfel, std::span<const std::uint32_t> beams, std::span<const double> range_change,
-             std::span<double> rows) {
-    PointDerivatives derivatives;
-    const Measurements some = picked_beams(sample.beams, beams, range_change);
-    const Placed placed = model.place(some, *sample.plate, free, derivatives);
-    for (std::size_t k = 0; k < placed.index.size(); ++k) {
-      const std::size_t row = placed.index[k];
-      const auto& columns = derivatives.columns[some.laser[row]];
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        const auto column = static_cast<Eigen::Index>(k * derivatives.stride + c);
-        rows[row * free.size() + columns[c]] = surfel.normal.dot(derivatives.values.col(column));
-      }
-    }
-  };
-}
 
 /// Equations at a model, with the start as one more observation.
 class Refiner {
@@ -71,8 +37,8 @@ class Refiner {
           "no flat surface is seen by these data",
           "leave calibrate.refine out where nothing is flat, or look closer with a smaller `smallest`");
     }
-    const NormalEquations equations = normal_equations(surfels_, placed.view(), free_.size(),
-                                                       rows_of(model_, sample_, free_), settings_.surfels);
+    const NormalEquations equations = normal_equations(
+        surfels_, placed.view(), free_.size(), surfel_rows(model_, sample_, free_), settings_.surfels);
     information_ = equations.matrix / equations.covariance_factor();
     const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
     const Eigen::VectorXd from_start = picked(model_, free_) - picked(start_, free_);

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/upright.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace crisp {
+
+Sample spread_upright(const Sample& sample, double spread) {
+  Sample result = sample;
+  for (std::size_t i = 0; i < result.beams.size(); ++i) {
+    const double turns = static_cast<double>(i + 1) * std::numbers::phi;  // Weyl's sequence: no two alike
+    const double angle = spread * (2 * (turns - std::floor(turns)) - 1);
+    result.beams.mirror_angle[i] += static_cast<float>(angle);
+    result.beams.range[i] = static_cast<float>(static_cast<double>(result.beams.range[i]) / std::cos(angle));
+  }
+  return result;
+}
+
+}  // namespace crisp
