@@ -9,6 +9,7 @@
 #include "plugins/clock/register.hpp"
 #include "plugins/diagnose/register.hpp"
 #include "plugins/filter/register.hpp"
+#include "plugins/study/register.hpp"
 #include "plugins/write/register.hpp"
 
 namespace crisp {
@@ -27,6 +28,7 @@ Builtin::Builtin() {
   register_calibrate(registrar_);
   register_diagnose(registrar_);
   register_filter(registrar_);
+  register_study(registrar_);
   register_write(registrar_);
 }
 

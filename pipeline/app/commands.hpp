@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/stage/pipeline_file.hpp"
@@ -25,6 +26,7 @@ enum class ExitStatus {
 /// `crisp run`.
 struct RunRequest {
   std::filesystem::path file;
+  std::string_view text;  ///< the pipeline itself, where it comes with the program; `file` is then its name
   PipelineArguments arguments;
   unsigned threads = 1;
   std::uint64_t seed = 1;

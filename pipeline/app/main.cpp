@@ -10,6 +10,7 @@
 #include "pipeline/app/builtin.hpp"
 #include "pipeline/app/commands.hpp"
 #include "pipeline/app/completion.hpp"
+#include "pipeline/app/own_pipelines.hpp"
 
 namespace crisp {
 namespace {
@@ -28,19 +29,23 @@ struct CommandLine {
   CLI::App app{"Turns what lasers on a spinning plate measured into one crisp cloud.", "crisp"};
   std::vector<std::string> plugins;
   RunRequest run;
+  RunRequest monte_carlo;
+  std::uint64_t monte_carlo_runs = 1500;
+  std::optional<std::uint64_t> monte_carlo_only;
   PipelineArguments validate;
   StagesRequest stages;
   fs::path validate_file, info_file;
   std::optional<fs::path> info_rig;
   std::string shell;
   bool info_json = false;
-  CLI::App *run_app, *validate_app, *stages_app, *plugins_app, *info_app, *completion_app;
+  CLI::App *run_app, *monte_carlo_app, *validate_app, *stages_app, *plugins_app, *info_app, *completion_app;
 
   CommandLine() {
     app.set_version_flag("--version", "crisp " CRISP_VERSION);
     app.footer(kFooter);
     app.require_subcommand(1);
     add_run();
+    add_monte_carlo();
     add_validate();
     add_stages();
     plugins_app = command("plugins", "List the plugins that were tried, and why any were refused");
@@ -65,6 +70,10 @@ struct CommandLine {
         ->type_name("FOLDER");
     to->add_option("--rig", arguments.rig, "The rig, instead of the one that the pipeline names")
         ->type_name("FILE");
+    add_set(to, arguments);
+  }
+
+  static void add_set(CLI::App* to, PipelineArguments& arguments) {
     to->add_option("--set", arguments.set,
                    "An option of a stage, tag.option=value, or a variable, name=value (may be repeated)")
         ->type_name("NAME=VALUE")
@@ -75,13 +84,37 @@ struct CommandLine {
     run_app = command("run", "Run a pipeline");
     run_app->add_option("pipeline", run.file, "The pipeline's YAML file")->required()->type_name("FILE");
     add_arguments(run_app, run.arguments);
-    run.threads = std::max(1U, std::thread::hardware_concurrency());
-    run_app->add_option("--threads", run.threads, "How many threads to use; the result does not depend on it")
+    add_run_options(run_app, "--threads", run);
+  }
+
+  /// How a pipeline is run; the result does not depend on it, but for the seed.
+  static void add_run_options(CLI::App* to, const std::string& threads, RunRequest& request) {
+    request.threads = std::max(1U, std::thread::hardware_concurrency());
+    to->add_option(threads, request.threads, "How many threads to use; the result does not depend on it")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
-    run_app->add_option("--seed", run.seed, "Seed of all that is drawn at random")->capture_default_str();
-    CLI::Option* quiet = run_app->add_flag("--quiet", run.quiet, "Print warnings and errors only");
-    run_app->add_flag("--verbose", run.verbose, "Also print options and what flowed")->excludes(quiet);
+    to->add_option("--seed", request.seed, "Seed of all that is drawn at random")->capture_default_str();
+    CLI::Option* quiet = to->add_flag("--quiet", request.quiet, "Print warnings and errors only");
+    to->add_flag("--verbose", request.verbose, "Also print options and what flowed")->excludes(quiet);
+  }
+
+  void add_monte_carlo() {
+    monte_carlo.file = "monte_carlo.yaml";
+    monte_carlo.text = kMonteCarloPipeline;
+    monte_carlo.arguments.output = "out";
+    monte_carlo_app =
+        command("monte-carlo", "Calibrate many simulated recordings: the paper's Table 1, made anew");
+    CLI::Option* runs = monte_carlo_app->add_option("-n,--runs", monte_carlo_runs,
+                                                    "How many; run k has the seed --seed + k - 1");
+    runs->check(CLI::Range(1, 1000000))->capture_default_str();
+    monte_carlo_app
+        ->add_option("-o,--output", monte_carlo.arguments.output, "The folder for the results [out]")
+        ->type_name("FOLDER");
+    add_set(monte_carlo_app, monte_carlo.arguments);
+    add_run_options(monte_carlo_app, "-j,--threads", monte_carlo);
+    monte_carlo_app->add_option("--only", monte_carlo_only, "Repeat the run of this seed alone")
+        ->excludes(runs)
+        ->excludes(monte_carlo_app->get_option("--seed"));
   }
 
   void add_validate() {
@@ -110,6 +143,14 @@ struct CommandLine {
     info_app->add_flag("--json", info_json, "For programs");
   }
 };
+
+RunRequest monte_carlo_request(const CommandLine& line) {
+  RunRequest request = line.monte_carlo;
+  if (line.monte_carlo_only) request.seed = *line.monte_carlo_only;
+  const std::uint64_t runs = line.monte_carlo_only ? 1 : line.monte_carlo_runs;
+  request.arguments.set.push_back("runs=" + std::to_string(runs));
+  return request;
+}
 
 std::vector<CommandWords> completion_words(const CommandLine& line) {
   std::vector<CommandWords> commands;
@@ -166,6 +207,7 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.plugins_app->parsed()) return plugins_command(loader);
   if (!all_loaded) return ExitStatus::misused;
   if (line.run_app->parsed()) return run_command(line.run, registrar);
+  if (line.monte_carlo_app->parsed()) return run_command(monte_carlo_request(line), registrar);
   if (line.validate_app->parsed()) return validate_command(line.validate_file, line.validate, registrar);
   if (line.stages_app->parsed()) return stages_command(line.stages, registrar);
   if (line.info_app->parsed()) return info_command(line.info_file, line.info_rig, line.info_json, registrar);

@@ -96,7 +96,8 @@ ExitStatus run_command(const RunRequest& request, const Registrar& registrar) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   std::max(1U, request.threads));
   try {
-    loaded = load_pipeline(request.file, request.arguments, run);
+    loaded = request.text.empty() ? load_pipeline(request.file, request.arguments, run)
+                                  : load_pipeline(request.text, request.file, request.arguments, run);
     check_input(request.arguments.input);
     if (!run.output.empty()) make_output_folder(run.output);
   } catch (const Error& error) {

@@ -206,16 +206,30 @@ PipelinePlan parse_plan(const YamlNode& root, const fs::path& folder, const Pipe
   return PlanReader(folder, arguments, stages, errors).read(root);
 }
 
-LoadedPipeline load_pipeline(const fs::path& file, const PipelineArguments& arguments, RunSettings& run) {
+namespace {
+
+LoadedPipeline load(const YamlNode& root, const fs::path& file, const PipelineArguments& arguments,
+                    RunSettings& run) {
   std::vector<Error> errors;
   const fs::path folder = fs::absolute(file).parent_path();
-  PipelinePlan plan = parse_plan(read_yaml(file), folder, arguments, run.registrar->stages(), errors);
+  PipelinePlan plan = parse_plan(root, folder, arguments, run.registrar->stages(), errors);
   run.rig = std::move(plan.rig);
   run.output = arguments.output ? fs::absolute(*arguments.output).lexically_normal() : fs::path();
   Pipeline pipeline = build_pipeline(plan.stages, run, errors);
   sort_by_place(errors);
   if (!errors.empty()) throw Errors(std::move(errors));
   return {std::move(pipeline), file, std::move(plan.rig_file)};
+}
+
+}  // namespace
+
+LoadedPipeline load_pipeline(const fs::path& file, const PipelineArguments& arguments, RunSettings& run) {
+  return load(read_yaml(file), file, arguments, run);
+}
+
+LoadedPipeline load_pipeline(std::string_view text, const fs::path& name, const PipelineArguments& arguments,
+                             RunSettings& run) {
+  return load(parse_yaml(text, name.string()), name, arguments, run);
 }
 
 }  // namespace crisp

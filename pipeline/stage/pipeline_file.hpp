@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/files/yaml.hpp"
@@ -45,5 +46,10 @@ struct LoadedPipeline {
 /// @throws Errors  all mistakes that were found, in the order of the file
 LoadedPipeline load_pipeline(const std::filesystem::path& file, const PipelineArguments& arguments,
                              RunSettings& run);
+
+/// The same for a pipeline's text.
+/// @param name  to call it by; what paths in it are relative to lies in the folder of such a file
+LoadedPipeline load_pipeline(std::string_view text, const std::filesystem::path& name,
+                             const PipelineArguments& arguments, RunSettings& run);
 
 }  // namespace crisp

@@ -2,6 +2,7 @@
 // The pipelines that come with crisp, run as they are.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "pipeline/files/calibration_file.hpp"
@@ -22,8 +23,8 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(pipelines,
-              UnorderedElementsAre("assemble.yaml", "calibrate.yaml", "picture.yaml", "simulate.yaml"));
+  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "calibrate.yaml", "monte_carlo.yaml",
+                                              "picture.yaml", "simulate.yaml"));
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
@@ -73,6 +74,16 @@ TEST(Configs, PictureShowsTheCloudBeforeAndAfterACalibration) {
   EXPECT_THAT(drawn.files, ElementsAre("after.png", "after.png.provenance.json", "before.png",
                                        "before.png.provenance.json", "summary.json"));
   EXPECT_NE(test::bytes_of(workshop / "out/before.png"), test::bytes_of(workshop / "out/after.png"));
+}
+
+TEST(Configs, MonteCarloWritesEveryRunAndTheTable) {
+  const test::Workshop workshop;
+  const auto outcome = workshop.run("monte_carlo.yaml", {}, "out", {"runs=1"});
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  EXPECT_THAT(outcome.files, ElementsAre("monte_carlo.csv", "monte_carlo.csv.provenance.json", "summary.json",
+                                         "table1.txt", "table1.txt.provenance.json"));
+  const std::string runs = test::bytes_of(workshop / "out/monte_carlo.csv");
+  EXPECT_EQ(std::ranges::count(runs, '\n'), 1 + 11) << "lambda, tau, alpha, eta of three lasers but lambda 1";
 }
 
 TEST(Configs, AssembleSaysWhichCalibrationItMisses) {

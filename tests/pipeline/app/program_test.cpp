@@ -232,6 +232,28 @@ TEST_F(ProgramTest, SaysWhatACalibrationHolds) {
   EXPECT_EQ(crisp({"info", path("nowhere")}).status, 1);
 }
 
+TEST_F(ProgramTest, RepeatsARunOfTheMonteCarloAlone) {
+  const fs::path out = folder_ / "out";
+  const auto run = [&](const std::vector<std::string>& which) {
+    std::vector<std::string> words = {"monte-carlo", "-o", out.string(), "-j", "1"};
+    words.insert(words.end(), which.begin(), which.end());
+    words.insert(words.end(),
+                 {"--set", "study.monte_carlo.lasers=1", "--set", "study.monte_carlo.duration=4s"});
+    return wait_for(start(words));
+  };
+  const Outcome both = run({"-n", "2", "--seed", "8"});
+  EXPECT_EQ(both.status, 0) << both.error;
+  EXPECT_THAT(both.out, HasSubstr("paper, Table 1"));
+  EXPECT_THAT(both.out, HasSubstr("2 runs; "));
+  const std::string all = content("out/monte_carlo.csv");
+  const Outcome one = run({"--only", "9"});
+  EXPECT_EQ(one.status, 0) << one.error;
+  const std::string alone = content("out/monte_carlo.csv");
+  EXPECT_EQ(alone.find("\n9,laser1.tau,"), alone.find('\n'));
+  EXPECT_THAT(all, testing::EndsWith(alone.substr(alone.find('\n'))));
+  EXPECT_EQ(run({"--only", "9", "-n", "2"}).status, 2);
+}
+
 TEST_F(ProgramTest, CompletesItsCommandLineInBash) {
   const auto completed = [&](const std::string& words, int at) {
     const std::string script = "source <(" CRISP_PROGRAM " completion bash); COMP_WORDS=(" + words +

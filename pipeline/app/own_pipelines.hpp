@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string_view>
+
+namespace crisp {
+
+/// Pipelines that are commands of their own: the files in configs/, as they were when crisp was built.
+extern const std::string_view kMonteCarloPipeline;
+
+}  // namespace crisp

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/study/monte_carlo_stage.hpp"
+
+#include <fmt/format.h>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/stage/registry.hpp"
+#include "plugins/study/rqe.hpp"
+#include "plugins/study/table.hpp"
+
+namespace crisp {
+namespace {
+
+nlohmann::json json_of(const Scatter& scatter) {
+  return {{"mean", scatter.mean}, {"std_dev", scatter.std_dev}};
+}
+
+nlohmann::json json_of(const Table& table) {
+  nlohmann::json json = {{"runs", table.runs},
+                         {"rqe_astray", table.rqe_astray},
+                         {"refined_astray", table.refined_astray},
+                         {"refined_failed", table.refined_failed}};
+  for (const TableRow& row : table.rows) {
+    nlohmann::json entry = {{"unit", row.unit},
+                            {"bound", row.bound},
+                            {"rqe", json_of(row.rqe)},
+                            {"refined", json_of(row.refined)},
+                            {"within_68", row.refined.one},
+                            {"within_95", row.refined.two}};
+    if (row.paper) entry["paper"] = json_of(*row.paper);
+    json[row.parameter] = std::move(entry);
+  }
+  return json;
+}
+
+}  // namespace
+
+void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
+  d.name("study.monte_carlo").summary("calibrates simulated recordings and makes the paper's Table 1 anew");
+  d.details(
+      "Section 5.2 of Sheehan, Harrison and Newman: of each laser the two beams that lie in the plate's "
+      "plane, "
+      "in a room of upright walls; tau is 0.20 m, alpha is 0, lambda starts up to half a turn off. Two "
+      "estimators "
+      "side by side, the optimum of RQE as in the paper and the least squares against walls that follow by "
+      "default, next to the paper's figures and to the Cramer-Rao bound for the same beams with the scene "
+      "unknown. Each run is its own seed, from --seed on: what it gives depends on nothing else.");
+  d.option("runs", &MonteCarloStage::settings_, &MonteCarloSettings::runs, "how many").range(1, 1e6);
+  d.option("lasers", &MonteCarloStage::trial, &TrialSettings::lasers, "how many, of the default rig's")
+      .range(1, 3);
+  d.option("duration", &MonteCarloStage::trial, &TrialSettings::duration, "of each recording")
+      .unit("s")
+      .range(1, 1000);
+  d.option("min_rate", &MonteCarloStage::motion, &MotionSettings::min_rate, "slowest turning of the plate")
+      .unit("Hz")
+      .range(0, 10);
+  d.option("max_rate", &MonteCarloStage::motion, &MotionSettings::max_rate, "fastest")
+      .unit("Hz")
+      .range(0, 10);
+  d.option("motion_seed", &MonteCarloStage::trial, &TrialSettings::motion_seed,
+           "one motion of the plate for all runs; auto: each draws its own");
+  d.option("noise", &MonteCarloStage::trial, &TrialSettings::noise, "standard deviation of a range")
+      .unit("m")
+      .range(1e-5, 1);
+  d.option("eta", &MonteCarloStage::trial, &TrialSettings::eta,
+           "the true lags are drawn up to this from 0, where the calibration starts")
+      .unit("s")
+      .range(0, 0.09);
+  d.option("tau_off", &MonteCarloStage::start, &Departures::tau, "how far off tau starts, at most")
+      .unit("m")
+      .range(0, 0.1);
+  d.option("alpha_off", &MonteCarloStage::start, &Departures::alpha, "how far off alpha starts, at most")
+      .unit("rad")
+      .range(0, 0.3);
+  d.option("lambda_off", &MonteCarloStage::start, &Departures::lambda, "how far off lambda starts, at most")
+      .unit("rad")
+      .range(0, 3.2);
+  d.option("sigma", &MonteCarloStage::sigma_, "kernel width of RQE: at first, and at last")
+      .unit("m")
+      .range(1e-3, 10)
+      .count(2, 2);
+  d.option("runs_file", &MonteCarloStage::runs_file_, "where every run goes, as CSV");
+  d.option("table_file", &MonteCarloStage::table_file_, "where the table goes, as text");
+}
+
+void MonteCarloStage::check(const RunSettings&) const {
+  if (sigma_[0] < sigma_[1]) {
+    throw Error("the kernel has to become narrower, not wider", "write the larger sigma first");
+  }
+  const MotionSettings& motion = settings_.trial.motion;
+  if (!(motion.min_rate < motion.max_rate)) {
+    throw Error("a plate at constant speed does not tell eta from lambda",
+                "let max_rate be larger than min_rate");
+  }
+}
+
+void MonteCarloStage::process(const Inputs&, Outputs&, Context& context) {
+  MonteCarloSettings settings = settings_;
+  settings.first_seed = context.seed();
+  settings.threads = context.threads();
+  settings.trial.in_plane.sigma_from = sigma_[0];
+  settings.trial.in_plane.sigma_to = sigma_[1];
+  trials_ = run_trials(settings, rqe_maker(context.run()),
+                       {.progress =
+                            [&](std::size_t done) {
+                              context.progress({.done = static_cast<double>(done),
+                                                .total = static_cast<double>(settings.runs),
+                                                .unit = "runs"});
+                            },
+                        .interrupted = [&] { return context.interrupted(); }});
+}
+
+void MonteCarloStage::finish(Outputs&, Context& context) {
+  const Table table = table_of(trials_);
+  const std::string text = table_text(table);
+  context.say(text);
+  context.report(json_of(table));
+  context.count("runs that could not be refined", table.refined_failed);
+  context.count("runs that ended in another valley", table.refined_astray);
+  if (!runs_file_.empty()) {
+    write_file(runs_file_, runs_csv(trials_));
+    context.wrote(runs_file_);
+  }
+  if (!table_file_.empty()) {
+    write_file(table_file_, text + "\n");
+    context.wrote(table_file_);
+  }
+}
+
+}  // namespace crisp

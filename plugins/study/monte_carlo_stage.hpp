@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/study/monte_carlo.hpp"
+
+namespace crisp {
+
+/// `study.monte_carlo`: makes Table 1 of the paper anew, from simulated recordings.
+class MonteCarloStage final : public Stage {
+ public:
+  MonteCarloStage() { settings_.runs = 1500; }
+  static void describe(StageDescription<MonteCarloStage>& d);
+
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  // What the options are declared on.
+  TrialSettings& trial() { return settings_.trial; }
+  MotionSettings& motion() { return settings_.trial.motion; }
+  Departures& start() { return settings_.trial.start; }
+
+  MonteCarloSettings settings_;
+  std::vector<double> sigma_ = {0.5, 0.1};
+  std::filesystem::path runs_file_;
+  std::filesystem::path table_file_;
+  std::vector<Trial> trials_;
+};
+
+}  // namespace crisp

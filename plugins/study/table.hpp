@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plugins/study/trial.hpp"
+
+namespace crisp {
+
+/// How estimates of one kind of parameter lie about the truth.
+struct Scatter {
+  double mean = 0;     ///< error
+  double std_dev = 0;  ///< of the error
+  double one = 0;      ///< share of errors within 1 of the standard errors that the estimator gave itself;
+  double two = 0;      ///< within 1.96; 0 where it gave none
+};
+
+/// One row of Table 1, all lasers together. In the unit that is named.
+struct TableRow {
+  std::string parameter;         ///< "tau"
+  std::string unit;              ///< "mm"
+  std::optional<Scatter> paper;  ///< Table 1 of the paper, where it is known
+  Scatter rqe;
+  Scatter refined;
+  double bound = 0;  ///< Cramér–Rao: RMS over runs and lasers
+};
+
+/// Table 1 of Sheehan, Harrison and Newman, made anew.
+struct Table {
+  std::vector<TableRow> rows;  ///< λ, τ, α, η; those that were estimated
+  std::size_t runs = 0;
+  std::size_t rqe_astray = 0;  ///< runs left out of the estimator's columns: they ended in another valley,
+  std::size_t refined_astray = 0;  ///< some parameter being off by more than 5 cm, 5° or 20 ms,
+  std::size_t refined_failed = 0;  ///< or without an estimate
+};
+
+Table table_of(const std::vector<Trial>& trials);
+
+/// For people.
+std::string table_text(const Table& table);
+
+/// Every run, a line a parameter: "seed,parameter,unit,bound,rqe_error,error,std_error,failure", SI.
+std::string runs_csv(const std::vector<Trial>& trials);
+
+}  // namespace crisp

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grabbers/simulate/departures.hpp"
+#include "grabbers/simulate/measurements.hpp"
+#include "pipeline/quality/measure.hpp"
+#include "plugins/calibrate/in_plane_calibration.hpp"
+#include "plugins/calibrate/in_plane_refinement.hpp"
+
+namespace crisp {
+
+/// One calibration of the Monte Carlo of Sheehan, Harrison and Newman, section 5.2.
+struct TrialSettings {
+  std::size_t lasers = 3;                    ///< of the default rig's, at least 1
+  double duration = 10;                      ///< [s]
+  MotionSettings motion;                     ///< of the plate
+  std::optional<std::uint64_t> motion_seed;  ///< the motion of all runs; none: each run draws its own
+  double noise = 0.012;                      ///< [m] standard deviation of a range
+  double quantum = 0.001;                    ///< [m] ranges are multiples of it
+  double eta = 0.04;                         ///< [s] the true η are drawn within ± this; the start says 0
+  Departures start;                          ///< how far off the start is at most
+  InPlaneSettings in_plane;
+  InPlaneRefinementSettings refinement;
+
+  TrialSettings();
+};
+
+/// A simulated recording of the two in-plane beams of each laser.
+struct Recording {
+  SimulatedMeasurements simulated;
+  Calibration start;
+  Sample sample() const { return {.beams = simulated.beams, .plate = &simulated.plate}; }
+};
+
+/// True: τ = 0.20 m, α = 0, the nominal λ, η drawn. The start is drawn around it.
+Recording record(const TrialSettings& settings, std::uint64_t seed);
+
+/// The least standard errors for exactly this recording's geometry (see calibration_information()).
+Eigen::VectorXd bound_of(const TrialSettings& settings, std::uint64_t seed,
+                         const std::vector<std::size_t>& free);
+
+/// What one estimator made of a recording.
+struct Estimate {
+  Eigen::VectorXd error;      ///< estimate − truth of each free parameter [SI]; λ within half a turn
+  Eigen::VectorXd std_error;  ///< what it says itself of its uncertainty; empty if nothing
+  std::string failure;        ///< why there is no estimate; empty otherwise
+};
+
+/// One run: a recording, and what both estimators make of it. The same seed gives the same, whichever runs
+/// there are besides.
+struct Trial {
+  std::uint64_t seed = 0;
+  std::vector<std::string> parameters;  ///< m: "laser1.tau", …
+  Eigen::VectorXd bound;                ///< [SI] their Cramér–Rao bounds
+  Estimate rqe;                         ///< the paper's: the optimum of RQE
+  Estimate refined;                     ///< the default: RQE, then least squares against flat surfaces
+};
+
+using MakeMeasure = std::function<std::unique_ptr<Measure>()>;
+Trial run_trial(const TrialSettings& settings, std::uint64_t seed, const MakeMeasure& make_measure);
+
+}  // namespace crisp

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/study/monte_carlo.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "pipeline/data/error.hpp"
+#include "plugins/study/table.hpp"
+
+namespace crisp {
+namespace {
+
+std::unique_ptr<Measure> make_rqe() {
+  static const auto searches = [] {
+    SearchRegistry registry;
+    register_built_in(registry);
+    return registry;
+  }();
+  static const auto measures = [] {
+    MeasureRegistry registry;
+    register_built_in(registry);
+    return registry;
+  }();
+  return measures.make("rqe", {.search = "grid", .cutoff = 5}, searches);
+}
+
+MonteCarloSettings small(std::size_t runs) {
+  MonteCarloSettings settings;
+  settings.runs = runs;
+  settings.trial.lasers = 2;
+  settings.trial.duration = 5;
+  settings.trial.in_plane.sigma_to = 0.2;
+  return settings;
+}
+
+TEST(MonteCarlo, GivesTheSameOnOneThreadAndOnTwoAndForARunAlone) {
+  MonteCarloSettings settings = small(3);
+  const std::string one = runs_csv(run_trials(settings, make_rqe));
+  settings.threads = 2;
+  EXPECT_EQ(runs_csv(run_trials(settings, make_rqe)), one);
+  settings.runs = 1;
+  settings.first_seed = 2;
+  const auto alone = run_trials(settings, make_rqe);
+  ASSERT_EQ(alone.size(), 1U);
+  EXPECT_EQ(alone[0].seed, 2U);
+  const std::string lines = runs_csv(alone);
+  EXPECT_NE(one.find(lines.substr(lines.find('\n') + 1)), std::string::npos) << "the second of three";
+}
+
+TEST(MonteCarlo, RefinesToTheBoundFromAnyLambda) {
+  const auto trials = run_trials(small(6), make_rqe);
+  double sum = 0;
+  double n = 0;
+  for (const Trial& trial : trials) {
+    ASSERT_EQ(trial.refined.failure, "");
+    EXPECT_EQ(trial.parameters[3], "laser2.lambda");
+    sum += (trial.refined.error.array() / trial.bound.array()).square().sum();
+    n += static_cast<double>(trial.bound.size());
+  }
+  // The ratio of variances is 1 for an estimator at the bound. Its standard deviation is √(2/n), or √3 times
+  // that, as λ and α of a laser go together; another 30 % are for standard errors up to 1.14 times the bound.
+  EXPECT_LT(sum / n, 1.3 + 4 * std::sqrt(3 * 2 / n));
+  EXPECT_GT(sum / n, 1 - 4 * std::sqrt(3 * 2 / n));
+}
+
+TEST(MonteCarlo, StartsWithLambdaAnywhereAndTheTruthWhereThePaperHasIt) {
+  TrialSettings settings;
+  double farthest = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    settings.duration = 1;
+    const Recording recording = record(settings, seed);
+    for (std::size_t laser = 0; laser < 3; ++laser) {
+      const LaserCalibration& truth = recording.simulated.truth.lasers[laser];
+      const LaserCalibration& start = recording.start.lasers[laser];
+      EXPECT_EQ(truth.tau.value, 0.2);
+      EXPECT_EQ(truth.alpha.value, 0);
+      EXPECT_EQ(start.eta.value, 0);
+      EXPECT_LE(std::abs(truth.eta.value), 0.04);
+      farthest = std::max(farthest, std::abs(start.lambda.value - truth.lambda.value));
+    }
+  }
+  EXPECT_LE(farthest, std::numbers::pi);
+  EXPECT_GT(farthest, 0.9 * std::numbers::pi);  // the largest of 100 even draws: below once in 37 000
+}
+
+TEST(MonteCarlo, StopsWhenInterrupted) {
+  std::size_t done = 0;
+  const MonteCarloHooks hooks{.progress = [&](std::size_t n) { done = n; },
+                              .interrupted = [&] { return done >= 1; }};
+  EXPECT_EQ(run_trials(small(100), make_rqe, hooks).size(), 1U);
+}
+
+TEST(MonteCarlo, PassesOnWhatGoesWrongInARun) {
+  const MakeMeasure broken = []() -> std::unique_ptr<Measure> { throw Error("no measure"); };
+  MonteCarloSettings settings = small(4);
+  settings.threads = 2;
+  EXPECT_THROW(run_trials(settings, broken), Error);
+}
+
+}  // namespace
+}  // namespace crisp

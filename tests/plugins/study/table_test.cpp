@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/study/table.hpp"
+
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+namespace crisp {
+namespace {
+
+using testing::HasSubstr;
+
+Trial trial(double rqe_tau, double tau, double alpha_degrees) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  return {.seed = 7,
+          .parameters = {"laser1.tau", "laser1.alpha"},
+          .bound = Eigen::Vector2d(0.003, 0.1 * kDegree),
+          .rqe = {.error = Eigen::Vector2d(rqe_tau, 0), .std_error = {}, .failure = {}},
+          .refined = {.error = Eigen::Vector2d(tau, alpha_degrees * kDegree),
+                      .std_error = Eigen::Vector2d(0.0015, 0.05 * kDegree),
+                      .failure = {}}};
+}
+
+TEST(Table, HoldsMeansAndStandardDeviationsInMillimetresAndDegrees) {
+  const Table table =
+      table_of({trial(-0.002, 0.001, 0.04), trial(-0.004, 0.002, 0.06), trial(0, 0.003, 0.2)});
+  EXPECT_EQ(table.runs, 3U);
+  ASSERT_EQ(table.rows.size(), 2U);
+  const TableRow& tau = table.rows[0];
+  EXPECT_EQ(tau.parameter, "tau");
+  EXPECT_NEAR(tau.rqe.mean, -2, 1e-12);
+  EXPECT_NEAR(tau.rqe.std_dev, 2, 1e-12);
+  EXPECT_NEAR(tau.refined.mean, 2, 1e-12);
+  EXPECT_NEAR(tau.refined.std_dev, 1, 1e-12);
+  EXPECT_NEAR(tau.bound, 3, 1e-12);
+  EXPECT_NEAR(tau.refined.one, 1.0 / 3, 1e-12);  // 1 of 1, 2 and 3 mm is within 1.5 mm
+  EXPECT_NEAR(tau.refined.two, 2.0 / 3, 1e-12);  // and 2 within 2.94 mm
+  ASSERT_TRUE(tau.paper);
+  EXPECT_EQ(tau.paper->mean, 2.1);
+  EXPECT_NEAR(table.rows[1].refined.mean, 0.1, 1e-12);
+  EXPECT_NEAR(table.rows[1].bound, 0.1, 1e-12);
+}
+
+TEST(Table, LeavesRunsOutThatEndedElsewhereAndCountsThem) {
+  Trial failed = trial(0, 0, 0);
+  failed.refined = {.error = {}, .std_error = {}, .failure = "no walls"};
+  const Table table =
+      table_of({trial(0.3, 0.001, 0), trial(0.001, 0.001, 40), trial(0.001, 0.003, 0), failed});
+  EXPECT_EQ(table.rqe_astray, 1U);
+  EXPECT_EQ(table.refined_astray, 1U);
+  EXPECT_EQ(table.refined_failed, 1U);
+  EXPECT_NEAR(table.rows[0].rqe.mean, 2.0 / 3, 1e-12);
+  EXPECT_NEAR(table.rows[0].refined.mean, 2, 1e-12);
+  const std::string text = table_text(table);
+  EXPECT_THAT(text, HasSubstr("4 runs; ended in another valley and left out: 1 (RQE), 1 (refined)"));
+  EXPECT_THAT(text, HasSubstr("not refined: 1"));
+}
+
+TEST(Table, WritesEveryRunAsALineAParameter) {
+  Trial failed = trial(0.001, 0, 0);
+  failed.refined = {.error = {}, .std_error = {}, .failure = "no walls"};
+  const std::string csv = runs_csv({trial(-0.002, 0.001, 0), failed});
+  EXPECT_THAT(csv, HasSubstr("seed,parameter,unit,bound,rqe_error,error,std_error,failure\n"
+                             "7,laser1.tau,m,0.003,-0.002,0.001,0.0015,\n"));
+  EXPECT_THAT(csv, HasSubstr("7,laser1.tau,m,0.003,0.001,,,\"no walls\"\n"));
+}
+
+TEST(Table, OfNoRunsIsEmpty) { EXPECT_TRUE(table_of({}).rows.empty()); }
+
+}  // namespace
+}  // namespace crisp
