@@ -85,10 +85,6 @@ std::string table_of(const Calibration& calibration, const Rig& rig) {
     table += fmt::format("{:<24}{:>12.4f} {:<3} {:>9}  {:>+10.4f}  {}\n", name, p.value * as.factor, as.unit,
                          error, change * as.factor, remark(p, name, calibration));
   });
-  for (const auto& u : calibration.unobservable) {
-    table += fmt::format("{} is not observable: {}", u.parameter, u.reason);
-    table += u.combination.empty() ? "\n" : fmt::format("; known is {}\n", u.combination);
-  }
   table.pop_back();
   return table;
 }

@@ -72,7 +72,7 @@ void RefineStage::finish(Outputs& out, Context& context) {
   judge(sample, refined, calibration, context);
   calibration.provenance = start_->provenance;
   calibration.provenance["refinement"] = "calibrate.refine";
-  tell(calibration, context);
+  tell(calibration, *start_, context);
   out.give(std::move(calibration));
 }
 

@@ -19,6 +19,11 @@ nlohmann::json json_of(const Parameter& p) {
   return {{"value", p.value}, {"unit", p.unit}, {"std_error", p.std_error}, {"free", p.free}};
 }
 
+std::string in_words(const Unobservable& u) {
+  return fmt::format("{} is not observable and was kept: {}{}{}", u.parameter, u.reason,
+                     u.combination.empty() ? "" : "; what is known is ", u.combination);
+}
+
 }  // namespace
 
 Crispness::Crispness(const Sample& sample, const SensorModel& model, const CrispnessSettings& settings,
@@ -32,7 +37,7 @@ double Crispness::of(const SensorModel& model) const {
   return model_quality(model, beams_, measure_, sigma_);
 }
 
-void tell(const Calibration& calibration, Context& context) {
+void tell(const Calibration& calibration, const Calibration& start, Context& context) {
   context.say(table_of(calibration, context.rig()));
   nlohmann::json lasers;
   for (const auto& laser : calibration.lasers) {
@@ -44,7 +49,9 @@ void tell(const Calibration& calibration, Context& context) {
   for (const auto& u : calibration.unobservable) {
     unobservable.push_back(
         {{"parameter", u.parameter}, {"reason", u.reason}, {"combination", u.combination}});
-    context.warn(fmt::format("{} is not observable: {}; it is kept at its prior", u.parameter, u.reason));
+    const bool told_before = std::any_of(start.unobservable.begin(), start.unobservable.end(),
+                                         [&](const auto& old) { return old.parameter == u.parameter; });
+    if (!told_before) context.warn(in_words(u));
   }
   context.report({{"lasers", lasers}, {"quality", calibration.quality}, {"unobservable", unobservable}});
   const auto& quality = calibration.quality;

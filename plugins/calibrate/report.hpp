@@ -28,7 +28,7 @@ class Crispness {
 };
 
 /// Puts a calibration into the run's summary: the table for people, all of its numbers for programs, and a
-/// warning for each parameter that is not observable.
-void tell(const Calibration& calibration, Context& context);
+/// warning for each parameter that is not observable, unless a stage above has said so of `start`.
+void tell(const Calibration& calibration, const Calibration& start, Context& context);
 
 }  // namespace crisp

@@ -109,7 +109,7 @@ void RqeStage::finish(Outputs& out, Context& context) {
                          {"rqe_after", crispness.of(outcome.model)},
                          {"rqe_sigma", sigma}};
   calibration.provenance["calibration"] = "calibrate.rqe";
-  tell(calibration, context);
+  tell(calibration, {}, context);
   out.give(std::move(calibration));
 }
 

@@ -43,11 +43,11 @@ TEST(CalibrateByRqe, SaysThatAConstantSpeedDoesNotTellTheLags) {
   const Outcome outcome = calibrate_by_rqe(start, sample_of(recording), *measure, quick());
   ASSERT_EQ(outcome.unobservable.size(), 3U);
   for (const auto& lost : outcome.unobservable) EXPECT_THAT(lost.parameter, testing::EndsWith(".eta"));
-  // λ + ω η is known of each laser against the first.
-  bool combined = false;
-  for (const auto& lost : outcome.unobservable)
-    combined |= lost.combination.find(".lambda") != std::string::npos;
-  EXPECT_TRUE(combined);
+  // 0.91 Hz are 5.718 rad/s.
+  EXPECT_EQ(outcome.unobservable[0].combination,
+            "laser2.lambda - 5.718 * laser1.eta, laser3.lambda - 5.718 * laser1.eta");
+  EXPECT_EQ(outcome.unobservable[1].combination, "laser2.lambda + 5.718 * laser2.eta");
+  EXPECT_EQ(outcome.unobservable[2].combination, "laser3.lambda + 5.718 * laser3.eta");
   EXPECT_EQ(outcome.free.size(), 8U);
   const Eigen::VectorXd error = outcome.model.values() - SensorModel(recording.truth).values();
   for (const auto lambda : {4, 8}) {
