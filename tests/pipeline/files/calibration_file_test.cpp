@@ -7,6 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "tests/pipeline/files/errors_of.hpp"
+
 namespace crisp {
 namespace {
 
@@ -15,15 +17,8 @@ using testing::HasSubstr;
 
 Calibration parse(const std::string& text) { return parse_calibration(parse_yaml(text, "c.yaml")); }
 
-std::vector<std::string> errors_of(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const Errors& errors) {
-    std::vector<std::string> all;
-    for (const auto& error : errors.all()) all.emplace_back(error.what());
-    return all;
-  }
-  return {};
+std::vector<std::string> errors_of_calibration(const std::string& text) {
+  return errors_of([&] { parse(text); });
 }
 
 /// Written by hand after the format's page.
@@ -113,15 +108,15 @@ TEST(CalibrationFile, KeepsTextsThatYamlCouldMistake) {
 
 TEST(CalibrationFile, ReportsEveryMistakeWithItsPlace) {
   EXPECT_THAT(
-      errors_of("crisp: 1\n"
-                "lasers:\n"
-                "  a:\n"
-                "    lambda: {value: 0, unit: deg}\n"
-                "    tau: {value: 20cm, unit: m}\n"
-                "    alpha: {valu: 0, unit: rad}\n"
-                "    eta: {value: 0, unit: s, std_error: -1, free: yes}\n"
-                "covariance: {order: [a.tau], values: [1, 2]}\n"
-                "qualiti: {}\n"),
+      errors_of_calibration("crisp: 1\n"
+                            "lasers:\n"
+                            "  a:\n"
+                            "    lambda: {value: 0, unit: deg}\n"
+                            "    tau: {value: 20cm, unit: m}\n"
+                            "    alpha: {valu: 0, unit: rad}\n"
+                            "    eta: {value: 0, unit: s, std_error: -1, free: yes}\n"
+                            "covariance: {order: [a.tau], values: [1, 2]}\n"
+                            "qualiti: {}\n"),
       ElementsAre(
           "c.yaml:4:30: error: laser 'a', lambda: 'deg' is not its unit; convert the value to rad",
           "c.yaml:5:18: error: laser 'a', tau: 'value': '20cm' has a unit, but a plain number is wanted",
@@ -135,7 +130,7 @@ TEST(CalibrationFile, ReportsEveryMistakeWithItsPlace) {
 
 TEST(CalibrationFile, RefusesALaterSchemaAndNamesBothVersions) {
   EXPECT_THAT(
-      errors_of("crisp: 3\nlasers: {}\n"),
+      errors_of_calibration("crisp: 3\nlasers: {}\n"),
       testing::Contains("c.yaml:1:8: error: calibration: it is of schema version 3, and this program reads "
                         "up to version 1; use a newer crisp"));
 }

@@ -3,23 +3,17 @@
 
 #include <gmock/gmock.h>
 
+#include "pipeline/data/degree.hpp"
+#include "tests/pipeline/files/errors_of.hpp"
+
 namespace crisp {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
-
-std::vector<std::string> errors_of(const std::string& text) {
-  try {
-    parse_rig(parse_yaml(text, "rig.yaml"));
-  } catch (const Errors& errors) {
-    std::vector<std::string> all;
-    for (const auto& error : errors.all()) all.emplace_back(error.what());
-    return all;
-  }
-  return {};
+std::vector<std::string> errors_of_rig(const std::string& text) {
+  return errors_of([&] { parse_rig(parse_yaml(text, "rig.yaml")); });
 }
 
 TEST(RigFile, ReadsTheDefaultRigOfTheConfigs) {
@@ -66,7 +60,7 @@ lasers:
 
 TEST(RigFile, ReportsEveryMistakeWithItsPlace) {
   EXPECT_THAT(
-      errors_of(R"(crisp: 1
+      errors_of_rig(R"(crisp: 1
 lasers:
   laser 1:
     address: 192.168.0.300
@@ -89,21 +83,21 @@ plate: {counts_per_revolution: 0}
 
 TEST(RigFile, RefusesDevicesThatCouldNotBeToldApart) {
   const std::string laser = "{address: 10.0.0.1, nominal: {lambda: 0, tau: 0}}";
-  EXPECT_THAT(
-      errors_of("crisp: 1\nlasers:\n  a: " + laser + "\n  b: " + laser + "\nplate: {address: 10.0.0.2}\n"),
-      ElementsAre(HasSubstr("rig.yaml:4:3: error: rig: 'a' and 'b' have the same address 10.0.0.1")));
-  EXPECT_THAT(errors_of("crisp: 1\nlasers:\n  plate: " + laser + "\nplate: {address: 10.0.0.2}\n"),
+  EXPECT_THAT(errors_of_rig("crisp: 1\nlasers:\n  a: " + laser + "\n  b: " + laser +
+                            "\nplate: {address: 10.0.0.2}\n"),
+              ElementsAre(HasSubstr("rig.yaml:4:3: error: rig: 'a' and 'b' have the same address 10.0.0.1")));
+  EXPECT_THAT(errors_of_rig("crisp: 1\nlasers:\n  plate: " + laser + "\nplate: {address: 10.0.0.2}\n"),
               ElementsAre(HasSubstr("two devices are named 'plate'")));
 }
 
 TEST(RigFile, RefusesARigWithoutLasersAndOtherVersions) {
-  EXPECT_THAT(errors_of("crisp: 1\nlasers: {}\nplate: {address: 10.0.0.2}\n"),
+  EXPECT_THAT(errors_of_rig("crisp: 1\nlasers: {}\nplate: {address: 10.0.0.2}\n"),
               ElementsAre(HasSubstr("lasers: there is none")));
-  EXPECT_THAT(errors_of("crisp: 2\nlasers: {a: {address: 10.0.0.1, nominal: {lambda: 0, tau: 0}}}\n"
-                        "plate: {address: 10.0.0.2}\n"),
+  EXPECT_THAT(errors_of_rig("crisp: 2\nlasers: {a: {address: 10.0.0.1, nominal: {lambda: 0, tau: 0}}}\n"
+                            "plate: {address: 10.0.0.2}\n"),
               ElementsAre(HasSubstr("it is of schema version 2, and this program reads up to version 1")));
-  EXPECT_THAT(errors_of("[1, 2]"), ElementsAre(HasSubstr("rig: a list is not a map")));
-  EXPECT_THAT(errors_of(""), ElementsAre(HasSubstr("rig: nothing is not a map")));
+  EXPECT_THAT(errors_of_rig("[1, 2]"), ElementsAre(HasSubstr("rig: a list is not a map")));
+  EXPECT_THAT(errors_of_rig(""), ElementsAre(HasSubstr("rig: nothing is not a map")));
 }
 
 }  // namespace

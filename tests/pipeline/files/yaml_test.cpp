@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "tests/pipeline/files/errors_of.hpp"
+
 namespace crisp {
 namespace {
 
@@ -13,17 +15,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-std::vector<std::string> errors_of(const std::string& text) {
-  try {
-    parse_yaml(text, "f.yaml");
-  } catch (const Errors& errors) {
-    std::vector<std::string> all;
-    for (const auto& error : errors.all()) all.emplace_back(error.what());
-    return all;
-  } catch (const Error& error) {
-    return {error.what()};
-  }
-  return {};
+std::vector<std::string> errors_of_yaml(const std::string& text) {
+  return errors_of([&] { parse_yaml(text, "f.yaml"); });
 }
 
 TEST(Yaml, KeepsTheTextOfScalarsAndTheirPlace) {
@@ -50,7 +43,7 @@ TEST(Yaml, TakesVariablesInFlowMapsAndKeepsColumnsRight) {
 }
 
 TEST(Yaml, FindsEveryKeyThatIsGivenTwice) {
-  EXPECT_THAT(errors_of("a: 1\nb: {c: 1, c: 2}\na: 3\n"),
+  EXPECT_THAT(errors_of_yaml("a: 1\nb: {c: 1, c: 2}\na: 3\n"),
               ElementsAre("f.yaml:2:11: error: 'c' is given twice; the first is in line 2",
                           "f.yaml:3:1: error: 'a' is given twice; the first is in line 1"));
 }
@@ -58,21 +51,22 @@ TEST(Yaml, FindsEveryKeyThatIsGivenTwice) {
 TEST(Yaml, StopsReportingAfterAHundredMistakes) {
   std::string text;
   for (int i = 0; i < 100000; ++i) text += "a: 1\n";
-  EXPECT_EQ(errors_of(text).size(), 100u);
+  EXPECT_EQ(errors_of_yaml(text).size(), 100u);
 }
 
 TEST(Yaml, RefusesWhatCouldReferToSomethingElse) {
-  EXPECT_THAT(errors_of("a: &x 1\nb: *x\n"),
+  EXPECT_THAT(errors_of_yaml("a: &x 1\nb: *x\n"),
               ElementsAre(HasSubstr("f.yaml:1:4: error: anchors"), HasSubstr("f.yaml:2:4: error: aliases")));
-  EXPECT_THAT(errors_of("a: !!python/object x\n"), ElementsAre(HasSubstr("tags (")));
-  EXPECT_THAT(errors_of("{a: 1}: b\n"), ElementsAre(HasSubstr("a key must be a name, not a map")));
-  EXPECT_THAT(errors_of("a: 1\n---\nb: 2\n"), ElementsAre(HasSubstr("more than one document")));
+  EXPECT_THAT(errors_of_yaml("a: !!python/object x\n"), ElementsAre(HasSubstr("tags (")));
+  EXPECT_THAT(errors_of_yaml("{a: 1}: b\n"), ElementsAre(HasSubstr("a key must be a name, not a map")));
+  EXPECT_THAT(errors_of_yaml("a: 1\n---\nb: 2\n"), ElementsAre(HasSubstr("more than one document")));
 }
 
 TEST(Yaml, SaysWhereATextIsNotYaml) {
-  EXPECT_THAT(errors_of("a: [1, 2\nb: 3\n"), ElementsAre(StartsWith("f.yaml:2:2: error: this is not YAML")));
-  EXPECT_THAT(errors_of("a: \"open\n"), ElementsAre(StartsWith("f.yaml:")));
-  EXPECT_THAT(errors_of(std::string("a: b\n\0c", 7)),
+  EXPECT_THAT(errors_of_yaml("a: [1, 2\nb: 3\n"),
+              ElementsAre(StartsWith("f.yaml:2:2: error: this is not YAML")));
+  EXPECT_THAT(errors_of_yaml("a: \"open\n"), ElementsAre(StartsWith("f.yaml:")));
+  EXPECT_THAT(errors_of_yaml(std::string("a: b\n\0c", 7)),
               ElementsAre("f.yaml:2:1: error: there is a control character (0x00); is this a text file?"));
 }
 
@@ -80,7 +74,7 @@ TEST(Yaml, RefusesDepthThatCouldExhaustTheStack) {
   for (const std::string bracket : {"[", "{", "- ", "? ", "a: [", "{a: "}) {
     std::string deep;
     for (int i = 0; i < 100000; ++i) deep += bracket;
-    EXPECT_EQ(errors_of(deep).size(), 1u) << bracket;
+    EXPECT_EQ(errors_of_yaml(deep).size(), 1u) << bracket;
   }
 }
 
