@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "grabbers/simulate/departures.hpp"
 #include "grabbers/simulate/recorded_capture.hpp"
 #include "grabbers/simulate/recording.hpp"
+#include "pipeline/data/degree.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "pipeline/stage/registry.hpp"
@@ -29,7 +29,6 @@ class SimulateStage final : public Stage {
 
  private:
   using Description = StageDescription<SimulateStage>;
-  static constexpr double kDegree = std::numbers::pi / 180;
   static void describe_scanner(Description& d);
   static void describe_plate(Description& d);
   static void describe_truth(Description& d);

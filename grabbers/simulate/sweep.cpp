@@ -6,12 +6,12 @@
 #include <memory>
 #include <numeric>
 
+#include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kFirstPossibleBeam = -45 * kDegree;  // reported angle that the mirror's index stands for
 constexpr double kSmallestRange = 0.016;              // [m] what a device sends below is a code, not a range
 

@@ -2,12 +2,12 @@
 #include "grabbers/wire/scan_conversion.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "pipeline/data/degree.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kUnitsPerDegree = 1e4;
 constexpr double kMillimetre = 1e-3;
 constexpr std::size_t kMostEchoes = 5;

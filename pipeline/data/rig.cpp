@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/data/rig.hpp"
 
-#include <numbers>
+#include "pipeline/data/degree.hpp"
 
 namespace crisp {
 
@@ -15,7 +15,6 @@ Calibration nominal_calibration(const Rig& rig) {
 }
 
 Rig default_rig() {
-  constexpr double kDegree = std::numbers::pi / 180;
   Rig rig;
   for (int i = 0; i < 3; ++i) {
     RigLaser laser;

@@ -11,6 +11,8 @@
 #include <numbers>
 #include <optional>
 
+#include "pipeline/data/degree.hpp"
+
 namespace crisp {
 namespace {
 
@@ -20,7 +22,6 @@ struct Unit {
   double factor;
 };
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kTurn = 2 * std::numbers::pi;
 
 // Every spelling that is understood, with what one of it is in the SI unit.

@@ -5,15 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "pipeline/data/degree.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 /// What is told of all parameters of one name.
-struct Kind {
+struct ParameterKind {
   std::string name;
   std::string unit;
   std::string si;
@@ -22,8 +21,8 @@ struct Kind {
   std::optional<Scatter> paper;
 };
 
-const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> known = {
+const std::vector<ParameterKind>& kinds() {
+  static const std::vector<ParameterKind> known = {
       {"lambda", "deg", "rad", kDegree, 5 * kDegree, {}},
       {"tau", "mm", "m", 1e-3, 0.05, Scatter{.mean = 2.1, .std_dev = 0.6}},
       {"alpha", "deg", "rad", kDegree, 5 * kDegree, Scatter{.mean = 0.06, .std_dev = 0.12}},
@@ -31,9 +30,9 @@ const std::vector<Kind>& kinds() {
   return known;
 }
 
-const Kind& kind_of(const std::string& parameter) {
+const ParameterKind& kind_of(const std::string& parameter) {
   const std::string name = parameter.substr(parameter.rfind('.') + 1);
-  return *std::ranges::find(kinds(), name, &Kind::name);
+  return *std::ranges::find(kinds(), name, &ParameterKind::name);
 }
 
 bool is_astray(const Trial& trial, const Estimate& estimate) {
@@ -51,7 +50,7 @@ bool counts(const Trial& trial, const Estimate& estimate) {
 
 /// Calls visit(trial, index) for each parameter of a kind.
 template <class Visit>
-void for_each_of(const Kind& kind, const std::vector<Trial>& trials, Visit visit) {
+void for_each_of(const ParameterKind& kind, const std::vector<Trial>& trials, Visit visit) {
   for (const Trial& trial : trials) {
     for (std::size_t k = 0; k < trial.parameters.size(); ++k) {
       if (&kind_of(trial.parameters[k]) == &kind) visit(trial, static_cast<Eigen::Index>(k));
@@ -59,7 +58,7 @@ void for_each_of(const Kind& kind, const std::vector<Trial>& trials, Visit visit
   }
 }
 
-Scatter scatter_of(const Kind& kind, const std::vector<Trial>& trials, Estimate Trial::*which) {
+Scatter scatter_of(const ParameterKind& kind, const std::vector<Trial>& trials, Estimate Trial::*which) {
   std::vector<double> errors;
   std::size_t one = 0;
   std::size_t two = 0;
@@ -92,7 +91,7 @@ std::string cell(const Scatter& scatter) {
 
 Table table_of(const std::vector<Trial>& trials) {
   Table table{.runs = trials.size()};
-  for (const Kind& kind : kinds()) {
+  for (const ParameterKind& kind : kinds()) {
     double squares = 0;
     double n = 0;
     for_each_of(kind, trials, [&](const Trial& trial, Eigen::Index k) {

@@ -7,6 +7,7 @@
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/paper.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
+#include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 #include "plugins/calibrate/bound.hpp"
 #include "plugins/calibrate/free_parameters.hpp"
@@ -15,8 +16,6 @@
 
 namespace crisp {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 ScannerSettings scanner_of(const TrialSettings& settings, std::uint64_t seed) {
   ScannerSettings scanner = paper_scanner(seed);

@@ -4,9 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "grabbers/simulate/scenes.hpp"
+#include "pipeline/data/degree.hpp"
 #include "pipeline/files/calibration_file.hpp"
 #include "tests/end_to_end/calibration_errors.hpp"
 #include "tests/end_to_end/scene_distance.hpp"
@@ -14,8 +13,6 @@
 
 namespace crisp {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// What the summary of a calibrating stage says.
 Calibration found_by(const nlohmann::json& stage, const Calibration& truth) {

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <numbers>
 
+#include "pipeline/data/degree.hpp"
 #include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/yaml.hpp"
 #include "tests/end_to_end/calibration_errors.hpp"
@@ -23,8 +23,8 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "calibrate.yaml", "figures.yaml",
-                                              "monte_carlo.yaml", "picture.yaml", "simulate.yaml"));
+  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "calibrate.yaml", "monte_carlo.yaml",
+                                              "picture.yaml", "simulate.yaml"));
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
@@ -54,7 +54,6 @@ TEST(Configs, CalibrateFindsTheScannerAndMakesTheCloudFromACaptureAlone) {
                                          "cloud.pcd.provenance.json", "summary.json"));
   const auto errors = test::errors_of(read_calibration(workshop / "out/calibration.yaml"),
                                       read_calibration(workshop / "made/truth.yaml"));
-  constexpr double kDegree = std::numbers::pi / 180;
   EXPECT_LE(errors.tau, 0.003);
   EXPECT_LE(errors.lambda, 0.3 * kDegree);
   EXPECT_LE(errors.alpha, 0.3 * kDegree);
@@ -74,15 +73,6 @@ TEST(Configs, PictureShowsTheCloudBeforeAndAfterACalibration) {
   EXPECT_THAT(drawn.files, ElementsAre("after.png", "after.png.provenance.json", "before.png",
                                        "before.png.provenance.json", "summary.json"));
   EXPECT_NE(test::bytes_of(workshop / "out/before.png"), test::bytes_of(workshop / "out/after.png"));
-}
-
-TEST(Configs, FiguresWritesTheColumnsOfThePapersFigures) {
-  const test::Workshop workshop;
-  const auto outcome = workshop.run("figures.yaml", {}, "out");
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  EXPECT_THAT(outcome.files,
-              testing::IsSupersetOf({"fig4_beam.dat", "fig5_surface.dat", "fig6_tau.dat", "fig6_alpha.dat",
-                                     "fig6_optimum.dat", "fig7_eta.dat", "summary.json"}));
 }
 
 TEST(Configs, MonteCarloWritesEveryRunAndTheTable) {

@@ -4,15 +4,13 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/data/rig.hpp"
 
 namespace crisp {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 TEST(DrawTruth, StaysWithinTheDeparturesAndKeepsTheGauge) {
   const Calibration nominal = nominal_calibration(default_rig());

@@ -11,6 +11,7 @@
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "grabbers/simulate/shapes.hpp"
+#include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 
 namespace crisp {
@@ -18,8 +19,6 @@ namespace {
 
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 Scene plain_room() { return {"room", box("room", {-3, -2, -1}, {5, 4, 2}, 0.5)}; }
 

@@ -11,12 +11,11 @@
 
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scenes.hpp"
+#include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Clocks that run true and start at zero, delays without jitter, a mirror at its nominal rate.
 RecordingSettings plain_settings() {

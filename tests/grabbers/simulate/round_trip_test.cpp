@@ -12,6 +12,7 @@
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/recorded_capture.hpp"
 #include "grabbers/simulate/scenes.hpp"
+#include "pipeline/data/degree.hpp"
 #include "pipeline/model/sensor_model.hpp"
 #include "plugins/clock/clock_aligner.hpp"
 
@@ -19,8 +20,6 @@ namespace crisp {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::vector<HubItem> read_all(CaptureReader& reader) {
   std::vector<HubItem> items;

@@ -4,15 +4,14 @@
 #include <gmock/gmock.h>
 
 #include <limits>
-#include <numbers>
+
+#include "pipeline/data/degree.hpp"
 
 namespace crisp {
 namespace {
 
 using testing::ElementsAre;
 using testing::FloatEq;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 ScanData data_with(std::vector<ChannelBlock> channels16, std::vector<ChannelBlock> channels8 = {}) {
   ScanData data;

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <numbers>
-
+#include "pipeline/data/degree.hpp"
 #include "pipeline/model/sensor_model.hpp"
 
 namespace crisp {
-
-inline constexpr double kDegree = std::numbers::pi / 180;
 
 /// One laser with the given mounting.
 inline Calibration one_laser(double lambda, double tau, double alpha, double eta = 0) {

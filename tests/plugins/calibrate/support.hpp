@@ -7,12 +7,11 @@
 
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
+#include "pipeline/data/degree.hpp"
 #include "pipeline/quality/measure.hpp"
 #include "plugins/calibrate/sample.hpp"
 
 namespace crisp {
-
-inline constexpr double kDegree = std::numbers::pi / 180;
 
 /// A recording in the office whose truth is off the nominal rig by up to 2 cm, 3°, 5° (λ) and 40 ms.
 inline ScannerSettings misplaced_scanner(std::uint64_t seed, double duration) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/data/degree.hpp"
 #include "pipeline/data/scan.hpp"
 #include "tests/plugins/clock/simulated_stamps.hpp"
 
@@ -66,7 +67,6 @@ struct SimulatedLaser {
     double period = 0;  ///< [s]
   };
   std::vector<Turn> turns(std::uint64_t seed, std::uint16_t index, double duration) const {
-    constexpr double kDegree = std::numbers::pi / 180;
     Random random(seed * 100 + index);
     SimulatedClock::Reader stamps(clock);
     SimulatedClock::Reader transmissions(clock);

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <numbers>
+#include "pipeline/data/degree.hpp"
 
 namespace crisp {
 namespace {
@@ -11,7 +11,6 @@ namespace {
 using testing::HasSubstr;
 
 Trial trial(double rqe_tau, double tau, double alpha_degrees) {
-  constexpr double kDegree = std::numbers::pi / 180;
   return {.seed = 7,
           .parameters = {"laser1.tau", "laser1.alpha"},
           .bound = Eigen::Vector2d(0.003, 0.1 * kDegree),

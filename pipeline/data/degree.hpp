@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <numbers>
+
+namespace crisp {
+
+inline constexpr double kDegree = std::numbers::pi / 180;  ///< [rad]
+
+}  // namespace crisp
