@@ -8,7 +8,6 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kFileHeader = 24;
 constexpr std::int64_t kSecond = 1'000'000'000, kDay = 86'400 * kSecond;
 constexpr std::uint32_t kMicroseconds = 0xa1b2c3d4, kNanoseconds = 0xa1b23c4d;
 constexpr std::uint32_t kExtended =
@@ -27,8 +26,8 @@ bool PcapRecords::recognises(ByteView begin) {
 }
 
 PcapRecords::PcapRecords(FileWindow& file, Counts& losses) : file_(file), losses_(losses) {
-  const auto begin = file_.peek(kFileHeader);
-  if (begin.size() < kFileHeader) {
+  const auto begin = file_.peek(kPcapFileHeader);
+  if (begin.size() < kPcapFileHeader) {
     throw Error(file.path().string() + " ends within its header",
                 "the capture holds no packets: capture it again");
   }
@@ -38,7 +37,7 @@ PcapRecords::PcapRecords(FileWindow& file, Counts& losses) : file_(file), losses
   if (magic == kExtended) header_size_ = 24;
   link_type_ =
       number_at<std::uint32_t>(begin, 20, order_) & 0x0FFFFFFF;  // the rest tells of checksums of frames
-  file_.skip(kFileHeader);
+  file_.skip(kPcapFileHeader);
 }
 
 std::optional<PcapRecords::Header> PcapRecords::header(ByteView bytes) const {

@@ -10,6 +10,8 @@
 
 namespace crisp {
 
+inline constexpr std::size_t kPcapFileHeader = 24;  ///< bytes, before the first record
+
 /// The records of a pcap file: both byte orders, micro- and nanoseconds. Not libpcap, because that ends at
 /// the first damaged record; here the next good one is looked for, and what lies between is counted.
 class PcapRecords {

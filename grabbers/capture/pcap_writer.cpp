@@ -9,14 +9,14 @@
 #include <cstdio>
 #include <cstring>
 
+#include "grabbers/capture/pcap_records.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr std::uint64_t kFileHeader = 24, kRecordHeader = 16;
-constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::uint64_t kRecordHeader = 16;
 constexpr int kSnapshot = 262144;  // what tcpdump writes by default
 
 struct Free {
@@ -49,7 +49,7 @@ std::uint64_t whole_records(const std::filesystem::path& path) {
         "give another name, or remove the file");
   }
   static_cast<void>(raw.release());  // pcap_close() closes it
-  std::uint64_t length = kFileHeader;
+  std::uint64_t length = kPcapFileHeader;
   pcap_pkthdr* header = nullptr;
   const u_char* data = nullptr;
   while (pcap_next_ex(pcap.get(), &header, &data) == 1) length += kRecordHeader + header->caplen;
@@ -63,8 +63,8 @@ struct PcapWriter::File {
   std::unique_ptr<AtomicFile> replaced;  ///< whose aside() that is, when replacing
   Pcap pcap;
   std::unique_ptr<pcap_dumper_t, Free> dump;
-  std::uint64_t length = kFileHeader;
-  std::uint64_t safe_length = kFileHeader;  ///< of the records that reached the operating system whole
+  std::uint64_t length = kPcapFileHeader;
+  std::uint64_t safe_length = kPcapFileHeader;  ///< of the records that reached the operating system whole
 
   std::FILE* stream() const { return pcap_dump_file(dump.get()); }
 
@@ -106,6 +106,7 @@ PcapWriter& PcapWriter::operator=(PcapWriter&&) noexcept = default;
 std::uint64_t PcapWriter::bytes() const { return file_->length; }
 
 void PcapWriter::write(std::int64_t time_ns, ByteView frame) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
   if (frame.size() > kSnapshot || time_ns < 0 || time_ns / kSecond > 0xFFFFFFFFLL) {
     throw Error(
         fmt::format("a frame of {} bytes at {} ns has no place in a pcap file", frame.size(), time_ns),

@@ -11,7 +11,6 @@ constexpr std::uint32_t kStatistics = 5, kPacket = 6;
 constexpr std::uint32_t kByteOrderMark = 0x1A2B3C4D;
 constexpr std::size_t kHeader = 8, kFrame = 12;  // type and length; with the length again at the end
 constexpr std::uint32_t kLargestBlock = 16 << 20;
-constexpr std::uint64_t kSecond = 1'000'000'000;
 
 std::size_t padded(std::size_t n) { return (n + 3) / 4 * 4; }
 
@@ -196,6 +195,7 @@ bool PcapngBlocks::read_packet(std::uint32_t type, ByteView body, Packet& packet
 
 /// Nothing for times beyond what 64 bits of nanoseconds hold.
 std::optional<std::int64_t> PcapngBlocks::to_ns(std::uint64_t ticks, const Interface& interface) {
+  constexpr std::uint64_t kSecond = 1'000'000'000;
   const unsigned n = interface.resolution & 0x7F;
   std::uint64_t seconds = 0, ns = 0;
   if ((interface.resolution & 0x80) != 0) {

@@ -12,7 +12,6 @@ namespace crisp {
 namespace {
 
 constexpr std::size_t kChunk = 1024;   // beams whose rows are in memory at once
-constexpr std::size_t kBlock = 8192;   // beams of one surfel that are summed in a row
 constexpr std::size_t kBatch = 16384;  // beams of surfels that are
 
 /// The pseudo-inverse's effect: X with A X = B, where A is symmetric and may be singular.
@@ -56,6 +55,7 @@ Rows weighted_rows(const Surfel& surfel, std::span<const std::uint32_t> members,
 Eigen::MatrixXd gram(const Surfel& surfel, std::span<const std::uint32_t> members,
                      std::span<const SurfelResidual> residuals, std::size_t parameters,
                      const DerivativeRows& derivatives) {
+  constexpr std::size_t kBlock = 8192;  // beams that are summed in a row
   const auto columns = static_cast<Eigen::Index>(parameters + 4);
   std::vector<Eigen::MatrixXd> blocks(blocks_of(members.size(), kBlock));
   for_blocks(members.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {

@@ -10,7 +10,6 @@ namespace crisp {
 namespace {
 
 constexpr std::array kKinds = {"lambda", "tau", "alpha", "eta"};  // in the order of a chain's slots
-constexpr std::size_t kEta = 3;
 
 bool is_fixed(const std::string& name, const std::vector<std::string>& fixed) {
   return std::any_of(fixed.begin(), fixed.end(),
@@ -65,6 +64,7 @@ void check_fixed(const std::vector<std::string>& fixed, const Calibration& calib
 }
 
 LagRange lag_range(const SensorModel& model, double margin) {
+  constexpr std::size_t kEta = 3;
   LagRange range;
   for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
     const double eta = model.values()[static_cast<Eigen::Index>(model.chain(laser).slots[kEta])];
