@@ -29,6 +29,7 @@ struct CommandLine {
   CLI::App app{"Turns what lasers on a spinning plate measured into one crisp cloud.", "crisp"};
   std::vector<std::string> plugins;
   RunRequest run;
+  RunRequest figures;
   RunRequest monte_carlo;
   std::uint64_t monte_carlo_runs = 1500;
   std::optional<std::uint64_t> monte_carlo_only;
@@ -38,7 +39,8 @@ struct CommandLine {
   std::optional<fs::path> info_rig;
   std::string shell;
   bool info_json = false;
-  CLI::App *run_app, *monte_carlo_app, *validate_app, *stages_app, *plugins_app, *info_app, *completion_app;
+  CLI::App *run_app, *figures_app, *monte_carlo_app, *validate_app, *stages_app, *plugins_app, *info_app,
+      *completion_app;
 
   CommandLine() {
     app.set_version_flag("--version", "crisp " CRISP_VERSION);
@@ -46,6 +48,7 @@ struct CommandLine {
     app.require_subcommand(1);
     add_run();
     add_monte_carlo();
+    add_figures();
     add_validate();
     add_stages();
     plugins_app = command("plugins", "List the plugins that were tried, and why any were refused");
@@ -98,20 +101,32 @@ struct CommandLine {
     to->add_flag("--verbose", request.verbose, "Also print options and what flowed")->excludes(quiet);
   }
 
+  /// A pipeline that comes with the program.
+  static void add_own_pipeline(CLI::App* to, const char* name, std::string_view text, const fs::path& output,
+                               const std::string& threads, RunRequest& request) {
+    request.file = name;
+    request.text = text;
+    request.arguments.output = output;
+    to->add_option("-o,--output", request.arguments.output,
+                   "The folder for the results [" + output.string() + "]")
+        ->type_name("FOLDER");
+    add_set(to, request.arguments);
+    add_run_options(to, threads, request);
+  }
+
+  void add_figures() {
+    figures_app = command("figures", "Compute the paper's figures 4 to 7 as data to be plotted");
+    add_own_pipeline(figures_app, "figures.yaml", kFiguresPipeline, "out/figures", "--threads", figures);
+  }
+
   void add_monte_carlo() {
-    monte_carlo.file = "monte_carlo.yaml";
-    monte_carlo.text = kMonteCarloPipeline;
-    monte_carlo.arguments.output = "out";
     monte_carlo_app =
         command("monte-carlo", "Calibrate many simulated recordings: the paper's Table 1, made anew");
     CLI::Option* runs = monte_carlo_app->add_option("-n,--runs", monte_carlo_runs,
                                                     "How many; run k has the seed --seed + k - 1");
     runs->check(CLI::Range(1, 1000000))->capture_default_str();
-    monte_carlo_app
-        ->add_option("-o,--output", monte_carlo.arguments.output, "The folder for the results [out]")
-        ->type_name("FOLDER");
-    add_set(monte_carlo_app, monte_carlo.arguments);
-    add_run_options(monte_carlo_app, "-j,--threads", monte_carlo);
+    add_own_pipeline(monte_carlo_app, "monte_carlo.yaml", kMonteCarloPipeline, "out", "-j,--threads",
+                     monte_carlo);
     monte_carlo_app->add_option("--only", monte_carlo_only, "Repeat the run of this seed alone")
         ->excludes(runs)
         ->excludes(monte_carlo_app->get_option("--seed"));
@@ -207,6 +222,7 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.plugins_app->parsed()) return plugins_command(loader);
   if (!all_loaded) return ExitStatus::misused;
   if (line.run_app->parsed()) return run_command(line.run, registrar);
+  if (line.figures_app->parsed()) return run_command(line.figures, registrar);
   if (line.monte_carlo_app->parsed()) return run_command(monte_carlo_request(line), registrar);
   if (line.validate_app->parsed()) return validate_command(line.validate_file, line.validate, registrar);
   if (line.stages_app->parsed()) return stages_command(line.stages, registrar);

@@ -23,8 +23,8 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "calibrate.yaml", "monte_carlo.yaml",
-                                              "picture.yaml", "simulate.yaml"));
+  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "calibrate.yaml", "figures.yaml",
+                                              "monte_carlo.yaml", "picture.yaml", "simulate.yaml"));
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
@@ -73,6 +73,15 @@ TEST(Configs, PictureShowsTheCloudBeforeAndAfterACalibration) {
   EXPECT_THAT(drawn.files, ElementsAre("after.png", "after.png.provenance.json", "before.png",
                                        "before.png.provenance.json", "summary.json"));
   EXPECT_NE(test::bytes_of(workshop / "out/before.png"), test::bytes_of(workshop / "out/after.png"));
+}
+
+TEST(Configs, FiguresWritesTheColumnsOfThePapersFigures) {
+  const test::Workshop workshop;
+  const auto outcome = workshop.run("figures.yaml", {}, "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  EXPECT_THAT(outcome.files,
+              testing::IsSupersetOf({"fig4_beam.dat", "fig5_surface.dat", "fig6_tau.dat", "fig6_alpha.dat",
+                                     "fig6_optimum.dat", "fig7_eta.dat", "summary.json"}));
 }
 
 TEST(Configs, MonteCarloWritesEveryRunAndTheTable) {
