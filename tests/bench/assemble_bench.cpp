@@ -11,9 +11,8 @@
 #include "pipeline/stage/registry.hpp"
 #include "plugins/assemble/deskew_stage.hpp"
 
+namespace crisp {
 namespace {
-
-using namespace crisp;
 
 constexpr std::size_t kBeams = 541;  // in a scan
 
@@ -66,3 +65,4 @@ void deskew_scans(benchmark::State& state) {
 BENCHMARK(deskew_scans)->Unit(benchmark::kMillisecond);
 
 }  // namespace
+}  // namespace crisp

@@ -23,7 +23,7 @@ using testing::IsEmpty;
 class Faults : public testing::Test {
  protected:
   void simulate(std::vector<std::string> options) {
-    options.push_back("step=2deg");
+    options.emplace_back("step=2deg");
     options.push_back("scene_file=" + test::write_room(workshop_ / "room.yaml").string());
     workshop_.simulate("made", options);
   }

@@ -45,9 +45,10 @@ std::vector<Residual> against_room(const Cloud& cloud, const std::vector<double>
     const Eigen::Vector3d point = each.getVector3fMap().cast<double>();
     const Eigen::Vector3d seen = turn(kYaw) * point + kPosition;
     std::array<double, 6> distances{};
-    for (int axis = 0; axis < 3; ++axis) {
-      distances[static_cast<std::size_t>(2 * axis)] = seen[axis];
-      distances[static_cast<std::size_t>(2 * axis + 1)] = kSize[axis] - seen[axis];
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const auto first = 2 * static_cast<std::size_t>(axis);
+      distances[first] = seen[axis];
+      distances[first + 1] = kSize[axis] - seen[axis];
     }
     const auto nearest = std::min_element(distances.begin(), distances.end());
     const auto close = std::count_if(distances.begin(), distances.end(), [](double d) { return d < kEdge; });
