@@ -25,8 +25,9 @@ Error cannot_read(const std::filesystem::path& path, int error) {
 }  // namespace
 
 FileWindow::FileWindow(const std::filesystem::path& path)
-    : path_(path), buffer_(std::make_unique_for_overwrite<std::uint8_t[]>(kBuffer)) {
-  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    : path_(path),
+      descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)),
+      buffer_(std::make_unique_for_overwrite<std::uint8_t[]>(kBuffer)) {
   struct stat status {};
   const bool opened = descriptor_ >= 0 && ::fstat(descriptor_, &status) == 0;
   if (!opened || S_ISDIR(status.st_mode)) {

@@ -65,8 +65,8 @@ Tins::RawPDU raw(ByteView bytes) { return {bytes.data(), static_cast<std::uint32
 
 }  // namespace
 
-void FrameSorter::push(std::int64_t time_ns, ByteView bytes) {
-  held_.emplace(time_ns, Bytes(bytes.begin(), bytes.end()));
+void FrameSorter::push(std::int64_t time_ns, ByteView frame) {
+  held_.emplace(time_ns, Bytes(frame.begin(), frame.end()));
   while (held_.begin()->first + hold_ns_ <= held_.rbegin()->first && held_.size() > 1) {
     sink_(held_.begin()->first, held_.begin()->second);
     held_.erase(held_.begin());

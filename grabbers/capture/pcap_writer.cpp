@@ -70,11 +70,11 @@ struct PcapWriter::File {
 
   /// Cuts off what was written only in part, and says why.
   [[noreturn]] void fail() {
-    const auto error = cannot_write(path, errno);
+    const int error = errno;
     dump.reset();
     std::error_code ignored;
     std::filesystem::resize_file(path, safe_length, ignored);
-    throw error;
+    throw cannot_write(path, error);
   }
 };
 

@@ -18,6 +18,9 @@ bool has_packet(std::uint32_t type) {
   return type == kPacket || type == kObsoletePacket || type == kSimplePacket;
 }
 
+/// Packets, and what tells how to read them.
+bool is_of_use(std::uint32_t type) { return has_packet(type) || type == kInterface || type == kStatistics; }
+
 /// Kinds without packets: names, journal entries, secrets, custom blocks.
 bool may_be_skipped(std::uint32_t type) {
   return type == kSection || type == 4 || type == 9 || type == 0xA || type == 0xBAD || type == 0x40000BAD;
@@ -63,8 +66,7 @@ bool PcapngBlocks::is_block(ByteView bytes, std::size_t at) const {
   if (recognises(block)) return section_order(block).has_value();
   const auto size = block_size(block);
   const auto type = u32(block, 0);
-  const bool known = has_packet(type) || type == kInterface || type == kStatistics;
-  return known && size && *size <= block.size() && u32(block, *size - 4) == *size;
+  return is_of_use(type) && size && *size <= block.size() && u32(block, *size - 4) == *size;
 }
 
 bool PcapngBlocks::resynchronise() {
@@ -92,48 +94,54 @@ bool PcapngBlocks::enter_section(ByteView begin) {
   return true;
 }
 
-bool PcapngBlocks::next(Packet& packet) {
+std::optional<ByteView> PcapngBlocks::next_block() {
   while (true) {
     const auto begin = file_.peek(kFrame);
-    if (begin.empty()) return false;
+    if (begin.empty()) return {};
     if (begin.size() < kFrame) {
       losses_.add(file_loss::kCutOff, begin.size());
-      return false;
+      return {};
     }
     const bool sane = !recognises(begin) || enter_section(begin);
     auto size = sane ? block_size(begin) : std::nullopt;
     if (size && *size > FileWindow::kLargestPeek) {
-      const auto type = u32(begin, 0);
-      if (!has_packet(type) && type != kInterface && type != kStatistics) {  // secrets, names …
+      if (!is_of_use(u32(begin, 0))) {  // secrets, names …
         file_.skip(*size);
         continue;
       }
       size.reset();  // no packet is that long
     }
     const auto block = size ? file_.peek(*size) : ByteView();
-    if (!size || (block.size() == *size && u32(block, *size - 4) != *size)) {
-      if (!resynchronise()) return false;
-      continue;
+    const bool whole = size && block.size() == *size;
+    if (whole && u32(block, *size - 4) == *size) {
+      file_.skip(*size);
+      return block;
     }
-    if (block.size() < *size) {  // the file ends here, or the length is damaged
-      const auto rest = block.size();
-      bool more = false;
-      for (std::size_t at = 4; at < rest && !more; at += 4) more = is_block(block, at);
-      if (more && resynchronise()) continue;
-      losses_.add(file_loss::kCutOff, rest);
-      return false;
+    if (size && !whole && !holds_a_block(block)) {  // the file ends here
+      losses_.add(file_loss::kCutOff, block.size());
+      return {};
     }
-    file_.skip(*size);
-    const auto type = u32(block, 0);
-    const auto body = block.subspan(kHeader, *size - kFrame);
+    if (!resynchronise()) return {};
+  }
+}
+
+bool PcapngBlocks::holds_a_block(ByteView bytes) const {
+  for (std::size_t at = 4; at < bytes.size(); at += 4) {
+    if (is_block(bytes, at)) return true;
+  }
+  return false;
+}
+
+bool PcapngBlocks::next(Packet& packet) {
+  while (const auto block = next_block()) {
+    const auto type = u32(*block, 0);
+    const auto body = block->subspan(kHeader, block->size() - kFrame);
     if (type == kInterface) describe_interface(body);
     if (type == kStatistics) read_statistics(body);
-    if (has_packet(type)) {
-      if (read_packet(type, body, packet)) return true;
-    } else if (type != kInterface && type != kStatistics && !may_be_skipped(type)) {
-      losses_.add(file_loss::kUnknownBlocks);
-    }
+    if (has_packet(type) && read_packet(type, body, packet)) return true;
+    if (!is_of_use(type) && !may_be_skipped(type)) losses_.add(file_loss::kUnknownBlocks);
   }
+  return false;
 }
 
 void PcapngBlocks::describe_interface(ByteView body) {

@@ -37,6 +37,8 @@ class PcapngBlocks {
   }
   std::optional<std::size_t> block_size(ByteView begin) const;
   bool is_block(ByteView bytes, std::size_t at) const;
+  bool holds_a_block(ByteView bytes) const;
+  std::optional<ByteView> next_block();  // whole; nothing at the end of the file
   bool enter_section(ByteView begin);
   bool resynchronise();
   bool read_packet(std::uint32_t type, ByteView body, Packet& packet);

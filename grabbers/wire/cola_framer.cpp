@@ -24,7 +24,7 @@ struct Candidate {
 /// Whether the bytes, as many as there are, can be the begin of a payload: "sRA", "sFA" …
 bool begins_like_a_command(ByteView payload) {
   const auto upper = [](std::uint8_t c) { return c >= 'A' && c <= 'Z'; };
-  return (payload.size() < 1 || payload[0] == 's') && (payload.size() < 2 || upper(payload[1])) &&
+  return (payload.empty() || payload[0] == 's') && (payload.size() < 2 || upper(payload[1])) &&
          (payload.size() < 3 || upper(payload[2]));
 }
 
@@ -104,9 +104,9 @@ std::optional<ColaFrame> ColaFramer::next(bool ended) {
 ColaFrame ColaFramer::take(ByteView payload, ColaLanguage language, std::size_t frame_size) {
   ColaFrame frame{.language = language, .payload = payload, .completed_ns = pieces_.front().arrival_ns};
   const auto end = offset_ + frame_size;
-  for (auto piece = pieces_.begin(); piece != pieces_.end(); ++piece) {
-    frame.completed_ns = std::max(frame.completed_ns, piece->arrival_ns);
-    if (piece->end >= end) break;
+  for (const auto& piece : pieces_) {
+    frame.completed_ns = std::max(frame.completed_ns, piece.arrival_ns);
+    if (piece.end >= end) break;
   }
   advance(frame_size);
   ++counts_.telegrams;

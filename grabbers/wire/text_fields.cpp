@@ -12,10 +12,10 @@ namespace {
 constexpr auto kDigits = [] {
   std::array<std::int8_t, 256> table{};
   table.fill(-1);
-  for (int i = 0; i < 10; ++i) table[static_cast<std::size_t>('0' + i)] = static_cast<std::int8_t>(i);
-  for (int i = 0; i < 6; ++i) {
-    table[static_cast<std::size_t>('A' + i)] = static_cast<std::int8_t>(10 + i);
-    table[static_cast<std::size_t>('a' + i)] = static_cast<std::int8_t>(10 + i);
+  for (std::uint8_t i = 0; i < 10; ++i) table['0' + i] = static_cast<std::int8_t>(i);
+  for (std::uint8_t i = 0; i < 6; ++i) {
+    table['A' + i] = static_cast<std::int8_t>(10 + i);
+    table['a' + i] = static_cast<std::int8_t>(10 + i);
   }
   return table;
 }();
@@ -43,11 +43,11 @@ std::uint32_t TextReader::hexadecimal(std::string_view token, std::uint32_t larg
   if (token.size() > kMostDigits) fail(FieldFailure::OutOfRange);
   if (!ok()) return 0;
   std::uint32_t value = 0;
-  int worst = 0;
+  std::int8_t worst = 0;
   for (const char c : token) {
-    const int digit = kDigits[static_cast<std::uint8_t>(c)];
-    worst |= digit;
-    value = (value << 4) | static_cast<std::uint32_t>(digit & 0xF);
+    const std::int8_t digit = kDigits[static_cast<std::uint8_t>(c)];
+    worst = std::min(worst, digit);
+    value = (value << 4U) | (static_cast<std::uint8_t>(digit) & 0xFU);
   }
   if (worst < 0) fail(FieldFailure::NotANumber);
   if (value > largest) fail(FieldFailure::OutOfRange);
@@ -60,11 +60,10 @@ std::int64_t TextReader::decimal(std::string_view token, std::int64_t smallest, 
   std::int64_t value = 0;
   const auto* end = token.data() + token.size();
   const auto [stop, error] = std::from_chars(token.data(), end, value);
-  if (error == std::errc::result_out_of_range) {
-    fail(FieldFailure::OutOfRange);
-  } else if (error != std::errc() || stop != end) {
+  const bool too_long = error == std::errc::result_out_of_range;
+  if (!too_long && (error != std::errc() || stop != end)) {
     fail(FieldFailure::NotANumber);
-  } else if (value < smallest || value > largest) {
+  } else if (too_long || value < smallest || value > largest) {
     fail(FieldFailure::OutOfRange);
   }
   return value;
