@@ -39,8 +39,14 @@ struct CommandLine {
   std::optional<fs::path> info_rig;
   std::string shell;
   bool info_json = false;
-  CLI::App *run_app, *figures_app, *monte_carlo_app, *validate_app, *stages_app, *plugins_app, *info_app,
-      *completion_app;
+  CLI::App* run_app = nullptr;
+  CLI::App* figures_app = nullptr;
+  CLI::App* monte_carlo_app = nullptr;
+  CLI::App* validate_app = nullptr;
+  CLI::App* stages_app = nullptr;
+  CLI::App* plugins_app = nullptr;
+  CLI::App* info_app = nullptr;
+  CLI::App* completion_app = nullptr;
 
   CommandLine() {
     app.set_version_flag("--version", "crisp " CRISP_VERSION);

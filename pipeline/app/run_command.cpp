@@ -50,10 +50,10 @@ RunRecord begin_record(const LoadedPipeline& loaded, const RunSettings& run) {
   return record;
 }
 
-std::vector<NodeResult> run_with_progress(Pipeline& pipeline, const RunSettings& run,
-                                          const StopOnSignal& stop, bool quiet, RunRecord& record) {
+std::vector<NodeResult> run_with_progress(Pipeline& pipeline, const RunSettings& run, bool quiet,
+                                          RunRecord& record) {
   ProgressPrinter printer(std::cerr, isatty(STDERR_FILENO) == 1, seconds_now);
-  RunHooks hooks{.stop = stop.flag()};
+  RunHooks hooks{.stop = StopOnSignal::flag()};
   hooks.failed = [&](std::vector<NodeResult> until_then) { record.nodes = std::move(until_then); };
   if (!quiet) {
     hooks.progress = [&](const std::string& tag, const Progress& progress) { printer.show(tag, progress); };
@@ -66,13 +66,13 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
   RunRecord record = begin_record(loaded, run);
   const double began = seconds_now();
   try {
-    record.nodes = run_with_progress(loaded.pipeline, run, stop, request.quiet, record);
+    record.nodes = run_with_progress(loaded.pipeline, run, request.quiet, record);
     record.seconds = seconds_now() - began;
     record.inputs = hash_inputs(record);
     write_records(record, run.output);
   } catch (const Interrupted&) {
     std::cerr << "interrupted: files that were not complete were not written\n";
-    return stop.signal() == SIGTERM ? ExitStatus::terminated : ExitStatus::interrupted;
+    return StopOnSignal::signal() == SIGTERM ? ExitStatus::terminated : ExitStatus::interrupted;
   } catch (const Error& error) {
     std::cerr << failure_text(record);
     print_errors(error);

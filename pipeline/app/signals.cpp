@@ -33,8 +33,8 @@ StopOnSignal::StopOnSignal() {
 
 StopOnSignal::~StopOnSignal() { handle(SIG_DFL); }
 
-const std::atomic<bool>* StopOnSignal::flag() const { return &stop_requested; }
+const std::atomic<bool>* StopOnSignal::flag() { return &stop_requested; }
 
-int StopOnSignal::signal() const { return last_signal; }
+int StopOnSignal::signal() { return last_signal; }
 
 }  // namespace crisp

@@ -14,8 +14,8 @@ class StopOnSignal {
   StopOnSignal(const StopOnSignal&) = delete;
   StopOnSignal& operator=(const StopOnSignal&) = delete;
 
-  const std::atomic<bool>* flag() const;
-  int signal() const;  ///< the signal that came, or 0
+  static const std::atomic<bool>* flag();
+  static int signal();  ///< the signal that came, or 0
 };
 
 }  // namespace crisp

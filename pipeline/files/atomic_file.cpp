@@ -31,7 +31,7 @@ void make_folder_of(const fs::path& file) {
 /// The file behind symbolic links, so that these stay links; refuses to replace devices and folders.
 fs::path final_target(const fs::path& file) {
   std::error_code missing;  // that there is no such file yet is no failure
-  const fs::path target = fs::is_symlink(file, missing) ? fs::weakly_canonical(file) : file;
+  fs::path target = fs::is_symlink(file, missing) ? fs::weakly_canonical(file) : file;
   const auto status = fs::status(target, missing);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     throw Error("cannot write " + file.string() + ": it is there and is not a file");

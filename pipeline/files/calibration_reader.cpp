@@ -50,7 +50,7 @@ class CalibrationReader {
     YamlMap map(node, what + ", terms", errors_);
     std::vector<TermParameters> terms;
     for (const auto& [name, place, value] : node.entries) {
-      YamlMap term_map(value, what + ", term '" + name + "'", errors_);
+      YamlMap term_map(value, fmt::format("{}, term '{}'", what, name), errors_);
       TermParameters term{name, {}};
       for (const auto& entry : value.entries) {
         term.parameters.push_back(read_parameter(entry.value, entry.key, term_map.what(), {}));
@@ -106,7 +106,7 @@ class CalibrationReader {
     map.refuse_others();
   }
 
-  const YamlNode* list(YamlMap& map, const std::string& key) {
+  static const YamlNode* list(YamlMap& map, const std::string& key) {
     const YamlNode* node = map.require(key);
     if (!node || node->kind == YamlNode::Kind::sequence) return node;
     map.fail(node->place, "'" + key + "': " + describe(*node) + " is not a list");
@@ -130,7 +130,7 @@ class CalibrationReader {
         if (const auto figure = read_number(value, "", wrong))
           calibration_.quality[name] = *figure;
         else
-          map.fail(value.place, "'" + name + "': " + wrong);
+          map.fail(value.place, fmt::format("'{}': {}", name, wrong));
       }
     }
   }
@@ -155,7 +155,7 @@ class CalibrationReader {
       if (auto text = read_text(value, wrong))
         calibration_.provenance[key] = std::move(*text);
       else
-        map.fail(value.place, "'" + key + "': " + wrong);
+        map.fail(value.place, fmt::format("'{}': {}", key, wrong));
     }
   }
 

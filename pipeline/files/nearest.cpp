@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 namespace crisp {
 namespace {
@@ -48,7 +49,7 @@ std::optional<std::string> nearest_name(std::string_view name, const std::vector
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known,
                          std::string otherwise) {
   const auto near = nearest_name(name, known);
-  return near ? "did you mean '" + *near + "'?" : otherwise;
+  return near ? "did you mean '" + *near + "'?" : std::move(otherwise);
 }
 
 }  // namespace crisp

@@ -92,7 +92,7 @@ class RigReader {
     places_.push_back(node.place);
   }
 
-  Address read_address(YamlMap& map, int default_port) {
+  static Address read_address(YamlMap& map, int default_port) {
     Address address;
     const YamlNode* ip = map.require("address");
     address.ip = map.text("address", "");
@@ -104,7 +104,8 @@ class RigReader {
   }
 
   /// A number whose size cannot be more than `limit`, in SI: beyond it, somebody forgot a unit.
-  double bounded(YamlMap& map, const std::string& key, std::string_view unit, double fallback, double limit) {
+  static double bounded(YamlMap& map, const std::string& key, std::string_view unit, double fallback,
+                        double limit) {
     const double value = map.number(key, unit, fallback);
     if (std::abs(value) <= limit) return value;
     map.fail(map.find(key)->place, fmt::format("'{}': {:g} {} cannot be meant", key, value, unit),

@@ -59,9 +59,9 @@ bool has_type(const Option& option, const OptionScalar& scalar) {
 
 /// A number as a person would write it: angles in degrees where that is shorter and reads back as the same.
 std::string number_text(double value, const std::string& unit) {
-  const std::string plain = fmt::format("{}{}", value, unit == "1" ? "" : unit);
+  std::string plain = fmt::format("{}{}", value, unit == "1" ? "" : unit);
   if (unit != "rad") return plain;
-  const std::string degrees = fmt::format("{:.10g}deg", value * 180 / std::numbers::pi);
+  std::string degrees = fmt::format("{:.10g}deg", value * 180 / std::numbers::pi);
   const auto back = parse_quantity(degrees, unit);
   const bool same = std::holds_alternative<double>(back) && std::get<double>(back) == value;
   return same && degrees.size() < plain.size() ? degrees : plain;

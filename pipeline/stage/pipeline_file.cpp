@@ -134,7 +134,7 @@ class PlanReader {
     return !tag.empty() && std::all_of(tag.begin(), tag.end(), allowed);
   }
 
-  std::vector<TagReference> read_inputs(const YamlNode& node, YamlMap& map) {
+  static std::vector<TagReference> read_inputs(const YamlNode& node, YamlMap& map) {
     std::vector<TagReference> inputs;
     if (node.kind == YamlNode::Kind::scalar)
       inputs.push_back({node.text, node.place});

@@ -179,7 +179,7 @@ class Runner {
                  "see what they report", worker.node->place);
   }
 
-  void give(std::size_t from, Item item) {
+  void give(std::size_t from, const Item& item) {
     if (is_stopped()) throw Interrupted();
     Worker& worker = workers_[from];
     if (!worker.node->type->gives(item.kind)) {
@@ -197,7 +197,7 @@ class Runner {
   void call(std::size_t index, Call&& body) {
     if (is_stopped()) throw Interrupted();
     Worker& worker = workers_[index];
-    Outputs out([this, index](Item item) { give(index, std::move(item)); });
+    Outputs out([this, index](const Item& item) { give(index, item); });
     Context context(run_, worker.result.report, hooks_.stop, progress_of(worker));
     try {
       Stopwatch::Turn turn(stopwatch_, worker.result.seconds);

@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A variable may stand for any value.
-const Json kVariable = {{"type", "string"}, {"pattern", "\\$\\{[A-Za-z0-9_]+\\}"}};
+const Json kVariable = {{"type", "string"}, {"pattern", R"(\$\{[A-Za-z0-9_]+\})"}};
 
 Json number_schema(const Option& option) {
   Json number = {{"type", option.type == OptionType::integer ? "integer" : "number"}};

@@ -34,8 +34,8 @@ class Settings {
     bool used = false;
   };
 
-  void apply(Setting& setting, std::vector<StageSpec>& specs, const StageRegistry& stages,
-             std::vector<Error>& errors);
+  static void apply(Setting& setting, std::vector<StageSpec>& specs, const StageRegistry& stages,
+                    std::vector<Error>& errors);
 
   std::vector<Setting> settings_;
 };

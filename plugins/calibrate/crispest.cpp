@@ -111,7 +111,7 @@ Minimum crispest(SensorModel& model, const Sample& sample, const std::vector<std
     if (gradient) *gradient = quality.gradient;
     return quality.value;
   };
-  const Minimum minimum = minimise(objective, start, box, settings);
+  Minimum minimum = minimise(objective, start, box, settings);
   model = with(model, free, minimum.x);
   return minimum;
 }
