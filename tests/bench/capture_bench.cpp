@@ -13,9 +13,8 @@
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_conversion.hpp"
 
+namespace crisp {
 namespace {
-
-using namespace crisp;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
@@ -146,3 +145,4 @@ BENCHMARK_CAPTURE(encode_telegram, cola_a, ColaLanguage::A);
 BENCHMARK_CAPTURE(encode_telegram, cola_b, ColaLanguage::B);
 
 }  // namespace
+}  // namespace crisp

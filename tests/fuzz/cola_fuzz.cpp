@@ -8,9 +8,8 @@
 #include "grabbers/wire/cola_framer.hpp"
 #include "grabbers/wire/scan_conversion.hpp"
 
+namespace crisp {
 namespace {
-
-using namespace crisp;
 
 struct Found {
   ColaLanguage language;
@@ -62,3 +61,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const auto& found : whole) read_and_write_again(found);
   return 0;
 }
+
+}  // namespace crisp

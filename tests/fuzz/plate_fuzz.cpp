@@ -7,9 +7,8 @@
 
 #include "grabbers/wire/plate_framer.hpp"
 
+namespace crisp {
 namespace {
-
-using namespace crisp;
 
 std::vector<PlateReading> find(ByteView stream, std::size_t piece) {
   std::vector<PlateReading> found;
@@ -40,3 +39,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   return 0;
 }
+
+}  // namespace crisp
