@@ -3,12 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
+#include "pipeline/data/degree.hpp"
 
 namespace crisp {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// A line each with the cloud's points, blocks apart by two blank lines.
 std::string beam_clouds(const Figures& figures) {

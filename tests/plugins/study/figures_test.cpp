@@ -5,16 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "grabbers/simulate/paper.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
+#include "pipeline/data/degree.hpp"
 #include "plugins/study/figure_files.hpp"
 
 namespace crisp {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 const FigureSettings& settings() {
   static const FigureSettings settings;
