@@ -13,7 +13,7 @@
 namespace crisp::test {
 
 /// What `crisp run` ended in.
-struct Outcome {
+struct Outcome {  // NOLINT(bugprone-exception-escape): moving JSON checks what it holds
   ExitStatus status = ExitStatus::failed;
   std::string told;                    ///< what it wrote to stderr: errors, warnings, doubts
   nlohmann::json summary;              ///< summary.json; null if there is none

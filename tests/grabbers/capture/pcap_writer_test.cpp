@@ -94,7 +94,7 @@ TEST(PcapWriter, RefusesToContinueAnotherKindOfFile) {
 TEST(PcapWriter, SaysWhenAFolderIsMissing) {
   const TemporaryFolder folder;
   try {
-    PcapWriter(folder / "nowhere/a.pcap", PcapMode::Grow);
+    const PcapWriter writer(folder / "nowhere/a.pcap", PcapMode::Grow);
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("No such file or directory"));
