@@ -65,7 +65,8 @@ TEST(Dissect, FindsTheSameSegmentInEveryLinkLayer) {
 }
 
 TEST(Dissect, FindsDatagrams) {
-  const auto found = dissect(packet(udp_frame(), 1));
+  const auto frame = udp_frame();
+  const auto found = dissect(packet(frame, 1));
   ASSERT_TRUE(found);
   EXPECT_EQ(found->key.transport, Transport::Udp);
   EXPECT_EQ(found->key.from.port, 4000);

@@ -51,9 +51,9 @@ TEST_P(AgainstPcl, ReadsEveryFieldThatCrispWrote) {
 TEST_P(AgainstPcl, ReadsOnePointAndNone) {
   for (const std::size_t n : {1, 0}) {
     write(sample_cloud(n));
-    Cloud read;
+    pcl::PCLPointCloud2 read;  // not a Cloud: to make one of no points, PCL takes the address of the first
     EXPECT_EQ(pcl::io::loadPCDFile(file().string(), read), 0);
-    EXPECT_EQ(read.size(), n);
+    EXPECT_EQ(read.width * read.height, n);
     EXPECT_EQ(cloud_of(read_pcd(file())).cloud->size(), n);
   }
 }

@@ -36,7 +36,7 @@ struct Fixture : testing::Test {
   const Option& last() const { return options.all().back(); }
   OptionValue value() const { return last().get(&thing); }
   std::string text() const { return to_text(last(), value()); }
-  void set(OptionValue to) { last().set(&thing, to); }
+  void set(const OptionValue& to) { last().set(&thing, to); }
 };
 
 TEST_F(Fixture, ReadsAndSetsEveryTypeOfMember) {

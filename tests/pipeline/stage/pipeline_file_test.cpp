@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/stage/pipeline_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "pipeline/files/atomic_file.hpp"
@@ -192,10 +193,8 @@ TEST_F(PipelineFileTest, StopsVariablesThatDoubleOneAnother) {
   std::string texts = "crisp: 1\nvars:\n  a0: xxxxxxxxxxxxxxxx\n";
   std::string lists = "crisp: 1\nvars:\n  a0: [1, 2]\n";
   for (int i = 1; i < 60; ++i) {
-    const std::string name = "a" + std::to_string(i);
-    const std::string above = "${a" + std::to_string(i - 1) + "}";
-    texts += "  " + name + ": \"" + above + above + "\"\n";
-    lists += "  " + name + ": [" + above + ", " + above + "]\n";
+    texts += fmt::format("  a{0}: \"${{a{1}}}${{a{1}}}\"\n", i, i - 1);
+    lists += fmt::format("  a{0}: [${{a{1}}}, ${{a{1}}}]\n", i, i - 1);
   }
   EXPECT_THROW(errors_of(texts), Error);
   EXPECT_THROW(errors_of(lists), Error);

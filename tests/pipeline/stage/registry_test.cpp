@@ -88,7 +88,7 @@ TEST(Registrar, HandsOutTheRegistriesThatWereAttached) {
   Registrar registrar;
   EXPECT_THROW(registrar.get<Measures>(), Error);
   registrar.attach(measures);
-  registrar.get<Measures>().names.push_back("rqe");
+  registrar.get<Measures>().names.emplace_back("rqe");
   EXPECT_THAT(measures.names, ElementsAre("rqe"));
 }
 

@@ -56,7 +56,7 @@ class CountStage final : public Stage {
   void process(const Inputs&, Outputs& out, Context&) override {
     for (int i = 0; i < n_; ++i) out.give(Number{first_ + i});
   }
-  void finish(Outputs&, Context&) override { log().push_back("count finishes"); }
+  void finish(Outputs&, Context&) override { log().emplace_back("count finishes"); }
 
  private:
   int n_ = 3;
@@ -122,7 +122,7 @@ class LogStage final : public Stage {
     if (const auto* word = in.find<Word>()) log().push_back("word " + word->text);
     context.count("entries");
   }
-  void finish(Outputs&, Context&) override { log().push_back("log finishes"); }
+  void finish(Outputs&, Context&) override { log().emplace_back("log finishes"); }
 };
 
 /// Throws what `how` says when it sees its third number.
