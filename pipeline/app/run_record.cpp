@@ -34,6 +34,13 @@ Json head_json(const RunRecord& record) {
           {"inputs", inputs_json(record)}};
 }
 
+/// What summary and provenance say of a stage.
+Json stage_json(const RunRecord& record, std::size_t i) {
+  const NodeResult& node = record.nodes[i];
+  return {
+      {"tag", node.tag}, {"stage", node.stage}, {"seconds", node.seconds}, {"options", record.options[i]}};
+}
+
 Json outputs_json(const StageReport& report) {
   Json list = Json::array();
   for (const auto& file : report.written) list.push_back(file.string());
@@ -80,17 +87,15 @@ Json summary_json(const RunRecord& record) {
   json["stages"] = Json::array();
   for (std::size_t i = 0; i < record.nodes.size(); ++i) {
     const NodeResult& node = record.nodes[i];
-    json["stages"].push_back({{"tag", node.tag},
-                              {"stage", node.stage},
-                              {"seconds", node.seconds},
-                              {"options", record.options[i]},
-                              {"taken", node.taken},
-                              {"given", node.given},
-                              {"counts", node.report.counts},
-                              {"warnings", node.report.warnings},
-                              {"doubts", node.report.doubts},
-                              {"outputs", outputs_json(node.report)},
-                              {"report", node.report.section}});
+    Json stage = stage_json(record, i);
+    stage.update({{"taken", node.taken},
+                  {"given", node.given},
+                  {"counts", node.report.counts},
+                  {"warnings", node.report.warnings},
+                  {"doubts", node.report.doubts},
+                  {"outputs", outputs_json(node.report)},
+                  {"report", node.report.section}});
+    json["stages"].push_back(std::move(stage));
   }
   return json;
 }
@@ -101,11 +106,7 @@ Json provenance_json(const RunRecord& record, const fs::path& file) {
   json["trusted"] = record.is_trusted();
   json["stages"] = Json::array();
   for (std::size_t i = 0; i < record.nodes.size(); ++i) {
-    const NodeResult& node = record.nodes[i];
-    json["stages"].push_back({{"tag", node.tag},
-                              {"stage", node.stage},
-                              {"seconds", node.seconds},
-                              {"options", record.options[i]}});
+    json["stages"].push_back(stage_json(record, i));
   }
   return json;
 }

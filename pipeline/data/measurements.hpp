@@ -21,6 +21,16 @@ struct Measurements {
   std::size_t size() const { return range.size(); }
   void reserve(std::size_t n);
   void append(const Measurements& other);  ///< @throws Error if the epochs differ
+
+  /// One beam of another set, which must have the same epoch.
+  void append(const Measurements& other, std::size_t i) {
+    range.push_back(other.range[i]);
+    mirror_angle.push_back(other.mirror_angle[i]);
+    time.push_back(other.time[i]);
+    laser.push_back(other.laser[i]);
+    remission.push_back(other.remission[i]);
+    beam.push_back(other.beam[i]);
+  }
 };
 
 }  // namespace crisp

@@ -13,7 +13,8 @@
 namespace crisp {
 
 /// What a file holds: for people, and for programs.
-struct Inspection {     // NOLINT(bugprone-exception-escape): moving JSON checks what it holds
+// NOLINTNEXTLINE(bugprone-exception-escape): moving JSON checks what it holds
+struct Inspection {
   std::string text;     ///< lines, without a line break at the end
   nlohmann::json data;  ///< the same as an object
 };

@@ -16,8 +16,7 @@ bool is_fixed(const std::string& name, const std::vector<std::string>& fixed) {
                      [&](const std::string& f) { return name == f || name.ends_with("." + f); });
 }
 
-}  // namespace
-
+/// Which lasers fired these beams.
 std::vector<bool> lasers_in(const Measurements& beams, std::size_t lasers) {
   std::vector<bool> seen(lasers, false);
   for (const auto laser : beams.laser) {
@@ -25,6 +24,8 @@ std::vector<bool> lasers_in(const Measurements& beams, std::size_t lasers) {
   }
   return seen;
 }
+
+}  // namespace
 
 FreeParameters free_parameters(const SensorModel& model, const Measurements& beams,
                                const std::vector<std::string>& fixed) {

@@ -24,9 +24,6 @@ FreeParameters free_parameters(const SensorModel& model, const Measurements& bea
 /// @throws Error  if an entry of `fixed` names no parameter of these lasers
 void check_fixed(const std::vector<std::string>& fixed, const Calibration& calibration);
 
-/// Which lasers fired these beams.
-std::vector<bool> lasers_in(const Measurements& beams, std::size_t lasers);
-
 /// The largest and smallest η of the lasers [s], with a margin to both sides.
 struct LagRange {
   double earliest = 0;

@@ -39,17 +39,9 @@ double inclusion_factor(const std::vector<double>& areas, double count) {
 
 Sample select(const Sample& sample, const std::function<bool(std::size_t)>& keep) {
   Sample kept{.plate = sample.plate};
-  const Measurements& from = sample.beams;
-  Measurements& to = kept.beams;
-  to.epoch_ns = from.epoch_ns;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    if (!keep(i)) continue;
-    to.range.push_back(from.range[i]);
-    to.mirror_angle.push_back(from.mirror_angle[i]);
-    to.time.push_back(from.time[i]);
-    to.laser.push_back(from.laser[i]);
-    to.remission.push_back(from.remission[i]);
-    to.beam.push_back(from.beam[i]);
+  kept.beams.epoch_ns = sample.beams.epoch_ns;
+  for (std::size_t i = 0; i < sample.beams.size(); ++i) {
+    if (keep(i)) kept.beams.append(sample.beams, i);
   }
   return kept;
 }

@@ -10,13 +10,8 @@ Measurements picked_beams(const Measurements& from, std::span<const std::uint32_
   to.epoch_ns = from.epoch_ns;
   to.reserve(beams.size());
   for (std::size_t k = 0; k < beams.size(); ++k) {
-    const std::uint32_t i = beams[k];
-    to.range.push_back(static_cast<float>(static_cast<double>(from.range[i]) + range_change[k]));
-    to.mirror_angle.push_back(from.mirror_angle[i]);
-    to.time.push_back(from.time[i]);
-    to.laser.push_back(from.laser[i]);
-    to.remission.push_back(from.remission[i]);
-    to.beam.push_back(from.beam[i]);
+    to.append(from, beams[k]);
+    to.range.back() = static_cast<float>(static_cast<double>(to.range.back()) + range_change[k]);
   }
   return to;
 }

@@ -49,13 +49,7 @@ Measurements within(const Measurements& beams, const RangeLimits& limits) {
     const bool keep = is_within(limits.range, static_cast<double>(beams.range[i])) &&
                       is_within(limits.mirror_angle, static_cast<double>(beams.mirror_angle[i])) &&
                       wanted(beams.laser[i]);
-    if (!keep) continue;
-    kept.range.push_back(beams.range[i]);
-    kept.mirror_angle.push_back(beams.mirror_angle[i]);
-    kept.time.push_back(beams.time[i]);
-    kept.laser.push_back(beams.laser[i]);
-    kept.remission.push_back(beams.remission[i]);
-    kept.beam.push_back(beams.beam[i]);
+    if (keep) kept.append(beams, i);
   }
   return kept;
 }
