@@ -28,13 +28,13 @@ PlateTrajectory read_encoder(const ScannerSettings& settings, const Motion& moti
   return {kEpoch, std::move(times), std::move(angles), 10 / settings.plate_frequency};
 }
 
-std::size_t append(Measurements& to, const Sweep& sweep, const ScannerSettings& settings) {
+void append(SimulatedMeasurements& result, const Sweep& sweep, const ScannerSettings& settings) {
+  Measurements& to = result.beams;
   const double eta = settings.truth.lasers[sweep.laser].eta.value;
   const double mount = settings.rig.lasers[sweep.laser].mount;
-  std::size_t no_echo = 0;
   for (std::size_t i = 0; i < sweep.beams.size(); ++i) {
     if (sweep.ranges[i] == 0) {
-      ++no_echo;
+      ++result.no_echo;
       continue;
     }
     to.range.push_back(sweep.ranges[i]);
@@ -44,8 +44,8 @@ std::size_t append(Measurements& to, const Sweep& sweep, const ScannerSettings& 
     to.laser.push_back(sweep.laser);
     to.remission.push_back(sweep.remissions[i]);
     to.beam.push_back(sweep.beams[i]);
+    result.surface.push_back(sweep.surfaces[i]);
   }
-  return no_echo;
 }
 
 }  // namespace
@@ -53,10 +53,11 @@ std::size_t append(Measurements& to, const Sweep& sweep, const ScannerSettings& 
 SimulatedMeasurements simulate_measurements(const ScannerSettings& settings, const Scene& scene,
                                             const Motion& motion, const TermRegistry& terms) {
   SweepSimulator sweeps(settings, scene, motion, terms);
-  SimulatedMeasurements result{.beams = {}, .plate = read_encoder(settings, motion), .truth = settings.truth};
+  SimulatedMeasurements result{
+      .beams = {}, .surface = {}, .plate = read_encoder(settings, motion), .truth = settings.truth};
   result.beams.epoch_ns = kEpoch;
   for (Sweep sweep = sweeps.next(); sweep.revolution.begin < settings.duration; sweep = sweeps.next()) {
-    result.no_echo += append(result.beams, sweep, settings);
+    append(result, sweep, settings);
   }
   return result;
 }

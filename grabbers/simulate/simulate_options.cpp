@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/simulate/scenes.hpp"
 #include "grabbers/simulate/simulate_stage.hpp"
+#include "grabbers/simulate/world_options.hpp"
 
 namespace crisp {
 
@@ -14,7 +14,7 @@ void SimulateStage::describe(Description& d) {
       "laser's. Shares are between 0 and 1.");
   d.gives<Scan>().gives<PlateReading>();
   describe_scanner(d);
-  describe_truth(d);
+  describe_truth(d, &SimulateStage::hidden_);
   describe_plate(d);
   describe_lasers(d);
   describe_stamps(d);
@@ -24,8 +24,7 @@ void SimulateStage::describe(Description& d) {
 
 void SimulateStage::describe_scanner(Description& d) {
   using S = SimulateStage;
-  d.option("scene", &S::scene_, "what stands around the scanner").choices({"office", "hall", "street"});
-  d.option("scene_file", &S::scene_file_, "a scene of your own in YAML, in place of `scene`");
+  describe_scene(d, &S::scene_);
   d.option("duration", &S::scanner, &ScannerSettings::duration, "how long to record")
       .unit("s")
       .range(0.01, 1e5);
@@ -34,48 +33,9 @@ void SimulateStage::describe_scanner(Description& d) {
   d.option("truth", &S::truth_file_, "file to write the true calibration, clocks and delays to");
 }
 
-void SimulateStage::describe_truth(Description& d) {
-  using S = SimulateStage;
-  d.option("calibration", &S::calibration_file_,
-           "the true calibration; without one it is drawn around nominal");
-  d.option("tau_off", &S::departures_, &Departures::tau, "largest departure of a drawn τ from nominal")
-      .unit("m")
-      .range(0, 1);
-  d.option("alpha_off", &S::departures_, &Departures::alpha, "largest departure of a drawn α from nominal")
-      .unit("rad")
-      .range(0, 3.2);
-  d.option("lambda_off", &S::departures_, &Departures::lambda,
-           "largest departure of a drawn λ from nominal; the first laser's is the gauge and stays")
-      .unit("rad")
-      .range(0, 3.2);
-  d.option("eta_off", &S::departures_, &Departures::eta, "largest departure of a drawn η from nominal")
-      .unit("s")
-      .range(0, 1);
-  d.option("effects", &S::effects_,
-           "terms of the sensor model to put into the truth: `laser2.mirror.cone.kappa=0.3deg`; without an "
-           "owner, into every laser or the plate, as the term is of");
-}
-
 void SimulateStage::describe_plate(Description& d) {
   using S = SimulateStage;
-  d.option("motion", &S::motion, &MotionSettings::kind, "how the plate turns")
-      .choices({{"constant", MotionKind::constant},
-                {"varying", MotionKind::varying},
-                {"reversal", MotionKind::reversal},
-                {"stop_and_go", MotionKind::stop_and_go}});
-  d.option("min_rate", &S::motion, &MotionSettings::min_rate, "slowest rate of a varying motion")
-      .unit("Hz")
-      .range(-50, 50);
-  d.option("max_rate", &S::motion, &MotionSettings::max_rate, "fastest rate, or the only one")
-      .unit("Hz")
-      .range(-50, 50);
-  d.option("change_time", &S::motion, &MotionSettings::change_time, "how long a change of the rate takes")
-      .unit("s")
-      .range(0.01, 1e4);
-  d.option("hold_time", &S::motion, &MotionSettings::hold_time,
-           "how long reversal and stop_and_go hold a rate")
-      .unit("s")
-      .range(0, 1e4);
+  describe_motion(d, &S::motion);
   d.option("plate_frequency", &S::scanner, &ScannerSettings::plate_frequency, "encoder readings a second")
       .unit("Hz")
       .range(1, 1e5);
@@ -89,25 +49,7 @@ void SimulateStage::describe_lasers(Description& d) {
   d.option("quantum", &S::range, &RangeSettings::quantum, "step of the ranges; telegrams have 1 mm at best")
       .unit("m")
       .range(0, 1);
-  d.option("reach", &S::range, &RangeSettings::max_distance, "nothing comes back from beyond")
-      .unit("m")
-      .range(0.1, 65);
-  d.option("first_angle", &S::field, &FieldOfView::first, "reported angle of the first beam").unit("rad");
-  d.option("last_angle", &S::field, &FieldOfView::last, "reported angle of the last beam").unit("rad");
-  d.option("step", &S::field, &FieldOfView::step, "angle between beams").unit("rad").range(1e-4, 1);
-  d.option("mirror_frequency", &S::mirror, &MirrorSettings::frequency, "nominal rate of the mirrors")
-      .unit("Hz")
-      .range(1, 1000);
-  d.option("mirror_slowest", &S::mirror, &MirrorSettings::slowest,
-           "each mirror's mean period is drawn: up to this share longer than nominal")
-      .unit("1")
-      .range(0, 0.1);
-  d.option("mirror_wander", &S::mirror, &MirrorSettings::wander, "largest slow departure of the period")
-      .unit("1")
-      .range(0, 0.1);
-  d.option("mirror_jitter", &S::mirror, &MirrorSettings::jitter, "standard deviation of each single period")
-      .unit("1")
-      .range(0, 0.01);
+  describe_field(d, &S::scanner);
 }
 
 void SimulateStage::describe_stamps(Description& d) {

@@ -3,16 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <variant>
 
-#include "grabbers/simulate/scene_file.hpp"
-#include "grabbers/simulate/scenes.hpp"
 #include "grabbers/simulate/truth_file.hpp"
 #include "pipeline/data/error.hpp"
-#include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/quantity.hpp"
-#include "pipeline/model/term.hpp"
 
 namespace crisp {
 namespace {
@@ -41,21 +36,6 @@ Restart parse_restart(const std::string& text) {
   return {.device = text.substr(0, at), .time = seconds(text, time)};
 }
 
-/// The terms that the program knows; none where a stage is run without one.
-const TermRegistry& known_terms(const RunSettings& run) {
-  static const TermRegistry none;
-  return run.registrar ? run.registrar->get<TermRegistry>() : none;
-}
-
-void check_lasers(const Calibration& truth, const Rig& rig, const std::filesystem::path& file) {
-  const bool same = std::equal(truth.lasers.begin(), truth.lasers.end(), rig.lasers.begin(), rig.lasers.end(),
-                               [](const auto& a, const auto& b) { return a.name == b.name; });
-  if (!same) {
-    throw Error(file.string() + " is not a calibration of this rig",
-                "it must name the rig's lasers, in the rig's order");
-  }
-}
-
 }  // namespace
 
 RecordingSettings SimulateStage::settings(const RunSettings& run) const {
@@ -67,21 +47,9 @@ RecordingSettings SimulateStage::settings(const RunSettings& run) const {
   return result;
 }
 
-Calibration SimulateStage::truth(Calibration start, const RunSettings& run) const {
-  for (const auto& effect : effects_) add_effect(start, effect, known_terms(run));
-  return start;
-}
-
-Scene SimulateStage::scene(Context& context) const {
-  if (scene_file_.empty()) return built_in_scene(scene_);
-  context.reads(scene_file_);
-  return read_scene(scene_file_);
-}
-
 void SimulateStage::check(const RunSettings& run) const {
   RecordingSettings planned = settings(run);
-  planned.scanner.truth =
-      truth(draw_truth(nominal_calibration(run.rig), departures_, planned.scanner.seed), run);
+  planned.scanner.truth = hidden_.drawn(run, planned.scanner.seed);
   draw_devices(planned);
   make_motion(planned.scanner.motion, planned.scanner.duration, planned.scanner.seed);
   planned.scanner.field.beams();
@@ -89,16 +57,8 @@ void SimulateStage::check(const RunSettings& run) const {
 
 void SimulateStage::process(const Inputs&, Outputs& out, Context& context) {
   simulated_ = settings(context.run());
-  const bool drawn = calibration_file_.empty();
-  Calibration start =
-      drawn ? draw_truth(nominal_calibration(context.rig()), departures_, simulated_.scanner.seed)
-            : read_calibration(calibration_file_);
-  if (!drawn) {
-    context.reads(calibration_file_);
-    check_lasers(start, context.rig(), calibration_file_);
-  }
-  simulated_.scanner.truth = truth(std::move(start), context.run());
-  const Scene surroundings = scene(context);
+  simulated_.scanner.truth = hidden_.load(context, simulated_.scanner.seed);
+  const Scene surroundings = scene_.load(context);
   simulated_scene_ = surroundings.name;
 
   RecordingSimulator simulator(simulated_, surroundings, known_terms(context.run()));

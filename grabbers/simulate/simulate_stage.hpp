@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "grabbers/simulate/departures.hpp"
 #include "grabbers/simulate/recorded_capture.hpp"
 #include "grabbers/simulate/recording.hpp"
+#include "grabbers/simulate/world.hpp"
 #include "pipeline/data/degree.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
@@ -31,7 +31,6 @@ class SimulateStage final : public Stage {
   using Description = StageDescription<SimulateStage>;
   static void describe_scanner(Description& d);
   static void describe_plate(Description& d);
-  static void describe_truth(Description& d);
   static void describe_lasers(Description& d);
   static void describe_stamps(Description& d);
   static void describe_links(Description& d);
@@ -40,23 +39,17 @@ class SimulateStage final : public Stage {
   // What the options are declared on.
   ScannerSettings& scanner() { return settings_.scanner; }
   RangeSettings& range() { return settings_.scanner.range; }
-  FieldOfView& field() { return settings_.scanner.field; }
-  MirrorSettings& mirror() { return settings_.scanner.mirror; }
   MotionSettings& motion() { return settings_.scanner.motion; }
 
   /// The settings for this run, all but the truth, which a file may hold.
   RecordingSettings settings(const RunSettings& run) const;
-  /// Departures and effects put on top of where they start from.
-  Calibration truth(Calibration start, const RunSettings& run) const;
-  Scene scene(Context& context) const;
 
   RecordingSettings settings_;
-  Departures departures_{.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04};
+  TruthChoice hidden_{.departures = {.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04},
+                      .calibration_file = {},
+                      .effects = {}};
   WireFaults wire_faults_;
-  std::string scene_ = "office";
-  std::filesystem::path scene_file_;
-  std::filesystem::path calibration_file_;
-  std::vector<std::string> effects_;
+  SceneChoice scene_;
   std::vector<std::string> silences_;
   std::vector<std::string> restarts_;
   std::optional<std::uint64_t> seed_;

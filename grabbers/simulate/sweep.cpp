@@ -120,6 +120,7 @@ void SweepSimulator::aim(Laser& laser, Sweep& sweep) {
 void SweepSimulator::measure(Laser& laser, Sweep& sweep) {
   sweep.ranges.assign(beams_.size(), 0);
   sweep.remissions.assign(beams_.size(), 0);
+  sweep.surfaces.assign(beams_.size(), 0);
   const auto& range = settings_.range;
   for (std::size_t i = 0; i < beams_.size(); ++i) {
     const double noise = range.sigma * laser.noise.normal();
@@ -134,6 +135,7 @@ void SweepSimulator::measure(Laser& laser, Sweep& sweep) {
     if (!(stepped >= kSmallestRange)) continue;
     sweep.ranges[i] = static_cast<float>(stepped);
     sweep.remissions[i] = strength;
+    sweep.surfaces[i] = hit->surface;
   }
 }
 

@@ -19,10 +19,11 @@ namespace crisp {
 struct Sweep {
   std::uint16_t laser = 0;  ///< index in the rig
   Revolution revolution;
-  std::vector<std::uint16_t> beams;  ///< index of each beam in its scan
-  std::vector<double> times;         ///< [s] true time at which each was fired
-  std::vector<float> ranges;         ///< [m] as the device measures them; 0 where nothing came back
-  std::vector<float> remissions;     ///< 0 to 254
+  std::vector<std::uint16_t> beams;     ///< index of each beam in its scan
+  std::vector<double> times;            ///< [s] true time at which each was fired
+  std::vector<float> ranges;            ///< [m] as the device measures them; 0 where nothing came back
+  std::vector<float> remissions;        ///< 0 to 254
+  std::vector<std::uint32_t> surfaces;  ///< index into Scene::surfaces of what was met; of no use at range 0
 };
 
 /// Fires the beams of a scanner's lasers at a scene, sweep by sweep, through the sensor model: what is hidden

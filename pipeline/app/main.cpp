@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program's command line; the only file that knows CLI11.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
@@ -29,6 +30,7 @@ struct CommandLine {
   CLI::App app{"Turns what lasers on a spinning plate measured into one crisp cloud.", "crisp"};
   std::vector<std::string> plugins;
   RunRequest run;
+  RunRequest bound;
   RunRequest figures;
   RunRequest monte_carlo;
   std::uint64_t monte_carlo_runs = 1500;
@@ -40,6 +42,7 @@ struct CommandLine {
   std::string shell;
   bool info_json = false;
   CLI::App* run_app = nullptr;
+  CLI::App* bound_app = nullptr;
   CLI::App* figures_app = nullptr;
   CLI::App* monte_carlo_app = nullptr;
   CLI::App* validate_app = nullptr;
@@ -53,6 +56,7 @@ struct CommandLine {
     app.footer(kFooter);
     app.require_subcommand(1);
     add_run();
+    add_bound();
     add_monte_carlo();
     add_figures();
     add_validate();
@@ -77,9 +81,13 @@ struct CommandLine {
     to->add_option("-i,--input", arguments.input, "What ${input} stands for")->type_name("PATH");
     to->add_option("-o,--output", arguments.output, "The folder that ${output} stands for")
         ->type_name("FOLDER");
+    add_rig(to, arguments);
+    add_set(to, arguments);
+  }
+
+  static void add_rig(CLI::App* to, PipelineArguments& arguments) {
     to->add_option("--rig", arguments.rig, "The rig, instead of the one that the pipeline names")
         ->type_name("FILE");
-    add_set(to, arguments);
   }
 
   static void add_set(CLI::App* to, PipelineArguments& arguments) {
@@ -118,6 +126,38 @@ struct CommandLine {
         ->type_name("FOLDER");
     add_set(to, request.arguments);
     add_run_options(to, threads, request);
+  }
+
+  /// Options of the one stage of a pipeline, as options of the command.
+  static void add_stage_options(CLI::App* to, const std::string& stage, RunRequest& request,
+                                std::initializer_list<std::pair<std::string, std::string>> names_and_help) {
+    for (const auto& [name, help] : names_and_help) {
+      std::string flag = "--" + name;
+      std::ranges::replace(flag, '_', '-');
+      to->add_option_function<std::string>(
+            flag,
+            [set = stage + "." + name + "=", &request](const std::string& value) {
+              request.arguments.set.push_back(set + value);
+            },
+            help)
+          ->type_name("VALUE");
+    }
+  }
+
+  void add_bound() {
+    bound_app = command("bound", "Say before a recording how well it would determine the parameters");
+    add_own_pipeline(bound_app, "bound.yaml", kBoundPipeline, "out", "--threads", bound);
+    add_rig(bound_app, bound.arguments);
+    add_stage_options(bound_app, "study.bound", bound,
+                      {{"scene", "What stands around: office, hall, street, paper"},
+                       {"scene_file", "A scene of your own in YAML"},
+                       {"duration", "How long to record: 10s"},
+                       {"motion", "How the plate turns: constant, varying, reversal, stop_and_go"},
+                       {"min_rate", "Slowest rate of a varying motion: 0Hz"},
+                       {"max_rate", "Fastest rate, or the only one: 2Hz"},
+                       {"noise", "Standard deviation of a range: 12mm"},
+                       {"beams", "all, or in_plane: of each laser the two in the plate's plane"},
+                       {"calibration", "The scanner as a calibration found it, not as it nominally is"}});
   }
 
   void add_figures() {
@@ -228,6 +268,7 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.plugins_app->parsed()) return plugins_command(loader);
   if (!all_loaded) return ExitStatus::misused;
   if (line.run_app->parsed()) return run_command(line.run, registrar);
+  if (line.bound_app->parsed()) return run_command(line.bound, registrar);
   if (line.figures_app->parsed()) return run_command(line.figures, registrar);
   if (line.monte_carlo_app->parsed()) return run_command(monte_carlo_request(line), registrar);
   if (line.validate_app->parsed()) return validate_command(line.validate_file, line.validate, registrar);

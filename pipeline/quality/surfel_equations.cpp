@@ -17,16 +17,20 @@ constexpr std::size_t kBatch = 16384;  // beams of surfels that are
 /// The pseudo-inverse's effect: X with A X = B, where A is symmetric and may be singular.
 Eigen::MatrixXd solve_semidefinite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   if (a.rows() == 0) return b;
-  // To unit diagonal first: parameters come in metres, radians and seconds.
+  constexpr double kNothing = 1e-10;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a);
+  const double least = kNothing * eigen.eigenvalues().cwiseAbs().maxCoeff();
+  const Eigen::VectorXd inverse =
+      eigen.eigenvalues().unaryExpr([&](double value) { return value > least ? 1 / value : 0.0; });
+  return eigen.eigenvectors() * (inverse.asDiagonal() * (eigen.eigenvectors().transpose() * b));
+}
+
+/// The same for parameters in metres, radians and seconds: brought to unit diagonal first.
+Eigen::MatrixXd solve_in_any_units(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   const Eigen::VectorXd scale =
       a.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * a * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  const Eigen::VectorXd inverse =
-      eigen.eigenvalues().unaryExpr([](double value) { return value > 1e-10 ? 1 / value : 0.0; });
   return scale.asDiagonal() *
-         (eigen.eigenvectors() *
-          (inverse.asDiagonal() * (eigen.eigenvectors().transpose() * (scale.asDiagonal() * b))));
+         solve_semidefinite(scale.asDiagonal() * a * scale.asDiagonal(), scale.asDiagonal() * b);
 }
 
 /// Some beams' rows. Column 0, 1, 2: the plane's parameters; 3: the distance; from 4 on: the derivatives.
@@ -74,6 +78,7 @@ Eigen::MatrixXd gram(const Surfel& surfel, std::span<const std::uint32_t> member
 
 NormalEquations without_plane(const Eigen::MatrixXd& gram, std::span<const SurfelResidual> residuals) {
   const Eigen::Index rest = gram.cols() - 3;
+  // Of a wall that is met in one line alone the slope across that line is left open, not told by rounding.
   const Eigen::MatrixXd left = gram.bottomRightCorner(rest, rest) -
                                gram.bottomLeftCorner(rest, 3) *
                                    solve_semidefinite(gram.topLeftCorner(3, 3), gram.topRightCorner(3, rest));
@@ -136,10 +141,10 @@ NormalEquations NormalEquations::reduced(const std::vector<std::size_t>& kept,
   const Eigen::MatrixXd cross = matrix(eliminated, kept);
   const Eigen::VectorXd gone = vector(eliminated);
   const Eigen::MatrixXd inner = matrix(eliminated, eliminated);
-  const Eigen::MatrixXd by_cross = solve_semidefinite(inner, cross);
+  const Eigen::MatrixXd by_cross = solve_in_any_units(inner, cross);
   result.matrix = matrix(kept, kept) - cross.transpose() * by_cross;
   result.vector = vector(kept) - by_cross.transpose() * gone;
-  result.chi2 = chi2 - gone.dot(solve_semidefinite(inner, gone).col(0));
+  result.chi2 = chi2 - gone.dot(solve_in_any_units(inner, gone).col(0));
   result.freedom = freedom - static_cast<double>(eliminated.size());
   return result;
 }

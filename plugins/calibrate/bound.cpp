@@ -63,6 +63,7 @@ Eigen::MatrixXd calibration_information(const SensorModel& truth, const Sample& 
 }
 
 Eigen::VectorXd least_std_errors(const Eigen::MatrixXd& information) {
+  if (information.size() == 0) return {};
   // To unit diagonal first: parameters come in metres, radians and seconds.
   const Eigen::VectorXd scale =
       information.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });

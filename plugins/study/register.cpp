@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/study/register.hpp"
 
+#include "plugins/study/bound_stage.hpp"
 #include "plugins/study/figures_stage.hpp"
 #include "plugins/study/monte_carlo_stage.hpp"
 
 namespace crisp {
 
 void register_study(Registrar& registrar) {
+  registrar.stage<BoundStage>();
   registrar.stage<FiguresStage>();
   registrar.stage<MonteCarloStage>();
 }

@@ -7,37 +7,27 @@
 #include <cmath>
 
 #include "pipeline/data/degree.hpp"
+#include "plugins/study/parameter_kind.hpp"
 
 namespace crisp {
 namespace {
 
-/// What is told of all parameters of one name.
-struct ParameterKind {
-  std::string name;
-  std::string unit;
-  std::string si;
-  double in_si;   // one of the unit
-  double astray;  // [SI] errors beyond are of another valley
-  std::optional<Scatter> paper;
-};
-
-const std::vector<ParameterKind>& kinds() {
-  static const std::vector<ParameterKind> known = {
-      {"lambda", "deg", "rad", kDegree, 5 * kDegree, {}},
-      {"tau", "mm", "m", 1e-3, 0.05, Scatter{.mean = 2.1, .std_dev = 0.6}},
-      {"alpha", "deg", "rad", kDegree, 5 * kDegree, Scatter{.mean = 0.06, .std_dev = 0.12}},
-      {"eta", "ms", "s", 1e-3, 0.02, {}}};
-  return known;
+/// Table 1 of the paper.
+std::optional<Scatter> in_the_paper(const std::string& name) {
+  if (name == "tau") return Scatter{.mean = 2.1, .std_dev = 0.6};
+  if (name == "alpha") return Scatter{.mean = 0.06, .std_dev = 0.12};
+  return {};
 }
 
-const ParameterKind& kind_of(const std::string& parameter) {
-  const std::string name = parameter.substr(parameter.rfind('.') + 1);
-  return *std::ranges::find(kinds(), name, &ParameterKind::name);
+/// [SI] Errors beyond are of another valley.
+double astray(const ParameterKind& kind) {
+  if (kind.si == "rad") return 5 * kDegree;
+  return kind.si == "m" ? 0.05 : 0.02;
 }
 
 bool is_astray(const Trial& trial, const Estimate& estimate) {
   for (std::size_t k = 0; k < trial.parameters.size(); ++k) {
-    if (std::abs(estimate.error[static_cast<Eigen::Index>(k)]) > kind_of(trial.parameters[k]).astray) {
+    if (std::abs(estimate.error[static_cast<Eigen::Index>(k)]) > astray(kind_of(trial.parameters[k]))) {
       return true;
     }
   }
@@ -91,7 +81,7 @@ std::string cell(const Scatter& scatter) {
 
 Table table_of(const std::vector<Trial>& trials) {
   Table table{.runs = trials.size()};
-  for (const ParameterKind& kind : kinds()) {
+  for (const ParameterKind& kind : parameter_kinds()) {
     double squares = 0;
     double n = 0;
     for_each_of(kind, trials, [&](const Trial& trial, Eigen::Index k) {
@@ -101,7 +91,7 @@ Table table_of(const std::vector<Trial>& trials) {
     if (n == 0) continue;
     table.rows.push_back({.parameter = kind.name,
                           .unit = kind.unit,
-                          .paper = kind.paper,
+                          .paper = in_the_paper(kind.name),
                           .rqe = scatter_of(kind, trials, &Trial::rqe),
                           .refined = scatter_of(kind, trials, &Trial::refined),
                           .bound = std::sqrt(squares / n)});

@@ -4,21 +4,18 @@
 #include <cmath>
 #include <numbers>
 
-#include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/paper.hpp"
-#include "grabbers/simulate/ray_caster.hpp"
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
-#include "plugins/calibrate/bound.hpp"
 #include "plugins/calibrate/free_parameters.hpp"
 #include "plugins/calibrate/in_plane_refinement.hpp"
-#include "plugins/calibrate/placed_beams.hpp"
+#include "plugins/study/scene_bound.hpp"
 
 namespace crisp {
 namespace {
 
 ScannerSettings scanner_of(const TrialSettings& settings, std::uint64_t seed) {
-  ScannerSettings scanner = paper_scanner(seed);
+  ScannerSettings scanner{.seed = seed};
   scanner.rig.lasers.resize(settings.lasers);
   scanner.truth = draw_truth(nominal_calibration(scanner.rig), {.eta = settings.eta}, seed);
   scanner.duration = settings.duration;
@@ -27,11 +24,15 @@ ScannerSettings scanner_of(const TrialSettings& settings, std::uint64_t seed) {
   return scanner;
 }
 
-SimulatedMeasurements simulate(const TrialSettings& settings, const ScannerSettings& scanner,
-                               const Scene& room) {
-  const Motion motion =
-      make_motion(settings.motion, settings.duration, settings.motion_seed.value_or(scanner.seed));
-  return simulate_measurements(scanner, room, motion);
+Motion motion_of(const TrialSettings& settings, std::uint64_t seed) {
+  return make_motion(settings.motion, settings.duration, settings.motion_seed.value_or(seed));
+}
+
+/// The least standard errors for exactly this recording's geometry.
+Eigen::VectorXd bound_of(const TrialSettings& settings, std::uint64_t seed) {
+  return scene_bound(scanner_of(settings, seed), paper_room(), motion_of(settings, seed),
+                     BeamChoice::kInPlane)
+      .std_errors;
 }
 
 Eigen::VectorXd errors(const SensorModel& found, const SensorModel& truth,
@@ -65,41 +66,11 @@ TrialSettings::TrialSettings()
 
 Recording record(const TrialSettings& settings, std::uint64_t seed) {
   const ScannerSettings scanner = scanner_of(settings, seed);
-  Recording recording{.simulated = simulate(settings, scanner, paper_room()),
-                      .start = draw_truth(scanner.truth, settings.start, seed)};
+  Recording recording{
+      .simulated = simulate_beams(BeamChoice::kInPlane, scanner, paper_room(), motion_of(settings, seed)),
+      .start = draw_truth(scanner.truth, settings.start, seed)};
   for (auto& laser : recording.start.lasers) laser.eta.value = 0;
   return recording;
-}
-
-Eigen::VectorXd bound_of(const TrialSettings& settings, std::uint64_t seed,
-                         const std::vector<std::size_t>& free) {
-  ScannerSettings scanner = scanner_of(settings, seed);
-  scanner.range.sigma = 0;
-  scanner.range.quantum = 0;
-  scanner.encoder_quantised = false;
-  const Scene room = paper_room();
-  const auto exact = simulate(settings, scanner, room);
-  const Sample sample{.beams = exact.beams, .plate = &exact.plate};
-  const SensorModel truth(exact.truth);
-
-  std::vector<Eigen::Vector3d> normals;
-  for (const auto& surface : room.surfaces) {
-    const auto& corner = surface.corners;
-    normals.push_back((corner[1] - corner[0]).cross(corner[2] - corner[1]).normalized());
-  }
-  const RayCaster caster(room);
-  const PlacedBeams placed(truth, sample);
-  const BeamsView beams = placed.view();
-  std::vector<std::uint32_t> surface;
-  for (std::size_t i = 0; i < sample.beams.size(); ++i) {
-    const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
-    const Eigen::Vector3d end(beams.points.x[i], beams.points.y[i], beams.points.z[i]);
-    constexpr double kBack = 0.05;  // [m] before the end
-    const auto hit = caster.cast({end - kBack * direction, direction}, 2 * kBack);
-    if (!hit) throw Error("a simulated beam does not end on a surface");
-    surface.push_back(hit->surface);
-  }
-  return least_std_errors(calibration_information(truth, sample, surface, normals, free, settings.noise));
 }
 
 Trial run_trial(const TrialSettings& settings, std::uint64_t seed, const MakeMeasure& make_measure) {
@@ -107,7 +78,7 @@ Trial run_trial(const TrialSettings& settings, std::uint64_t seed, const MakeMea
   const SensorModel truth(recording.simulated.truth);
   SensorModel model(recording.start);
   const auto free = free_parameters(model, recording.simulated.beams, {}).free;
-  Trial trial{.seed = seed, .bound = bound_of(settings, seed, free)};
+  Trial trial{.seed = seed, .bound = bound_of(settings, seed)};
   for (const auto parameter : free) trial.parameters.push_back(truth.names()[parameter]);
 
   const LagRange lag = lag_range(model, settings.in_plane.range.eta);

@@ -42,10 +42,6 @@ struct Recording {
 /// True: τ = 0.20 m, α = 0, the nominal λ, η drawn. The start is drawn around it.
 Recording record(const TrialSettings& settings, std::uint64_t seed);
 
-/// The least standard errors for exactly this recording's geometry (see calibration_information()).
-Eigen::VectorXd bound_of(const TrialSettings& settings, std::uint64_t seed,
-                         const std::vector<std::size_t>& free);
-
 /// What one estimator made of a recording.
 struct Estimate {
   Eigen::VectorXd error;      ///< estimate − truth of each free parameter [SI]; λ within half a turn

@@ -23,7 +23,7 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "calibrate.yaml", "figures.yaml",
+  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "bound.yaml", "calibrate.yaml", "figures.yaml",
                                               "monte_carlo.yaml", "picture.yaml", "simulate.yaml"));
 }
 
@@ -82,6 +82,22 @@ TEST(Configs, FiguresWritesTheColumnsOfThePapersFigures) {
   EXPECT_THAT(outcome.files,
               testing::IsSupersetOf({"fig4_beam.dat", "fig5_surface.dat", "fig6_tau.dat", "fig6_alpha.dat",
                                      "fig6_optimum.dat", "fig7_eta.dat", "summary.json"}));
+}
+
+TEST(Configs, BoundWritesTheLeastErrorOfEachParameter) {
+  const test::Workshop workshop;
+  const auto outcome = workshop.run("bound.yaml", {}, "out", {"study.bound.duration=1s"});
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  EXPECT_THAT(outcome.files, ElementsAre("bound.csv", "bound.csv.provenance.json", "summary.json"));
+  const std::string bounds = test::bytes_of(workshop / "out/bound.csv");
+  EXPECT_EQ(std::ranges::count(bounds, '\n'), 1 + 11)
+      << "lambda, tau, alpha, eta of three lasers but lambda 1";
+  const auto& report = outcome.stage("study.bound")["report"];
+  std::size_t on_planes = 0;
+  for (const auto& plane : report["planes"]) on_planes += plane["beams"].get<std::size_t>();
+  EXPECT_EQ(on_planes, report["beams"]);
+  EXPECT_EQ(report["no_echo"], 0) << "the office is closed";
+  EXPECT_THAT(report["unobservable"], testing::IsEmpty());
 }
 
 TEST(Configs, MonteCarloWritesEveryRunAndTheTable) {

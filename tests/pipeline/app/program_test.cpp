@@ -232,6 +232,21 @@ TEST_F(ProgramTest, SaysWhatACalibrationHolds) {
   EXPECT_EQ(crisp({"info", path("nowhere")}).status, 1);
 }
 
+TEST_F(ProgramTest, SaysBeforeARecordingWhatItWouldDetermine) {
+  const auto bound = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"bound", "-o", path("out"), "--duration", "1s"});
+    return wait_for(start(words));
+  };
+  const Outcome turning = bound({"--scene", "hall", "--beams", "in_plane", "--motion", "reversal"});
+  EXPECT_EQ(turning.status, 0) << turning.error;
+  EXPECT_THAT(turning.out, HasSubstr("1 s in the hall: "));
+  EXPECT_THAT(content("out/bound.csv"), HasSubstr("\nlaser2.lambda,rad,"));
+  const Outcome steady = bound({"--beams", "in_plane", "--motion", "constant", "--max-rate", "1Hz"});
+  EXPECT_EQ(steady.status, 0) << steady.error;
+  EXPECT_THAT(steady.out, HasSubstr("laser2.lambda + 6.283 * laser2.eta"));  // a turn a second
+  EXPECT_EQ(bound({"--motion", "sideways"}).status, 2);
+}
+
 TEST_F(ProgramTest, RepeatsARunOfTheMonteCarloAlone) {
   const fs::path out = folder_ / "out";
   const auto run = [&](const std::vector<std::string>& which) {

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/world.hpp"
+
+#include <algorithm>
+
+#include "grabbers/simulate/paper.hpp"
+#include "grabbers/simulate/scene_file.hpp"
+#include "grabbers/simulate/scenes.hpp"
+#include "pipeline/data/error.hpp"
+#include "pipeline/files/calibration_file.hpp"
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+namespace {
+
+void check_lasers(const Calibration& truth, const Rig& rig, const std::filesystem::path& file) {
+  const bool same = std::equal(truth.lasers.begin(), truth.lasers.end(), rig.lasers.begin(), rig.lasers.end(),
+                               [](const auto& a, const auto& b) { return a.name == b.name; });
+  if (!same) {
+    throw Error(file.string() + " is not a calibration of this rig",
+                "it must name the rig's lasers, in the rig's order");
+  }
+}
+
+}  // namespace
+
+Scene SceneChoice::load(Context& context) const {
+  if (file.empty()) return name == "paper" ? paper_room() : built_in_scene(name);
+  context.reads(file);
+  return read_scene(file);
+}
+
+Calibration TruthChoice::drawn(const RunSettings& run, std::uint64_t seed) const {
+  Calibration truth = draw_truth(nominal_calibration(run.rig), departures, seed);
+  for (const auto& effect : effects) add_effect(truth, effect, known_terms(run));
+  return truth;
+}
+
+Calibration TruthChoice::load(Context& context, std::uint64_t seed) const {
+  if (calibration_file.empty()) return drawn(context.run(), seed);
+  Calibration truth = read_calibration(calibration_file);
+  context.reads(calibration_file);
+  check_lasers(truth, context.rig(), calibration_file);
+  for (const auto& effect : effects) add_effect(truth, effect, known_terms(context.run()));
+  return truth;
+}
+
+const TermRegistry& known_terms(const RunSettings& run) {
+  static const TermRegistry none;
+  return run.registrar ? run.registrar->get<TermRegistry>() : none;
+}
+
+}  // namespace crisp

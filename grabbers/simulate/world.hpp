@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "grabbers/simulate/departures.hpp"
+#include "grabbers/simulate/scene.hpp"
+#include "pipeline/stage/context.hpp"
+
+namespace crisp {
+
+/// Which scene a stage simulates.
+struct SceneChoice {
+  std::string name = "office";  ///< office, hall, street, or paper: paper_room()
+  std::filesystem::path file;   ///< in its place, unless empty: see read_scene()
+
+  /// @throws Error if there is none of this name; what read_scene() throws
+  Scene load(Context& context) const;
+};
+
+/// What is true of the scanner that a stage simulates.
+struct TruthChoice {
+  Departures departures;
+  std::filesystem::path calibration_file;  ///< in place of one that is drawn around nominal, unless empty
+  std::vector<std::string> effects;        ///< put on top: see add_effect()
+
+  /// Drawn around nominal, with the effects; reads no file.
+  Calibration drawn(const RunSettings& run, std::uint64_t seed) const;
+
+  /// The file's, or else drawn, with the effects.
+  /// @throws Error if the file is not a calibration of the run's rig
+  Calibration load(Context& context, std::uint64_t seed) const;
+};
+
+/// The terms that the program knows; none where a stage is run without one.
+const TermRegistry& known_terms(const RunSettings& run);
+
+}  // namespace crisp

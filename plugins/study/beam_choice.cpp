@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/study/beam_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/data/degree.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kRight = 90 * kDegree;
+
+/// Indices of the beams of one laser that lie in the plate's plane.
+std::vector<std::uint16_t> in_plane_of(const RigLaser& laser, const FieldOfView& field) {
+  std::vector<std::uint16_t> found;
+  for (const double theta : {-kRight, kRight}) {
+    const double index = std::round((laser.mount + theta - field.first) / field.step);
+    if (index >= 0 && index < static_cast<double>(field.beams())) {
+      found.push_back(static_cast<std::uint16_t>(index));
+    }
+  }
+  if (found.empty()) {
+    throw Error("no beam of " + laser.name + " lies in the plate's plane",
+                "let its field of view reach 90 degrees from its mount");
+  }
+  return found;
+}
+
+/// Only the beams that `wanted` lists for their laser.
+SimulatedMeasurements narrowed(const SimulatedMeasurements& all,
+                               const std::vector<std::vector<std::uint16_t>>& wanted) {
+  SimulatedMeasurements result{
+      .beams = {}, .surface = {}, .plate = all.plate, .truth = all.truth, .no_echo = all.no_echo};
+  result.beams.epoch_ns = all.beams.epoch_ns;
+  for (std::size_t i = 0; i < all.beams.size(); ++i) {
+    const auto& of_laser = wanted[all.beams.laser[i]];
+    if (std::ranges::find(of_laser, all.beams.beam[i]) == of_laser.end()) continue;
+    result.beams.append(all.beams, i);
+    result.surface.push_back(all.surface[i]);
+  }
+  return result;
+}
+
+}  // namespace
+
+SimulatedMeasurements simulate_beams(BeamChoice beams, ScannerSettings scanner, const Scene& scene,
+                                     const Motion& motion, const TermRegistry& terms) {
+  if (beams == BeamChoice::kAll) return simulate_measurements(scanner, scene, motion, terms);
+  std::vector<std::vector<std::uint16_t>> wanted;
+  scanner.beams.clear();
+  for (const RigLaser& laser : scanner.rig.lasers) {
+    wanted.push_back(in_plane_of(laser, scanner.field));
+    scanner.beams.insert(scanner.beams.end(), wanted.back().begin(), wanted.back().end());
+  }
+  std::ranges::sort(scanner.beams);
+  const auto repeated = std::ranges::unique(scanner.beams);
+  scanner.beams.erase(repeated.begin(), repeated.end());
+  // Where lasers are mounted differently, each fires the others' beams, too.
+  return narrowed(simulate_measurements(scanner, scene, motion, terms), wanted);
+}
+
+}  // namespace crisp

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "grabbers/simulate/world.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/study/scene_bound.hpp"
+
+namespace crisp {
+
+/// `study.bound`: says before a recording how well it would determine the scanner's parameters.
+class BoundStage final : public Stage {
+ public:
+  static void describe(StageDescription<BoundStage>& d);
+
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  // What the options are declared on.
+  MotionSettings& motion() { return scanner_.motion; }
+
+  ScannerSettings scanner_;
+  SceneChoice scene_;
+  TruthChoice truth_;
+  BeamChoice beams_ = BeamChoice::kAll;
+  std::filesystem::path file_;
+  SceneBound bound_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/study/scene_bound.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+#include "pipeline/data/error.hpp"
+#include "plugins/calibrate/bound.hpp"
+#include "plugins/calibrate/free_parameters.hpp"
+#include "plugins/calibrate/observability.hpp"
+#include "plugins/calibrate/surfel_refinement.hpp"
+
+namespace crisp {
+namespace {
+
+/// Newell's normal of a polygon, which no corner in line with its neighbours disturbs.
+Eigen::Vector3d normal_of(const Surface& surface) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < surface.corners.size(); ++i) {
+    sum += surface.corners[i].cross(surface.corners[(i + 1) % surface.corners.size()]);
+  }
+  return sum.normalized();
+}
+
+ScannerSettings without_noise(ScannerSettings scanner) {
+  scanner.range.sigma = 0;
+  scanner.range.quantum = 0;
+  scanner.encoder_quantised = false;
+  return scanner;
+}
+
+/// The least errors of `known`, which are some of `free`; infinite for the rest.
+Eigen::VectorXd errors_of_known(const Eigen::MatrixXd& information, const std::vector<std::size_t>& free,
+                                const std::vector<std::size_t>& known) {
+  std::vector<Eigen::Index> at;
+  for (const std::size_t slot : known) at.push_back(std::ranges::find(free, slot) - free.begin());
+  Eigen::VectorXd errors =
+      Eigen::VectorXd::Constant(information.rows(), std::numeric_limits<double>::infinity());
+  errors(at) = least_std_errors(information(at, at));
+  return errors;
+}
+
+}  // namespace
+
+SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const Motion& motion,
+                       BeamChoice beams, const TermRegistry& terms) {
+  const auto exact = simulate_beams(beams, without_noise(scanner), scene, motion, terms);
+  if (exact.beams.size() == 0) {
+    throw Error("none of the beams meets anything", "see what the scene holds, and how far the lasers reach");
+  }
+  std::vector<Eigen::Vector3d> normals;
+  for (const Surface& surface : scene.surfaces) normals.push_back(normal_of(surface));
+  const SensorModel truth(exact.truth, terms);
+  const Sample sample{.beams = exact.beams, .plate = &exact.plate};
+  const FreeParameters parameters = free_parameters(truth, exact.beams, {});
+  const auto& free = parameters.free;
+  const Eigen::MatrixXd information =
+      calibration_information(truth, sample, exact.surface, normals, free, scanner.range.sigma);
+  const Observability told =
+      observability(information, free, truth.names(), ranges_of(RefinementSettings{}.prior, truth, free));
+
+  SceneBound bound{.parameters = {},
+                   .std_errors = errors_of_known(information, free, told.known),
+                   .unobservable = parameters.unobservable,
+                   .beams_on = std::vector<std::size_t>(scene.surfaces.size(), 0),
+                   .beams = exact.beams.size(),
+                   .no_echo = exact.no_echo};
+  for (const std::size_t slot : free) bound.parameters.push_back(truth.names()[slot]);
+  bound.unobservable.insert(bound.unobservable.end(), told.unobservable.begin(), told.unobservable.end());
+  for (const auto surface : exact.surface) ++bound.beams_on[surface];
+  return bound;
+}
+
+}  // namespace crisp

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "plugins/study/beam_choice.hpp"
+
+namespace crisp {
+
+/// How well a recording could determine a calibration at best.
+struct SceneBound {
+  std::vector<std::string> parameters;  ///< m that a calibration turns, "laser1.tau": see free_parameters()
+  /// m [SI]: the least standard errors of an unbiased estimator that is not told the scene (Cramér–Rao), the
+  /// unobservable parameters being known; infinite for these.
+  Eigen::VectorXd std_errors;
+  std::vector<Unobservable> unobservable;  ///< not told better than is known before a recording
+  std::vector<std::size_t> beams_on;       ///< by surface of the scene
+  std::size_t beams = 0;                   ///< of which something came back
+  std::size_t no_echo = 0;                 ///< of which nothing did
+};
+
+/// The bound for a scanner at a scene: each of its surfaces counts as a plane of its own, as unknown as the
+/// parameters. The ranges' noise is `scanner.range.sigma`; the encoder and the ranges' steps count as exact.
+/// Terms beyond equation (2) are taken as known.
+///
+/// @param motion   of the plate, in place of `scanner.motion`
+/// @param terms    that `scanner.truth` names
+/// @throws Error   if no beam meets anything, or the settings make no sense
+SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const Motion& motion,
+                       BeamChoice beams, const TermRegistry& terms = {});
+
+}  // namespace crisp
