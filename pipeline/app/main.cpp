@@ -173,6 +173,10 @@ struct CommandLine {
     runs->check(CLI::Range(1, 1000000))->capture_default_str();
     add_own_pipeline(monte_carlo_app, "monte_carlo.yaml", kMonteCarloPipeline, "out", "-j,--threads",
                      monte_carlo);
+    add_stage_options(monte_carlo_app, "study.monte_carlo", monte_carlo,
+                      {{"scene", "What stands around: paper, office, hall, street"},
+                       {"beams", "in_plane: of each laser the two in the plate's plane; or all"},
+                       {"estimators", "both; or refined: the refinement alone, from where RQE would end"}});
     monte_carlo_app->add_option("--only", monte_carlo_only, "Repeat the run of this seed alone")
         ->excludes(runs)
         ->excludes(monte_carlo_app->get_option("--seed"));

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "grabbers/simulate/world.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/study/monte_carlo.hpp"
@@ -27,6 +28,7 @@ class MonteCarloStage final : public Stage {
   Departures& start() { return settings_.trial.start; }
 
   MonteCarloSettings settings_;
+  SceneChoice scene_{.name = "paper", .file = {}};
   std::vector<double> sigma_ = {0.5, 0.1};
   std::filesystem::path runs_file_;
   std::filesystem::path table_file_;

@@ -35,9 +35,10 @@ Eigen::VectorXd errors_of_known(const Eigen::MatrixXd& information, const std::v
                                 const std::vector<std::size_t>& known) {
   std::vector<Eigen::Index> at;
   for (const std::size_t slot : known) at.push_back(std::ranges::find(free, slot) - free.begin());
+  const Eigen::VectorXd least = least_std_errors(information(at, at));
   Eigen::VectorXd errors =
       Eigen::VectorXd::Constant(information.rows(), std::numeric_limits<double>::infinity());
-  errors(at) = least_std_errors(information(at, at));
+  for (Eigen::Index k = 0; k < least.size(); ++k) errors[at[static_cast<std::size_t>(k)]] = least[k];
   return errors;
 }
 

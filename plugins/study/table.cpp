@@ -48,15 +48,19 @@ void for_each_of(const ParameterKind& kind, const std::vector<Trial>& trials, Vi
   }
 }
 
-Scatter scatter_of(const ParameterKind& kind, const std::vector<Trial>& trials, Estimate Trial::*which) {
+/// @param estimate_of  what one estimator made of a trial
+template <class EstimateOf>
+Scatter scatter_of(const ParameterKind& kind, const std::vector<Trial>& trials, EstimateOf estimate_of) {
   std::vector<double> errors;
+  double squares_claimed = 0;
   std::size_t one = 0;
   std::size_t two = 0;
   for_each_of(kind, trials, [&](const Trial& trial, Eigen::Index k) {
-    const Estimate& estimate = trial.*which;
+    const Estimate& estimate = estimate_of(trial);
     if (!counts(trial, estimate)) return;
     errors.push_back(estimate.error[k] / kind.in_si);
     if (estimate.std_error.size() == 0) return;
+    squares_claimed += std::pow(estimate.std_error[k] / kind.in_si, 2);
     const double z = std::abs(estimate.error[k]) / estimate.std_error[k];
     one += z < 1 ? 1 : 0;
     two += z < 1.96 ? 1 : 0;
@@ -68,18 +72,33 @@ Scatter scatter_of(const ParameterKind& kind, const std::vector<Trial>& trials, 
   double squares = 0;
   for (const double error : errors) squares += std::pow(error - scatter.mean, 2);
   scatter.std_dev = std::sqrt(squares / std::max(1.0, n - 1));
+  scatter.claimed = std::sqrt(squares_claimed / n);
   scatter.one = static_cast<double>(one) / n;
   scatter.two = static_cast<double>(two) / n;
   return scatter;
 }
 
-std::string cell(const Scatter& scatter) {
-  return fmt::format("{:>8.3f} ± {:<7.3f}", scatter.mean, scatter.std_dev);
+bool ran_rqe(const std::vector<Trial>& trials) {
+  return std::ranges::any_of(trials, [](const Trial& trial) { return trial.rqe.has_value(); });
+}
+
+std::string cell(const std::optional<Scatter>& scatter) {
+  return scatter ? fmt::format("{:>8.3f} ± {:<7.3f}", scatter->mean, scatter->std_dev)
+                 : fmt::format("{:^18}", "not told");
+}
+
+bool has_paper(const Table& table) {
+  return std::ranges::any_of(table.rows, [](const TableRow& row) { return row.paper.has_value(); });
+}
+
+bool has_rqe(const Table& table) {
+  return std::ranges::any_of(table.rows, [](const TableRow& row) { return row.rqe.has_value(); });
 }
 
 }  // namespace
 
-Table table_of(const std::vector<Trial>& trials) {
+Table table_of(const std::vector<Trial>& trials, bool papers) {
+  const bool with_rqe = ran_rqe(trials);
   Table table{.runs = trials.size()};
   for (const ParameterKind& kind : parameter_kinds()) {
     double squares = 0;
@@ -89,33 +108,47 @@ Table table_of(const std::vector<Trial>& trials) {
       n += 1;
     });
     if (n == 0) continue;
-    table.rows.push_back({.parameter = kind.name,
-                          .unit = kind.unit,
-                          .paper = in_the_paper(kind.name),
-                          .rqe = scatter_of(kind, trials, &Trial::rqe),
-                          .refined = scatter_of(kind, trials, &Trial::refined),
-                          .bound = std::sqrt(squares / n)});
+    TableRow& row = table.rows.emplace_back(TableRow{
+        .parameter = kind.name,
+        .unit = kind.unit,
+        .paper = papers ? in_the_paper(kind.name) : std::nullopt,
+        .rqe = {},
+        .refined = scatter_of(kind, trials, [](const Trial& t) -> const Estimate& { return t.refined; }),
+        .bound = std::sqrt(squares / n)});
+    if (with_rqe) {
+      row.rqe = scatter_of(kind, trials, [](const Trial& t) -> const Estimate& { return *t.rqe; });
+    }
   }
   for (const Trial& trial : trials) {
     const bool failed = !trial.refined.failure.empty();
     table.refined_failed += failed ? 1 : 0;
-    table.rqe_astray += is_astray(trial, trial.rqe) ? 1 : 0;
+    table.rqe_astray += trial.rqe && is_astray(trial, *trial.rqe) ? 1 : 0;
     table.refined_astray += !failed && is_astray(trial, trial.refined) ? 1 : 0;
   }
   return table;
 }
 
 std::string table_text(const Table& table) {
-  std::string text = fmt::format("{:<14}{:^18}  {:^18}  {:^18}{:>8}  {:>9}  {:>11}\n", "error, mean ± sd",
-                                 "paper, Table 1", "RQE", "refined", "bound", "sd/bound", "in 1, 2 s.e.");
+  const bool paper = has_paper(table);
+  const bool rqe = has_rqe(table);
+  std::string text = fmt::format("{:<16}", "error, mean ± sd");
+  if (paper) text += fmt::format("{:^18}  ", "paper, Table 1");
+  if (rqe) text += fmt::format("{:^18}  ", "RQE");
+  text += fmt::format("{:^18}{:>8}  {:>8}  {:>8}  {:>10}  {:>12}\n", "refined", "bound", "mean/sd",
+                      "sd/bound", "s.e./bound", "in 1, 2 s.e.");
   for (const TableRow& row : table.rows) {
-    text +=
-        fmt::format("{:<7}{:<9}{:^18}  {}  {}{:>8.3f}  {:>9.2f}  {:>5.1f} {:>4.1f} %\n", row.parameter,
-                    row.unit, row.paper ? cell(*row.paper) : "not told", cell(row.rqe), cell(row.refined),
-                    row.bound, row.refined.std_dev / row.bound, 100 * row.refined.one, 100 * row.refined.two);
+    const Scatter& refined = row.refined;
+    text += fmt::format("{:<7}{:<9}", row.parameter, row.unit);
+    if (paper) text += cell(row.paper) + "  ";
+    if (rqe) text += cell(row.rqe) + "  ";
+    text += fmt::format("{}{:>8.4f}  {:>8.2f}  {:>8.2f}  {:>10.2f}  {:>5.1f} {:>4.1f} %\n", cell(refined),
+                        row.bound, refined.std_dev > 0 ? refined.mean / refined.std_dev : 0,
+                        refined.std_dev / row.bound, refined.claimed / row.bound, 100 * refined.one,
+                        100 * refined.two);
   }
-  text += fmt::format("{} runs; ended in another valley and left out: {} (RQE), {} (refined)", table.runs,
-                      table.rqe_astray, table.refined_astray);
+  text += fmt::format("{} runs; ended in another valley and left out: ", table.runs);
+  if (rqe) text += fmt::format("{} (RQE), ", table.rqe_astray);
+  text += fmt::format("{} (refined)", table.refined_astray);
   if (table.refined_failed > 0) text += fmt::format("; not refined: {}", table.refined_failed);
   return text;
 }
@@ -127,8 +160,8 @@ std::string runs_csv(const std::vector<Trial>& trials) {
     for (std::size_t k = 0; k < trial.parameters.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       const std::string& parameter = trial.parameters[k];
-      text += fmt::format("{},{},{},{:.6g},{:.6g},", trial.seed, parameter, kind_of(parameter).si,
-                          trial.bound[i], trial.rqe.error[i]);
+      text += fmt::format("{},{},{},{:.6g},{},", trial.seed, parameter, kind_of(parameter).si, trial.bound[i],
+                          trial.rqe ? fmt::format("{:.6g}", trial.rqe->error[i]) : "");
       if (refined.failure.empty()) {
         text += fmt::format("{:.6g},{:.6g},\n", refined.error[i], refined.std_error[i]);
       } else {

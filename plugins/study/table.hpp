@@ -13,8 +13,9 @@ namespace crisp {
 struct Scatter {
   double mean = 0;     ///< error
   double std_dev = 0;  ///< of the error
-  double one = 0;      ///< share of errors within 1 of the standard errors that the estimator gave itself;
-  double two = 0;      ///< within 1.96; 0 where it gave none
+  double claimed = 0;  ///< RMS of the standard errors that the estimator gave itself; 0 where it gave none
+  double one = 0;      ///< share of errors within 1 of these;
+  double two = 0;      ///< within 1.96
 };
 
 /// One row of Table 1, all lasers together. In the unit that is named.
@@ -22,7 +23,7 @@ struct TableRow {
   std::string parameter;         ///< "tau"
   std::string unit;              ///< "mm"
   std::optional<Scatter> paper;  ///< Table 1 of the paper, where it is known
-  Scatter rqe;
+  std::optional<Scatter> rqe;    ///< where it was run
   Scatter refined;
   double bound = 0;  ///< Cramér–Rao: RMS over runs and lasers
 };
@@ -36,7 +37,8 @@ struct Table {
   std::size_t refined_failed = 0;  ///< or without an estimate
 };
 
-Table table_of(const std::vector<Trial>& trials);
+/// @param papers  whether the trials are those of the paper, so that its figures can stand beside them
+Table table_of(const std::vector<Trial>& trials, bool papers = true);
 
 /// For people.
 std::string table_text(const Table& table);

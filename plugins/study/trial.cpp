@@ -4,11 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "grabbers/simulate/paper.hpp"
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 #include "plugins/calibrate/free_parameters.hpp"
-#include "plugins/calibrate/in_plane_refinement.hpp"
 #include "plugins/study/scene_bound.hpp"
 
 namespace crisp {
@@ -28,10 +26,16 @@ Motion motion_of(const TrialSettings& settings, std::uint64_t seed) {
   return make_motion(settings.motion, settings.duration, settings.motion_seed.value_or(seed));
 }
 
+Calibration start_of(const TrialSettings& settings, const Calibration& truth, std::uint64_t seed) {
+  if (settings.estimators == Estimators::kRefined) return draw_truth(truth, settings.near, seed);
+  Calibration start = draw_truth(truth, settings.start, seed);
+  for (auto& laser : start.lasers) laser.eta.value = 0;
+  return start;
+}
+
 /// The least standard errors for exactly this recording's geometry.
 Eigen::VectorXd bound_of(const TrialSettings& settings, std::uint64_t seed) {
-  return scene_bound(scanner_of(settings, seed), paper_room(), motion_of(settings, seed),
-                     BeamChoice::kInPlane)
+  return scene_bound(scanner_of(settings, seed), settings.scene, motion_of(settings, seed), settings.beams)
       .std_errors;
 }
 
@@ -46,11 +50,25 @@ Eigen::VectorXd errors(const SensorModel& found, const SensorModel& truth,
   return error;
 }
 
+/// Where RQE has its optimum.
+SensorModel crispest_model(const SensorModel& start, const Sample& sample,
+                           const std::vector<std::size_t>& free, const TrialSettings& settings,
+                           Measure& measure) {
+  if (settings.beams == BeamChoice::kAll) return calibrate_by_rqe(start, sample, measure, settings.rqe).model;
+  SensorModel model = start;
+  const LagRange lag = lag_range(model, settings.rqe.in_plane.range.eta);
+  calibrate_in_plane(model, free, covered(sample, lag.earliest, lag.latest), measure, settings.rqe.in_plane);
+  return model;
+}
+
 /// Least squares against flat surfaces, from where RQE ended.
 Estimate refine(const SensorModel& start, const SensorModel& truth, const Sample& sample,
                 const std::vector<std::size_t>& free, const TrialSettings& settings) {
   try {
-    const Refinement found = refine_in_plane(start, sample, free, settings.refinement);
+    const Refinement found = settings.beams == BeamChoice::kAll
+                                 ? refine_by_surfels(start, sample, settings.refinement)
+                                 : refine_in_plane(start, sample, free, settings.in_plane_refinement);
+    if (found.outcome.free != free) return {.failure = "the refinement left some parameters as they were"};
     if (!found.converged) return {.failure = "the refinement did not converge"};
     return {.error = errors(found.outcome.model, truth, free),
             .std_error = found.outcome.covariance.diagonal().cwiseSqrt()};
@@ -62,31 +80,29 @@ Estimate refine(const SensorModel& start, const SensorModel& truth, const Sample
 }  // namespace
 
 TrialSettings::TrialSettings()
-    : start{.tau = 0.02, .alpha = 3 * kDegree, .lambda = std::numbers::pi, .eta = 0} {}
+    : start{.tau = 0.02, .alpha = 3 * kDegree, .lambda = std::numbers::pi, .eta = 0},
+      near{.tau = 0.005, .alpha = 0.7 * kDegree, .lambda = 0.7 * kDegree, .eta = 3e-4} {}
 
 Recording record(const TrialSettings& settings, std::uint64_t seed) {
   const ScannerSettings scanner = scanner_of(settings, seed);
-  Recording recording{
-      .simulated = simulate_beams(BeamChoice::kInPlane, scanner, paper_room(), motion_of(settings, seed)),
-      .start = draw_truth(scanner.truth, settings.start, seed)};
-  for (auto& laser : recording.start.lasers) laser.eta.value = 0;
-  return recording;
+  return {.simulated = simulate_beams(settings.beams, scanner, settings.scene, motion_of(settings, seed)),
+          .start = start_of(settings, scanner.truth, seed)};
 }
 
 Trial run_trial(const TrialSettings& settings, std::uint64_t seed, const MakeMeasure& make_measure) {
   const Recording recording = record(settings, seed);
   const SensorModel truth(recording.simulated.truth);
+  const Sample sample = recording.sample();
   SensorModel model(recording.start);
-  const auto free = free_parameters(model, recording.simulated.beams, {}).free;
+  const auto free = free_parameters(model, sample.beams, {}).free;
   Trial trial{.seed = seed, .bound = bound_of(settings, seed)};
   for (const auto parameter : free) trial.parameters.push_back(truth.names()[parameter]);
 
-  const LagRange lag = lag_range(model, settings.in_plane.range.eta);
-  const Sample sample = covered(recording.sample(), lag.earliest, lag.latest);
-  const auto measure = make_measure();
-  calibrate_in_plane(model, free, sample, *measure, settings.in_plane);
-  trial.rqe.error = errors(model, truth, free);
-  trial.refined = refine(model, truth, recording.sample(), free, settings);
+  if (settings.estimators == Estimators::kBoth) {
+    model = crispest_model(model, sample, free, settings, *make_measure());
+    trial.rqe = Estimate{.error = errors(model, truth, free)};
+  }
+  trial.refined = refine(model, truth, sample, free, settings);
   return trial;
 }
 

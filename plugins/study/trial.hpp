@@ -9,30 +9,43 @@
 #include <vector>
 
 #include "grabbers/simulate/departures.hpp"
-#include "grabbers/simulate/measurements.hpp"
+#include "grabbers/simulate/paper.hpp"
 #include "pipeline/quality/measure.hpp"
-#include "plugins/calibrate/in_plane_calibration.hpp"
 #include "plugins/calibrate/in_plane_refinement.hpp"
+#include "plugins/calibrate/rqe_calibration.hpp"
+#include "plugins/calibrate/surfel_refinement.hpp"
+#include "plugins/study/beam_choice.hpp"
 
 namespace crisp {
 
-/// One calibration of the Monte Carlo of Sheehan, Harrison and Newman, section 5.2.
+/// What calibrates a recording.
+enum class Estimators {
+  kBoth,     ///< RQE from `start`, then the refinement from there, as by default
+  kRefined,  ///< the refinement alone, from `near`: a tenth of the time, but of the basin it says nothing
+};
+
+/// One calibration of a simulated recording; by default that of Sheehan, Harrison and Newman, section 5.2.
 struct TrialSettings {
+  Scene scene = paper_room();
+  BeamChoice beams = BeamChoice::kInPlane;
   std::size_t lasers = 3;                    ///< of the default rig's, at least 1
   double duration = 10;                      ///< [s]
   MotionSettings motion;                     ///< of the plate
   std::optional<std::uint64_t> motion_seed;  ///< the motion of all runs; none: each run draws its own
   double noise = 0.012;                      ///< [m] standard deviation of a range
   double quantum = 0.001;                    ///< [m] ranges are multiples of it
-  double eta = 0.04;                         ///< [s] the true η are drawn within ± this; the start says 0
-  Departures start;                          ///< how far off the start is at most
-  InPlaneSettings in_plane;
-  InPlaneRefinementSettings refinement;
+  double eta = 0.04;                         ///< [s] the true η are drawn within ± this
+  Estimators estimators = Estimators::kBoth;
+  Departures start;  ///< how far off the start of RQE is at most; its η is 0
+  Departures near;   ///< how far off the refinement starts at most where RQE is left out: where RQE ends
+  RqeCalibrationSettings rqe;
+  RefinementSettings refinement;
+  InPlaneRefinementSettings in_plane_refinement;
 
   TrialSettings();
 };
 
-/// A simulated recording of the two in-plane beams of each laser.
+/// A simulated recording.
 struct Recording {
   SimulatedMeasurements simulated;
   Calibration start;
@@ -49,13 +62,13 @@ struct Estimate {
   std::string failure;        ///< why there is no estimate; empty otherwise
 };
 
-/// One run: a recording, and what both estimators make of it. The same seed gives the same, whichever runs
+/// One run: a recording, and what the estimators make of it. The same seed gives the same, whichever runs
 /// there are besides.
 struct Trial {
   std::uint64_t seed = 0;
   std::vector<std::string> parameters;  ///< m: "laser1.tau", …
-  Eigen::VectorXd bound;                ///< [SI] their Cramér–Rao bounds
-  Estimate rqe;                         ///< the paper's: the optimum of RQE
+  Eigen::VectorXd bound;                ///< [SI] their Cramér–Rao bounds, see scene_bound()
+  std::optional<Estimate> rqe;          ///< the paper's: the optimum of RQE
   Estimate refined;                     ///< the default: RQE, then least squares against flat surfaces
 };
 

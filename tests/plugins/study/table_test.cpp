@@ -8,13 +8,16 @@
 namespace crisp {
 namespace {
 
+using testing::AllOf;
+using testing::AnyOf;
 using testing::HasSubstr;
+using testing::Not;
 
 Trial trial(double rqe_tau, double tau, double alpha_degrees) {
   return {.seed = 7,
           .parameters = {"laser1.tau", "laser1.alpha"},
           .bound = Eigen::Vector2d(0.003, 0.1 * kDegree),
-          .rqe = {.error = Eigen::Vector2d(rqe_tau, 0), .std_error = {}, .failure = {}},
+          .rqe = Estimate{.error = Eigen::Vector2d(rqe_tau, 0), .std_error = {}, .failure = {}},
           .refined = {.error = Eigen::Vector2d(tau, alpha_degrees * kDegree),
                       .std_error = Eigen::Vector2d(0.0015, 0.05 * kDegree),
                       .failure = {}}};
@@ -27,13 +30,14 @@ TEST(Table, HoldsMeansAndStandardDeviationsInMillimetresAndDegrees) {
   ASSERT_EQ(table.rows.size(), 2U);
   const TableRow& tau = table.rows[0];
   EXPECT_EQ(tau.parameter, "tau");
-  EXPECT_NEAR(tau.rqe.mean, -2, 1e-12);
-  EXPECT_NEAR(tau.rqe.std_dev, 2, 1e-12);
+  EXPECT_NEAR(tau.rqe->mean, -2, 1e-12);
+  EXPECT_NEAR(tau.rqe->std_dev, 2, 1e-12);
   EXPECT_NEAR(tau.refined.mean, 2, 1e-12);
   EXPECT_NEAR(tau.refined.std_dev, 1, 1e-12);
   EXPECT_NEAR(tau.bound, 3, 1e-12);
   EXPECT_NEAR(tau.refined.one, 1.0 / 3, 1e-12);  // 1 of 1, 2 and 3 mm is within 1.5 mm
   EXPECT_NEAR(tau.refined.two, 2.0 / 3, 1e-12);  // and 2 within 2.94 mm
+  EXPECT_NEAR(tau.refined.claimed, 1.5, 1e-12);
   ASSERT_TRUE(tau.paper);
   EXPECT_EQ(tau.paper->mean, 2.1);
   EXPECT_NEAR(table.rows[1].refined.mean, 0.1, 1e-12);
@@ -48,11 +52,22 @@ TEST(Table, LeavesRunsOutThatEndedElsewhereAndCountsThem) {
   EXPECT_EQ(table.rqe_astray, 1U);
   EXPECT_EQ(table.refined_astray, 1U);
   EXPECT_EQ(table.refined_failed, 1U);
-  EXPECT_NEAR(table.rows[0].rqe.mean, 2.0 / 3, 1e-12);
+  EXPECT_NEAR(table.rows[0].rqe->mean, 2.0 / 3, 1e-12);
   EXPECT_NEAR(table.rows[0].refined.mean, 2, 1e-12);
   const std::string text = table_text(table);
   EXPECT_THAT(text, HasSubstr("4 runs; ended in another valley and left out: 1 (RQE), 1 (refined)"));
   EXPECT_THAT(text, HasSubstr("not refined: 1"));
+}
+
+TEST(Table, ComparesOnlyWithWhatWasRunAndWithThePaperWhereItTellsOfTheSame) {
+  std::vector<Trial> trials = {trial(-0.002, 0.001, 0.04), trial(-0.004, 0.002, 0.06)};
+  EXPECT_THAT(table_text(table_of(trials)), AllOf(HasSubstr("paper, Table 1"), HasSubstr("RQE")));
+  for (Trial& one : trials) one.rqe.reset();
+  const Table table = table_of(trials, false);
+  EXPECT_FALSE(table.rows[0].rqe);
+  EXPECT_FALSE(table.rows[0].paper);
+  EXPECT_THAT(table_text(table), Not(AnyOf(HasSubstr("paper"), HasSubstr("RQE"))));
+  EXPECT_THAT(runs_csv(trials), HasSubstr("\n7,laser1.tau,m,0.003,,0.001,0.0015,\n"));
 }
 
 TEST(Table, WritesEveryRunAsALineAParameter) {
