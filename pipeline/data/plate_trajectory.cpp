@@ -39,26 +39,38 @@ PlateTrajectory::PlateTrajectory(std::int64_t epoch_ns, std::vector<double> time
   rates_ = slopes(times_, angles_);
 }
 
-std::optional<PlateState> PlateTrajectory::inside(std::size_t interval, double t) const {
+PlateState PlateArc::at(double t) const {
+  const double u = (t - begin) / width;
+  const auto& c = coefficients;
+  return {.angle = c[0] + u * (c[1] + u * (c[2] + u * c[3])),
+          .rate = (c[1] + u * (2 * c[2] + u * 3 * c[3])) / width};
+}
+
+std::optional<PlateArc> PlateTrajectory::arc(std::size_t interval) const {
   const double width = times_[interval + 1] - times_[interval];
   if (width > max_gap_) return std::nullopt;
-  const double u = (t - times_[interval]) / width;
   const double rise = angles_[interval + 1] - angles_[interval];
   const double m0 = rates_[interval] * width;
   const double m1 = rates_[interval + 1] * width;
-  const double c2 = 3 * rise - 2 * m0 - m1;
-  const double c3 = m0 + m1 - 2 * rise;
-  return PlateState{.angle = angles_[interval] + u * (m0 + u * (c2 + u * c3)),
-                    .rate = (m0 + u * (2 * c2 + u * 3 * c3)) / width};
+  return PlateArc{.begin = times_[interval],
+                  .end = times_[interval + 1],
+                  .width = width,
+                  .coefficients = {angles_[interval], m0, 3 * rise - 2 * m0 - m1, m0 + m1 - 2 * rise}};
 }
 
 std::optional<PlateState> PlateTrajectory::at(double t) const {
   if (times_.size() < 2 || !(t >= times_.front() && t <= times_.back())) return std::nullopt;
   const auto next = std::upper_bound(times_.begin() + 1, times_.end() - 1, t);
-  return inside(static_cast<std::size_t>(next - times_.begin()) - 1, t);
+  const auto found = arc(static_cast<std::size_t>(next - times_.begin()) - 1);
+  return found ? std::optional(found->at(t)) : std::nullopt;
 }
 
 std::optional<PlateState> PlateTrajectory::Cursor::at(double t) {
+  const auto found = arc(t);
+  return found ? std::optional(found->at(t)) : std::nullopt;
+}
+
+std::optional<PlateArc> PlateTrajectory::Cursor::arc(double t) {
   const auto& times = trajectory_->times_;
   if (times.size() < 2 || !(t >= times.front() && t <= times.back())) return std::nullopt;
   constexpr std::size_t kSteps = 16;  // beyond these a bisection is cheaper than walking
@@ -68,12 +80,12 @@ std::optional<PlateState> PlateTrajectory::Cursor::at(double t) {
     } else if (t > times[interval_ + 1]) {
       ++interval_;
     } else {
-      return trajectory_->inside(interval_, t);
+      return trajectory_->arc(interval_);
     }
   }
   const auto next = std::upper_bound(times.begin() + 1, times.end() - 1, t);
   interval_ = static_cast<std::size_t>(next - times.begin()) - 1;
-  return trajectory_->inside(interval_, t);
+  return trajectory_->arc(interval_);
 }
 
 }  // namespace crisp

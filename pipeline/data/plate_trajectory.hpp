@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -13,6 +14,16 @@ namespace crisp {
 struct PlateState {
   double angle = 0;  ///< [rad] φ, unwrapped
   double rate = 0;   ///< [rad/s] dφ/dt
+};
+
+/// φ(t) between two neighbouring readings of the encoder: a cubic of u = (t − begin) / width.
+struct PlateArc {
+  double begin = 0;                      ///< [s since epoch] of the first reading
+  double end = 0;                        ///< [s since epoch] of the second
+  double width = 0;                      ///< [s] end − begin
+  std::array<double, 4> coefficients{};  ///< [rad] of 1, u, u², u³
+
+  PlateState at(double t) const;
 };
 
 /// φ(t): the plate's angle, continuous, by cubic Hermite interpolation between the encoder's readings
@@ -38,6 +49,8 @@ class PlateTrajectory {
    public:
     explicit Cursor(const PlateTrajectory& trajectory) : trajectory_(&trajectory) {}
     std::optional<PlateState> at(double t);
+    /// What at() takes its answer from; it holds for all times from `begin` to `end`, ends included.
+    std::optional<PlateArc> arc(double t);
 
    private:
     const PlateTrajectory* trajectory_;
@@ -54,7 +67,7 @@ class PlateTrajectory {
   std::span<const double> angles() const { return angles_; }
 
  private:
-  std::optional<PlateState> inside(std::size_t interval, double t) const;
+  std::optional<PlateArc> arc(std::size_t interval) const;
 
   std::int64_t epoch_ns_ = 0;
   std::vector<double> times_;

@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,15 @@ struct Placed {
   std::vector<std::uint32_t> index;  ///< the measurement of each; those that the plate's readings do not
                                      ///< cover are left out
 };
+
+/// A run of placed measurements.
+struct PlacedRun {
+  std::span<const double> x;             ///< [m] in the base's frame, as are y and z
+  std::span<const double> y;             ///< [m]
+  std::span<const double> z;             ///< [m]
+  std::span<const std::uint32_t> index;  ///< the measurement of each
+};
+using TakePlaced = std::function<void(const PlacedRun&)>;
 
 /// d(point)/d(parameter) of placed points.
 struct PointDerivatives {
@@ -67,6 +78,10 @@ class SensorModel {
   /// Places every measurement that the plate's readings cover.
   /// @throws Error if `beams` names a laser that the model does not have, or the epochs differ
   Placed place(const Measurements& beams, const PlateTrajectory& plate) const;
+
+  /// The same, run by run in the order of the measurements: for those who have a place of their own for
+  /// points.
+  void place(const Measurements& beams, const PlateTrajectory& plate, const TakePlaced& take) const;
 
   /// The same, with derivatives with respect to the parameters `free` (indices into values()).
   Placed place(const Measurements& beams, const PlateTrajectory& plate, const std::vector<std::size_t>& free,

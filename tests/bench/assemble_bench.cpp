@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How fast measurements become points, on one core: scan by scan, as a recording streams through the stage.
+// How fast measurements become points, on one core: scan by scan, as a recording streams through the stage;
+// beside a plain copy of as many bytes.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
@@ -42,6 +44,22 @@ struct Recording {
   }
 };
 
+constexpr std::size_t kRead = 24;  // bytes of a measurement
+constexpr std::size_t kWritten = sizeof(Point);
+
+std::size_t beams_of(const Recording& recording) {
+  std::size_t n = 0;
+  for (const auto& scan : recording.scans) n += scan.as<Measurements>()->size();
+  return n;
+}
+
+void set_rates(benchmark::State& state, std::size_t beams) {
+  const double all = static_cast<double>(beams) * static_cast<double>(state.iterations());
+  state.counters["points/s"] = benchmark::Counter(all, benchmark::Counter::kIsRate);
+  state.counters["B/s"] =
+      benchmark::Counter(all * (kRead + kWritten), benchmark::Counter::kIsRate, benchmark::Counter::kIs1024);
+}
+
 void deskew_scans(benchmark::State& state) {
   const Recording recording;
   TermRegistry terms;
@@ -50,8 +68,7 @@ void deskew_scans(benchmark::State& state) {
   const RunSettings run{.registrar = &registrar};
   StageReport report;
   Context context(run, report);
-  std::size_t points = 0;
-  Outputs out([&](const Item& item) { points += item.as<Cloud>()->size(); });
+  Outputs out([](const Item& item) { benchmark::DoNotOptimize(item.as<Cloud>()->points.data()); });
   DeskewStage stage;
   for (auto _ : state) {
     for (const auto& scan : recording.scans) {
@@ -59,9 +76,23 @@ void deskew_scans(benchmark::State& state) {
       stage.process(Inputs(items), out, context);
     }
   }
-  state.counters["points/s"] = benchmark::Counter(static_cast<double>(points), benchmark::Counter::kIsRate);
+  set_rates(state, beams_of(recording));
 }
 
+/// Reads and writes half of the bytes each that the beams and points of the recording have, in one go.
+void copy_as_many_bytes(benchmark::State& state) {
+  const std::size_t beams = beams_of(Recording());
+  const std::vector<char> from(beams * (kRead + kWritten) / 2, 'x');
+  std::vector<char> to(from.size());
+  for (auto _ : state) {
+    std::memcpy(to.data(), from.data(), from.size());
+    benchmark::DoNotOptimize(to.data());
+    benchmark::ClobberMemory();
+  }
+  set_rates(state, beams);
+}
+
+BENCHMARK(copy_as_many_bytes)->Unit(benchmark::kMillisecond);
 BENCHMARK(deskew_scans)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -2,44 +2,24 @@
 #include "pipeline/quality/tile_sums.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <string>
 #include <vector>
 
 #include "pipeline/quality/spatial_order.hpp"
 #include "pipeline/quality/sum_over_tiles.hpp"
 #include "tests/pipeline/quality/clouds.hpp"
+#include "tests/support/instruction_sets.hpp"
 
 namespace crisp {
 namespace {
 
-/// Each instruction set that this machine has, one after the other.
-class TileSums : public testing::TestWithParam<std::int64_t> {
- protected:
-  void SetUp() override { use(GetParam()); }
-  void TearDown() override { use(0); }
+class TileSums : public test::EachInstructionSet {};
 
- private:
-  static void use(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
-std::vector<std::int64_t> targets() {
-  std::vector<std::int64_t> all;
-  for (std::int64_t rest = hwy::SupportedTargets() & (HWY_TARGETS); rest != 0; rest &= rest - 1) {
-    all.push_back(rest & -rest);
-  }
-  return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, TileSums, testing::ValuesIn(targets()),
-                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+INSTANTIATE_TEST_SUITE_P(All, TileSums, testing::ValuesIn(test::instruction_sets()),
+                         test::name_of_instruction_set);
 
 TEST_P(TileSums, AreMadeWithTheInstructionSetThatIsAskedFor) {
   EXPECT_STREQ(simd::instruction_set(), hwy::TargetName(GetParam()));
