@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "plugins/calibrate/cloud_objective.hpp"
+#include "plugins/calibrate/valleys.hpp"
 
 namespace crisp {
 namespace {
@@ -25,52 +26,34 @@ constexpr std::size_t kTau = 1;
 constexpr std::size_t kAlpha = 2;
 constexpr std::size_t kEta = 3;
 
-/// Values of one parameter at which the cost is lower than at both neighbours, the lowest first.
-std::vector<double> valleys(SensorModel model, std::size_t parameter, const std::vector<double>& grid,
-                            bool circular, const Sample& sample, Measure& measure, double sigma) {
-  std::vector<double> cost;
-  for (const double value : grid) {
-    Eigen::VectorXd values = model.values();
-    values[static_cast<Eigen::Index>(parameter)] = value;
-    model.set_values(values);
-    cost.push_back(model_quality(model, sample, measure, sigma));
-  }
-  std::vector<std::size_t> found;
-  const std::size_t n = grid.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const bool below_left = i > 0 ? cost[i] <= cost[i - 1] : !circular || cost[i] <= cost[n - 1];
-    const bool below_right = i + 1 < n ? cost[i] < cost[i + 1] : !circular || cost[i] < cost[0];
-    if (below_left && below_right) found.push_back(i);
-  }
-  std::sort(found.begin(), found.end(), [&](auto a, auto b) { return cost[a] < cost[b]; });
-  std::vector<double> values;
-  for (const auto i : found) values.push_back(grid[i]);
-  return values;
+/// The cost over one parameter.
+Curve cost_over(const SensorModel& model, std::size_t parameter, const Sample& sample, Measure& measure,
+                double sigma) {
+  return [&, parameter, sigma](double value) {
+    return model_quality(with(model, {parameter}, Eigen::VectorXd::Constant(1, value)), sample, measure,
+                         sigma);
+  };
 }
 
 /// Follows the few lowest valleys of one parameter downhill while σ narrows, and keeps the crispest end.
 void search(SensorModel& model, std::size_t parameter, const std::vector<double>& grid, bool circular,
             const Sample& sample, Measure& measure, const InPlaneSettings& settings) {
-  auto starts = valleys(model, parameter, grid, circular, sample, measure, settings.sigma_from);
   constexpr std::size_t kValleys = 4;
+  auto starts = valleys(cost_over(model, parameter, sample, measure, settings.sigma_from), grid, circular);
   starts.resize(std::min(starts.size(), kValleys));
-  SensorModel best = model;
-  double lowest = std::numeric_limits<double>::infinity();
+  const double margin = circular ? std::numbers::pi : grid[1] - grid[0];
+  Bottom best{.at = picked(model, {parameter})[0], .value = std::numeric_limits<double>::infinity()};
   for (const double start : starts) {
-    SensorModel trial = model;
-    Eigen::VectorXd values = trial.values();
-    values[static_cast<Eigen::Index>(parameter)] = start;
-    trial.set_values(values);
-    double value = 0;
+    Bottom found{.at = start, .value = 0};
     for (const double sigma : annealing(settings.sigma_from, settings.sigma_to)) {
-      value = crispest(trial, sample, {parameter}, measure, sigma, settings.range, settings.minimiser).value;
+      const SensorModel there = with(model, {parameter}, Eigen::VectorXd::Constant(1, found.at));
+      const double step = search_basis(there, sample, {parameter}, settings.range, sigma)(0, 0);
+      found = bottom(cost_over(model, parameter, sample, measure, sigma), found.at, std::abs(step),
+                     grid.front() - margin, grid.back() + margin);
     }
-    if (value < lowest) {
-      lowest = value;
-      best = trial;
-    }
+    if (found.value < best.value) best = found;
   }
-  model = best;
+  model = with(model, {parameter}, Eigen::VectorXd::Constant(1, best.at));
 }
 
 /// The four steps, on a model that they move.

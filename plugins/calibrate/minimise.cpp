@@ -16,12 +16,31 @@ namespace {
 using Ipopt::Index;
 using Ipopt::Number;
 
+/// MUMPS, the linear solver, crashes when two solves run at once. Objectives may: see Unlocked.
+std::mutex& solver_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// Lets other solves go on while it lives.
+class Unlocked {
+ public:
+  explicit Unlocked(std::unique_lock<std::mutex>& lock) : lock_(lock) { lock_.unlock(); }
+  ~Unlocked() { lock_.lock(); }
+  Unlocked(const Unlocked&) = delete;
+  Unlocked& operator=(const Unlocked&) = delete;
+
+ private:
+  std::unique_lock<std::mutex>& lock_;
+};
+
 /// The problem as Ipopt asks for it: variables y, and the box as linear constraints lower ≤ x(y) ≤ upper.
 class BoxProblem final : public Ipopt::TNLP {
  public:
+  /// @param lock  of the solver, held while Ipopt works
   BoxProblem(const Objective& objective, Eigen::VectorXd start, const Box& box,
-             const MinimiserSettings& settings)
-      : objective_(objective), start_(std::move(start)), box_(box), settings_(settings) {
+             const MinimiserSettings& settings, std::unique_lock<std::mutex>& lock)
+      : objective_(objective), start_(std::move(start)), box_(box), settings_(settings), lock_(lock) {
     best_.x = start_;
     best_.value = std::numeric_limits<double>::infinity();
     evaluate(start_);
@@ -108,7 +127,10 @@ class BoxProblem final : public Ipopt::TNLP {
   /// Value and gradient come together; Ipopt asks for them one after the other at the same x.
   double evaluate(const Eigen::VectorXd& x) {
     if (x_.size() == x.size() && x_ == x) return value_;
-    value_ = objective_(x, &gradient_);
+    {
+      const Unlocked others(lock_);
+      value_ = objective_(x, &gradient_);
+    }
     x_ = x;
     if (value_ < best_.value) {
       best_.value = value_;
@@ -121,6 +143,7 @@ class BoxProblem final : public Ipopt::TNLP {
   Eigen::VectorXd start_;
   const Box& box_;
   const MinimiserSettings& settings_;
+  std::unique_lock<std::mutex>& lock_;
   Eigen::VectorXd x_;
   Eigen::VectorXd gradient_;
   double value_ = 0;
@@ -144,12 +167,6 @@ std::string in_words(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
-/// MUMPS, the linear solver, crashes when two solves run at once.
-std::mutex& solver_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
 }  // namespace
 
 Minimum minimise(const Objective& objective, const Eigen::VectorXd& start, const Box& box,
@@ -158,9 +175,9 @@ Minimum minimise(const Objective& objective, const Eigen::VectorXd& start, const
   if (box.lower.size() != n || box.upper.size() != n || box.basis.rows() != n || box.basis.cols() != n) {
     throw Error("a minimisation was given a start and a box of different sizes");
   }
-  const std::scoped_lock lock(solver_mutex());
+  std::unique_lock lock(solver_mutex());
   const Eigen::VectorXd inside = start.cwiseMax(box.lower).cwiseMin(box.upper);
-  Ipopt::SmartPtr<BoxProblem> problem = new BoxProblem(objective, inside, box, settings);
+  Ipopt::SmartPtr<BoxProblem> problem = new BoxProblem(objective, inside, box, settings, lock);
   if (n == 0) return problem->best();
 
   Ipopt::SmartPtr<Ipopt::IpoptApplication> solver = IpoptApplicationFactory();

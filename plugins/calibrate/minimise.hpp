@@ -33,8 +33,9 @@ struct Minimum {
 };
 
 /// Looks for the minimum of `objective` in `box` from `start`, with Ipopt's interior-point method and a
-/// limited-memory approximation of the Hessian (Wächter and Biegler 2006). Calls from several threads wait
-/// for one another: the linear solver is not re-entrant.
+/// limited-memory approximation of the Hessian (Wächter and Biegler 2006). Several
+/// threads may call it: the linear solver, which is not re-entrant, works for one at a time, while the
+/// others' objectives are evaluated.
 ///
 /// @param start  n values; moved into the box where it lies outside
 /// @throws Error  if the sizes differ or the objective is not finite at the start
