@@ -193,6 +193,8 @@ Minimum minimise(const Objective& objective, const Eigen::VectorXd& start, const
   options->SetNumericValue("acceptable_tol", 1e3);  // what ends the search is that the cost no longer falls
   options->SetNumericValue("acceptable_obj_change_tol", settings.tolerance);
   options->SetIntegerValue("acceptable_iter", 4);
+  options->SetStringValue("mu_strategy",
+                          "monotone");        // what adaptive ones gain costs more solves than it saves
   options->SetNumericValue("mu_init", 1e-8);  // the start is believed: the barrier must not push it away
   solver->Initialize();
   const auto status = solver->OptimizeTNLP(problem);
