@@ -7,38 +7,41 @@
 
 #include "pipeline/data/error.hpp"
 #include "plugins/calibrate/can_be_told.hpp"
+#include "plugins/calibrate/flat_surfaces.hpp"
 #include "plugins/calibrate/free_parameters.hpp"
 #include "plugins/calibrate/observability.hpp"
 #include "plugins/calibrate/placed_beams.hpp"
 #include "plugins/calibrate/surfel_rows.hpp"
+#include "plugins/calibrate/upright.hpp"
 
 namespace crisp {
 namespace {
 
-/// [standard errors] Steps below which the surfaces are no longer found anew, and rounds after which they are
-/// not in any case: beams that join and leave them at their rims keep the steps from getting any smaller.
-constexpr double kSettled = 0.5;
-constexpr int kFindingRounds = 6;
+constexpr double kSpread = 0.1;  // [rad] by which beams in the plate's plane are taken out of it
 
 /// Equations at a model, with the start as one more observation.
 class Refiner {
  public:
   Refiner(const SensorModel& start, const Sample& sample, std::vector<std::size_t> free,
-          const RefinementSettings& settings)
-      : start_(start), model_(start), sample_(sample), free_(std::move(free)), settings_(settings) {}
+          std::unique_ptr<FlatSurfaces> surfaces, const RefinementSettings& settings)
+      : start_(start),
+        model_(start),
+        sample_(sample),
+        free_(std::move(free)),
+        surfaces_(std::move(surfaces)),
+        settings_(settings) {}
 
-  /// @return  the length of the step [standard errors]
-  double step() {
+  /// @return  whether nothing more is to be expected of the next one
+  bool step() {
     const PlacedBeams placed(model_, sample_);
-    if (last_step_ > kSettled && round_++ < kFindingRounds)
-      surfels_ = find_surfels(placed.view(), settings_.surfels);
-    if (surfels_.surfels.empty()) {
+    const Surfels& surfels = surfaces_->update(placed.view(), last_step_);
+    if (surfels.surfels.empty()) {
       throw Error(
           "no flat surface is seen by these data",
           "leave calibrate.refine out where nothing is flat, or look closer with a smaller `smallest`");
     }
     const NormalEquations equations = normal_equations(
-        surfels_, placed.view(), free_.size(), surfel_rows(model_, sample_, free_), settings_.surfels);
+        surfels, placed.view(), free_.size(), surfel_rows(model_, sample_, free_), settings_.surfels);
     information_ = equations.matrix / equations.covariance_factor();
     const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
     const Eigen::VectorXd from_start = picked(model_, free_) - picked(start_, free_);
@@ -50,10 +53,11 @@ class Refiner {
     covariance_ = covariance_.selfadjointView<Eigen::Lower>();  // to the last bit
     const Eigen::VectorXd change = -posterior.solve(pull);
     model_ = with(model_, free_, picked(model_, free_) + change);
+    surfels_ = surfels.surfels.size();
     beams_ = equations.beams;
     chi2_ = equations.chi2 / std::max(1.0, equations.freedom);
     last_step_ = (change.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
-    return last_step_;
+    return surfaces_->is_settled() && last_step_ < settings_.tolerance;
   }
 
   /// Keeps at their start those that the data do not tell.
@@ -71,7 +75,7 @@ class Refiner {
 
   Refinement result() const {
     return {.outcome = {.model = model_, .free = free_, .covariance = covariance_, .unobservable = {}},
-            .surfels = surfels_.surfels.size(),
+            .surfels = surfels_,
             .beams = beams_,
             .chi2 = chi2_};
   }
@@ -81,12 +85,12 @@ class Refiner {
   SensorModel model_;
   const Sample& sample_;
   std::vector<std::size_t> free_;
+  std::unique_ptr<FlatSurfaces> surfaces_;
   const RefinementSettings& settings_;
   Eigen::MatrixXd information_;
   Eigen::MatrixXd covariance_;
-  Surfels surfels_;
-  int round_ = 0;
   double last_step_ = std::numeric_limits<double>::infinity();
+  std::size_t surfels_ = 0;
   std::size_t beams_ = 0;
   double chi2_ = 0;
 };
@@ -96,15 +100,18 @@ class Refiner {
 Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
                              const RefinementSettings& settings, const RoundReporter& report) {
   const LagRange lag = lag_range(start, settings.prior.eta);
-  const Sample inside = covered(sample, lag.earliest, lag.latest);
+  Sample inside = covered(sample, lag.earliest, lag.latest);
   FreeParameters parameters =
       can_be_told(free_parameters(start, inside.beams, settings.fixed), start, inside, SearchRange{});
-  Refiner refiner(start, inside, parameters.free, settings);
+  const bool upright = is_in_plane(inside);
+  if (upright) inside = spread_upright(inside, kSpread);
+  Refiner refiner(start, inside, parameters.free,
+                  upright ? upright_walls(settings.surfels) : patches(settings.surfels), settings);
   int round = 0;
   bool converged = false;
   while (!converged && round < settings.max_rounds && !refiner.free().empty()) {
     if (report && !report(round)) break;
-    converged = refiner.step() < settings.tolerance;
+    converged = refiner.step();
     ++round;
     for (auto& lost : refiner.hold_unknown()) {
       parameters.unobservable.push_back(std::move(lost));

@@ -36,8 +36,11 @@ using RoundReporter = std::function<bool(int round)>;
 /// width and uses all beams; but it needs a start that is right to some centimetres, which RQE gives.
 ///
 /// Each round places the beams, finds the surfaces (anew until steps are small) and takes one Gauss-Newton
-/// step. The start counts as
-/// an observation with the standard deviations `prior`; what the data do not tell better is named and kept.
+/// step. The start counts as an observation with the standard deviations `prior`; what the data do not tell
+/// better is named and kept.
+///
+/// Beams in the plate's plane alone, as in the paper's experiments, see walls as lines. They are taken to be
+/// upright walls, and the beams spread along the spin axis, which changes nothing in the plane.
 ///
 /// @param start   right to some centimetres and degrees
 /// @param sample  all beams; need not be covered

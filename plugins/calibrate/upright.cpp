@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/upright.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/data/degree.hpp"
+
 namespace crisp {
+
+bool is_in_plane(const Sample& sample) {
+  return std::ranges::all_of(sample.beams.mirror_angle, [](float angle) {
+    return std::abs(std::abs(static_cast<double>(angle)) - std::numbers::pi / 2) < 0.5 * kDegree;
+  });
+}
 
 Sample spread_upright(const Sample& sample, double spread) {
   Sample result = sample;

@@ -5,6 +5,9 @@
 
 namespace crisp {
 
+/// Whether all beams lie in the plate's plane (θ = ±90°) to within half a degree, a mirror's coarsest step.
+bool is_in_plane(const Sample& sample);
+
 /// Beams in the plate's plane as they would be if they left it a little, up and down, among upright walls:
 /// the same places in the plane, but spread along the spin axis. The plane's beams see a wall as a line, of
 /// which no surface could be told; spread out, they see it as a strip.

@@ -65,9 +65,7 @@ SensorModel crispest_model(const SensorModel& start, const Sample& sample,
 Estimate refine(const SensorModel& start, const SensorModel& truth, const Sample& sample,
                 const std::vector<std::size_t>& free, const TrialSettings& settings) {
   try {
-    const Refinement found = settings.beams == BeamChoice::kAll
-                                 ? refine_by_surfels(start, sample, settings.refinement)
-                                 : refine_in_plane(start, sample, free, settings.in_plane_refinement);
+    const Refinement found = refine_by_surfels(start, sample, settings.refinement);
     if (found.outcome.free != free) return {.failure = "the refinement left some parameters as they were"};
     if (!found.converged) return {.failure = "the refinement did not converge"};
     return {.error = errors(found.outcome.model, truth, free),

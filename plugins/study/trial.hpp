@@ -11,7 +11,6 @@
 #include "grabbers/simulate/departures.hpp"
 #include "grabbers/simulate/paper.hpp"
 #include "pipeline/quality/measure.hpp"
-#include "plugins/calibrate/in_plane_refinement.hpp"
 #include "plugins/calibrate/rqe_calibration.hpp"
 #include "plugins/calibrate/surfel_refinement.hpp"
 #include "plugins/study/beam_choice.hpp"
@@ -40,7 +39,6 @@ struct TrialSettings {
   Departures near;   ///< how far off the refinement starts at most where RQE is left out: where RQE ends
   RqeCalibrationSettings rqe;
   RefinementSettings refinement;
-  InPlaneRefinementSettings in_plane_refinement;
 
   TrialSettings();
 };

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/calibrate/in_plane_refinement.hpp"
-
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "grabbers/simulate/paper.hpp"
 #include "pipeline/data/error.hpp"
+#include "plugins/calibrate/surfel_refinement.hpp"
 #include "plugins/calibrate/upright.hpp"
 #include "tests/plugins/calibrate/support.hpp"
 
@@ -48,7 +47,7 @@ TEST(InPlaneRefinement, FindsTheTruthWithinItsStandardErrors) {
     const auto recording = simulate_measurements(paper_scanner(seed), paper_room());
     const SensorModel truth(recording.truth);
     const SensorModel start = shifted(truth, 0.005, 0.003, 0.001);
-    const auto found = refine_in_plane(start, sample_of(recording), all_free(), {});
+    const auto found = refine_by_surfels(start, sample_of(recording), {});
     EXPECT_TRUE(found.converged) << seed;
     EXPECT_EQ(found.surfels, 7U) << seed;  // the walls of the room
     EXPECT_GT(found.beams, 2950U) << "of about 3000";
@@ -64,10 +63,9 @@ TEST(InPlaneRefinement, FindsTheTruthWithinItsStandardErrors) {
 
 TEST(InPlaneRefinement, LeavesOfTheDistancesWhatTheNoiseMakes) {
   const auto recording = simulate_measurements(paper_scanner(2), paper_room());
-  InPlaneRefinementSettings settings;
+  RefinementSettings settings;
   settings.surfels.outlier = 0;  // all count in full, so that the squares are those of the noise
-  const auto found =
-      refine_in_plane(SensorModel(recording.truth), sample_of(recording), all_free(), settings);
+  const auto found = refine_by_surfels(SensorModel(recording.truth), sample_of(recording), settings);
   EXPECT_NEAR(found.chi2, 1, 4 * std::sqrt(2.0 / 3000));
 }
 
@@ -75,8 +73,8 @@ TEST(InPlaneRefinement, EndsAtTheSameOptimumFromOtherStarts) {
   const auto recording = simulate_measurements(paper_scanner(5), paper_room());
   const SensorModel truth(recording.truth);
   const auto from = [&](double scale) {
-    return refine_in_plane(shifted(truth, 0.004 * scale, 0.002 * scale, 0.0005 * scale), sample_of(recording),
-                           all_free(), {});
+    return refine_by_surfels(shifted(truth, 0.004 * scale, 0.002 * scale, 0.0005 * scale),
+                             sample_of(recording), {});
   };
   const auto one = from(1);
   const auto other = from(-1);
@@ -88,16 +86,20 @@ TEST(InPlaneRefinement, EndsAtTheSameOptimumFromOtherStarts) {
 
 TEST(InPlaneRefinement, SaysThatAConstantSpeedDoesNotTellEtaFromLambda) {
   ScannerSettings scanner = paper_scanner(1);
-  scanner.motion.kind = MotionKind::constant;
+  scanner.motion = {.kind = MotionKind::constant, .max_rate = 0.91};  // no whole number of scans a turn
   const auto recording = simulate_measurements(scanner, paper_room());
-  EXPECT_THROW(refine_in_plane(SensorModel(recording.truth), sample_of(recording), all_free(), {}), Error);
+  const auto found = refine_by_surfels(SensorModel(recording.truth), sample_of(recording), {});
+  ASSERT_EQ(found.outcome.unobservable.size(), 3U);
+  for (const auto& lost : found.outcome.unobservable) {
+    EXPECT_THAT(lost.parameter, testing::EndsWith(".eta"));
+  }
 }
 
 TEST(InPlaneRefinement, SaysThatItSeesNoWalls) {
   ScannerSettings scanner = paper_scanner(1);
   scanner.duration = 0.1;  // 30 beams
   const auto recording = simulate_measurements(scanner, paper_room());
-  EXPECT_THROW(refine_in_plane(SensorModel(recording.truth), sample_of(recording), all_free(), {}), Error);
+  EXPECT_THROW(refine_by_surfels(SensorModel(recording.truth), sample_of(recording), {}), Error);
 }
 
 }  // namespace

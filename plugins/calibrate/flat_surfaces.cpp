@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/flat_surfaces.hpp"
+
+#include "pipeline/quality/surfel_residuals.hpp"
+#include "plugins/calibrate/claims.hpp"
+
+namespace crisp {
+namespace {
+
+class Patches final : public FlatSurfaces {
+ public:
+  explicit Patches(const SurfelSettings& settings) : settings_(settings) {}
+
+  const Surfels& update(const BeamsView& beams, double last_step) override {
+    // Beams that join and leave surfaces at their rims would keep the steps from getting any smaller.
+    constexpr double kSmallStep = 0.5;
+    constexpr int kSearches = 6;
+    if (last_step > kSmallStep && round_++ < kSearches) surfels_ = find_surfels(beams, settings_);
+    return surfels_;
+  }
+
+  bool is_settled() const override { return true; }
+
+ private:
+  SurfelSettings settings_;
+  Surfels surfels_;
+  int round_ = 0;
+};
+
+class UprightWalls final : public FlatSurfaces {
+ public:
+  explicit UprightWalls(const SurfelSettings& settings) : settings_(settings) {}
+
+  const Surfels& update(const BeamsView& beams, double) override {
+    constexpr int kSearches = 2;
+    if (round_ < kSearches) walls_ = find_surfels(beams, settings_);
+    if (round_ < kRenewals) walls_ = claimed(walls_, beams, settings_);
+    for (Surfel& wall : walls_.surfels) refine(wall, walls_, beams, settings_);
+    ++round_;
+    return walls_;
+  }
+
+  bool is_settled() const override { return round_ > kRenewals; }
+
+ private:
+  static constexpr int kRenewals = 5;  // rounds in which it is decided anew which wall each beam met
+
+  SurfelSettings settings_;
+  Surfels walls_;
+  int round_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings) {
+  return std::make_unique<Patches>(settings);
+}
+
+std::unique_ptr<FlatSurfaces> upright_walls(const SurfelSettings& settings) {
+  return std::make_unique<UprightWalls>(settings);
+}
+
+}  // namespace crisp

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "pipeline/quality/surfels.hpp"
+
+namespace crisp {
+
+/// The flat surfaces against which a refinement measures its beams: looked for while the parameters still
+/// move, and kept in the end, so that the refinement's steps come to one.
+class FlatSurfaces {
+ public:
+  virtual ~FlatSurfaces() = default;
+
+  /// One more round, with the beams where the parameters now put them.
+  ///
+  /// @param last_step  [standard errors] length of the step before; infinite in the first round
+  virtual const Surfels& update(const BeamsView& beams, double last_step) = 0;
+
+  /// Whether it has ended to choose which beams belong to which surface.
+  virtual bool is_settled() const = 0;
+};
+
+/// Patches and walls that beams of a full field of view see: see find_surfels().
+std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings);
+
+/// Upright walls that beams in the plate's plane see, spread along the spin axis: see spread_upright(). Where
+/// there are so few beams each counts, those in corners and at edges, too: see claimed().
+std::unique_ptr<FlatSurfaces> upright_walls(const SurfelSettings& settings);
+
+}  // namespace crisp
