@@ -15,6 +15,13 @@ struct InPlaneSettings {
   MinimiserSettings minimiser;
 };
 
+/// Whether the beams in the plate's plane see walls as spots far from one another: directions 5° apart and
+/// more. A plate and mirrors at commensurate rates, 2 and 50 Hz say, look into the same few directions for
+/// ever; what makes single spots crisp is no calibration (found at 25 a turn: τ off by 0.3 m; at 50: right).
+///
+/// @param sample  all of whose beams the plate's readings cover
+bool sees_single_spots(const Sample& sample, const InPlaneSettings& settings);
+
 /// A first calibration in the paper's order, from the two beams of each laser that lie in the plate's plane:
 ///   1. each η from the front beam alone, with τ and α as they are: the turns of the plate must agree;
 ///   2. each laser's τ and α from its front and back beams;

@@ -56,7 +56,8 @@ class RqeCalibration {
     return {.model = model_,
             .free = parameters_.free,
             .covariance = std::move(covariance),
-            .unobservable = parameters_.unobservable};
+            .unobservable = parameters_.unobservable,
+            .sees_single_spots = sees_single_spots(sample_, settings_.in_plane)};
   }
 
  private:

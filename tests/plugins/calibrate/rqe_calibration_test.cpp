@@ -55,6 +55,17 @@ TEST(CalibrateByRqe, SaysThatAConstantSpeedDoesNotTellTheLags) {
   }
 }
 
+TEST(CalibrateByRqe, SeesOnlySpotsAtCommensurateRates) {
+  auto scanner = misplaced_scanner(1, 3.0);
+  scanner.motion = {.kind = MotionKind::constant, .max_rate = 2};  // 25 scans a turn
+  scanner.mirror = {.slowest = 0, .wander = 0};
+  const auto few = simulate_measurements(scanner, office());
+  EXPECT_TRUE(sees_single_spots(sample_of(few), {}));
+  scanner.motion.max_rate = 1.91;
+  const auto many = simulate_measurements(scanner, office());
+  EXPECT_FALSE(sees_single_spots(sample_of(many), {}));
+}
+
 TEST(CalibrateByRqe, SaysThatAPlateThatStandsStillDoesNotTellTheLags) {
   auto scanner = misplaced_scanner(1, 1.0);
   const auto recording = simulate_measurements(scanner, office(), Motion({{.time = 0, .rate = 0}}));

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/deepest_valley.hpp"
+
+#include <limits>
+#include <numbers>
+
+#include "plugins/calibrate/base_slots.hpp"
+#include "plugins/calibrate/cloud_objective.hpp"
+#include "plugins/calibrate/valleys.hpp"
+
+namespace crisp {
+namespace {
+
+SensorModel with_one(const SensorModel& model, std::size_t parameter, double value) {
+  return with(model, {parameter}, Eigen::VectorXd::Constant(1, value));
+}
+
+/// The cost over one parameter.
+Curve cost_over(const SensorModel& model, std::size_t parameter, const Sample& sample, Measure& measure,
+                double sigma) {
+  return [&, parameter, sigma](double value) {
+    return model_quality(with_one(model, parameter, value), sample, measure, sigma);
+  };
+}
+
+std::vector<double> whole_circle() {
+  constexpr int kSteps = 120;  // 3°: the valley at σ = 0.5 m is wider in any room
+  std::vector<double> grid;
+  for (int i = 0; i < kSteps; ++i) grid.push_back(2 * std::numbers::pi * i / kSteps);
+  return grid;
+}
+
+bool has_beams(const Sample& sample, std::size_t laser) {
+  return of_laser(sample, laser).beams.size() >= kFewBeams;
+}
+
+}  // namespace
+
+void to_deepest_valley(SensorModel& model, std::size_t parameter, const std::vector<double>& grid,
+                       bool circular, const Sample& sample, Measure& measure, const SearchRange& range,
+                       const Narrowing& sigma) {
+  constexpr std::size_t kValleys = 4;
+  auto starts = valleys(cost_over(model, parameter, sample, measure, sigma.from), grid, circular);
+  starts.resize(std::min(starts.size(), kValleys));
+  const double margin = circular ? std::numbers::pi : grid[1] - grid[0];
+  Bottom best{.at = picked(model, {parameter})[0], .value = std::numeric_limits<double>::infinity()};
+  for (const double start : starts) {
+    Bottom found{.at = start, .value = 0};
+    for (const double width : annealing(sigma.from, sigma.to)) {
+      const SensorModel there = with_one(model, parameter, found.at);
+      const double step = search_basis(there, sample, {parameter}, range, width)(0, 0);
+      found = bottom(cost_over(model, parameter, sample, measure, width), found.at, std::abs(step),
+                     grid.front() - margin, grid.back() + margin);
+    }
+    if (found.value < best.value) best = found;
+  }
+  model = with_one(model, parameter, best.at);
+}
+
+void find_lambdas(SensorModel& model, const std::vector<std::size_t>& free, const Sample& sample,
+                  Measure& measure, const SearchRange& range, const Narrowing& sigma) {
+  const auto is_fixed = [&](std::size_t laser) { return !is_free(free, slot(model, laser, kLambda)); };
+  std::size_t reference = 0;
+  while (reference < model.lasers() && !(is_fixed(reference) && has_beams(sample, reference))) ++reference;
+  if (reference == model.lasers()) return;
+  for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
+    if (is_fixed(laser) || !has_beams(sample, laser)) continue;
+    const Sample pair = select(sample, [&](std::size_t i) {
+      return sample.beams.laser[i] == reference || sample.beams.laser[i] == laser;
+    });
+    to_deepest_valley(model, slot(model, laser, kLambda), whole_circle(), true, pair, measure, range, sigma);
+  }
+}
+
+Sample of_laser(const Sample& sample, std::size_t laser) {
+  return select(sample, [&](std::size_t i) { return sample.beams.laser[i] == laser; });
+}
+
+}  // namespace crisp

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "plugins/calibrate/crispest.hpp"
+
+namespace crisp {
+
+/// A kernel that narrows while a search goes on.
+struct Narrowing {
+  double from = 0.5;  ///< [m] σ at first
+  double to = 0.1;    ///< [m] and at last
+};
+
+/// The value of one parameter, others as they are, at which a cloud is crispest, wherever it starts: looks at
+/// all of `grid` with the wide kernel, follows the few lowest valleys downhill while the kernel narrows, and
+/// keeps the crispest end.
+///
+/// @param grid      evenly spaced, finer than valleys at the wide kernel are wide
+/// @param circular  whether its last value is next to its first
+void to_deepest_valley(SensorModel& model, std::size_t parameter, const std::vector<double>& grid,
+                       bool circular, const Sample& sample, Measure& measure, const SearchRange& range,
+                       const Narrowing& sigma);
+
+/// λ of each laser around the whole circle, one after the other, against the first laser whose λ is not free.
+/// Leaves alone what has no beams to speak of.
+///
+/// @param free  indices into model.values()
+void find_lambdas(SensorModel& model, const std::vector<std::size_t>& free, const Sample& sample,
+                  Measure& measure, const SearchRange& range, const Narrowing& sigma);
+
+/// The beams of one laser.
+Sample of_laser(const Sample& sample, std::size_t laser);
+
+/// With fewer beams there is nothing to align.
+inline constexpr std::size_t kFewBeams = 20;
+
+}  // namespace crisp
