@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 #include "plugins/calibrate/can_be_told.hpp"
 #include "plugins/calibrate/observability.hpp"
@@ -18,6 +19,13 @@ namespace {
 std::size_t points_at(double sigma, std::size_t most) {
   constexpr double kWide = 0.1;  // [m]
   return static_cast<std::size_t>(static_cast<double>(most) * std::min(1.0, kWide / sigma));
+}
+
+void refuse_a_standing_plate(const PlateTrajectory& plate) {
+  constexpr double kLeast = 1 * kDegree;
+  const auto [low, high] = std::ranges::minmax(plate.angles());
+  if (high - low >= kLeast) return;
+  throw Error("the plate stands still in these data: no surface is seen twice", "record while it turns");
 }
 
 /// One calibration from start to end; each step moves the model.
@@ -68,6 +76,7 @@ class RqeCalibration {
       throw Error("the plate's readings cover none of the beams",
                   "see crisp info for whether the plate's sentences are in the capture");
     }
+    refuse_a_standing_plate(*inside.plate);
     return inside;
   }
 
