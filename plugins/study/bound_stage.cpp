@@ -14,12 +14,15 @@
 namespace crisp {
 namespace {
 
-nlohmann::json parameters_json(const SceneBound& bound) {
+nlohmann::json parameters_json(const SceneBound& bound, const std::optional<Reached>& reached) {
   auto json = nlohmann::json::object();
   for (std::size_t k = 0; k < bound.parameters.size(); ++k) {
     const double error = bound.std_errors[static_cast<Eigen::Index>(k)];
     auto& entry = json[bound.parameters[k]] = {{"unit", kind_of(bound.parameters[k]).si}};
     if (std::isfinite(error)) entry["std_error"] = error;
+    if (!reached || !reached->failure.empty()) continue;
+    const double claimed = reached->std_errors[static_cast<Eigen::Index>(k)];
+    if (std::isfinite(claimed)) entry["refined_std_error"] = claimed;
   }
   return json;
 }
@@ -52,6 +55,9 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
       "surface of the scene as unknown as the parameters, three numbers each, and projected out. What the "
       "motion or the scene leave undetermined is named, with the combination that is known all the same: at "
       "constant speed each eta against the lambdas.\n\n"
+      "Beside it stand the standard errors that calibrate.refine gives itself on one such recording with "
+      "noise "
+      "(`refine`): what the method reaches.\n\n"
       "The scanner is the run's rig, as it nominally is, or that of `calibration`. The plate's encoder and "
       "the clocks count as exact, and the effects of the model beyond lambda, tau, alpha and eta as known. "
       "What is known before a recording, against which a parameter counts as determined, is what "
@@ -71,6 +77,7 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
   describe_motion(d, &BoundStage::motion);
   describe_truth(d, &BoundStage::truth_);
   describe_field(d, &BoundStage::scanner_);
+  d.option("refine", &BoundStage::refine_, "whether to try as well what calibrate.refine reaches");
   d.option("file", &BoundStage::file_, "where the bounds go, as CSV");
 }
 
@@ -87,24 +94,38 @@ void BoundStage::process(const Inputs&, Outputs&, Context& context) {
   scanner.truth = truth_.load(context, scanner.seed);
   const Scene scene = scene_.load(context);
   const Motion motion = make_motion(scanner.motion, scanner.duration, scanner.seed);
+  const TermRegistry& terms = known_terms(context.run());
   context.progress(0, "bound");
-  bound_ = scene_bound(scanner, scene, motion, beams_, known_terms(context.run()));
+  bound_ = scene_bound(scanner, scene, motion, beams_, terms);
+  if (context.interrupted()) return;
+  if (refine_) {
+    context.progress(0.3, "calibrate.refine");
+    reached_ = reached_by_refinement(scanner, scene, motion, beams_, bound_.parameters, terms);
+  }
+  tell(scene, context);
+}
+
+void BoundStage::tell(const Scene& scene, Context& context) const {
   context.report({{"scene", scene.name},
                   {"beams", bound_.beams},
                   {"no_echo", bound_.no_echo},
                   {"planes", planes_json(bound_, scene)},
-                  {"parameters", parameters_json(bound_)},
+                  {"parameters", parameters_json(bound_, reached_)},
                   {"unobservable", unobservable_json(bound_)}});
   const auto met = std::ranges::count_if(bound_.beams_on, [](std::size_t beams) { return beams > 0; });
   context.say(fmt::format("{:g} s in the {}: {} beams on {} planes, {} that meet nothing; noise {:g} mm",
-                          scanner.duration, scene.name, bound_.beams, met, bound_.no_echo,
-                          scanner.range.sigma * 1e3));
+                          scanner_.duration, scene.name, bound_.beams, met, bound_.no_echo,
+                          scanner_.range.sigma * 1e3));
+  if (!reached_ || !reached_->failure.empty()) return;
+  context.report({{"refined_beams", reached_->beams}, {"refined_surfaces", reached_->surfaces}});
+  context.say(fmt::format("calibrate.refine finds {} flat surfaces with {} of them", reached_->surfaces,
+                          reached_->beams));
 }
 
 void BoundStage::finish(Outputs&, Context& context) {
-  context.say(bound_text(bound_));
+  context.say(bound_text(bound_, reached_));
   if (file_.empty()) return;
-  write_file(file_, bound_csv(bound_));
+  write_file(file_, bound_csv(bound_, reached_));
   context.wrote(file_);
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "grabbers/simulate/world.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
+#include "plugins/study/reached.hpp"
 #include "plugins/study/scene_bound.hpp"
 
 namespace crisp {
@@ -23,12 +25,16 @@ class BoundStage final : public Stage {
   // What the options are declared on.
   MotionSettings& motion() { return scanner_.motion; }
 
+  void tell(const Scene& scene, Context& context) const;
+
   ScannerSettings scanner_;
   SceneChoice scene_;
   TruthChoice truth_;
   BeamChoice beams_ = BeamChoice::kAll;
+  bool refine_ = true;
   std::filesystem::path file_;
   SceneBound bound_;
+  std::optional<Reached> reached_;
 };
 
 }  // namespace crisp

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "plugins/study/reached.hpp"
 #include "plugins/study/scene_bound.hpp"
 
 namespace crisp {
 
-/// A bound for people: the least standard errors in mm, degrees and ms, and what the recording leaves open.
-std::string bound_text(const SceneBound& bound);
+/// A bound for people: the least standard errors in mm, degrees and ms, those that calibrate.refine reaches,
+/// if that was tried, and what the recording leaves open.
+std::string bound_text(const SceneBound& bound, const std::optional<Reached>& reached = {});
 
-/// A line a parameter: "parameter,unit,std_error,known_instead", SI. The error of what is unobservable is
-/// empty; the last field is then the combination that is known all the same, if there is one.
-std::string bound_csv(const SceneBound& bound);
+/// A line a parameter: "parameter,unit,std_error,refined_std_error,known_instead", SI. An error is empty
+/// where the parameter is unobservable, or none is known; the last field is the combination that is known in
+/// place of an unobservable parameter, if there is one.
+std::string bound_csv(const SceneBound& bound, const std::optional<Reached>& reached = {});
 
 }  // namespace crisp

@@ -65,7 +65,9 @@ SensorModel crispest_model(const SensorModel& start, const Sample& sample,
 Estimate refine(const SensorModel& start, const SensorModel& truth, const Sample& sample,
                 const std::vector<std::size_t>& free, const TrialSettings& settings) {
   try {
-    const Refinement found = refine_by_surfels(start, sample, settings.refinement);
+    RefinementSettings knowing = settings.refinement;
+    knowing.surfels.noise = settings.noise;
+    const Refinement found = refine_by_surfels(start, sample, knowing);
     if (found.outcome.free != free) return {.failure = "the refinement left some parameters as they were"};
     if (!found.converged) return {.failure = "the refinement did not converge"};
     return {.error = errors(found.outcome.model, truth, free),

@@ -13,6 +13,7 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 #include "plugins/study/bound_text.hpp"
+#include "plugins/study/reached.hpp"
 
 namespace crisp {
 namespace {
@@ -149,11 +150,37 @@ TEST(SceneBound, AtConstantSpeedKnowsEtaOnlyWithLambda) {
   EXPECT_EQ(bound.unobservable[1].combination, "laser2.lambda + 9.425 * laser2.eta");  // 1.5 turns a second
   EXPECT_TRUE(std::isinf(bound.std_errors[2])) << bound.parameters[2];
   EXPECT_TRUE(std::isfinite(bound.std_errors[3])) << bound.parameters[3];
-  EXPECT_THAT(
-      bound_text(bound),
-      AllOf(HasSubstr("\nlaser2.eta              not determined; what is known [SI] is laser2.lambda + "),
-            HasSubstr("\nlaser2.tau ")));
-  EXPECT_THAT(bound_csv(bound), HasSubstr("\nlaser2.eta,s,,\"laser2.lambda + 9.425 * laser2.eta\"\n"));
+  EXPECT_THAT(bound_text(bound),
+              AllOf(HasSubstr("\nlaser2.eta          not determined; what is known [SI] is laser2.lambda + "),
+                    HasSubstr("\nlaser2.tau ")));
+  EXPECT_THAT(bound_csv(bound), HasSubstr("\nlaser2.eta,s,,,\"laser2.lambda + 9.425 * laser2.eta\"\n"));
+}
+
+TEST(Reached, IsNoBetterThanTheBoundAndNotFarFromIt) {
+  ScannerSettings scanner;
+  scanner.duration = 2;
+  for (const BeamChoice beams : {BeamChoice::kAll, BeamChoice::kInPlane}) {
+    const Motion motion = motion_of(MotionKind::varying, 2);
+    const SceneBound bound = scene_bound(scanner, office(), motion, beams);
+    const Reached reached = reached_by_refinement(scanner, office(), motion, beams, bound.parameters);
+    ASSERT_EQ(reached.failure, "");
+    EXPECT_LT(reached.beams, bound.beams);
+    EXPECT_GT(reached.beams, bound.beams / 2);
+    const Eigen::ArrayXd ratio = reached.std_errors.array() / bound.std_errors.array();
+    EXPECT_GT(ratio.minCoeff(), 1);
+    EXPECT_LT(ratio.maxCoeff(), 3);
+    EXPECT_THAT(bound_text(bound, reached), HasSubstr("   calibrate.refine\nlaser1.tau "));
+  }
+}
+
+TEST(Reached, SaysWhyThereIsNothingToReach) {
+  ScannerSettings scanner;
+  scanner.duration = 1;
+  const Motion motion = motion_of(MotionKind::varying, 1);
+  const std::vector<std::string> parameters = {"laser1.tau"};
+  scanner.range.max_distance = 0.5;  // nothing is so near
+  const Reached reached = reached_by_refinement(scanner, office(), motion, BeamChoice::kAll, parameters);
+  EXPECT_NE(reached.failure, "");
 }
 
 TEST(SceneBound, AFloorAloneDeterminesNothing) {
