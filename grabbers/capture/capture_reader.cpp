@@ -134,7 +134,7 @@ void CaptureReader::Traffic::finish() {
 
 std::optional<HubItem> CaptureReader::Traffic::next() {
   while (!interrupted) {
-    if (!merge.empty()) {
+    if (ended ? !merge.empty() : merge.has(newest_ns - kDisorder)) {  // no limit is later than this
       auto item = ended ? merge.pop() : merge.pop(limit_ns());
       if (item) {
         if (receipt_ns(*item) < given_ns)

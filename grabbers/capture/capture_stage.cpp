@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "grabbers/capture/capture_report.hpp"
+#include "grabbers/capture/read_ahead.hpp"
 #include "pipeline/data/error.hpp"
 
 namespace crisp {
@@ -46,14 +47,16 @@ void CaptureStage::check(const RunSettings& run) const { check_addresses(run.rig
 void CaptureStage::process(const Inputs&, Outputs& out, Context& context) {
   context.reads(file_);
   CaptureReader reader(file_, context.rig(), settings_);
-  std::uint64_t items = 0;
-  while (const auto item = reader.next()) {
-    if (++items % 256 == 0) {
-      if (context.interrupted()) return;
-      context.progress(reader.progress(), "reading the capture");
-    }
-    give(*item, reader.first_ns(), out, context);
+  std::optional<ReadAhead> ahead;
+  if (context.threads() > 1) ahead.emplace(reader);
+  while (true) {
+    const ReadBatch batch = ahead ? ahead->next() : read_batch(reader);
+    if (batch.items.empty()) break;
+    for (const auto& [item, first_ns] : batch.items) give(item, first_ns, out, context);
+    if (context.interrupted()) return;
+    context.progress(batch.progress, "reading the capture");
   }
+  ahead.reset();
   report(reader.statistics(), context);
 }
 

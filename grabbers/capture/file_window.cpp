@@ -15,7 +15,8 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kBuffer = 4 * FileWindow::kLargestPeek;
+constexpr std::size_t kRead = 256 * 1024;  // little enough to be in the cache still when it is looked at
+constexpr std::size_t kBuffer = FileWindow::kLargestPeek + kRead;
 
 Error cannot_read(const std::filesystem::path& path, int error) {
   return Error(fmt::format("cannot read {}: {}", path.string(), std::strerror(error)),
@@ -61,7 +62,7 @@ void FileWindow::fill(std::size_t wanted) {
   end_ -= begin_;
   begin_ = 0;
   while (end_ < wanted) {
-    const auto got = ::read(descriptor_, buffer_.get() + end_, kBuffer - end_);
+    const auto got = ::read(descriptor_, buffer_.get() + end_, std::min(kBuffer - end_, kRead));
     if (got == 0) return;
     if (got < 0 && errno != EINTR) throw cannot_read(path_, errno);
     if (got > 0) end_ += static_cast<std::size_t>(got);

@@ -22,12 +22,14 @@ class ItemMerge {
 
   /// The next item, if it was received before `limit_ns`.
   std::optional<HubItem> pop(std::int64_t limit_ns = std::numeric_limits<std::int64_t>::max()) {
-    if (items_.empty() || receipt_ns(items_.front()) >= limit_ns) return {};
+    if (!has(limit_ns)) return {};
     auto item = std::move(items_.front());
     items_.pop_front();
     return item;
   }
 
+  /// Whether pop() would give something.
+  bool has(std::int64_t limit_ns) const { return !items_.empty() && receipt_ns(items_.front()) < limit_ns; }
   bool empty() const { return items_.empty(); }
 
  private:

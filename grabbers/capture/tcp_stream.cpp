@@ -141,7 +141,7 @@ std::optional<std::int64_t> TcpStream::oldest_held() const {
   return oldest;
 }
 
-std::optional<std::int64_t> TcpStream::waiting_since() const {
+std::optional<std::int64_t> TcpStream::oldest_waiting() const {
   const auto oldest = oldest_held();
   if (!stray_) return oldest;
   return std::min(oldest.value_or(stray_->arrival_ns), stray_->arrival_ns);

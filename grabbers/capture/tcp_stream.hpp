@@ -48,7 +48,9 @@ class TcpStream {
   void finish();
 
   /// [ns] Arrival of the oldest byte that waits for others, if any does.
-  std::optional<std::int64_t> waiting_since() const;
+  std::optional<std::int64_t> waiting_since() const {
+    return held_.empty() && !stray_ ? std::nullopt : oldest_waiting();  // asked for each packet: mostly empty
+  }
 
   const Counts& counts() const { return counts_; }
 
@@ -66,6 +68,7 @@ class TcpStream {
   void skip_hole();
   void drop_stray();
   std::optional<std::int64_t> oldest_held() const;
+  std::optional<std::int64_t> oldest_waiting() const;
   void jump_to(std::uint64_t offset);
   bool stray(std::uint32_t sequence, ByteView bytes, std::int64_t time_ns);
 

@@ -62,8 +62,7 @@ Candidate examine(ByteView bytes) {
 
 }  // namespace
 
-std::optional<std::int64_t> ColaFramer::waiting_since() const {
-  if (pieces_.empty()) return {};
+std::int64_t ColaFramer::oldest_piece() const {
   const auto earlier = [](const Piece& a, const Piece& b) { return a.arrival_ns < b.arrival_ns; };
   return std::min_element(pieces_.begin(), pieces_.end(), earlier)->arrival_ns;
 }

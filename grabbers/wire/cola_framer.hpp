@@ -50,7 +50,9 @@ class ColaFramer {
 
   /// [ns] Arrival of the oldest byte that waits for its telegram's end: no telegram still to be found was
   /// completed earlier. Nothing if no byte waits.
-  std::optional<std::int64_t> waiting_since() const;
+  std::optional<std::int64_t> waiting_since() const {
+    return pieces_.empty() ? std::nullopt : std::optional(oldest_piece());
+  }
 
  private:
   struct Piece {            ///< bytes that arrived together
@@ -58,6 +60,7 @@ class ColaFramer {
     std::int64_t arrival_ns = 0;
   };
 
+  std::int64_t oldest_piece() const;
   void append(ByteView bytes, std::int64_t arrival_ns);
   std::optional<ColaFrame> next(bool ended);
   ColaFrame take(ByteView payload, ColaLanguage language, std::size_t frame_size);

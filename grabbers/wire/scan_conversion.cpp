@@ -74,8 +74,8 @@ class Gathering {
     const double scale = channel.scale * kMillimetre, offset = channel.offset * kMillimetre;
     out.resize(channel.raw.size());
     for (std::size_t i = 0; i < out.size(); ++i) {
-      const double range = channel.raw[i] * scale + offset;
-      out[i] = channel.raw[i] < kFirstDistance || range < 0 ? 0.0F : static_cast<float>(range);
+      const auto range = static_cast<float>(channel.raw[i] * scale + offset);
+      out[i] = (channel.raw[i] >= kFirstDistance) & (range > 0) ? range : 0.0F;  // branchless: by vectors
     }
   }
 

@@ -127,22 +127,18 @@ class Gathering {
   }
 
   void hand_on() {
-    take_({.x = {x_.data(), size_},
-           .y = {y_.data(), size_},
-           .z = {z_.data(), size_},
-           .index = {index_.data(), size_}});
+    take_({.x = {x_, size_}, .y = {y_, size_}, .z = {z_, size_}, .index = {index_, size_}});
     size_ = 0;
   }
 
  private:
   static constexpr std::size_t kCapacity = 1024;
-  using Coordinates = std::array<double, kCapacity + simd::kBeyond>;
 
   const TakePlaced& take_;
-  Coordinates x_;
-  Coordinates y_;
-  Coordinates z_;
-  std::array<std::uint32_t, kCapacity> index_;
+  double x_[kCapacity + simd::kBeyond];
+  double y_[kCapacity + simd::kBeyond];
+  double z_[kCapacity + simd::kBeyond];
+  std::uint32_t index_[kCapacity];
   std::size_t size_ = 0;
 };
 

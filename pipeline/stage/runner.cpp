@@ -44,8 +44,10 @@ class Stopwatch {
 struct Worker {
   PipelineNode* node = nullptr;
   NodeResult result;
-  std::vector<Item> slots;        ///< one an input, with a null value where nothing is there
-  std::vector<std::size_t> open;  ///< for each input, how many of its feeders have not finished
+  std::vector<Item> slots;           ///< one an input, with a null value where nothing is there
+  std::vector<std::size_t> open;     ///< for each input, how many of its feeders have not finished
+  std::vector<std::uint64_t> taken;  ///< for each input, how many items came
+  std::vector<std::uint64_t> given;  ///< for each of the type's outputs, how many went
   std::deque<std::pair<std::size_t, Item>> waiting;  ///< (input, item) in order of arrival
   /// (output kind, worker, input) of everything that this one feeds
   struct Edge {
@@ -83,8 +85,19 @@ class Runner {
 
   std::vector<NodeResult> results() {
     std::vector<NodeResult> list;
-    for (auto& worker : workers_) list.push_back(std::move(worker.result));
+    for (auto& worker : workers_) {
+      const StageType& type = *worker.node->type;
+      for (std::size_t i = 0; i < type.inputs.size(); ++i)
+        add(worker.result.taken, type.inputs[i].kind, worker.taken[i]);
+      for (std::size_t i = 0; i < type.outputs.size(); ++i)
+        add(worker.result.given, type.outputs[i], worker.given[i]);
+      list.push_back(std::move(worker.result));
+    }
     return list;
+  }
+
+  static void add(std::map<std::string, std::uint64_t>& items, const Kind& kind, std::uint64_t n) {
+    if (n > 0) items[std::string(kind.name())] += n;
   }
 
   void add(PipelineNode& node) {
@@ -93,6 +106,8 @@ class Runner {
     worker.node = &node;
     worker.result.tag = node.tag;
     worker.result.stage = node.type->name;
+    worker.taken.resize(node.type->inputs.size());
+    worker.given.resize(node.type->outputs.size());
     for (std::size_t i = 0; i < node.type->inputs.size(); ++i) {
       const Kind kind = node.type->inputs[i].kind;
       worker.slots.push_back({kind, nullptr});
@@ -129,7 +144,7 @@ class Runner {
 
   void deliver(std::size_t to, std::size_t input, Item item) {
     Worker& worker = workers_[to];
-    ++worker.result.taken[std::string(item.kind.name())];
+    ++worker.taken[input];
     const bool held = worker.node->type->inputs[input].held;
     if (held && !worker.slots[input].value) {
       worker.slots[input] = std::move(item);
@@ -182,11 +197,13 @@ class Runner {
   void give(std::size_t from, const Item& item) {
     if (is_stopped()) throw Interrupted();
     Worker& worker = workers_[from];
-    if (!worker.node->type->gives(item.kind)) {
+    const auto& outputs = worker.node->type->outputs;
+    const auto output = std::find(outputs.begin(), outputs.end(), item.kind);
+    if (output == outputs.end()) {
       throw Error("it gives " + std::string(item.kind.name()) + ", which it does not declare");
     }
     if (!item.value) throw Error("it gives a " + std::string(item.kind.name()) + " that is null");
-    ++worker.result.given[std::string(item.kind.name())];
+    ++worker.given[static_cast<std::size_t>(output - outputs.begin())];
     for (const auto& edge : worker.edges) {
       if (edge.kind == item.kind) deliver(edge.to, edge.input, item);
     }

@@ -13,6 +13,22 @@ constexpr double kFirstPossible =
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::size_t kMostBeams = std::numeric_limits<std::uint16_t>::max() + std::size_t{1};
 
+bool came_back(float range) { return range > 0 && range < std::numeric_limits<float>::infinity(); }
+
+void resize(Measurements& measurements, std::size_t n) {
+  measurements.range.resize(n);
+  measurements.mirror_angle.resize(n);
+  measurements.time.resize(n);
+  measurements.laser.resize(n);
+  measurements.remission.resize(n);
+  measurements.beam.resize(n);
+}
+
+template <class T, class Value>
+void for_each_of(std::int32_t count, T* to, Value value) {
+  for (std::int32_t i = 0; i < count; ++i) to[i] = static_cast<T>(value(i));
+}
+
 }  // namespace
 
 double TimedScan::beam_time(std::size_t k) const {
@@ -25,36 +41,33 @@ Measurements measurements_of(const TimedScan& timed, const RigLaser& laser, std:
   const auto& ranges = scan.echoes.front().ranges;
   const auto& remissions = scan.echoes.front().remissions;
   const std::size_t beams = std::min(ranges.size(), kMostBeams);
-  const auto came_back = [](float range) {
-    return range > 0 && range < std::numeric_limits<float>::infinity();
-  };
-  const auto n = static_cast<std::size_t>(
-      std::count_if(ranges.begin(), ranges.begin() + static_cast<std::ptrdiff_t>(beams), came_back));
-
-  Measurements out;
-  out.epoch_ns = epoch_ns;
-  out.beam.resize(n);
-  std::size_t i = 0;
-  for (std::size_t k = 0; k < beams && i < n; ++k) {
-    out.beam[i] = static_cast<std::uint16_t>(k);
-    i += came_back(ranges[k]) ? 1 : 0;
-  }
-  const auto of_beams = [&](auto& values, auto&& value_of) {
-    values.resize(n);
-    for (std::size_t j = 0; j < n; ++j) values[j] = value_of(out.beam[j]);
-  };
+  const bool has_remissions = remissions.size() >= beams;
   const double first_time = timed.beam_time(0);
   const double time_step = scan.angle_step / kTurn * timed.period;
   const double first_angle = scan.start_angle - laser.mount;
-  const double angle_step = scan.angle_step;
-  of_beams(out.range, [&](std::uint16_t k) { return ranges[k]; });
-  of_beams(out.mirror_angle,
-           [=](std::uint16_t k) { return static_cast<float>(first_angle + k * angle_step); });
-  of_beams(out.time, [=](std::uint16_t k) { return first_time + k * time_step; });
-  out.laser.assign(n, scan.laser);
-  const bool complete = remissions.size() >= beams;
-  if (complete) of_beams(out.remission, [&](std::uint16_t k) { return remissions[k]; });
-  out.remission.resize(n);
+
+  Measurements out;
+  out.epoch_ns = epoch_ns;
+  resize(out, beams);
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < beams; ++k) {
+    if (!came_back(ranges[k])) continue;
+    std::size_t end = k + 1;
+    while (end < beams && came_back(ranges[end])) ++end;
+    // all that came back one after the other go together: array by array, as vectors
+    const auto first = static_cast<std::int32_t>(k);
+    const auto count = static_cast<std::int32_t>(end - k);
+    std::copy_n(&ranges[k], count, &out.range[n]);
+    if (has_remissions) std::copy_n(&remissions[k], count, &out.remission[n]);
+    for_each_of(count, &out.beam[n], [=](std::int32_t i) { return first + i; });
+    for_each_of(count, &out.mirror_angle[n],
+                [=, step = scan.angle_step](std::int32_t i) { return first_angle + (first + i) * step; });
+    for_each_of(count, &out.time[n], [=](std::int32_t i) { return first_time + (first + i) * time_step; });
+    n += end - k;
+    k = end;
+  }
+  resize(out, n);
+  std::fill(out.laser.begin(), out.laser.end(), scan.laser);
   return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <fstream>
+#include <utility>
 
 #include "grabbers/capture/register.hpp"
 #include "pipeline/data/error.hpp"
@@ -75,6 +76,16 @@ TEST_F(CaptureStageTest, GivesWhatTheCaptureHoldsAndReportsIt) {
   EXPECT_THAT(result.report.warnings, testing::ElementsAre(HasSubstr("nothing of laser3")));
   EXPECT_THAT(result.report.read, testing::ElementsAre(folder_ / "hub.pcap"));
   EXPECT_TRUE(result.report.counts.empty());
+}
+
+TEST_F(CaptureStageTest, GivesAndReportsTheSameOnSeveralThreads) {
+  const auto one = run(file());
+  const auto items = std::exchange(Taker::items, {});
+  run_.threads = 4;
+  const auto several = run(file());
+  EXPECT_EQ(Taker::items, items);
+  EXPECT_EQ(several.report.section, one.report.section);
+  EXPECT_EQ(several.report.counts, one.report.counts);
 }
 
 TEST_F(CaptureStageTest, NamesLossesByTheirDevice) {
