@@ -19,11 +19,11 @@ void RefineStage::describe(StageDescription<RefineStage>& d) {
   d.name("calibrate.refine").summary("refines a calibration by the flat surfaces that all beams show");
   d.details(
       "Weighted least squares in the distances of all beams to the surfaces that they meet, with the "
-      "surfaces' "
-      "planes as unknowns. It has none of the bias of an entropy's optimum and a tenth of its scatter, but "
-      "needs a start that is right to some centimetres: calibrate.rqe, or calibrate.load. What the data do "
-      "not "
-      "determine stays as it came.");
+      "surfaces' planes as unknowns. It has none of the bias of an entropy's optimum and a tenth of its "
+      "scatter, but needs a start that is right to some centimetres: calibrate.rqe, or calibrate.load. What "
+      "the data do not determine stays as it came.\n\n"
+      "If all beams lie in the plate's plane (two of each laser), the walls that they meet are taken to be "
+      "upright.");
   d.takes<Measurements>().holds<PlateTrajectory>().holds<Calibration>().gives<Calibration>();
   d.option("noise", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::noise,
            "standard deviation of a range")

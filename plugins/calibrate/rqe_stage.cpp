@@ -12,12 +12,13 @@ void RqeStage::describe(StageDescription<RqeStage>& d) {
       .summary("turns lambda, tau, alpha and eta until the cloud is as crisp as it can be");
   d.details(
       "From the data alone, in two steps. First the two beams of each laser that lie in the plate's plane, "
-      "in "
-      "the "
-      "order of Sheehan, Harrison and Newman: each eta, each tau and alpha, each lambda around the whole "
-      "circle. Then the whole field of view, with the kernel narrowing. It starts from the rig's nominal "
+      "in the order of Sheehan, Harrison and Newman: each eta, each tau and alpha, each lambda around the "
+      "whole circle. Then the whole field of view, with the kernel narrowing. It starts from the rig's "
+      "nominal "
       "values, or from those of a calibrate.load above. The standard errors show the scatter that noise "
-      "causes; a bias of some millimetres, which an entropy's optimum has, is left to calibrate.refine.");
+      "causes; a bias of some millimetres, which an entropy's optimum has, is left to calibrate.refine.\n\n"
+      "A plate that stands still is refused. One that is only seen in a few directions, since its rate and "
+      "the mirrors' are commensurate (2 and 50 Hz, exactly), is calibrated with a warning not to trust it.");
   d.takes<Measurements>().holds<PlateTrajectory>().holds<Calibration>(Need::optional).gives<Calibration>();
   d.option("sigma", &RqeStage::sigma_, "kernel width over the whole field of view: at first, and at last")
       .unit("m")
