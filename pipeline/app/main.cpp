@@ -134,11 +134,10 @@ struct CommandLine {
     for (const auto& [name, help] : names_and_help) {
       std::string flag = "--" + name;
       std::ranges::replace(flag, '_', '-');
+      std::string set = stage;
+      set.append(".").append(name).append("=");
       to->add_option_function<std::string>(
-            flag,
-            [set = stage + "." + name + "=", &request](const std::string& value) {
-              request.arguments.set.push_back(set + value);
-            },
+            flag, [set, &request](const std::string& value) { request.arguments.set.push_back(set + value); },
             help)
           ->type_name("VALUE");
     }
@@ -173,6 +172,7 @@ struct CommandLine {
     runs->check(CLI::Range(1, 1000000))->capture_default_str();
     add_own_pipeline(monte_carlo_app, "monte_carlo.yaml", kMonteCarloPipeline, "out", "-j,--threads",
                      monte_carlo);
+    add_rig(monte_carlo_app, monte_carlo.arguments);
     add_stage_options(monte_carlo_app, "study.monte_carlo", monte_carlo,
                       {{"scene", "What stands around: paper, office, hall, street"},
                        {"beams", "in_plane: of each laser the two in the plate's plane; or all"},

@@ -55,8 +55,7 @@ SimulatedMeasurements simulate_beams(BeamChoice beams, ScannerSettings scanner, 
     scanner.beams.insert(scanner.beams.end(), wanted.back().begin(), wanted.back().end());
   }
   std::ranges::sort(scanner.beams);
-  const auto repeated = std::ranges::unique(scanner.beams);
-  scanner.beams.erase(repeated.begin(), repeated.end());
+  scanner.beams.erase(std::unique(scanner.beams.begin(), scanner.beams.end()), scanner.beams.end());
   // Where lasers are mounted differently, each fires the others' beams, too.
   return narrowed(simulate_measurements(scanner, scene, motion, terms), wanted);
 }

@@ -13,7 +13,7 @@ namespace crisp {
 namespace {
 
 ScannerSettings scanner_of(const TrialSettings& settings, std::uint64_t seed) {
-  ScannerSettings scanner{.seed = seed};
+  ScannerSettings scanner{.rig = settings.rig, .seed = seed};
   scanner.rig.lasers.resize(settings.lasers);
   scanner.truth = draw_truth(nominal_calibration(scanner.rig), {.eta = settings.eta}, seed);
   scanner.duration = settings.duration;

@@ -20,14 +20,15 @@ namespace crisp {
 /// What calibrates a recording.
 enum class Estimators {
   kBoth,     ///< RQE from `start`, then the refinement from there, as by default
-  kRefined,  ///< the refinement alone, from `near`: a tenth of the time, but of the basin it says nothing
+  kRefined,  ///< the refinement alone, from `near`: half the time, but of the basin it says nothing
 };
 
 /// One calibration of a simulated recording; by default that of Sheehan, Harrison and Newman, section 5.2.
 struct TrialSettings {
   Scene scene = paper_room();
   BeamChoice beams = BeamChoice::kInPlane;
-  std::size_t lasers = 3;                    ///< of the default rig's, at least 1
+  Rig rig = default_rig();
+  std::size_t lasers = 3;                    ///< of the rig's, at least 1
   double duration = 10;                      ///< [s]
   MotionSettings motion;                     ///< of the plate
   std::optional<std::uint64_t> motion_seed;  ///< the motion of all runs; none: each run draws its own
@@ -50,7 +51,7 @@ struct Recording {
   Sample sample() const { return {.beams = simulated.beams, .plate = &simulated.plate}; }
 };
 
-/// True: τ = 0.20 m, α = 0, the nominal λ, η drawn. The start is drawn around it.
+/// True: the rig's nominal τ, α and λ, η drawn. The start is drawn around it.
 Recording record(const TrialSettings& settings, std::uint64_t seed);
 
 /// What one estimator made of a recording.

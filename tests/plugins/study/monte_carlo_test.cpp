@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "grabbers/simulate/scenes.hpp"
@@ -105,6 +106,19 @@ TEST(MonteCarlo, StudiesTheWholeFieldOfViewFromWhereRqeWouldEnd) {
     // Within 5 standard errors that it claims: once in a hundred thousand without the encoder's steps.
     EXPECT_LT((trial.refined.error.array() / trial.refined.std_error.array()).abs().maxCoeff(), 5);
   }
+}
+
+TEST(MonteCarlo, SimulatesTheRigThatItIsGiven) {
+  TrialSettings settings;
+  settings.duration = 1;
+  settings.lasers = 2;
+  settings.rig.lasers[1].nominal.tau.value = 0.31;
+  settings.rig.plate.counts_per_revolution = 8;
+  const Recording recording = record(settings, 1);
+  ASSERT_EQ(recording.simulated.truth.lasers.size(), 2U);
+  EXPECT_EQ(recording.simulated.truth.lasers[1].tau.value, 0.31);
+  const double counts = recording.simulated.plate.angles()[100] / (std::numbers::pi / 4);
+  EXPECT_NEAR(counts, std::round(counts), 1e-9);
 }
 
 TEST(MonteCarlo, StartsNearTheTruthWhereRqeIsLeftOut) {
