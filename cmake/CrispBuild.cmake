@@ -27,7 +27,8 @@ target_compile_options(crisp_settings INTERFACE
   # 105651 and 107852); the sanitizers see those that are.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow>
   $<$<CXX_COMPILER_ID:Clang>:-Wno-gnu-anonymous-struct -Wno-nested-anon-types>  # PCL's macro for x, y, z
-  # Where many sources are compiled as one (for the checks, to be fast) they see each other's names.
+  # Where many sources are compiled as one, to be fast, they see each other's names. The presets dev and tsan
+  # compile each alone.
   $<$<BOOL:${CMAKE_UNITY_BUILD}>:-Wno-shadow>
   $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
   $<$<BOOL:${CRISP_WARNINGS_AS_ERRORS}>:-Werror>)
