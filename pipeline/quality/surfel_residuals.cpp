@@ -2,6 +2,7 @@
 #include "pipeline/quality/surfel_residuals.hpp"
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -100,13 +101,14 @@ std::vector<double> within_views(const std::vector<SurfelResidual>& residuals, c
   for_blocks(residuals.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const SurfelResidual& r = residuals[i];
-      left[i] = std::abs(r.distance - planes[views.of[i]].dot(Eigen::Vector3d(1, r.u, r.v))) / r.spread;
+      left[i] = (r.distance - planes[views.of[i]].dot(Eigen::Vector3d(1, r.u, r.v))) / r.spread;
     }
   });
   return left;
 }
 
-double median(std::vector<double> values) {
+double median_size(std::vector<double> values) {
+  for (double& value : values) value = std::abs(value);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
@@ -117,12 +119,55 @@ void weigh(double outlier, const Views& views, std::vector<SurfelResidual>& resi
   constexpr int kRounds = 3;  // enough for the few per cent of outliers of a room
   for (int round = 0; round < kRounds; ++round) {
     const auto left = within_views(residuals, views);
-    const double end = outlier * std::max(1.0, 1.4826 * median(left));
+    const double end = outlier * std::max(1.0, 1.4826 * median_size(left));
     for (std::size_t i = 0; i < residuals.size(); ++i) {
       if (std::abs(residuals[i].incidence) < kGrazing) continue;
-      const double x = std::min(1.0, left[i] / end);
+      const double x = std::min(1.0, std::abs(left[i]) / end);
       residuals[i].weight = (1 - x * x) * (1 - x * x);
     }
+  }
+}
+
+/// Square cells over a surfel's plane.
+class CellsOnPlane {
+ public:
+  explicit CellsOnPlane(const std::vector<SurfelResidual>& residuals, double side) : side_(side) {
+    for (const SurfelResidual& r : residuals) box_.extend(Eigen::Vector2d(r.u, r.v));
+    columns_ = along(box_.sizes().x()) + 1;
+    count_ = columns_ * (along(box_.sizes().y()) + 1);
+  }
+  std::size_t count() const { return count_; }
+  std::size_t of(const SurfelResidual& r) const {
+    return along(r.v - box_.min().y()) * columns_ + along(r.u - box_.min().x());
+  }
+
+ private:
+  std::size_t along(double distance) const { return static_cast<std::size_t>(distance / side_); }
+  double side_;
+  Eigen::AlignedBox2d box_;
+  std::size_t columns_ = 0;
+  std::size_t count_ = 0;
+};
+
+/// Beams that met something else within the noise of the plane, an edge of it or what stands before it, come
+/// in patches: there the views' own planes are missed by more than chance and more than bumps explain.
+void leave_out_strangers(const Views& views, std::vector<SurfelResidual>& residuals) {
+  constexpr double kSide = 0.1;  // [m]
+  constexpr double kChance = 3;  // standard deviations of a cell's mean
+  constexpr double kBump = 0.3;  // [spreads]
+  const auto left = within_views(residuals, views);
+  const CellsOnPlane cells(residuals, kSide);
+  std::vector<double> sum(cells.count(), 0);
+  std::vector<double> count(cells.count(), 0);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (residuals[i].weight == 0) continue;
+    sum[cells.of(residuals[i])] += left[i];
+    count[cells.of(residuals[i])] += 1;
+  }
+  for (SurfelResidual& r : residuals) {
+    const std::size_t cell = cells.of(r);
+    const double n = std::max(1.0, count[cell]);
+    if (std::abs(sum[cell]) / n > std::max(kBump, kChance / std::sqrt(n))) r.weight = 0;
   }
 }
 
@@ -158,7 +203,11 @@ std::vector<SurfelResidual> residuals_of(const Surfel& surfel, const Surfels& su
 void refine(Surfel& surfel, Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings) {
   const auto members = surfels.beams_of(surfel);
   auto residuals = from_own_plane(surfel, members, beams, settings);
-  if (settings.outlier > 0) weigh(settings.outlier, views_of(members, beams), residuals);
+  if (settings.outlier > 0) {
+    const Views views = views_of(members, beams);
+    weigh(settings.outlier, views, residuals);
+    leave_out_strangers(views, residuals);
+  }
   for (std::size_t k = 0; k < residuals.size(); ++k) surfels.weights[surfel.begin + k] = residuals[k].weight;
   const Eigen::Vector3d plane = fit(surfel, residuals);
   surfel.middle += plane[0] * surfel.normal;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "pipeline/quality/blocks.hpp"
+
 namespace crisp {
 namespace {
 
@@ -91,10 +93,16 @@ Surfels claimed(const Surfels& found, const BeamsView& beams, const SurfelSettin
                 const ClaimSettings& claims) {
   std::vector<Claimant> claimants;
   for (const Surfel& surfel : found.surfels) claimants.emplace_back(surfel, found, beams);
+  constexpr std::size_t kBlock = 4096;  // beams
+  std::vector<std::uint32_t> owners(beams.points.size());
+  for_blocks(owners.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      owners[i] = owner(claimants, beams, static_cast<std::uint32_t>(i), settings, claims);
+    }
+  });
   std::vector<std::vector<std::uint32_t>> members(claimants.size());
-  for (std::uint32_t i = 0; i < beams.points.size(); ++i) {
-    const std::uint32_t surface = owner(claimants, beams, i, settings, claims);
-    if (surface != kNone) members[surface].push_back(i);
+  for (std::uint32_t i = 0; i < owners.size(); ++i) {
+    if (owners[i] != kNone) members[owners[i]].push_back(i);
   }
   Surfels result;
   for (std::size_t s = 0; s < claimants.size(); ++s) {

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/flat_surfaces.hpp"
 
+#include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "plugins/calibrate/claims.hpp"
 
 namespace crisp {
 namespace {
+
+void refine_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings) {
+  for_each_index(surfels.surfels.size(),
+                 [&](std::size_t s) { refine(surfels.surfels[s], surfels, beams, settings); });
+}
 
 class Patches final : public FlatSurfaces {
  public:
@@ -15,7 +21,12 @@ class Patches final : public FlatSurfaces {
     // Beams that join and leave surfaces at their rims would keep the steps from getting any smaller.
     constexpr double kSmallStep = 0.5;
     constexpr int kSearches = 6;
-    if (last_step > kSmallStep && round_++ < kSearches) surfels_ = find_surfels(beams, settings_);
+    if (last_step > kSmallStep && round_++ < kSearches) {
+      // Cells along edges are no surfaces' own, but what was met there tells much.
+      surfels_ = find_surfels(beams, settings_);
+      surfels_ = claimed(surfels_, beams, settings_, {.margin = settings_.smallest});
+      refine_all(surfels_, beams, settings_);
+    }
     return surfels_;
   }
 
@@ -35,7 +46,7 @@ class UprightWalls final : public FlatSurfaces {
     constexpr int kSearches = 2;
     if (round_ < kSearches) walls_ = find_surfels(beams, settings_);
     if (round_ < kRenewals) walls_ = claimed(walls_, beams, settings_);
-    for (Surfel& wall : walls_.surfels) refine(wall, walls_, beams, settings_);
+    refine_all(walls_, beams, settings_);
     ++round_;
     return walls_;
   }

@@ -51,6 +51,28 @@ TEST(Surfels, GrowToTheWholeWallsOfARoom) {
   EXPECT_GT(in_walls, 0.9 * static_cast<double>(scan.points.size()));
 }
 
+TEST(Surfels, LeaveOutWhatLiesOnAFloorHoweverFlat) {
+  auto scan = look_down(40000, 3, 0, 0, 4);
+  std::vector<bool> on_the_mat(scan.points.size());
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    on_the_mat[i] = std::abs(scan.points.x[i] - 0.6) < 0.4 && std::abs(scan.points.y[i]) < 0.4;
+    if (on_the_mat[i]) scan.points.z[i] += 0.02;  // less than two standard deviations of the noise
+  }
+  const auto found = find_surfels(scan.beams(), {});
+  ASSERT_FALSE(found.surfels.empty());
+  const Surfel& floor = found.surfels[0];
+  double weight = 0;
+  double of_the_mat = 0;
+  for (std::uint32_t k = floor.begin; k < floor.end; ++k) {
+    weight += found.weights[k];
+    if (on_the_mat[found.members[k]]) of_the_mat += found.weights[k];
+  }
+  EXPECT_LT(of_the_mat, 0.01 * weight);  // it covers 7 % of the floor
+  EXPECT_GT(weight, 0.7 * 40000);        // Tukey's weights are 0.77 on average
+  const double height = floor.normal.dot(floor.middle) / floor.normal.z();  // at x = y = 0
+  EXPECT_NEAR(height, 0, 5 * 0.012 / std::sqrt(40000.0));
+}
+
 TEST(Surfels, TakeNoBeamFromBothSidesOfACorner) {
   const auto scan = test::scan_room(30000, {{0, 0}, {0, 0}, {0, 0}}, 0.012, 2);
   const auto found = find_surfels(scan.beams(), {});

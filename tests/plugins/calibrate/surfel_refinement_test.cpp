@@ -61,6 +61,13 @@ TEST(SurfelRefinement, KeepsWhatAConstantSpeedDoesNotTell) {
   EXPECT_LT(error.dot(refined.outcome.covariance.inverse() * error), 40);
 }
 
+TEST(SurfelRefinement, CountsBeamsAlongEdgesToo) {
+  const auto recording = simulate_measurements(misplaced_scanner(1, 2.0), office());
+  const Refinement refined = refine_by_surfels(SensorModel(recording.truth), sample_of(recording), {});
+  // Some 2 % met what is smaller than a surface is looked for; the rest ended on walls and furniture.
+  EXPECT_GT(static_cast<double>(refined.beams), 0.96 * static_cast<double>(recording.beams.size()));
+}
+
 TEST(SurfelRefinement, StopsWhenItIsTold) {
   const auto recording = simulate_measurements(misplaced_scanner(1, 1.0), office());
   int rounds = 0;
