@@ -104,7 +104,7 @@ void ClockAligner::hand_out(double limit) {
   double end = -std::numeric_limits<double>::infinity();
   for (const auto& scan : scans) end = std::max(end, scan.begin + scan.period);
   sink_.trajectory(plate_.piece(scans.front().begin - settings_.margin, end + settings_.margin, epoch_ns_,
-                                settings_.max_gap));
+                                settings_.plate));
   for (auto& scan : scans) {
     sink_.measurements(measurements_of(scan, lasers_[scan.scan->laser].laser(), epoch_ns_));
     scan.scan.reset();

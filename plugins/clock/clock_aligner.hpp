@@ -25,7 +25,7 @@ struct AlignmentSettings {
   double drift = 200e-6 / 3600;  ///< [1/s] largest change of a clock's rate in a second
   std::optional<double> window;  ///< [s] stretch of stamps that one line is fitted to; none: automatic
   double margin = 0.25;          ///< [s] by which a trajectory covers more than its measurements' times
-  double max_gap = 0.1;          ///< [s] longest silence of the encoder to interpolate across
+  PlateMotionSettings plate;
   std::optional<unsigned> mirror_half_width;  ///< stamps on either side that smooth the mirror's motion
 };
 

@@ -60,10 +60,16 @@ void AlignStage::describe_alignment(StageDescription<S>& d) {
            "by how much a piece of the plate's trajectory covers more than its measurements' times")
       .unit("s")
       .range(0, 10);
-  d.option("max_gap", &AlignStage::settings_, &AlignmentSettings::max_gap,
+  d.option("max_gap", &AlignStage::settings_, &AlignmentSettings::plate, &PlateMotionSettings::max_gap,
            "longest silence of the encoder to interpolate across")
       .unit("s")
       .range(1e-4, 10);
+  d.option("plate_smoothing", &AlignStage::settings_, &AlignmentSettings::plate,
+           &PlateMotionSettings::smoothing,
+           "readings of the plate so near to one another say together where it was between the steps of its "
+           "encoder; no angle is moved by more than 0.6 steps. 0: as read")
+      .unit("s")
+      .range(0, 1);
   d.option(
        "mirror_smoothing", &AlignStage::settings_, &AlignmentSettings::mirror_half_width,
        "scans on either side that smooth the motion of a mirror; auto: as many as foretell its stamps best")

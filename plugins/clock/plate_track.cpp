@@ -107,7 +107,8 @@ double PlateTrack::time(const Reading& reading) const {
   return source_ == TimeSource::receipt ? reading.receipt : stamps_.map().to_hub(reading.device);
 }
 
-PlateTrajectory PlateTrack::piece(double begin, double end, std::int64_t epoch_ns, double max_gap) {
+PlateTrajectory PlateTrack::piece(double begin, double end, std::int64_t epoch_ns,
+                                  const PlateMotionSettings& settings) {
   if (readings_.empty() || stamps_.map().pieces.empty()) return {};
   const auto is_before = [&](double limit) {
     return [&, limit](const Reading& r) { return time(r) < limit; };
@@ -127,7 +128,8 @@ PlateTrajectory PlateTrack::piece(double begin, double end, std::int64_t epoch_n
     times.push_back(t);
     angles.push_back(static_cast<double>(reading->count) * step);
   }
-  return {epoch_ns, std::move(times), std::move(angles), max_gap};
+  angles = between_steps(times, angles, step, settings.smoothing);
+  return {epoch_ns, std::move(times), std::move(angles), settings.max_gap};
 }
 
 void PlateTrack::forget_before(double hub) {

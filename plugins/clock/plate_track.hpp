@@ -4,12 +4,19 @@
 #include <cstdint>
 #include <deque>
 
+#include "pipeline/data/encoder_smoothing.hpp"
 #include "pipeline/data/plate_trajectory.hpp"
 #include "pipeline/data/scan.hpp"
 #include "plugins/clock/device_stamps.hpp"
 #include "plugins/clock/laser_track.hpp"
 
 namespace crisp {
+
+/// How readings become the motion between them.
+struct PlateMotionSettings {
+  double max_gap = 0.1;                  ///< [s] longest silence of the encoder to interpolate across
+  double smoothing = kEncoderSmoothing;  ///< [s] see between_steps()
+};
 
 /// The readings of the plate on their way to a trajectory.
 class PlateTrack {
@@ -22,7 +29,7 @@ class PlateTrack {
   void add(const PlateReading& reading, double hub);
   /// The plate from the last reading at or before `begin` to the first at or after `end` [s since the epoch],
   /// as far as there are readings.
-  PlateTrajectory piece(double begin, double end, std::int64_t epoch_ns, double max_gap);
+  PlateTrajectory piece(double begin, double end, std::int64_t epoch_ns, const PlateMotionSettings& settings);
   /// Forgets the readings before this hub time [s since the epoch].
   void forget_before(double hub);
 

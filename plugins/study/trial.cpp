@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "pipeline/data/degree.hpp"
+#include "pipeline/data/encoder_smoothing.hpp"
 #include "pipeline/data/error.hpp"
 #include "plugins/calibrate/free_parameters.hpp"
 #include "plugins/study/scene_bound.hpp"
@@ -77,6 +78,13 @@ Estimate refine(const SensorModel& start, const SensorModel& truth, const Sample
   }
 }
 
+/// The plate's motion as the clock stages make it of its readings.
+PlateTrajectory as_aligned(const PlateTrajectory& read, const RigPlate& plate) {
+  const double step = 2 * std::numbers::pi / plate.counts_per_revolution;
+  auto angles = between_steps(read.times(), read.angles(), step, kEncoderSmoothing);
+  return {read.epoch_ns(), {read.times().begin(), read.times().end()}, std::move(angles), read.max_gap()};
+}
+
 }  // namespace
 
 TrialSettings::TrialSettings()
@@ -85,8 +93,11 @@ TrialSettings::TrialSettings()
 
 Recording record(const TrialSettings& settings, std::uint64_t seed) {
   const ScannerSettings scanner = scanner_of(settings, seed);
-  return {.simulated = simulate_beams(settings.beams, scanner, settings.scene, motion_of(settings, seed)),
-          .start = start_of(settings, scanner.truth, seed)};
+  Recording recording{
+      .simulated = simulate_beams(settings.beams, scanner, settings.scene, motion_of(settings, seed)),
+      .start = start_of(settings, scanner.truth, seed)};
+  recording.simulated.plate = as_aligned(recording.simulated.plate, scanner.rig.plate);
+  return recording;
 }
 
 Trial run_trial(const TrialSettings& settings, std::uint64_t seed, const MakeMeasure& make_measure) {
