@@ -75,7 +75,7 @@ class Gathering {
     out.resize(channel.raw.size());
     for (std::size_t i = 0; i < out.size(); ++i) {
       const auto range = static_cast<float>(channel.raw[i] * scale + offset);
-      out[i] = (channel.raw[i] >= kFirstDistance) & (range > 0) ? range : 0.0F;  // branchless: by vectors
+      out[i] = ((channel.raw[i] >= kFirstDistance) & (range > 0)) ? range : 0.0F;  // branchless: by vectors
     }
   }
 

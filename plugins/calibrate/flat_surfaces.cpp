@@ -46,7 +46,9 @@ class UprightWalls final : public FlatSurfaces {
     constexpr int kSearches = 2;
     if (round_ < kSearches) walls_ = find_surfels(beams, settings_);
     if (round_ < kRenewals) walls_ = claimed(walls_, beams, settings_);
-    refine_all(walls_, beams, settings_);
+    // Weights that come and go by a hair would keep the steps from getting any smaller.
+    constexpr int kWeighings = 9;
+    if (round_ < kWeighings) refine_all(walls_, beams, settings_);
     ++round_;
     return walls_;
   }
