@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/deepest_valley.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "plugins/calibrate/base_slots.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
@@ -31,7 +33,7 @@ std::vector<double> whole_circle() {
 }
 
 bool has_beams(const Sample& sample, std::size_t laser) {
-  return of_laser(sample, laser).beams.size() >= kFewBeams;
+  return std::cmp_greater_equal(std::ranges::count(sample.beams.laser, laser), kFewBeams);
 }
 
 }  // namespace
@@ -70,10 +72,6 @@ void find_lambdas(SensorModel& model, const std::vector<std::size_t>& free, cons
     });
     to_deepest_valley(model, slot(model, laser, kLambda), whole_circle(), true, pair, measure, range, sigma);
   }
-}
-
-Sample of_laser(const Sample& sample, std::size_t laser) {
-  return select(sample, [&](std::size_t i) { return sample.beams.laser[i] == laser; });
 }
 
 }  // namespace crisp

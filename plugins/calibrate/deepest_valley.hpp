@@ -30,9 +30,6 @@ void to_deepest_valley(SensorModel& model, std::size_t parameter, const std::vec
 void find_lambdas(SensorModel& model, const std::vector<std::size_t>& free, const Sample& sample,
                   Measure& measure, const SearchRange& range, const Narrowing& sigma);
 
-/// The beams of one laser.
-Sample of_laser(const Sample& sample, std::size_t laser);
-
 /// With fewer beams there is nothing to align.
 inline constexpr std::size_t kFewBeams = 20;
 

@@ -46,6 +46,10 @@ Sample select(const Sample& sample, const std::function<bool(std::size_t)>& keep
   return kept;
 }
 
+Sample of_laser(const Sample& sample, std::size_t laser) {
+  return select(sample, [&](std::size_t i) { return sample.beams.laser[i] == laser; });
+}
+
 Sample covered(const Sample& sample, double earliest, double latest) {
   PlateTrajectory::Cursor early(*sample.plate);
   PlateTrajectory::Cursor middle(*sample.plate);

@@ -18,6 +18,9 @@ struct Sample {
 /// The beams for which `keep(index)` holds, in their order.
 Sample select(const Sample& sample, const std::function<bool(std::size_t)>& keep);
 
+/// The beams of one laser.
+Sample of_laser(const Sample& sample, std::size_t laser);
+
 /// Those whose plate angle is known for every η between `earliest` and `latest` [s]: calibration may then
 /// turn η without points coming and going.
 Sample covered(const Sample& sample, double earliest, double latest);
