@@ -74,6 +74,30 @@ HWY_INLINE SineCosine sine_cosine_of(Vector angle) {
   return {hn::Xor(hn::IfThenElse(odd, c, s), sine_sign), hn::Xor(hn::IfThenElse(odd, s, c), cosine_sign)};
 }
 
+HWY_INLINE Vector along_arc(Vector u, Vector c0, Vector c1, Vector c2, Vector c3) {
+  return hn::MulAdd(u, hn::MulAdd(u, hn::MulAdd(u, c3, c2), c1), c0);
+}
+
+struct Position {
+  Vector x, y, z;
+};
+
+/// Equation (2) for a vector of beams.
+HWY_INLINE Position position_of(Vector range, Vector mirror_angle, const SineCosine& plate, Vector tau,
+                                Vector cos_alpha, Vector sin_alpha) {
+  const SineCosine mirror = sine_cosine_of(mirror_angle);
+  const Vector aside = hn::Mul(range, mirror.sine);
+  const Vector outwards = hn::NegMulAdd(sin_alpha, aside, tau);
+  const Vector onwards = hn::Mul(cos_alpha, aside);
+  return {hn::MulSub(plate.cosine, outwards, hn::Mul(plate.sine, onwards)),
+          hn::MulAdd(plate.sine, outwards, hn::Mul(plate.cosine, onwards)),
+          hn::Neg(hn::Mul(range, mirror.cosine))};
+}
+
+HWY_INLINE Vector promoted(const float* values) {
+  return hn::PromoteTo(kDoubles, hn::LoadU(kFloats, values));
+}
+
 /// Places whole vectors of beams, until one was not fired along the arc.
 HWY_INLINE std::size_t place_vectors(const BareBeams& beams, const BareLaser& laser, const PlateArc& arc,
                                      double* x, double* y, double* z) {
@@ -89,19 +113,13 @@ HWY_INLINE std::size_t place_vectors(const BareBeams& beams, const BareLaser& la
     const auto along = hn::And(hn::Ge(time, begin), hn::Le(time, end));
 
     const Vector u = hn::Mul(hn::Sub(time, begin), per_width);
-    Vector azimuth = hn::MulAdd(u, constant(c[3]), constant(c[2]));
-    azimuth = hn::MulAdd(u, azimuth, constant(c[1]));
-    azimuth = hn::MulAdd(u, azimuth, constant(c[0]));
-    const SineCosine plate = sine_cosine_of(hn::Add(azimuth, constant(laser.lambda)));
-    const SineCosine mirror = sine_cosine_of(hn::PromoteTo(kDoubles, hn::LoadU(kFloats, beams.mirror + i)));
-
-    const Vector range = hn::PromoteTo(kDoubles, hn::LoadU(kFloats, beams.range + i));
-    const Vector aside = hn::Mul(range, mirror.sine);
-    const Vector outwards = hn::NegMulAdd(sin_alpha, aside, tau);
-    const Vector onwards = hn::Mul(cos_alpha, aside);
-    hn::StoreU(hn::MulSub(plate.cosine, outwards, hn::Mul(plate.sine, onwards)), kDoubles, x + i);
-    hn::StoreU(hn::MulAdd(plate.sine, outwards, hn::Mul(plate.cosine, onwards)), kDoubles, y + i);
-    hn::StoreU(hn::Neg(hn::Mul(range, mirror.cosine)), kDoubles, z + i);
+    const Vector phi = along_arc(u, constant(c[0]), constant(c[1]), constant(c[2]), constant(c[3]));
+    const SineCosine plate = sine_cosine_of(hn::Add(phi, constant(laser.lambda)));
+    const Position at =
+        position_of(promoted(beams.range + i), promoted(beams.mirror + i), plate, tau, cos_alpha, sin_alpha);
+    hn::StoreU(at.x, kDoubles, x + i);
+    hn::StoreU(at.y, kDoubles, y + i);
+    hn::StoreU(at.z, kDoubles, z + i);
 
     if (!hn::AllTrue(kDoubles, along)) {
       return i + static_cast<std::size_t>(hn::FindFirstTrue(kDoubles, hn::Not(along)));
@@ -129,6 +147,28 @@ std::size_t place_bare(const BareBeams& beams, const BareLaser& laser, const Pla
   return placed + HWY_MIN(rest, place_vectors(part, laser, arc, x + placed, y + placed, z + placed));
 }
 
+void place_strewn(const StrewnArrays& beams, const StrewnPoints& points) {
+  for (std::size_t i = 0; i < beams.size; i += hn::Lanes(kDoubles)) {
+    const auto at = [i](const double* values) { return hn::LoadU(kDoubles, values + i); };
+    const Vector inverse = at(beams.inverse);
+    const Vector u = hn::Mul(hn::Sub(at(beams.time), at(beams.begin)), inverse);
+    const Vector c1 = at(beams.coefficients[1]);
+    const Vector c2 = at(beams.coefficients[2]);
+    const Vector c3 = at(beams.coefficients[3]);
+    const Vector phi = along_arc(u, at(beams.coefficients[0]), c1, c2, c3);
+    const Vector slope = hn::MulAdd(u, hn::MulAdd(hn::Mul(constant(3), u), c3, hn::Add(c2, c2)), c1);
+    const SineCosine plate = sine_cosine_of(hn::Add(phi, at(beams.lambda)));
+    const Position point = position_of(promoted(beams.range + i), promoted(beams.mirror + i), plate,
+                                       at(beams.tau), at(beams.cos_alpha), at(beams.sin_alpha));
+    hn::StoreU(point.x, kDoubles, points.x + i);
+    hn::StoreU(point.y, kDoubles, points.y + i);
+    hn::StoreU(point.z, kDoubles, points.z + i);
+    hn::StoreU(plate.cosine, kDoubles, points.cosine + i);
+    hn::StoreU(plate.sine, kDoubles, points.sine + i);
+    hn::StoreU(hn::Mul(slope, inverse), kDoubles, points.rate + i);
+  }
+}
+
 void sine_cosine(const double* angle, std::size_t n, double* sine, double* cosine) {
   for (std::size_t i = 0; i < n; ++i) {
     const SineCosine both = sine_cosine_of(constant(angle[i]));
@@ -144,11 +184,16 @@ HWY_AFTER_NAMESPACE();
 namespace crisp::simd {
 
 HWY_EXPORT(place_bare);
+HWY_EXPORT(place_strewn);
 HWY_EXPORT(sine_cosine);
 
 std::size_t place_bare(const BareBeams& beams, const BareLaser& laser, const PlateArc& arc, double* x,
                        double* y, double* z) {
   return HWY_DYNAMIC_DISPATCH(place_bare)(beams, laser, arc, x, y, z);
+}
+
+void place_strewn(const StrewnArrays& beams, const StrewnPoints& points) {
+  HWY_DYNAMIC_DISPATCH(place_strewn)(beams, points);
 }
 
 void sine_cosine(const double* angle, std::size_t n, double* sine, double* cosine) {

@@ -34,6 +34,34 @@ struct BareLaser {
 std::size_t place_bare(const BareBeams& beams, const BareLaser& laser, const PlateArc& arc, double* x,
                        double* y, double* z);
 
+/// Measurements of any lasers, each with its laser's parameters and its plate's arc.
+/// All arrays are readable, and those of StrewnPoints writable, kBeyond elements beyond the last beam.
+struct StrewnArrays {
+  const float* range;     ///< [m]
+  const float* mirror;    ///< [rad] θ
+  const double* time;     ///< [s since the epoch] on the plate's clock
+  const double* begin;    ///< [s since the epoch] of the arc
+  const double* inverse;  ///< [1/s] of the arc's width
+  const double* coefficients[4];
+  const double* lambda;  ///< [rad] λ
+  const double* tau;     ///< [m] τ
+  const double* cos_alpha;
+  const double* sin_alpha;
+  std::size_t size;
+};
+
+struct StrewnPoints {
+  double* x;       ///< [m]
+  double* y;       ///< [m]
+  double* z;       ///< [m]
+  double* cosine;  ///< of φ + λ
+  double* sine;
+  double* rate;  ///< [rad/s] of the plate
+};
+
+/// Equation (2) with (3) for each beam: to the last bit what place_bare() gives.
+void place_strewn(const StrewnArrays& beams, const StrewnPoints& points);
+
 /// Sine and cosine of n angles [rad], those inside, for the tests.
 void sine_cosine(const double* angle, std::size_t n, double* sine, double* cosine);
 

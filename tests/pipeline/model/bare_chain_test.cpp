@@ -118,6 +118,21 @@ TEST_P(BareChain, PlacesBeamsWhereTheChainWithTermsDoes) {
   }
 }
 
+TEST_P(BareChain, HasTheDerivativesOfTheChainWithTerms) {
+  const std::vector<std::size_t> free = {0, 1, 3, 4, 5, 6, 7, 10};
+  const PlateTrajectory plate = interrupted_plate();
+  for (const std::size_t longest : {1U, 700U}) {
+    const auto beams = runs_of_beams(3000, longest);
+    PointDerivatives bare, automatic;
+    expect_same(SensorModel(three_lasers()).place(beams, plate, free, bare),
+                through_terms(3).place(beams, plate, free, automatic));
+    EXPECT_EQ(bare.columns, automatic.columns);
+    ASSERT_EQ(bare.values.cols(), automatic.values.cols());
+    // 80 m at up to 9 rad/s, and the angle's own rounding
+    EXPECT_LT((bare.values - automatic.values).cwiseAbs().maxCoeff(), 1e-8);
+  }
+}
+
 TEST_P(BareChain, PlacesAnyNumberOfBeams) {
   const SensorModel bare(three_lasers());
   const PlateTrajectory plate = interrupted_plate();

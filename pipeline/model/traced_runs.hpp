@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What placing measurements, with and without derivatives, has in common.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/model/bare_chain.hpp"
+#include "pipeline/model/chain.hpp"
+#include "pipeline/model/sensor_model.hpp"
+
+namespace crisp {
+
+inline constexpr std::size_t kTracedBlock =
+    64;  // beams that go through a chain of terms together: they fit the cache
+
+inline void check_epochs(const Measurements& beams, const PlateTrajectory& plate) {
+  if (beams.size() > 0 && !plate.empty() && beams.epoch_ns != plate.epoch_ns()) {
+    throw Error("the measurements and the plate's trajectory count their time from different epochs");
+  }
+}
+
+/// The chain of the laser that measured beam i.
+inline const LaserChain& chain_of(const std::vector<LaserChain>& chains, const Measurements& beams,
+                                  std::size_t i) {
+  if (beams.laser[i] < chains.size()) return chains[beams.laser[i]];
+  throw Error("the measurements name laser " + std::to_string(beams.laser[i] + 1) +
+                  ", but the calibration has only " + std::to_string(chains.size()),
+              "use the calibration of the rig that was recorded");
+}
+
+/// End of the run of measurements of one laser that starts at `begin`, at most `most` long.
+inline std::size_t run_end(const Measurements& beams, std::size_t begin, std::size_t most) {
+  constexpr std::size_t kStep = 16;  // compared without a branch
+  const unsigned laser = beams.laser[begin];
+  const std::size_t limit = std::min(beams.size(), begin + most);
+  std::size_t end = begin + 1;
+  for (unsigned others = 0; end + kStep <= limit; end += kStep) {
+    for (std::size_t k = 0; k < kStep; ++k) others |= beams.laser[end + k] ^ laser;
+    if (others != 0) break;
+  }
+  while (end < limit && beams.laser[end] == laser) ++end;
+  return end;
+}
+
+inline std::vector<double> chain_values(const LaserChain& chain, const Eigen::VectorXd& values) {
+  std::vector<double> result;
+  for (const auto slot : chain.slots) result.push_back(values[static_cast<Eigen::Index>(slot)]);
+  return result;
+}
+
+template <class T>
+void fill(const Measurements& beams, std::size_t begin, std::span<Beam<T>> block) {
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    block[i].measured_range = beams.range[begin + i];
+    block[i].measured_mirror = beams.mirror_angle[begin + i];
+    block[i].hub_time = beams.time[begin + i];
+    block[i].remission = beams.remission[begin + i];
+    block[i].number = beams.beam[begin + i];
+  }
+}
+
+/// Takes beams through chains with whatever terms they have.
+template <class T>
+class Tracer {
+ public:
+  Tracer(const Measurements& beams, const PlateTrajectory& plate) : beams_(beams), cursor_(plate) {}
+
+  /// Traces a run of one laser that starts at `begin`, at most a block, and visits those beams that the plate
+  /// covers: visit(index of the measurement, beam). Returns the end of the run.
+  template <class Visit>
+  std::size_t trace_run(const LaserChain& chain, std::span<const T> parameters, std::size_t begin,
+                        Visit visit) {
+    const std::size_t end = run_end(beams_, begin, kTracedBlock);
+    block_.resize(kTracedBlock);  // at the first run: where all chains are bare, there is none
+    const std::span<Beam<T>> run(block_.data(), end - begin);
+    fill(beams_, begin, run);
+    trace<T>(chain, parameters, run, cursor_, known_);
+    for (std::size_t i = 0; i < run.size(); ++i) {
+      if (known_[i]) visit(begin + i, run[i]);
+    }
+    return end;
+  }
+
+  PlateTrajectory::Cursor& cursor() { return cursor_; }
+
+ private:
+  const Measurements& beams_;
+  PlateTrajectory::Cursor cursor_;
+  std::vector<Beam<T>> block_;
+  std::array<bool, kTracedBlock> known_{};
+};
+
+inline simd::BareLaser bare_laser(std::span<const double> parameters) {
+  return {.lambda = parameters[0],
+          .tau = parameters[1],
+          .cos_alpha = std::cos(parameters[2]),
+          .sin_alpha = std::sin(parameters[2]),
+          .eta = parameters[3]};
+}
+
+inline std::vector<simd::BareLaser> bare_lasers(const std::vector<LaserChain>& chains,
+                                                const Eigen::VectorXd& values) {
+  std::vector<simd::BareLaser> result;
+  for (const auto& chain : chains) result.push_back(bare_laser(chain_values(chain, values)));
+  return result;
+}
+
+}  // namespace crisp
