@@ -116,6 +116,12 @@ Minimum crispest(SensorModel& model, const Sample& sample, const std::vector<std
   return minimum;
 }
 
+MinimiserSettings rough(MinimiserSettings settings) {
+  constexpr double kTolerance = 1e-3;  // some hundredths of σ off the optimum, which itself is σ-dependent
+  settings.tolerance = std::max(settings.tolerance, kTolerance);
+  return settings;
+}
+
 std::vector<double> annealing(double from, double to) {
   constexpr double kFactor = 0.6;
   const auto steps = static_cast<int>(std::max(0.0, std::round(std::log(to / from) / std::log(kFactor))));

@@ -49,6 +49,9 @@ Eigen::VectorXd ranges_of(const SearchRange& range, const SensorModel& model,
 Minimum crispest(SensorModel& model, const Sample& sample, const std::vector<std::size_t>& free,
                  Measure& measure, double scale, const SearchRange& range, const MinimiserSettings& settings);
 
+/// The same, ending earlier: for a kernel from whose optimum a narrower one goes on.
+MinimiserSettings rough(MinimiserSettings settings);
+
 /// σ from wide to narrow, by a constant factor of about 0.6.
 std::vector<double> annealing(double from, double to);
 

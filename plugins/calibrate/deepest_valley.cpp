@@ -32,6 +32,9 @@ std::vector<double> whole_circle() {
   return grid;
 }
 
+constexpr double kFine = 1e-3;   // of a step that displaces the cloud by σ
+constexpr double kRough = 0.03;  // from where a narrower kernel goes on
+
 bool has_beams(const Sample& sample, std::size_t laser) {
   return std::cmp_greater_equal(std::ranges::count(sample.beams.laser, laser), kFewBeams);
 }
@@ -42,17 +45,24 @@ void to_deepest_valley(SensorModel& model, std::size_t parameter, const std::vec
                        bool circular, const Sample& sample, Measure& measure, const SearchRange& range,
                        const Narrowing& sigma) {
   constexpr std::size_t kValleys = 4;
-  auto starts = valleys(cost_over(model, parameter, sample, measure, sigma.from), grid, circular);
+  const auto sigmas = annealing(sigma.from, sigma.to);
+  std::vector<Sample> samples;
+  for (const double width : sigmas) samples.push_back(thin_for(width, sample));
+  auto starts = valleys(cost_over(model, parameter, samples.front(), measure, sigma.from), grid, circular);
   starts.resize(std::min(starts.size(), kValleys));
   const double margin = circular ? std::numbers::pi : grid[1] - grid[0];
   Bottom best{.at = picked(model, {parameter})[0], .value = std::numeric_limits<double>::infinity()};
   for (const double start : starts) {
     Bottom found{.at = start, .value = 0};
-    for (const double width : annealing(sigma.from, sigma.to)) {
+    for (std::size_t k = 0; k < sigmas.size(); ++k) {
       const SensorModel there = with_one(model, parameter, found.at);
-      const double step = search_basis(there, sample, {parameter}, range, width)(0, 0);
-      found = bottom(cost_over(model, parameter, sample, measure, width), found.at, std::abs(step),
-                     grid.front() - margin, grid.back() + margin);
+      const double step = search_basis(there, samples[k], {parameter}, range, sigmas[k])(0, 0);
+      found = bottom(cost_over(model, parameter, samples[k], measure, sigmas[k]),
+                     {.start = found.at,
+                      .step = std::abs(step),
+                      .lower = grid.front() - margin,
+                      .upper = grid.back() + margin,
+                      .accuracy = k + 1 == sigmas.size() ? kFine : kRough});
     }
     if (found.value < best.value) best = found;
   }

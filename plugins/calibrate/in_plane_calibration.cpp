@@ -42,7 +42,8 @@ class InPlaneCalibration {
     const auto free = those_free({slot(model_, laser, kTau), slot(model_, laser, kAlpha)});
     if (own.beams.size() < kFewBeams || free.empty()) return;
     for (const double sigma : annealing(settings_.sigma_from, settings_.sigma_to)) {
-      crispest(model_, own, free, measure_, sigma, settings_.range, settings_.minimiser);
+      crispest(model_, thin_for(sigma, own), free, measure_, sigma, settings_.range,
+               sigma > settings_.sigma_to ? rough(settings_.minimiser) : settings_.minimiser);
     }
   }
 

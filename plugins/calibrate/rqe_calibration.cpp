@@ -15,12 +15,6 @@
 namespace crisp {
 namespace {
 
-/// Wide kernels are smooth and need fewer points.
-std::size_t points_at(double sigma, std::size_t most) {
-  constexpr double kWide = 0.1;  // [m]
-  return static_cast<std::size_t>(static_cast<double>(most) * std::min(1.0, kWide / sigma));
-}
-
 void refuse_a_standing_plate(const PlateTrajectory& plate) {
   constexpr double kLeast = 1 * kDegree;
   const auto [low, high] = std::ranges::minmax(plate.angles());
@@ -95,9 +89,10 @@ class RqeCalibration {
     for (std::size_t k = 0; k < sigmas.size(); ++k) {
       tell(0.25 + 0.55 * static_cast<double>(k) / static_cast<double>(sigmas.size()),
            fmt::format("sigma {:.2g} cm", sigmas[k] * 100));
-      thin = thin_by_area(sample_, model_, points_at(sigmas[k], settings_.points), settings_.seed);
+      thin = thin_by_area(sample_, model_, beams_for(sigmas[k], settings_.points), settings_.seed);
+      const MinimiserSettings& minimiser = settings_.in_plane.minimiser;
       crispest(model_, thin, parameters_.free, measure_, sigmas[k], settings_.in_plane.range,
-               settings_.in_plane.minimiser);
+               k + 1 < sigmas.size() ? rough(minimiser) : minimiser);
     }
     return thin;
   }

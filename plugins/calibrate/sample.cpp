@@ -17,22 +17,22 @@ double uniform(std::uint64_t seed, std::uint64_t index) {
   return static_cast<double>(z >> 11U) * 0x1.0p-53;
 }
 
-/// The factor c for which Σ min(1, c · area) is `count`.
+/// The factor c for which Σ min(1, c · area) is `count`, which is fewer than there are areas.
 double inclusion_factor(const std::vector<double>& areas, double count) {
-  double low = 0;
-  double high = 1;
-  const auto expected = [&](double factor) {
-    double sum = 0;
-    for (const double area : areas) sum += std::min(1.0, factor * area);
-    return sum;
-  };
-  constexpr int kDoublings = 60;
-  for (int i = 0; i < kDoublings && expected(high) < count; ++i) high *= 2;
-  for (int i = 0; i < kDoublings; ++i) {
-    const double middle = (low + high) / 2;
-    (expected(middle) < count ? low : high) = middle;
+  double factor = 0;
+  for (std::size_t certain = 0, last = areas.size(); certain != last;) {
+    last = certain;
+    certain = 0;
+    double rest = 0;
+    for (const double area : areas) {
+      const bool is_certain = factor * area >= 1;
+      certain += is_certain ? 1 : 0;
+      rest += is_certain ? 0 : area;
+    }
+    // More become certain from round to round, until those that remain share what is left.
+    if (rest > 0) factor = (count - static_cast<double>(certain)) / rest;
   }
-  return high;
+  return factor;
 }
 
 }  // namespace
@@ -77,7 +77,8 @@ Sample thin_by_area(const Sample& sample, const SensorModel& model, std::size_t 
   std::vector<double> areas(n, 0.0);
   for (std::size_t k = 0; k < placed.index.size(); ++k) {
     const auto point = placed.points.col(static_cast<Eigen::Index>(k));
-    areas[placed.index[k]] = sample.beams.range[placed.index[k]] * std::hypot(point.x(), point.y());
+    areas[placed.index[k]] =
+        sample.beams.range[placed.index[k]] * std::sqrt(point.x() * point.x() + point.y() * point.y());
   }
   const double factor = inclusion_factor(areas, static_cast<double>(count));
   return select(sample, [&](std::size_t i) { return uniform(seed, i) < factor * areas[i]; });
@@ -87,6 +88,19 @@ Sample thin_evenly(const Sample& sample, std::size_t count, std::uint64_t seed) 
   const double share =
       static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, sample.beams.size()));
   return select(sample, [&](std::size_t i) { return uniform(seed, i) < share; });
+}
+
+std::size_t beams_for(double sigma, std::size_t most) {
+  constexpr double kWide = 0.1;        // [m]
+  constexpr std::size_t kLeast = 400;  // a few turns of a beam in the plate's plane
+  const auto some = static_cast<std::size_t>(static_cast<double>(most) * std::min(1.0, kWide / sigma));
+  return std::min(most, std::max(some, kLeast));
+}
+
+Sample thin_for(double sigma, const Sample& sample) {
+  const std::size_t n = sample.beams.size();
+  const std::size_t count = beams_for(sigma, n);
+  return count == n ? sample : thin_evenly(sample, count, 1);
 }
 
 PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>& pieces) {

@@ -40,6 +40,12 @@ Sample thin_by_area(const Sample& sample, const SensorModel& model, std::size_t 
 /// Thins to about `count` beams, each as likely to be kept as any other.
 Sample thin_evenly(const Sample& sample, std::size_t count, std::uint64_t seed);
 
+/// How many of `most` beams a kernel of width σ [m] is told enough by: wide ones are smooth.
+std::size_t beams_for(double sigma, std::size_t most);
+
+/// Thins evenly to as many.
+Sample thin_for(double sigma, const Sample& sample);
+
 /// Joins pieces of a trajectory that overlap or follow one another.
 PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>& pieces);
 

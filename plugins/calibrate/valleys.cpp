@@ -24,8 +24,9 @@ std::vector<double> valleys(const Curve& curve, const std::vector<double>& grid,
   return places;
 }
 
-Bottom bottom(const Curve& curve, double start, double step, double lower, double upper) {
-  constexpr int kBits = 11;           // of the step: its thousandth
+Bottom bottom(const Curve& curve, const BottomSearch& search) {
+  const auto [start, step, lower, upper, accuracy] = search;
+  const int bits = static_cast<int>(std::ceil(1 - std::log2(accuracy)));
   constexpr double kAtTheEnd = 0.95;  // of the step: the curve may fall on beyond
   constexpr int kMostSteps = 50;
   Bottom best{.at = start, .value = 0};
@@ -35,7 +36,7 @@ Bottom bottom(const Curve& curve, double start, double step, double lower, doubl
     const double to = std::min(1.0, (upper - middle) / step);
     std::uintmax_t evaluations = 40;
     const auto [y, value] = boost::math::tools::brent_find_minima(
-        [&](double at) { return curve(middle + step * at); }, from, to, kBits, evaluations);
+        [&, at = middle, by = step](double y) { return curve(at + by * y); }, from, to, bits, evaluations);
     best = {.at = middle + step * y, .value = value};
     const bool is_at_border = best.at <= lower + 0.05 * step || best.at >= upper - 0.05 * step;
     if (std::abs(y) < kAtTheEnd || is_at_border) break;

@@ -19,11 +19,16 @@ struct Bottom {
   double value = 0;
 };
 
-/// The bottom of the valley in which `start` lies: Brent's method (1973) within `step` to either side, and
+struct BottomSearch {
+  double start = 0;  ///< between the borders
+  double step = 1;   ///< > 0: a typical width of valleys
+  double lower = 0;  ///< borders, which are not crossed
+  double upper = 0;
+  double accuracy = 1e-3;  ///< of the step
+};
+
+/// The bottom of the valley in which the start lies: Brent's method (1973) within a step to either side, and
 /// on from there while the curve still falls where the search ends.
-///
-/// @param step         > 0: a typical width of valleys
-/// @param lower,upper  borders, which are not crossed; start is between them
-Bottom bottom(const Curve& curve, double start, double step, double lower, double upper);
+Bottom bottom(const Curve& curve, const BottomSearch& search);
 
 }  // namespace crisp
