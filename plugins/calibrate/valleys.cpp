@@ -36,7 +36,7 @@ Bottom bottom(const Curve& curve, const BottomSearch& search) {
     const double to = std::min(1.0, (upper - middle) / step);
     std::uintmax_t evaluations = 40;
     const auto [y, value] = boost::math::tools::brent_find_minima(
-        [&, at = middle, by = step](double y) { return curve(at + by * y); }, from, to, bits, evaluations);
+        [&, by = step](double at) { return curve(middle + by * at); }, from, to, bits, evaluations);
     best = {.at = middle + step * y, .value = value};
     const bool is_at_border = best.at <= lower + 0.05 * step || best.at >= upper - 0.05 * step;
     if (std::abs(y) < kAtTheEnd || is_at_border) break;
