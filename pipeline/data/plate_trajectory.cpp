@@ -2,6 +2,7 @@
 #include "pipeline/data/plate_trajectory.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/data/error.hpp"
 
@@ -73,15 +74,15 @@ std::optional<PlateState> PlateTrajectory::Cursor::at(double t) {
 std::optional<PlateArc> PlateTrajectory::Cursor::arc(double t) {
   const auto& times = trajectory_->times_;
   if (times.size() < 2 || !(t >= times.front() && t <= times.back())) return std::nullopt;
-  constexpr std::size_t kSteps = 16;  // beyond these a bisection is cheaper than walking
-  for (std::size_t step = 0; step < kSteps; ++step) {
-    if (t < times[interval_]) {
-      --interval_;
-    } else if (t > times[interval_ + 1]) {
-      ++interval_;
-    } else {
-      return trajectory_->arc(interval_);
-    }
+  constexpr int kSteps = 16;  // beyond these a bisection is cheaper than walking
+  const auto last = static_cast<double>(times.size() - 2);
+  for (int step = 0; step < kSteps; ++step) {
+    const double from = times[interval_];
+    const double to = times[interval_ + 1];
+    if (t >= from && t <= to) return trajectory_->arc(interval_);
+    // Readings are about even: as many intervals on as this one's width goes into the way.
+    const double on = std::floor((t - from) / (to - from));  // not 0
+    interval_ = static_cast<std::size_t>(std::clamp(static_cast<double>(interval_) + on, 0.0, last));
   }
   const auto next = std::upper_bound(times.begin() + 1, times.end() - 1, t);
   interval_ = static_cast<std::size_t>(next - times.begin()) - 1;
