@@ -2,7 +2,6 @@
 #include "plugins/calibrate/deepest_valley.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -45,28 +44,31 @@ void to_deepest_valley(SensorModel& model, std::size_t parameter, const std::vec
                        bool circular, const Sample& sample, Measure& measure, const SearchRange& range,
                        const Narrowing& sigma) {
   constexpr std::size_t kValleys = 4;
+  constexpr std::size_t kFinalists = 2;  // under the narrowest kernel, which looks at all beams
   const auto sigmas = annealing(sigma.from, sigma.to);
   std::vector<Sample> samples;
   for (const double width : sigmas) samples.push_back(thin_for(width, sample));
   auto starts = valleys(cost_over(model, parameter, samples.front(), measure, sigma.from), grid, circular);
   starts.resize(std::min(starts.size(), kValleys));
   const double margin = circular ? std::numbers::pi : grid[1] - grid[0];
-  Bottom best{.at = picked(model, {parameter})[0], .value = std::numeric_limits<double>::infinity()};
-  for (const double start : starts) {
-    Bottom found{.at = start, .value = 0};
-    for (std::size_t k = 0; k < sigmas.size(); ++k) {
-      const SensorModel there = with_one(model, parameter, found.at);
-      const double step = search_basis(there, samples[k], {parameter}, range, sigmas[k])(0, 0);
-      found = bottom(cost_over(model, parameter, samples[k], measure, sigmas[k]),
-                     {.start = found.at,
-                      .step = std::abs(step),
-                      .lower = grid.front() - margin,
-                      .upper = grid.back() + margin,
-                      .accuracy = k + 1 == sigmas.size() ? kFine : kRough});
-    }
-    if (found.value < best.value) best = found;
+  const auto follow = [&](double start, std::size_t k) {
+    const SensorModel there = with_one(model, parameter, start);
+    const double step = search_basis(there, samples[k], {parameter}, range, sigmas[k])(0, 0);
+    return bottom(cost_over(model, parameter, samples[k], measure, sigmas[k]),
+                  {.start = start,
+                   .step = std::abs(step),
+                   .lower = grid.front() - margin,
+                   .upper = grid.back() + margin,
+                   .accuracy = k + 1 == sigmas.size() ? kFine : kRough});
+  };
+  std::vector<Bottom> bottoms;
+  for (const double start : starts) bottoms.push_back({.at = start, .value = 0});
+  for (std::size_t k = 0; k < sigmas.size(); ++k) {
+    for (Bottom& found : bottoms) found = follow(found.at, k);
+    std::ranges::sort(bottoms, {}, &Bottom::value);
+    if (k + 2 == sigmas.size()) bottoms.resize(std::min(bottoms.size(), kFinalists));
   }
-  model = with_one(model, parameter, best.at);
+  if (!bottoms.empty()) model = with_one(model, parameter, bottoms.front().at);
 }
 
 void find_lambdas(SensorModel& model, const std::vector<std::size_t>& free, const Sample& sample,

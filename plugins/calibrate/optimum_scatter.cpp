@@ -47,7 +47,7 @@ Eigen::MatrixXd gradient_covariance(Gradient& gradient, Eigen::Index m, const Sa
   std::mt19937_64 bits(settings.seed);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(m, m);
   const Eigen::VectorXd here = Eigen::VectorXd::Zero(m);
-  const std::size_t probes = std::max(settings.probes, static_cast<std::size_t>(4 * m));  // B must be regular
+  const std::size_t probes = std::max(settings.probes, static_cast<std::size_t>(2 * m));  // B must be regular
   for (std::size_t probe = 0; probe < probes; ++probe) {
     Sample longer = sample;
     Sample shorter = sample;
