@@ -32,10 +32,10 @@ struct Minimum {
   std::string status;  ///< Ipopt's verdict in words
 };
 
-/// Looks for the minimum of `objective` in `box` from `start`, with Ipopt's interior-point method and a
-/// limited-memory approximation of the Hessian (Wächter and Biegler 2006). Several
-/// threads may call it: the linear solver, which is not re-entrant, works for one at a time, while the
-/// others' objectives are evaluated.
+/// Looks for the minimum of `objective` in `box` from `start`, with Ipopt's filter line search (Wächter and
+/// Biegler 2006) and a secant approximation of the Hessian; where the way leads to the border of the box,
+/// once more with the interior-point method. Several threads may call it: the linear solver, which is not
+/// re-entrant, works for one at a time, while the others' objectives are evaluated.
 ///
 /// @param start  n values; moved into the box where it lies outside
 /// @throws Error  if the sizes differ or the objective is not finite at the start
