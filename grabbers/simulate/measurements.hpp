@@ -18,7 +18,7 @@ namespace crisp {
 /// What perfectly aligned clocks would have made of a recording.
 struct SimulatedMeasurements {
   Measurements beams;
-  std::vector<std::uint32_t> surface;  ///< for each beam, the index into Scene::surfaces of what it met
+  std::vector<std::uint32_t> surface;  ///< for each beam, the index of the scene's thing that it met
   PlateTrajectory plate;    ///< reaches 0.25 s beyond the beams at both ends, so that any lag is covered
   Calibration truth;        ///< of which the beams were made
   std::size_t no_echo = 0;  ///< beams that nothing came back from

@@ -3,35 +3,42 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
+#include <numbers>
+#include <optional>
 
+#include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
+#include "grabbers/simulate/scene_geometry.hpp"
+#include "grabbers/simulate/scene_points.hpp"
 #include "grabbers/simulate/shapes.hpp"
-#include "pipeline/files/nearest.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
 namespace crisp {
 namespace {
 
 using Eigen::Vector3d;
-using Surfaces = std::vector<Surface>;
 
 constexpr std::size_t kMostSurfaces = 200'000;  // of all shapes together, so that memory stays bounded
-constexpr double kFarthest = 1e5;               // [m] nothing stands farther off
+constexpr std::int64_t kMostCopies = 10'000;
 
-void add(Surfaces& to, const Surfaces& surfaces) { to.insert(to.end(), surfaces.begin(), surfaces.end()); }
+struct Stand {
+  Vector3d position;
+  double yaw;
+};
 
 class SceneReader {
  public:
   Scene read(const YamlNode& root) {
     YamlMap map(root, "scene", errors_);
     check_schema(map, 1);
-    Scene scene{.name = map.text("name", "scene"), .surfaces = {}};
+    const std::string name = map.text("name", "scene");
     if (const YamlNode* shapes = map.find("shapes")) read_shapes(*shapes);
-    if (const YamlNode* surfaces = map.require("surfaces"))
-      scene.surfaces = read_items(*surfaces, "surfaces");
-    if (const YamlNode* scanner = map.require("scanner")) stand(*scanner, scene.surfaces);
+    if (const YamlNode* scanner = map.require("scanner")) stand_ = read_stand(*scanner);
+    Scene scene;
+    if (const YamlNode* surfaces = map.require("surfaces")) scene = read_items(*surfaces, "surfaces");
+    scene.name = name;
+    if (stand_) look_from(scene, stand_->position, stand_->yaw);
     map.refuse_others();
     if (!errors_.empty()) throw Errors(std::move(errors_));
     return scene;
@@ -45,204 +52,175 @@ class SceneReader {
     }
   }
 
-  Surfaces read_items(const YamlNode& node, const std::string& what) {
-    Surfaces surfaces;
+  Stand read_stand(const YamlNode& node) {
+    YamlMap map(node, "scanner", errors_);
+    const Stand stand{.position = require_vector(map, "position", errors_),
+                      .yaw = map.number("yaw", "rad", 0)};
+    map.refuse_others();
+    return stand;
+  }
+
+  Scene read_items(const YamlNode& node, const std::string& what) {
+    Scene scene;
     if (node.kind != YamlNode::Kind::sequence) {
       fail(node.place, what + ": " + crisp::describe(node) + " is not a list of surfaces");
     }
     for (const auto& item : node.items) {
-      add(surfaces, read_item(item, what));
+      add(scene, read_item(item, what));
       if (total_ > kMostSurfaces) break;
     }
-    return surfaces;
+    return scene;
   }
 
-  /// One box, rectangle, polygon, run of walls or shape: turned, moved, repeated.
-  Surfaces read_item(const YamlNode& node, const std::string& what) {
+  /// One thing: what it is made of, turned, moved, and repeated or strewn.
+  Scene read_item(const YamlNode& node, const std::string& what) {
     YamlMap map(node, what, errors_);
     if (node.kind != YamlNode::Kind::map) return {};
-    Surfaces surfaces = read_geometry(map, node.place);
+    Scene scene = read_geometry(map, node.place, shapes_, errors_);
+    read_look(map, scene);
+    read_body(map, scene);
+    check(scene, node.place);
+    place(scene, map.number("yaw", "rad", 0), Vector3d::Zero());
+    place(scene, 0, read_vector(map, "at", Vector3d::Zero(), errors_));
+    if (const YamlNode* repetition = map.find("repeat")) scene = repeated(*repetition, scene);
+    if (const YamlNode* strewing = map.find("strew")) scene = strewn(*strewing, scene);
+    map.refuse_others();
+    total_ += scene.things();
+    if (total_ > kMostSurfaces) map.fail(node.place, fmt::format("more than {} surfaces", kMostSurfaces));
+    return scene;
+  }
+
+  static void read_look(YamlMap& map, Scene& scene) {
     const std::string name = map.text("name", "");
     const bool has_reflectance = map.find("reflectance") != nullptr;
     const double reflectance = map.number("reflectance", "", 0.5);
     if (!(reflectance >= 0 && reflectance <= 1)) {
       map.fail(map.find("reflectance")->place, "'reflectance' is not between 0 and 1");
     }
-    for (auto& surface : surfaces) {
-      if (!name.empty()) surface.name = name;
-      if (has_reflectance) surface.reflectance = reflectance;
+    const auto look = [&](auto& thing) {
+      if (!name.empty()) thing.name = name;
+      if (has_reflectance) thing.reflectance = reflectance;
+    };
+    for (auto& surface : scene.surfaces) look(surface);
+    for (auto& body : scene.bodies) look(body);
+  }
+
+  /// What only bodies can be: foliage, or on the move.
+  void read_body(YamlMap& map, Scene& scene) {
+    const YamlNode* depth = map.find("depth");
+    const YamlNode* walk = map.find("walk");
+    if (!depth && !walk) return;
+    if (!scene.surfaces.empty()) {
+      map.fail((depth ? depth : walk)->place, "flat surfaces are neither foliage nor do they walk",
+               "say so of each box, cylinder, sphere or ellipsoid of the shape");
     }
-    turn(surfaces, {0, 0}, map.number("yaw", "rad", 0));
-    move(surfaces, vector(map, "at", Vector3d::Zero()));
-    if (const YamlNode* repetition = map.find("repeat")) surfaces = repeated(*repetition, surfaces);
+    const double reach = map.number("depth", "m", 0);
+    if (depth && !(reach > 0)) map.fail(depth->place, "'depth' is not above 0");
+    const Walk way = walk ? read_walk(*walk) : Walk{};
+    for (auto& body : scene.bodies) {
+      if (depth) body.depth = reach;
+      if (walk) body.walk = way;
+    }
+  }
+
+  Walk read_walk(const YamlNode& node) {
+    YamlMap map(node, "walk", errors_);
+    Walk walk;
+    if (const YamlNode* along = map.require("along")) walk.along = read_points(*along, "along", 3, errors_);
+    walk.speed = map.number("speed", "m/s", 1.4);
     map.refuse_others();
-    check(surfaces, node.place);
-    total_ += surfaces.size();
-    if (total_ > kMostSurfaces) map.fail(node.place, fmt::format("more than {} surfaces", kMostSurfaces));
-    return surfaces;
+    double length = 0;
+    for (std::size_t i = 1; i < walk.along.size(); ++i) length += (walk.along[i] - walk.along[i - 1]).norm();
+    if (!(length > 0))
+      fail(node.place, "the walk leads nowhere", "give at least two places: along: [[0, 0, 0], [3, 0, 0]]");
+    if (!(walk.speed > 0)) fail(node.place, "'speed' is not above 0");
+    return walk;
   }
 
-  Surfaces read_geometry(YamlMap& map, const Place& place) {
-    const auto errors_before = errors_.size();
-    Surfaces surfaces;
-    int kinds = 0;
-    if (const YamlNode* node = map.find("box")) {
-      ++kinds;
-      surfaces = read_box(*node);
-    }
-    if (const YamlNode* node = map.find("rectangle")) {
-      ++kinds;
-      surfaces = read_rectangle(*node);
-    }
-    if (const YamlNode* node = map.find("polygon")) {
-      ++kinds;
-      surfaces = {Surface{"polygon", read_points(*node, "polygon")}};
-    }
-    if (const YamlNode* node = map.find("walls")) {
-      ++kinds;
-      surfaces = read_walls(*node);
-    }
-    if (map.find("shape")) {
-      ++kinds;
-      surfaces = read_shape(map);
-    }
-    if (kinds != 1 && errors_.size() == errors_before) {
-      fail(place, "a surface is one of box, rectangle, polygon, walls and shape");
-    }
-    return surfaces;
-  }
-
-  Surfaces read_box(const YamlNode& node) {
-    YamlMap map(node, "box", errors_);
-    const Vector3d from = required_vector(map, "from");
-    const Vector3d to = required_vector(map, "to");
-    map.refuse_others();
-    return box("box", from, to, 0.5);
-  }
-
-  Surfaces read_rectangle(const YamlNode& node) {
-    YamlMap map(node, "rectangle", errors_);
-    const Vector3d corner = required_vector(map, "corner");
-    const Vector3d a = required_vector(map, "a");
-    const Vector3d b = required_vector(map, "b");
-    map.refuse_others();
-    return {rectangle("rectangle", corner, a, b, 0.5)};
-  }
-
-  Surfaces read_walls(const YamlNode& node) {
-    YamlMap map(node, "walls", errors_);
-    std::vector<Eigen::Vector2d> outline;
-    if (const YamlNode* points = map.require("outline")) {
-      for (const auto& point : read_points(*points, "outline", 2)) outline.emplace_back(point.x(), point.y());
-    }
-    const double from = map.number("from", "m", 0);
-    const double to = map.number("to", "m", 3);
-    map.refuse_others();
-    return walls("wall", outline, from, to, 0.5);
-  }
-
-  Surfaces read_shape(YamlMap& map) {
-    const std::string name = map.text("shape", "");
-    const auto found = shapes_.find(name);
-    if (found != shapes_.end()) return found->second;
-    std::vector<std::string> known;
-    for (const auto& [other, surfaces] : shapes_) known.push_back(other);
-    map.fail(map.find("shape")->place, "there is no shape '" + name + "'",
-             did_you_mean(name, known, "describe it under shapes, before it is used"));
-    return {};
-  }
-
-  Surfaces repeated(const YamlNode& node, const Surfaces& surfaces) {
+  Scene repeated(const YamlNode& node, const Scene& scene) {
     YamlMap map(node, "repeat", errors_);
-    map.require("count");
-    const auto count = static_cast<std::size_t>(map.integer("count", 1, 1, 10'000));
-    const Vector3d step = required_vector(map, "step");
+    const std::size_t count = copies(map, node, scene);
+    const Vector3d step = require_vector(map, "step", errors_);
     map.refuse_others();
-    if (surfaces.size() * count > kMostSurfaces) {
-      map.fail(node.place, fmt::format("more than {} surfaces", kMostSurfaces));
-      return surfaces;
-    }
-    Surfaces all;
+    Scene all;
     for (std::size_t i = 0; i < count; ++i) {
-      Surfaces copy = surfaces;
-      move(copy, static_cast<double>(i) * step);
+      Scene copy = scene;
+      place(copy, 0, static_cast<double>(i) * step);
       add(all, copy);
     }
     return all;
   }
 
-  void stand(const YamlNode& node, Surfaces& surfaces) {
-    YamlMap map(node, "scanner", errors_);
-    const Vector3d position = required_vector(map, "position");
-    const double yaw = map.number("yaw", "rad", 0);
+  /// Copies at random places, turned at random and of random size.
+  Scene strewn(const YamlNode& node, const Scene& scene) {
+    YamlMap map(node, "strew", errors_);
+    const std::size_t count = copies(map, node, scene);
+    const Vector3d from = require_vector(map, "from", errors_);
+    const Vector3d to = require_vector(map, "to", errors_);
+    const auto seed = static_cast<std::uint64_t>(map.integer("seed", 1, 0, 1'000'000'000));
+    const double smallest = map.number("smallest", "", 1);
+    const double largest = map.number("largest", "", 1);
+    const double clear = map.number("clear", "m", 0);
     map.refuse_others();
-    look_from(surfaces, position, yaw);
-  }
-
-  /// Refuses what is not flat or has no area where it stands in the file.
-  void check(const Surfaces& surfaces, const Place& place) {
-    for (const auto& surface : surfaces) {
-      try {
-        RayCaster(Scene{"", {surface}});
-      } catch (const Error& error) {
-        fail(place, error.message(), error.advice());
-        return;
+    if (!(smallest > 0 && largest >= smallest)) {
+      fail(node.place, "sizes are to be strewn with 0 < smallest <= largest, as multiples of what is strewn");
+      return scene;
+    }
+    RandomStream random(seed, "strew");
+    Scene all;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto where = place_in(from, to, clear, random);
+      if (!where) {
+        fail(node.place, "there is no room to strew in that is clear of the scanner",
+             "make the region larger, or `clear` smaller");
+        break;
       }
+      Scene copy = scene;
+      const double yaw = random.uniform(0, 2 * std::numbers::pi);
+      place(copy, yaw, *where, random.uniform(smallest, largest));
+      add(all, copy);
     }
+    return all;
   }
 
-  static void move(Surfaces& surfaces, const Vector3d& by) {
-    for (auto& surface : surfaces) {
-      for (auto& corner : surface.corners) corner += by;
+  /// A place in the region that is so far from the scanner, seen from above.
+  std::optional<Vector3d> place_in(const Vector3d& from, const Vector3d& to, double clear,
+                                   RandomStream& random) const {
+    constexpr int kTries = 1000;
+    for (int k = 0; k < kTries; ++k) {
+      Vector3d where;
+      for (int axis = 0; axis < 3; ++axis) where[axis] = random.uniform(from[axis], to[axis]);
+      if (clear <= 0 || !stand_ || (where - stand_->position).head<2>().norm() >= clear) return where;
     }
+    return std::nullopt;
   }
 
-  Vector3d required_vector(YamlMap& map, const std::string& key) {
-    map.require(key);
-    return vector(map, key, Vector3d::Zero());
+  /// How many copies of a scene are wanted; 1 if that is too many.
+  std::size_t copies(YamlMap& map, const YamlNode& node, const Scene& scene) {
+    map.require("count");
+    const auto count = static_cast<std::size_t>(map.integer("count", 1, 1, kMostCopies));
+    if (scene.things() * count <= kMostSurfaces) return count;
+    map.fail(node.place, fmt::format("more than {} surfaces", kMostSurfaces));
+    return 1;
   }
 
-  Vector3d vector(YamlMap& map, const std::string& key, const Vector3d& fallback) {
-    const YamlNode* node = map.find(key);
-    return node ? point(*node, "'" + key + "'", 3) : fallback;
-  }
-
-  std::vector<Vector3d> read_points(const YamlNode& node, const std::string& what,
-                                    std::size_t dimensions = 3) {
-    std::vector<Vector3d> points;
-    if (node.kind != YamlNode::Kind::sequence) {
-      fail(node.place, what + ": " + crisp::describe(node) + " is not a list of points");
+  /// Refuses what is not flat or has no area or volume where it stands in the file.
+  void check(const Scene& scene, const Place& place) {
+    try {
+      for (const auto& surface : scene.surfaces) RayCaster(Scene{.name = "", .surfaces = {surface}});
+      for (const auto& body : scene.bodies) crisp::check(body.shape, body.name);
+    } catch (const Error& error) {
+      fail(place, error.message(), error.advice());
     }
-    for (const auto& item : node.items) points.push_back(point(item, what, dimensions));
-    return points;
-  }
-
-  Vector3d point(const YamlNode& node, const std::string& what, std::size_t dimensions) {
-    Vector3d result = Vector3d::Zero();
-    if (node.kind != YamlNode::Kind::sequence || node.items.size() != dimensions) {
-      fail(node.place,
-           fmt::format("{}: {} is not a list of {} lengths", what, crisp::describe(node), dimensions));
-      return result;
-    }
-    for (std::size_t i = 0; i < dimensions; ++i) {
-      std::string wrong;
-      const auto value = read_number(node.items[i], "m", wrong);
-      if (value && std::abs(*value) > kFarthest) wrong = fmt::format("{:g} m cannot be meant", *value);
-      if (!wrong.empty()) {
-        fail(node.items[i].place, fmt::format("{}: {}", what, wrong));
-      } else {
-        result[static_cast<Eigen::Index>(i)] = *value;
-      }
-    }
-    return result;
   }
 
   void fail(const Place& place, const std::string& what, const std::string& advice = {}) {
     errors_.emplace_back(what, advice, place);
   }
 
-  std::map<std::string, Surfaces> shapes_;
-  std::size_t total_ = 0;  ///< surfaces made so far
+  std::map<std::string, Scene> shapes_;
+  std::optional<Stand> stand_;
+  std::size_t total_ = 0;  ///< things made so far
   std::vector<Error> errors_;
 };
 

@@ -11,7 +11,8 @@ namespace crisp {
 /// Names of the scenes that need no file: those of configs/scenes, as they were when crisp was built.
 const std::vector<std::string>& built_in_scenes();
 
-/// One of them. @throws Error for another name
+/// One of them: office, hall, street, workshop (cluttered, round things), garden (mostly foliage) or people
+/// (who walk). @throws Error for another name
 Scene built_in_scene(const std::string& name);
 
 /// An office of 10 × 8 × 3 m with desks, cupboards and doors; closed.

@@ -35,23 +35,26 @@ std::vector<Surface> walls(const std::string& name, const std::vector<Eigen::Vec
   return result;
 }
 
-void turn(std::vector<Surface>& surfaces, const Eigen::Vector2d& centre, double yaw) {
-  const Eigen::Rotation2Dd rotation(yaw);
-  for (auto& surface : surfaces) {
-    for (auto& corner : surface.corners) {
-      corner.head<2>() = centre + rotation * (corner.head<2>() - centre);
-    }
+void place(Scene& scene, double yaw, const Vector3d& by, double scale) {
+  Eigen::Matrix3d turn = scale * Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = scale * Eigen::Rotation2Dd(yaw).toRotationMatrix();
+  for (auto& surface : scene.surfaces) {
+    for (auto& corner : surface.corners) corner = turn * corner + by;
+  }
+  for (auto& body : scene.bodies) {
+    body.shape = placed(body.shape, yaw, by, scale);
+    for (auto& point : body.walk.along) point = turn * point;
   }
 }
 
-void look_from(std::vector<Surface>& surfaces, const Vector3d& position, double yaw) {
-  const Eigen::Rotation2Dd rotation(-yaw);
-  for (auto& surface : surfaces) {
-    for (auto& corner : surface.corners) {
-      corner -= position;
-      corner.head<2>() = rotation * corner.head<2>();
-    }
-  }
+void add(Scene& to, const Scene& more) {
+  to.surfaces.insert(to.surfaces.end(), more.surfaces.begin(), more.surfaces.end());
+  to.bodies.insert(to.bodies.end(), more.bodies.begin(), more.bodies.end());
+}
+
+void look_from(Scene& scene, const Vector3d& position, double yaw) {
+  place(scene, 0, -position);
+  place(scene, -yaw, Vector3d::Zero());
 }
 
 }  // namespace crisp

@@ -22,13 +22,17 @@ std::vector<Surface> box(const std::string& name, const Eigen::Vector3d& low, co
 std::vector<Surface> walls(const std::string& name, const std::vector<Eigen::Vector2d>& outline, double low,
                            double high, double reflectance);
 
-/// Turns surfaces by `yaw` [rad] about the vertical through `centre`.
-void turn(std::vector<Surface>& surfaces, const Eigen::Vector2d& centre, double yaw);
+/// Puts things elsewhere: turned by `yaw` [rad] about the vertical through the origin, made `scale` times as
+/// large, then moved by `by` [m]. How deep beams get into foliage stays.
+void place(Scene& scene, double yaw, const Eigen::Vector3d& by, double scale = 1);
+
+/// Adds the things of one scene to another.
+void add(Scene& to, const Scene& more);
 
 /// Describes a world, drawn in any frame of its own, from where the scanner stands.
 ///
 /// @param position  [m] the scanner's centre in the world's frame
 /// @param yaw       [rad] turn of the scanner's base about the vertical
-void look_from(std::vector<Surface>& surfaces, const Eigen::Vector3d& position, double yaw);
+void look_from(Scene& scene, const Eigen::Vector3d& position, double yaw);
 
 }  // namespace crisp

@@ -69,13 +69,14 @@ SweepSimulator::SweepSimulator(const ScannerSettings& settings, const Scene& sce
                                const TermRegistry& terms)
     : settings_(settings), motion_(&motion), caster_(scene), model_(settings.truth, terms) {
   check(settings_);
-  for (const auto& surface : scene.surfaces) reflectances_.push_back(surface.reflectance);
+  for (std::size_t k = 0; k < scene.things(); ++k) reflectances_.push_back(scene.reflectance_of(k));
   beams_ = fired_beams(settings_);
   traced_.resize(beams_.size());
   for (std::size_t i = 0; i < settings_.rig.lasers.size(); ++i) {
     const auto& name = settings_.rig.lasers[i].name;
     Laser& laser = lasers_.emplace_back(Laser{.mirror = Mirror(settings_.mirror, settings_.seed, name),
                                               .noise = RandomStream(settings_.seed, name + ".noise"),
+                                              .foliage = RandomStream(settings_.seed, name + ".foliage"),
                                               .upcoming = {},
                                               .parameters = {}});
     laser.upcoming = laser.mirror.next();
@@ -124,7 +125,8 @@ void SweepSimulator::measure(Laser& laser, Sweep& sweep) {
   const auto& range = settings_.range;
   for (std::size_t i = 0; i < beams_.size(); ++i) {
     const double noise = range.sigma * laser.noise.normal();
-    const auto hit = caster_.cast({traced_[i].origin, traced_[i].direction}, range.max_distance);
+    const auto hit = caster_.cast({traced_[i].origin, traced_[i].direction}, range.max_distance,
+                                  {.time = sweep.times[i], .chance = &laser.foliage});
     if (!hit) continue;
     const float strength = remission(reflectances_[hit->surface], *hit);
     traced_[i].remission = strength;

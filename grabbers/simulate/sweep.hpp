@@ -23,7 +23,7 @@ struct Sweep {
   std::vector<double> times;            ///< [s] true time at which each was fired
   std::vector<float> ranges;            ///< [m] as the device measures them; 0 where nothing came back
   std::vector<float> remissions;        ///< 0 to 254
-  std::vector<std::uint32_t> surfaces;  ///< index into Scene::surfaces of what was met; of no use at range 0
+  std::vector<std::uint32_t> surfaces;  ///< index of the scene's thing that was met; of no use at range 0
 };
 
 /// Fires the beams of a scanner's lasers at a scene, sweep by sweep, through the sensor model: what is hidden
@@ -45,6 +45,7 @@ class SweepSimulator {
   struct Laser {
     Mirror mirror;
     RandomStream noise;
+    RandomStream foliage;
     Revolution upcoming;
     std::vector<double> parameters;  ///< of its chain: λ, τ, α, η and those of its terms
   };
@@ -53,7 +54,7 @@ class SweepSimulator {
   void measure(Laser& laser, Sweep& sweep);
 
   ScannerSettings settings_;
-  std::vector<double> reflectances_;  ///< of the scene's surfaces
+  std::vector<double> reflectances_;  ///< of the scene's things
   const Motion* motion_;
   RayCaster caster_;
   SensorModel model_;

@@ -14,7 +14,7 @@ namespace crisp {
 
 /// Which scene a stage simulates.
 struct SceneChoice {
-  std::string name = "office";  ///< office, hall, street, or paper: paper_room()
+  std::string name = "office";  ///< a built-in one, or paper: paper_room()
   std::filesystem::path file;   ///< in its place, unless empty: see read_scene()
 
   /// @throws Error if there is none of this name; what read_scene() throws

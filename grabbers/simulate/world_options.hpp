@@ -13,7 +13,7 @@ namespace crisp {
 template <class S, class Way>
 void describe_scene(StageDescription<S>& d, Way way) {
   d.option("scene", way, &SceneChoice::name, "what stands around the scanner; paper: the room of the paper")
-      .choices({"office", "hall", "street", "paper"});
+      .choices({"office", "hall", "street", "workshop", "garden", "people", "paper"});
   d.option("scene_file", way, &SceneChoice::file, "a scene of your own in YAML, in place of `scene`");
 }
 

@@ -37,9 +37,9 @@ nlohmann::json unobservable_json(const SceneBound& bound) {
 
 nlohmann::json planes_json(const SceneBound& bound, const Scene& scene) {
   auto json = nlohmann::json::array();
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+  for (std::size_t s = 0; s < scene.things(); ++s) {
     if (bound.beams_on[s] > 0) {
-      json.push_back({{"surface", scene.surfaces[s].name}, {"beams", bound.beams_on[s]}});
+      json.push_back({{"surface", scene.name_of(s)}, {"beams", bound.beams_on[s]}});
     }
   }
   return json;
@@ -113,7 +113,7 @@ void BoundStage::tell(const Scene& scene, Context& context) const {
                   {"parameters", parameters_json(bound_, reached_)},
                   {"unobservable", unobservable_json(bound_)}});
   const auto met = std::ranges::count_if(bound_.beams_on, [](std::size_t beams) { return beams > 0; });
-  context.say(fmt::format("{:g} s in the {}: {} beams on {} planes, {} that meet nothing; noise {:g} mm",
+  context.say(fmt::format("{:g} s in the {}: {} beams on {} surfaces, {} that meet nothing; noise {:g} mm",
                           scanner_.duration, scene.name, bound_.beams, met, bound_.no_echo,
                           scanner_.range.sigma * 1e3));
   if (!reached_ || !reached_->failure.empty()) return;

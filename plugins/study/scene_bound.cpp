@@ -30,6 +30,23 @@ ScannerSettings without_noise(ScannerSettings scanner) {
   return scanner;
 }
 
+/// The beams that met something flat, and what. Curved things, foliage and what moves tell too little, or too
+/// intricately, to be counted.
+struct FlatlyMet {
+  Sample sample;
+  std::vector<std::uint32_t> surface;
+};
+FlatlyMet met_flatly(const SimulatedMeasurements& all, const Scene& scene) {
+  FlatlyMet met{.sample = {.plate = &all.plate}, .surface = {}};
+  met.sample.beams.epoch_ns = all.beams.epoch_ns;
+  for (std::size_t i = 0; i < all.beams.size(); ++i) {
+    if (all.surface[i] >= scene.surfaces.size()) continue;
+    met.sample.beams.append(all.beams, i);
+    met.surface.push_back(all.surface[i]);
+  }
+  return met;
+}
+
 /// The least errors of `known`, which are some of `free`; infinite for the rest.
 Eigen::VectorXd errors_of_known(const Eigen::MatrixXd& information, const std::vector<std::size_t>& free,
                                 const std::vector<std::size_t>& known) {
@@ -47,24 +64,25 @@ Eigen::VectorXd errors_of_known(const Eigen::MatrixXd& information, const std::v
 SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const Motion& motion,
                        BeamChoice beams, const TermRegistry& terms) {
   const auto exact = simulate_beams(beams, without_noise(scanner), scene, motion, terms);
-  if (exact.beams.size() == 0) {
-    throw Error("none of the beams meets anything", "see what the scene holds, and how far the lasers reach");
+  const FlatlyMet met = met_flatly(exact, scene);
+  if (met.surface.empty()) {
+    throw Error("none of the beams meets anything flat",
+                "see what the scene holds, and how far the lasers reach");
   }
   std::vector<Eigen::Vector3d> normals;
   for (const Surface& surface : scene.surfaces) normals.push_back(normal_of(surface));
   const SensorModel truth(exact.truth, terms);
-  const Sample sample{.beams = exact.beams, .plate = &exact.plate};
   const FreeParameters parameters = free_parameters(truth, exact.beams, {});
   const auto& free = parameters.free;
   const Eigen::MatrixXd information =
-      calibration_information(truth, sample, exact.surface, normals, free, scanner.range.sigma);
+      calibration_information(truth, met.sample, met.surface, normals, free, scanner.range.sigma);
   const Observability told =
       observability(information, free, truth.names(), ranges_of(RefinementSettings{}.prior, truth, free));
 
   SceneBound bound{.parameters = {},
                    .std_errors = errors_of_known(information, free, told.known),
                    .unobservable = parameters.unobservable,
-                   .beams_on = std::vector<std::size_t>(scene.surfaces.size(), 0),
+                   .beams_on = std::vector<std::size_t>(scene.things(), 0),
                    .beams = exact.beams.size(),
                    .no_echo = exact.no_echo};
   for (const std::size_t slot : free) bound.parameters.push_back(truth.names()[slot]);

@@ -111,10 +111,81 @@ TEST(RayCaster, FindsTheNearestOfAllSurfaces) {
   }
 }
 
+/// A ball of 1 m at x = 5, and a wall behind it.
+Scene ball_and_wall(double depth, const Walk& walk = {}) {
+  return {.name = "ball",
+          .surfaces = {rectangle("wall", {8, -9, -9}, {0, 18, 0}, {0, 0, 18}, 0.5)},
+          .bodies = {{.name = "ball",
+                      .shape = Ellipsoid{.middle = {5, 0, 0}, .radii = {1, 1, 1}},
+                      .depth = depth,
+                      .walk = walk}}};
+}
+
+TEST(RayCaster, MeetsRoundBodies) {
+  const Scene scene = ball_and_wall(0);
+  const RayCaster caster(scene);
+  const auto front = caster.cast({{0, 0, 0}, {1, 0, 0}}, 50);
+  ASSERT_TRUE(front);
+  EXPECT_EQ(scene.name_of(front->surface), "ball");
+  EXPECT_NEAR(front->distance, 4, 1e-12);
+  EXPECT_NEAR(front->cos_incidence, 1, 1e-12);
+  const auto oblique = caster.cast({{0, 0.6, 0}, {1, 0, 0}}, 50);  // 0.8 m before the middle
+  EXPECT_NEAR(oblique->distance, 4.2, 1e-12);
+  EXPECT_NEAR(oblique->cos_incidence, 0.8, 1e-12);
+  EXPECT_EQ(scene.name_of(caster.cast({{0, 1.1, 0}, {1, 0, 0}}, 50)->surface), "wall") << "past it";
+  EXPECT_NEAR(caster.cast({{5, 0, 0}, {0, 1, 0}}, 50)->distance, 1, 1e-12) << "from inside";
+  EXPECT_NEAR(caster.distance({3, 0, 0}), 1, 1e-9);
+  EXPECT_NEAR(caster.distance({7.5, 0, 0}), 0.5, 1e-9) << "the wall is nearer";
+}
+
+TEST(RayCaster, EndsInFoliageAtExponentialDepthsOrBehindIt) {
+  const Scene scene = ball_and_wall(0.7);
+  const RayCaster caster(scene);
+  RandomStream chance(1, "leaves");
+  constexpr int kShots = 20'000;
+  int ended_inside = 0;
+  int before_half = 0;
+  for (int i = 0; i < kShots; ++i) {
+    const auto hit = caster.cast({{0, 0, 0}, {1, 0, 0}}, 50, {.time = 0, .chance = &chance});
+    ASSERT_TRUE(hit);
+    if (scene.name_of(hit->surface) == "wall") {
+      ASSERT_NEAR(hit->distance, 8, 1e-12);
+      continue;
+    }
+    ASSERT_GT(hit->distance, 4);
+    ASSERT_LT(hit->distance, 6);
+    ++ended_inside;
+    before_half += hit->distance < 4.5 ? 1 : 0;
+  }
+  // Beer and Lambert: e^(−2 m / 0.7 m) get through, e^(−0.5 m / 0.7 m) beyond half a metre; five standard
+  // errors.
+  EXPECT_NEAR(ended_inside, kShots * (1 - std::exp(-2 / 0.7)), 5 * std::sqrt(kShots * 0.06));
+  EXPECT_NEAR(before_half, kShots * (1 - std::exp(-0.5 / 0.7)), 5 * std::sqrt(kShots * 0.25));
+  EXPECT_EQ(caster.distance({5, 0, 0}), 0) << "inside";
+  EXPECT_NEAR(caster.distance({3, 0, 0}), 1, 1e-9);
+}
+
+TEST(RayCaster, MeetsWhatWalksWhereItIsJustThen) {
+  const Scene scene = ball_and_wall(0, {.along = {{0, 0, 0}, {0, 3, 0}, {-1, 3, 0}}, .speed = 2});
+  const RayCaster caster(scene);
+  const auto towards = [&](double y, double time) {
+    return caster.cast({{0, y, 0}, {1, 0, 0}}, 50, {.time = time})->distance;
+  };
+  EXPECT_NEAR(towards(0, 0), 4, 1e-12);
+  EXPECT_NEAR(towards(0, 1), 8, 1e-12) << "it has gone 2 m to the side";
+  EXPECT_NEAR(towards(2, 1), 4, 1e-12);
+  EXPECT_NEAR(towards(3, 2), 3, 1e-12) << "and then 1 m towards us";
+  EXPECT_NEAR(towards(0, 4), 4, 1e-12) << "and back";
+  EXPECT_NEAR(caster.distance({5, 0, 0}), 3, 1e-9) << "what walks is nowhere";
+}
+
 TEST(RayCaster, RefusesSurfacesThatAreNotFlatPolygons) {
   EXPECT_THROW(RayCaster(Scene{"", {{"line", {{0, 0, 0}, {1, 0, 0}}}}}), Error);
   EXPECT_THROW(RayCaster(Scene{"", {{"no area", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}}}}), Error);
   EXPECT_THROW(RayCaster(Scene{"", {{"bent", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.01}, {0, 1, 0}}}}}), Error);
+  EXPECT_THROW(
+      RayCaster(Scene{.name = "", .bodies = {{"flat", Ellipsoid{.middle = {0, 0, 0}, .radii = {1, 1, 0}}}}}),
+      Error);
 }
 
 }  // namespace

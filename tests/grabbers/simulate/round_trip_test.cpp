@@ -142,7 +142,7 @@ TEST_F(RoundTrip, AlignedClocksAndTheTruthPutThePointsOnTheSurfaces) {
   settings_.scanner.duration = 5;
   settings_.scanner.field.step = 2 * kDegree;  // a quarter of the beams: enough here
   for (const int late : {0, -1}) {
-    for (const auto& name : built_in_scenes()) {
+    for (const std::string name : {"office", "hall", "street"}) {  // nothing moves or grows there
       auto& scanner = settings_.scanner;
       for (auto& laser : scanner.rig.lasers) laser.period_offset = late;
       scanner.truth = draw_truth(nominal_calibration(scanner.rig),

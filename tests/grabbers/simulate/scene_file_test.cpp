@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -63,6 +64,75 @@ TEST(SceneFile, KnowsBoxesAndWalls) {
   EXPECT_NEAR(area, 2 * (2 + 3 + 6) + 2 * (3 + 4 + 5), 1e-12);
 }
 
+TEST(SceneFile, KnowsWhatIsRoundGrowsAndWalks) {
+  const Scene scene =
+      parse(kHead +
+            "  - {cylinder: {from: [1, 2, 0], to: [1, 2, 3], radius: 10cm}, name: post}\n"
+            "  - {sphere: {middle: [1, 4, 0.5], radius: 1}, depth: 20cm, reflectance: 0.3}\n"
+            "  - {box: {from: [0, 0, 0], to: [1, 2, 1]}, walk: {along: [[0, 0, 0], [0, 2, 0]]}}\n");
+  EXPECT_TRUE(scene.surfaces.empty());
+  ASSERT_EQ(scene.bodies.size(), 3U);
+  EXPECT_EQ(scene.name_of(0), "post");
+  const auto& post = std::get<Cylinder>(scene.bodies[0].shape);
+  EXPECT_LT((post.from - Vector3d(0, 0, -0.5)).norm(), 1e-12);
+  EXPECT_LT((post.to - Vector3d(0, 0, 2.5)).norm(), 1e-12);
+  EXPECT_EQ(post.radius, 0.1);
+  const auto& ball = std::get<Ellipsoid>(scene.bodies[1].shape);
+  EXPECT_LT((ball.middle - Vector3d(2, 0, 0)).norm(), 1e-12);
+  EXPECT_EQ(scene.bodies[1].depth, 0.2);
+  EXPECT_EQ(scene.reflectance_of(1), 0.3);
+  const auto& block = std::get<Block>(scene.bodies[2].shape);
+  EXPECT_LT((block.half - Vector3d(0.5, 1, 0.5)).norm(), 1e-12);
+  EXPECT_NEAR(block.yaw, -std::numbers::pi / 2, 1e-12);
+  // The world's +y is the scanner's +x; a quarter of a second at a walking pace.
+  EXPECT_LT((scene.bodies[2].walk.at(0.25) - Vector3d(0.35, 0, 0)).norm(), 1e-12);
+}
+
+TEST(SceneFile, StrewsCopiesInTheRegionAndClearOfTheScanner) {
+  const std::string text =
+      kHead +
+      "  - {sphere: {middle: [0, 0, 0], radius: 0.1}, strew: {count: 200, from: [-4, -3, 0], to: "
+      "[6, 7, 1], smallest: 0.5, largest: 3, clear: 2m, seed: 7}}\n";
+  const Scene scene = parse(text);
+  ASSERT_EQ(scene.bodies.size(), 200U);
+  double smallest = 1;
+  double largest = 0;
+  double mean = 0;
+  for (const Body& body : scene.bodies) {
+    const auto& ball = std::get<Ellipsoid>(body.shape);
+    EXPECT_GE(ball.middle.head<2>().norm(), 2);
+    EXPECT_LE(ball.middle.head<2>().cwiseAbs().maxCoeff(), 5);
+    EXPECT_GE(ball.middle.z(), -0.5);
+    EXPECT_LE(ball.middle.z(), 0.5);
+    smallest = std::min(smallest, ball.radii.x());
+    largest = std::max(largest, ball.radii.x());
+    mean += ball.middle.x() / 200;
+  }
+  EXPECT_GE(smallest, 0.05);
+  EXPECT_LT(smallest, 0.06);
+  EXPECT_LE(largest, 0.3);
+  EXPECT_GT(largest, 0.28);
+  EXPECT_NEAR(mean, 0, 5 * 3.0 / std::sqrt(200));
+  EXPECT_EQ(std::get<Ellipsoid>(parse(text).bodies[99].shape).middle,
+            std::get<Ellipsoid>(scene.bodies[99].shape).middle);
+}
+
+TEST(SceneFile, TellsWhatCannotGrowOrWalk) {
+  EXPECT_THAT(
+      complaint(kHead + "  - {rectangle: {corner: [0, 0, 0], a: [1, 0, 0], b: [0, 1, 0]}, depth: 1cm}\n"),
+      HasSubstr("flat surfaces are neither foliage"));
+  EXPECT_THAT(complaint(kHead + "  - {sphere: {middle: [0, 0, 0], radius: 0}}\n"),
+              HasSubstr("has no volume"));
+  EXPECT_THAT(complaint(kHead + "  - {sphere: {middle: [0, 0, 0], radius: 1}, depth: 0}\n"),
+              HasSubstr("'depth' is not above 0"));
+  EXPECT_THAT(complaint(kHead + "  - {sphere: {middle: [0, 0, 0], radius: 1}, walk: {along: [[0, 0, 0]]}}\n"),
+              HasSubstr("the walk leads nowhere"));
+  EXPECT_THAT(
+      complaint(kHead + "  - {sphere: {middle: [0, 0, 0], radius: 1}, strew: {count: 2, from: [0, 2, 0], to: "
+                        "[2, 3, 0], clear: 9m}}\n"),
+      HasSubstr("no room to strew"));
+}
+
 TEST(SceneFile, TellsEveryMistakeAtItsPlace) {
   const std::string text = complaint(
       "crisp: 1\nscanner: {position: [0, 0]}\nsurfaces:\n"
@@ -95,6 +165,7 @@ TEST(SceneFile, ReadsTheScenesThatUsersCopyAsTheBuiltInOnes) {
     const Scene built_in = built_in_scene(name);
     EXPECT_EQ(from_file.name, name);
     ASSERT_EQ(from_file.surfaces.size(), built_in.surfaces.size());
+    ASSERT_EQ(from_file.bodies.size(), built_in.bodies.size());
     EXPECT_EQ(from_file.surfaces.back().corners, built_in.surfaces.back().corners);
   }
   EXPECT_THROW(built_in_scene("offise"), Error);

@@ -62,5 +62,30 @@ TEST(Scenes, TheStreetIsOpenAboveAndReachesBeyondFiftyMetres) {
   EXPECT_EQ(scene.surfaces[down->surface].name, "road");
 }
 
+TEST(Scenes, HoldWhatRealPlacesHold) {
+  const Scene workshop = built_in_scene("workshop");
+  EXPECT_EQ(look_around(workshop, 20'000).hits, 20'000) << "closed";
+  EXPECT_GT(look_around(workshop, 20'000).nearest, 0.5);
+  const Scene people = built_in_scene("people");
+  EXPECT_EQ(look_around(people, 20'000).hits, 20'000);
+  EXPECT_TRUE(std::ranges::any_of(people.bodies, [](const Body& body) { return body.walk.moves(); }));
+
+  const Scene garden = built_in_scene("garden");
+  const RayCaster caster(garden);
+  RandomStream random(1, "garden");
+  int leaves = 0;
+  int hits = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const Vector3d direction = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    const auto hit = caster.cast({Vector3d::Zero(), direction}, 50, {.time = 0, .chance = &random});
+    if (!hit) continue;
+    ++hits;
+    leaves += hit->surface >= garden.surfaces.size() &&
+              garden.bodies[hit->surface - garden.surfaces.size()].depth > 0;
+  }
+  EXPECT_GT(hits, 10'000);
+  EXPECT_GT(leaves, 0.55 * hits) << "mostly foliage";
+}
+
 }  // namespace
 }  // namespace crisp

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "grabbers/simulate/scene.hpp"
+#include "pipeline/files/yaml_map.hpp"
+
+namespace crisp {
+
+/// What an item of a scene's file is: the one box, rectangle, polygon, run of walls, cylinder, sphere,
+/// ellipsoid or shape that it names. Boxes are six flat surfaces, or one body where the item is foliage or
+/// walks.
+///
+/// @param shapes  that were described before, by name
+/// @param errors  gets what is wrong
+Scene read_geometry(YamlMap& item, const Place& place, const std::map<std::string, Scene>& shapes,
+                    std::vector<Error>& errors);
+
+}  // namespace crisp

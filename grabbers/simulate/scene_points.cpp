@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/scene_points.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace crisp {
+
+using Eigen::Vector3d;
+
+Vector3d read_point(const YamlNode& node, const std::string& what, std::size_t dimensions,
+                    std::vector<Error>& errors) {
+  constexpr double kFarthest = 1e5;  // [m] nothing stands farther off
+  Vector3d result = Vector3d::Zero();
+  if (node.kind != YamlNode::Kind::sequence || node.items.size() != dimensions) {
+    errors.emplace_back(
+        fmt::format("{}: {} is not a list of {} lengths", what, crisp::describe(node), dimensions), "",
+        node.place);
+    return result;
+  }
+  for (std::size_t i = 0; i < dimensions; ++i) {
+    std::string wrong;
+    const auto value = read_number(node.items[i], "m", wrong);
+    if (value && std::abs(*value) > kFarthest) wrong = fmt::format("{:g} m cannot be meant", *value);
+    if (!wrong.empty()) {
+      errors.emplace_back(fmt::format("{}: {}", what, wrong), "", node.items[i].place);
+    } else {
+      result[static_cast<Eigen::Index>(i)] = *value;
+    }
+  }
+  return result;
+}
+
+std::vector<Vector3d> read_points(const YamlNode& node, const std::string& what, std::size_t dimensions,
+                                  std::vector<Error>& errors) {
+  std::vector<Vector3d> points;
+  if (node.kind != YamlNode::Kind::sequence) {
+    errors.emplace_back(what + ": " + crisp::describe(node) + " is not a list of points", "", node.place);
+  }
+  for (const auto& item : node.items) points.push_back(read_point(item, what, dimensions, errors));
+  return points;
+}
+
+Vector3d read_vector(YamlMap& map, const std::string& key, const Vector3d& fallback,
+                     std::vector<Error>& errors) {
+  const YamlNode* node = map.find(key);
+  return node ? read_point(*node, "'" + key + "'", 3, errors) : fallback;
+}
+
+Vector3d require_vector(YamlMap& map, const std::string& key, std::vector<Error>& errors) {
+  map.require(key);
+  return read_vector(map, key, Vector3d::Zero(), errors);
+}
+
+}  // namespace crisp
