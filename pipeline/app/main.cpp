@@ -30,6 +30,8 @@ struct CommandLine {
   CLI::App app{"Turns what lasers on a spinning plate measured into one crisp cloud.", "crisp"};
   std::vector<std::string> plugins;
   RunRequest run;
+  RunRequest basin;
+  std::uint64_t basin_starts = 1000;
   RunRequest bound;
   RunRequest figures;
   RunRequest monte_carlo;
@@ -42,6 +44,7 @@ struct CommandLine {
   std::string shell;
   bool info_json = false;
   CLI::App* run_app = nullptr;
+  CLI::App* basin_app = nullptr;
   CLI::App* bound_app = nullptr;
   CLI::App* figures_app = nullptr;
   CLI::App* monte_carlo_app = nullptr;
@@ -57,6 +60,7 @@ struct CommandLine {
     app.require_subcommand(1);
     add_run();
     add_bound();
+    add_basin();
     add_monte_carlo();
     add_figures();
     add_validate();
@@ -159,6 +163,19 @@ struct CommandLine {
                        {"calibration", "The scanner as a calibration found it, not as it nominally is"}});
   }
 
+  void add_basin() {
+    basin_app = command("basin", "Calibrate from starts all over the range, and see where each ends");
+    basin_app->add_option("-n,--starts", basin_starts, "How many")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    add_own_pipeline(basin_app, "basin.yaml", kBasinPipeline, "out", "-j,--threads", basin);
+    add_rig(basin_app, basin.arguments);
+    add_stage_options(basin_app, "study.basin", basin,
+                      {{"scene", "What stands around: paper, office, hall, street"},
+                       {"scene_file", "A scene of your own in YAML"},
+                       {"beams", "in_plane: of each laser the two in the plate's plane; or all"}});
+  }
+
   void add_figures() {
     figures_app = command("figures", "Compute the paper's figures 4 to 7 as data to be plotted");
     add_own_pipeline(figures_app, "figures.yaml", kFiguresPipeline, "out/figures", "--threads", figures);
@@ -175,6 +192,7 @@ struct CommandLine {
     add_rig(monte_carlo_app, monte_carlo.arguments);
     add_stage_options(monte_carlo_app, "study.monte_carlo", monte_carlo,
                       {{"scene", "What stands around: paper, office, hall, street"},
+                       {"scene_file", "A scene of your own in YAML"},
                        {"beams", "in_plane: of each laser the two in the plate's plane; or all"},
                        {"estimators", "both; or refined: the refinement alone, from where RQE would end"}});
     monte_carlo_app->add_option("--only", monte_carlo_only, "Repeat the run of this seed alone")
@@ -208,6 +226,12 @@ struct CommandLine {
     info_app->add_flag("--json", info_json, "For programs");
   }
 };
+
+RunRequest basin_request(const CommandLine& line) {
+  RunRequest request = line.basin;
+  request.arguments.set.push_back("starts=" + std::to_string(line.basin_starts));
+  return request;
+}
 
 RunRequest monte_carlo_request(const CommandLine& line) {
   RunRequest request = line.monte_carlo;
@@ -272,6 +296,7 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.plugins_app->parsed()) return plugins_command(loader);
   if (!all_loaded) return ExitStatus::misused;
   if (line.run_app->parsed()) return run_command(line.run, registrar);
+  if (line.basin_app->parsed()) return run_command(basin_request(line), registrar);
   if (line.bound_app->parsed()) return run_command(line.bound, registrar);
   if (line.figures_app->parsed()) return run_command(line.figures, registrar);
   if (line.monte_carlo_app->parsed()) return run_command(monte_carlo_request(line), registrar);

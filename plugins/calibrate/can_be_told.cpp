@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/can_be_told.hpp"
 
+#include "plugins/calibrate/base_slots.hpp"
 #include "plugins/calibrate/observability.hpp"
 
 namespace crisp {
@@ -24,6 +25,19 @@ PlateTrajectory thinned(const PlateTrajectory& plate, double spacing) {
   return {plate.epoch_ns(), std::move(times), std::move(angles), spacing + plate.max_gap()};
 }
 
+/// The model with every free τ off by as much as it may be.
+SensorModel farther_out(const SensorModel& model, const std::vector<std::size_t>& free,
+                        const SearchRange& range) {
+  Eigen::VectorXd values = model.values();
+  for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
+    const std::size_t tau = slot(model, laser, kTau);
+    if (is_free(free, tau)) values[static_cast<Eigen::Index>(tau)] += range.tau;
+  }
+  SensorModel moved = model;
+  moved.set_values(values);
+  return moved;
+}
+
 }  // namespace
 
 FreeParameters can_be_told(FreeParameters parameters, const SensorModel& model, const Sample& sample,
@@ -32,9 +46,13 @@ FreeParameters can_be_told(FreeParameters parameters, const SensorModel& model, 
   const PlateTrajectory plate = thinned(*sample.plate, kSpacing);
   Sample some = thin_evenly(sample, kBeams, 1);
   some.plate = &plate;
-  const Eigen::MatrixXd motion = displacement(model, some, parameters.free) / (kLeastMotion * kLeastMotion);
-  const auto told =
-      observability(motion, parameters.free, model.names(), ranges_of(range, model, parameters.free));
+  const auto told_at = [&](const SensorModel& place) {
+    const Eigen::MatrixXd motion = displacement(place, some, parameters.free) / (kLeastMotion * kLeastMotion);
+    return observability(motion, parameters.free, model.names(), ranges_of(range, model, parameters.free));
+  };
+  auto told = told_at(model);
+  // A laser on the spin axis turns by α as by λ; but where it sits is still to be found.
+  if (!told.unobservable.empty()) told = told_at(farther_out(model, parameters.free, range));
   parameters.free = told.known;
   for (Unobservable lost : told.unobservable) {
     lost.reason = "the motion of the plate does not tell it";

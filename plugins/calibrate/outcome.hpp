@@ -16,7 +16,7 @@ struct Outcome {
   std::vector<std::size_t> free;  ///< indices into model.values(): m parameters that were turned
   Eigen::MatrixXd covariance;     ///< m × m, of these, in their order
   std::vector<Unobservable> unobservable;
-  bool sees_single_spots = false;  ///< too few directions of the plate to tell: see sees_single_spots()
+  std::vector<std::string> doubts = {};  ///< why this may not be the truth, in words
 };
 
 /// The outcome as a calibration: values, standard errors, covariance, and what is unobservable. Each λ is

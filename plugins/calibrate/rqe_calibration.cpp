@@ -15,6 +15,13 @@
 namespace crisp {
 namespace {
 
+constexpr const char* kSingleSpots =
+    "the plate was only ever seen in a few directions, as its rate and the mirrors' are commensurate: walls "
+    "are "
+    "spots far from one another, and a crisp cloud of spots is no calibration. Record at another rate, or "
+    "with a "
+    "changing one";
+
 void refuse_a_standing_plate(const PlateTrajectory& plate) {
   constexpr double kLeast = 1 * kDegree;
   const auto [low, high] = std::ranges::minmax(plate.angles());
@@ -59,7 +66,7 @@ class RqeCalibration {
             .free = parameters_.free,
             .covariance = std::move(covariance),
             .unobservable = parameters_.unobservable,
-            .sees_single_spots = sees_single_spots(sample_, settings_.in_plane)};
+            .doubts = doubts()};
   }
 
  private:
@@ -105,6 +112,12 @@ class RqeCalibration {
                             .probes = settings_.probes,
                             .seed = settings_.seed,
                             .range = settings_.in_plane.range});
+  }
+
+  std::vector<std::string> doubts() const {
+    std::vector<std::string> found;
+    if (sees_single_spots(sample_, settings_.in_plane)) found.emplace_back(kSingleSpots);
+    return found;
   }
 
   const RqeCalibrationSettings& settings_;

@@ -103,14 +103,7 @@ void RqeStage::finish(Outputs& out, Context& context) {
                        [&](double done, std::string_view what) { context.progress(done, what); });
   if (context.interrupted()) return;
 
-  if (outcome.sees_single_spots) {
-    context.distrust(
-        "the plate was only ever seen in a few directions, as its rate and the mirrors' are commensurate: "
-        "walls "
-        "are spots far from one another, and a crisp cloud of spots is no calibration. Record at another "
-        "rate, "
-        "or with a changing one");
-  }
+  for (const auto& doubt : outcome.doubts) context.distrust(doubt);
   Calibration calibration = calibration_of(outcome, context.rig());
   const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
   const Crispness crispness(sample, outcome.model, {.sigma = sigma, .points = settings.points}, *measure);

@@ -5,15 +5,12 @@
 
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/paper.hpp"
+#include "plugins/calibrate/base_slots.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/crispest.hpp"
 
 namespace crisp {
 namespace {
-
-constexpr std::size_t kTau = 1;  // of the only laser, in SensorModel::values()
-constexpr std::size_t kAlpha = 2;
-constexpr std::size_t kEta = 3;
 
 SensorModel with_one(const SensorModel& model, std::size_t parameter, double value) {
   return with(model, {parameter}, Eigen::VectorXd::Constant(1, value));

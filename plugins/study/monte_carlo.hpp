@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "plugins/study/parallel_runs.hpp"
 #include "plugins/study/trial.hpp"
 
 namespace crisp {
@@ -15,15 +15,9 @@ struct MonteCarloSettings {
   unsigned threads = 1;
 };
 
-/// How the work can be watched and stopped from outside.
-struct MonteCarloHooks {
-  std::function<void(std::size_t done)> progress = {};  ///< called in the calling thread
-  std::function<bool()> interrupted = {};               ///< called in any thread
-};
-
 /// Runs all trials, in the order of their seeds. What each gives depends on its seed alone, and not on the
 /// number of threads. Interrupted, it returns early, with trials missing.
 std::vector<Trial> run_trials(const MonteCarloSettings& settings, const MakeMeasure& make_measure,
-                              const MonteCarloHooks& hooks = {});
+                              const RunHooks& hooks = {});
 
 }  // namespace crisp

@@ -72,7 +72,7 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
   d.option("noise", &MonteCarloStage::trial, &TrialSettings::noise, "standard deviation of a range")
       .unit("m")
       .range(1e-5, 1);
-  d.option("eta", &MonteCarloStage::trial, &TrialSettings::eta,
+  d.option("eta", &MonteCarloStage::trial, &TrialSettings::truth, &Departures::eta,
            "the true lags are drawn up to this from 0, where RQE starts")
       .unit("s")
       .range(0, 0.09);

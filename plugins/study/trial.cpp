@@ -16,7 +16,7 @@ namespace {
 ScannerSettings scanner_of(const TrialSettings& settings, std::uint64_t seed) {
   ScannerSettings scanner{.rig = settings.rig, .seed = seed};
   scanner.rig.lasers.resize(settings.lasers);
-  scanner.truth = draw_truth(nominal_calibration(scanner.rig), {.eta = settings.eta}, seed);
+  scanner.truth = draw_truth(nominal_calibration(scanner.rig), settings.truth, seed);
   scanner.duration = settings.duration;
   scanner.range.sigma = settings.noise;
   scanner.range.quantum = settings.quantum;

@@ -34,7 +34,7 @@ struct TrialSettings {
   std::optional<std::uint64_t> motion_seed;  ///< the motion of all runs; none: each run draws its own
   double noise = 0.012;                      ///< [m] standard deviation of a range
   double quantum = 0.001;                    ///< [m] ranges are multiples of it
-  double eta = 0.04;                         ///< [s] the true η are drawn within ± this
+  Departures truth{.eta = 0.04};             ///< how far the truth lies off the rig at most
   Estimators estimators = Estimators::kBoth;
   Departures start;  ///< how far off the start of RQE is at most; its η is 0
   Departures near;   ///< how far off the refinement starts at most where RQE is left out: where RQE ends

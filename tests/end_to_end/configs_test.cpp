@@ -23,8 +23,9 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "bound.yaml", "calibrate.yaml", "figures.yaml",
-                                              "monte_carlo.yaml", "picture.yaml", "simulate.yaml"));
+  EXPECT_THAT(pipelines,
+              UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml",
+                                   "figures.yaml", "monte_carlo.yaml", "picture.yaml", "simulate.yaml"));
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/study/basin.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "grabbers/simulate/random.hpp"
+#include "pipeline/data/error.hpp"
+#include "plugins/calibrate/base_slots.hpp"
+#include "plugins/calibrate/free_parameters.hpp"
+
+namespace crisp {
+namespace {
+
+/// What a calibration came to.
+struct End {
+  SensorModel model;
+  Eigen::VectorXd std_error;        // of the parameters that it turned
+  std::vector<std::size_t> free;    // which they are
+  std::vector<std::string> doubts;  // all that it says against itself
+};
+
+void add(std::vector<std::string>& to, const std::vector<std::string>& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+
+/// calibrate.rqe and calibrate.refine.
+/// @throws Error  as they do
+End calibrated(const SensorModel& start, const Sample& sample, const TrialSettings& settings,
+               Measure& measure) {
+  RqeCalibrationSettings rqe = settings.rqe;
+  rqe.full_field = settings.beams == BeamChoice::kAll;
+  rqe.noise = settings.noise;
+  RefinementSettings refinement = settings.refinement;
+  refinement.surfels.noise = settings.noise;
+  const Outcome crispest = calibrate_by_rqe(start, sample, measure, rqe);
+  const Refinement refined = refine_by_surfels(crispest.model, sample, refinement);
+  End end{.model = refined.outcome.model,
+          .std_error = refined.outcome.covariance.diagonal().cwiseSqrt(),
+          .free = refined.outcome.free,
+          .doubts = crispest.doubts};
+  add(end.doubts, refined.outcome.doubts);
+  for (const auto* list : {&crispest.unobservable, &refined.outcome.unobservable}) {
+    for (const Unobservable& u : *list) end.doubts.push_back(u.parameter + " is not observable: " + u.reason);
+  }
+  return end;
+}
+
+/// Even draws of λ, τ, α and η of each laser over the range, about the truth.
+SensorModel drawn_start(const SensorModel& truth, const StartRange& range, std::uint64_t recording,
+                        std::size_t number) {
+  RandomStream random(recording, "start " + std::to_string(number));
+  Eigen::VectorXd values = truth.values();
+  for (std::size_t laser = 0; laser < truth.lasers(); ++laser) {
+    const auto value = [&](BaseSlot which) -> double& {
+      return values[static_cast<Eigen::Index>(slot(truth, laser, which))];
+    };
+    const double turn = random.uniform(-range.lambda, range.lambda);
+    if (laser > 0) value(kLambda) += turn;
+    value(kTau) = random.uniform(range.tau_least, range.tau_most);
+    value(kAlpha) += random.uniform(-range.alpha, range.alpha);
+    value(kEta) += random.uniform(-range.eta, range.eta);
+  }
+  SensorModel start = truth;
+  start.set_values(values);
+  return start;
+}
+
+/// All starts of one recording.
+class Exploration {
+ public:
+  Exploration(const BasinSettings& settings, std::uint64_t seed, Measure& measure)
+      : settings_(settings), measure_(measure), recording_(record(settings.trial, seed)), seed_(seed) {}
+
+  BasinRecording run(std::size_t starts) {
+    const SensorModel truth(recording_.simulated.truth);
+    const Sample sample = recording_.sample();
+    BasinRecording result{.seed = seed_, .parameters = {}, .starts = {}, .doubts = {}, .failure = {}};
+    try {
+      const End optimum = calibrated(truth, sample, settings_.trial, measure_);
+      result.doubts = optimum.doubts;
+      for (const std::size_t parameter : optimum.free) result.parameters.push_back(truth.names()[parameter]);
+      for (std::size_t k = 0; k < starts; ++k) {
+        result.starts.push_back(explore(drawn_start(truth, settings_.range, seed_, k), sample, optimum));
+      }
+    } catch (const Error& error) {
+      result.failure = error.message();
+    }
+    return result;
+  }
+
+ private:
+  BasinStart explore(const SensorModel& start, const Sample& sample, const End& optimum) {
+    BasinStart result{.recording = seed_, .start = {}, .farthest = {}, .doubts = {}};
+    const Eigen::VectorXd drawn = picked(start, optimum.free);
+    result.start.assign(drawn.begin(), drawn.end());
+    try {
+      const End end = calibrated(start, sample, settings_.trial, measure_);
+      result.doubts = end.doubts;
+      compare(result, end, optimum);
+    } catch (const Error& error) {
+      result.doubts = {error.message()};
+      result.off = std::numeric_limits<double>::infinity();
+    }
+    const bool same = result.off <= settings_.same;
+    result.ending = same ? Ending::kSame : result.doubts.empty() ? Ending::kSilent : Ending::kDoubted;
+    return result;
+  }
+
+  static void compare(BasinStart& result, const End& end, const End& optimum) {
+    for (std::size_t k = 0; k < optimum.free.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(optimum.free[k]);
+      const std::string& name = optimum.model.names()[optimum.free[k]];
+      double error = end.model.values()[at] - optimum.model.values()[at];
+      if (name.ends_with(".lambda")) error = std::remainder(error, 2 * std::numbers::pi);
+      const double off = std::abs(error) / optimum.std_error[static_cast<Eigen::Index>(k)];
+      if (off <= result.off) continue;
+      result.off = off;
+      result.farthest = name;
+      result.error = error;
+    }
+  }
+
+  const BasinSettings& settings_;
+  Measure& measure_;
+  Recording recording_;
+  std::uint64_t seed_;
+};
+
+}  // namespace
+
+std::vector<BasinRecording> explore_basin(const BasinSettings& settings, const MakeMeasure& make_measure,
+                                          const RunHooks& hooks) {
+  const std::size_t each = std::max<std::size_t>(1, settings.starts_a_recording);
+  const std::size_t recordings = (settings.starts + each - 1) / each;
+  return run_in_parallel<BasinRecording>(recordings, settings.threads, hooks, [&](std::size_t k) {
+    const auto measure = make_measure();
+    return Exploration(settings, settings.first_seed + k, *measure)
+        .run(std::min(each, settings.starts - k * each));
+  });
+}
+
+}  // namespace crisp

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "grabbers/simulate/world.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/study/basin.hpp"
+
+namespace crisp {
+
+/// `study.basin`: whether calibrations end in the same optimum from wherever they start, or say that they
+/// are not sure.
+class BasinStage final : public Stage {
+ public:
+  BasinStage();
+  static void describe(StageDescription<BasinStage>& d);
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  TrialSettings& trial() { return settings_.trial; }
+  MotionSettings& motion() { return settings_.trial.motion; }
+
+  BasinSettings settings_;
+  SceneChoice scene_{.name = "paper", .file = {}};
+  std::filesystem::path file_;
+  std::vector<BasinRecording> recordings_;
+};
+
+}  // namespace crisp
