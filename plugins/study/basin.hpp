@@ -26,7 +26,7 @@ struct BasinSettings {
   StartRange range;
   std::size_t starts = 1000;
   std::size_t starts_a_recording = 20;  ///< then a new one is simulated
-  double same = 1;               ///< [standard errors] ends that are no farther from one another are the same
+  double same = 3;               ///< [standard errors] ends that are no farther from one another are the same
   std::uint64_t first_seed = 1;  ///< of the first recording
   unsigned threads = 1;
 };
