@@ -140,7 +140,7 @@ TEST(MonteCarlo, StartsNearTheTruthWhereRqeIsLeftOut) {
 TEST(MonteCarlo, StopsWhenInterrupted) {
   std::size_t done = 0;
   const RunHooks hooks{.progress = [&](std::size_t n) { done = n; },
-                              .interrupted = [&] { return done >= 1; }};
+                       .interrupted = [&] { return done >= 1; }};
   EXPECT_EQ(run_trials(small(100), make_rqe, hooks).size(), 1U);
 }
 
