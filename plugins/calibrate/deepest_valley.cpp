@@ -2,6 +2,7 @@
 #include "plugins/calibrate/deepest_valley.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -38,12 +39,29 @@ bool has_beams(const Sample& sample, std::size_t laser) {
   return std::cmp_greater_equal(std::ranges::count(sample.beams.laser, laser), kFewBeams);
 }
 
+/// How far two places of a parameter are from one another.
+double between(double a, double b, bool circular) {
+  return std::abs(circular ? std::remainder(a - b, 2 * std::numbers::pi) : a - b);
+}
+
+/// Leaves one of bottoms that are nearer to one another than `same`, the first.
+void drop_doubles(std::vector<Bottom>& bottoms, double same, bool circular) {
+  std::vector<Bottom> single;
+  for (const Bottom& bottom : bottoms) {
+    const bool is_new = std::ranges::all_of(
+        single, [&](const Bottom& other) { return between(bottom.at, other.at, circular) > same; });
+    if (is_new) single.push_back(bottom);
+  }
+  bottoms = std::move(single);
+}
+
 }  // namespace
 
-void to_deepest_valley(SensorModel& model, std::size_t parameter, const std::vector<double>& grid,
-                       bool circular, const Sample& sample, Measure& measure, const SearchRange& range,
-                       const Narrowing& sigma) {
+std::optional<Rival> to_deepest_valley(SensorModel& model, std::size_t parameter,
+                                       const std::vector<double>& grid, bool circular, const Sample& sample,
+                                       Measure& measure, const SearchRange& range, const Narrowing& sigma) {
   constexpr std::size_t kValleys = 4;
+  constexpr double kSame = 0.1;          // of a step: ends so near to one another are one
   constexpr std::size_t kFinalists = 2;  // under the narrowest kernel, which looks at all beams
   const auto sigmas = annealing(sigma.from, sigma.to);
   std::vector<Sample> samples;
@@ -51,39 +69,53 @@ void to_deepest_valley(SensorModel& model, std::size_t parameter, const std::vec
   auto starts = valleys(cost_over(model, parameter, samples.front(), measure, sigma.from), grid, circular);
   starts.resize(std::min(starts.size(), kValleys));
   const double margin = circular ? std::numbers::pi : grid[1] - grid[0];
+  const auto step_at = [&](double place, std::size_t k) {
+    const SensorModel there = with_one(model, parameter, place);
+    return std::abs(search_basis(there, samples[k], {parameter}, range, sigmas[k])(0, 0));
+  };
   const auto follow = [&](double start, std::size_t k) {
-    const SensorModel there = with_one(model, parameter, start);
-    const double step = search_basis(there, samples[k], {parameter}, range, sigmas[k])(0, 0);
     return bottom(cost_over(model, parameter, samples[k], measure, sigmas[k]),
                   {.start = start,
-                   .step = std::abs(step),
+                   .step = step_at(start, k),
                    .lower = grid.front() - margin,
                    .upper = grid.back() + margin,
                    .accuracy = k + 1 == sigmas.size() ? kFine : kRough});
   };
   std::vector<Bottom> bottoms;
   for (const double start : starts) bottoms.push_back({.at = start, .value = 0});
+  if (bottoms.empty()) return std::nullopt;
   for (std::size_t k = 0; k < sigmas.size(); ++k) {
     for (Bottom& found : bottoms) found = follow(found.at, k);
     std::ranges::sort(bottoms, {}, &Bottom::value);
+    drop_doubles(bottoms, kSame * step_at(bottoms.front().at, k), circular);
     if (k + 2 == sigmas.size()) bottoms.resize(std::min(bottoms.size(), kFinalists));
   }
-  if (!bottoms.empty()) model = with_one(model, parameter, bottoms.front().at);
+  const Bottom best = bottoms.front();
+  model = with_one(model, parameter, best.at);
+  const bool has_rival =
+      bottoms.size() > 1 && between(bottoms[1].at, best.at, circular) > step_at(best.at, sigmas.size() - 1);
+  if (!has_rival) return std::nullopt;
+  return Rival{.parameter = parameter, .at = bottoms[1].at, .height = bottoms[1].value - best.value};
 }
 
-void find_lambdas(SensorModel& model, const std::vector<std::size_t>& free, const Sample& sample,
-                  Measure& measure, const SearchRange& range, const Narrowing& sigma) {
+std::vector<Rival> find_lambdas(SensorModel& model, const std::vector<std::size_t>& free,
+                                const Sample& sample, Measure& measure, const SearchRange& range,
+                                const Narrowing& sigma) {
   const auto is_fixed = [&](std::size_t laser) { return !is_free(free, slot(model, laser, kLambda)); };
   std::size_t reference = 0;
   while (reference < model.lasers() && !(is_fixed(reference) && has_beams(sample, reference))) ++reference;
-  if (reference == model.lasers()) return;
+  std::vector<Rival> rivals;
+  if (reference == model.lasers()) return rivals;
   for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
     if (is_fixed(laser) || !has_beams(sample, laser)) continue;
     const Sample pair = select(sample, [&](std::size_t i) {
       return sample.beams.laser[i] == reference || sample.beams.laser[i] == laser;
     });
-    to_deepest_valley(model, slot(model, laser, kLambda), whole_circle(), true, pair, measure, range, sigma);
+    const auto rival = to_deepest_valley(model, slot(model, laser, kLambda), whole_circle(), true, pair,
+                                         measure, range, sigma);
+    if (rival) rivals.push_back(*rival);
   }
+  return rivals;
 }
 
 }  // namespace crisp

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "plugins/calibrate/crispest.hpp"
@@ -13,22 +14,33 @@ struct Narrowing {
   double to = 0.1;    ///< [m] and at last
 };
 
+/// Another valley that a search could have ended in.
+struct Rival {
+  std::size_t parameter = 0;  ///< index into model.values()
+  double at = 0;              ///< its value there
+  double height = 0;          ///< [nat] by how much the cloud is less crisp there
+};
+
 /// The value of one parameter, others as they are, at which a cloud is crispest, wherever it starts: looks at
 /// all of `grid` with the wide kernel, follows the few lowest valleys downhill while the kernel narrows, and
 /// keeps the crispest end.
 ///
+/// @return the next crispest end, if there is another
+///
 /// @param grid      evenly spaced, finer than valleys at the wide kernel are wide
 /// @param circular  whether its last value is next to its first
-void to_deepest_valley(SensorModel& model, std::size_t parameter, const std::vector<double>& grid,
-                       bool circular, const Sample& sample, Measure& measure, const SearchRange& range,
-                       const Narrowing& sigma);
+std::optional<Rival> to_deepest_valley(SensorModel& model, std::size_t parameter,
+                                       const std::vector<double>& grid, bool circular, const Sample& sample,
+                                       Measure& measure, const SearchRange& range, const Narrowing& sigma);
 
 /// λ of each laser around the whole circle, one after the other, against the first laser whose λ is not free.
 /// Leaves alone what has no beams to speak of.
 ///
 /// @param free  indices into model.values()
-void find_lambdas(SensorModel& model, const std::vector<std::size_t>& free, const Sample& sample,
-                  Measure& measure, const SearchRange& range, const Narrowing& sigma);
+/// @return the rivals of each
+std::vector<Rival> find_lambdas(SensorModel& model, const std::vector<std::size_t>& free,
+                                const Sample& sample, Measure& measure, const SearchRange& range,
+                                const Narrowing& sigma);
 
 /// With fewer beams there is nothing to align.
 inline constexpr std::size_t kFewBeams = 20;

@@ -34,7 +34,9 @@ class InPlaneCalibration {
     constexpr int kSteps = 25;  // to either side
     std::vector<double> grid;
     for (int i = -kSteps; i <= kSteps; ++i) grid.push_back(centre + settings_.range.eta * i / (kSteps + 1));
-    to_deepest_valley(model_, free[0], grid, false, own, measure_, settings_.range, narrowing());
+    const auto rival =
+        to_deepest_valley(model_, free[0], grid, false, own, measure_, settings_.range, narrowing());
+    if (rival) rivals_.push_back(*rival);
   }
 
   void find_tau_alpha(std::size_t laser) {
@@ -47,7 +49,10 @@ class InPlaneCalibration {
     }
   }
 
-  void find_lambdas() { crisp::find_lambdas(model_, free_, both_, measure_, settings_.range, narrowing()); }
+  void find_lambdas() {
+    const auto rivals = crisp::find_lambdas(model_, free_, both_, measure_, settings_.range, narrowing());
+    rivals_.insert(rivals_.end(), rivals.begin(), rivals.end());
+  }
 
   void find_geometry() {
     std::vector<std::size_t> geometry;
@@ -61,6 +66,8 @@ class InPlaneCalibration {
     crispest(model_, both_, geometry, measure_, settings_.sigma_to, settings_.range, settings_.minimiser);
   }
 
+  const std::vector<Rival>& rivals() const { return rivals_; }
+
  private:
   Narrowing narrowing() const { return {.from = settings_.sigma_from, .to = settings_.sigma_to}; }
 
@@ -72,6 +79,7 @@ class InPlaneCalibration {
   }
 
   SensorModel& model_;
+  std::vector<Rival> rivals_;
   const std::vector<std::size_t>& free_;
   Sample front_;
   Sample both_;
@@ -117,13 +125,15 @@ bool sees_single_spots(const Sample& sample, const InPlaneSettings& settings) {
   return std::ranges::any_of(lasers, [&](auto laser) { return spacing(of_laser(both, laser)) > kFar; });
 }
 
-void calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free, const Sample& sample,
-                        Measure& measure, const InPlaneSettings& settings) {
+std::vector<Rival> calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free,
+                                      const Sample& sample, Measure& measure,
+                                      const InPlaneSettings& settings) {
   InPlaneCalibration calibration(model, free, sample, measure, settings);
   for (std::size_t laser = 0; laser < model.lasers(); ++laser) calibration.find_eta(laser);
   for (std::size_t laser = 0; laser < model.lasers(); ++laser) calibration.find_tau_alpha(laser);
   calibration.find_lambdas();
   calibration.find_geometry();
+  return calibration.rivals();
 }
 
 }  // namespace crisp

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "plugins/calibrate/crispest.hpp"
+#include "plugins/calibrate/deepest_valley.hpp"
 
 namespace crisp {
 
@@ -31,7 +32,9 @@ bool sees_single_spots(const Sample& sample, const InPlaneSettings& settings);
 ///
 /// @param free    indices into model.values(); others stay as they are
 /// @param sample  covered for every η in the range
-void calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free, const Sample& sample,
-                        Measure& measure, const InPlaneSettings& settings);
+/// @return  valleys of η and λ that it left aside, the next deepest of each
+std::vector<Rival> calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free,
+                                      const Sample& sample, Measure& measure,
+                                      const InPlaneSettings& settings);
 
 }  // namespace crisp

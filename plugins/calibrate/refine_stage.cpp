@@ -95,10 +95,7 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
                   {"converged", refined.converged}});
   context.say(fmt::format("{} flat surfaces with {} beams; chi2 {:.3f} per degree of freedom after {} rounds",
                           refined.surfels, refined.beams, refined.chi2, refined.rounds));
-  if (!refined.converged) {
-    context.warn(fmt::format("the refinement still moved after {} rounds: its standard errors are too small",
-                             refined.rounds));
-  }
+  for (const auto& doubt : refined.outcome.doubts) context.distrust(doubt);
   if (refined.chi2 > kPoorFit) {
     context.warn(
         fmt::format("beams miss their surfaces by {:.1f} times the noise of {:g} mm: the noise is larger, or "

@@ -15,12 +15,17 @@
 namespace crisp {
 namespace {
 
+/// [nat] From where a valley is clearly less deep than the deepest. Two lasers whose clouds have nothing in
+/// common are by log 2 less crisp than two that see the same; in ordinary rooms the next valley is 0.3 to 0.5
+/// off.
+constexpr double kClearlyDeeper = 0.1;
+
 constexpr const char* kSingleSpots =
     "the plate was only ever seen in a few directions, as its rate and the mirrors' are commensurate: walls "
     "are "
     "spots far from one another, and a crisp cloud of spots is no calibration. Record at another rate, or "
-    "with a "
-    "changing one";
+    "with "
+    "a changing one";
 
 void refuse_a_standing_plate(const PlateTrajectory& plate) {
   constexpr double kLeast = 1 * kDegree;
@@ -87,7 +92,7 @@ class RqeCalibration {
 
   void in_plane() {
     tell(0, "beams in the plate's plane");
-    calibrate_in_plane(model_, parameters_.free, sample_, measure_, settings_.in_plane);
+    rivals_ = calibrate_in_plane(model_, parameters_.free, sample_, measure_, settings_.in_plane);
   }
 
   Sample full_field() {
@@ -117,6 +122,12 @@ class RqeCalibration {
   std::vector<std::string> doubts() const {
     std::vector<std::string> found;
     if (sees_single_spots(sample_, settings_.in_plane)) found.emplace_back(kSingleSpots);
+    for (const Rival& rival : rivals_) {
+      if (rival.height > kClearlyDeeper) continue;
+      found.push_back(fmt::format(
+          "{} at {:.4g} makes the cloud of the beams in the plate's plane as crisp, to {:.3f} nat",
+          model_.names()[rival.parameter], rival.at, rival.height));
+    }
     return found;
   }
 
@@ -124,6 +135,7 @@ class RqeCalibration {
   Measure& measure_;
   const Reporter& report_;
   SensorModel model_;
+  std::vector<Rival> rivals_;
   Sample sample_;
   FreeParameters parameters_;
 };

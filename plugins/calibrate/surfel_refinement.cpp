@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/surfel_refinement.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "pipeline/data/error.hpp"
+#include "plugins/calibrate/agreement.hpp"
+#include "plugins/calibrate/base_slots.hpp"
 #include "plugins/calibrate/can_be_told.hpp"
 #include "plugins/calibrate/flat_surfaces.hpp"
 #include "plugins/calibrate/free_parameters.hpp"
 #include "plugins/calibrate/observability.hpp"
 #include "plugins/calibrate/placed_beams.hpp"
+#include "plugins/calibrate/steady.hpp"
 #include "plugins/calibrate/surfel_rows.hpp"
 #include "plugins/calibrate/upright.hpp"
 
@@ -34,7 +40,7 @@ class Refiner {
   /// @return  whether nothing more is to be expected of the next one
   bool step() {
     const PlacedBeams placed(model_, sample_);
-    const Surfels& surfels = surfaces_->update(placed.view(), last_step_);
+    const Surfels surfels = steady_ones(surfaces_->update(placed.view(), last_step_), placed.view());
     if (surfels.surfels.empty()) {
       throw Error(
           "no flat surface is seen by these data",
@@ -53,6 +59,7 @@ class Refiner {
     covariance_ = covariance_.selfadjointView<Eigen::Lower>();  // to the last bit
     const Eigen::VectorXd change = -posterior.solve(pull);
     model_ = with(model_, free_, picked(model_, free_) + change);
+    agreement_ = agreement(surfels, placed.view(), model_.lasers(), settings_.surfels.noise);
     surfels_ = surfels.surfels.size();
     beams_ = equations.beams;
     chi2_ = equations.chi2 / std::max(1.0, equations.freedom);
@@ -74,17 +81,50 @@ class Refiner {
   const std::vector<std::size_t>& free() const { return free_; }
 
   Refinement result() const {
-    return {.outcome = {.model = model_, .free = free_, .covariance = covariance_, .unobservable = {}},
+    return {.outcome = {.model = model_,
+                        .free = free_,
+                        .covariance = covariance_,
+                        .unobservable = {},
+                        .doubts = doubts()},
             .surfels = surfels_,
             .beams = beams_,
             .chi2 = chi2_};
   }
 
  private:
+  /// Chosen anew while the parameters move, and kept in the end, so that the steps come to one.
+  Surfels steady_ones(const Surfels& found, const BeamsView& beams) {
+    constexpr double kSmallStep = 0.5;  // [standard errors]
+    if (last_step_ > kSmallStep || steady_.size() != found.surfels.size()) {
+      steady_ = steady(found, beams, settings_.surfels.noise);
+    }
+    return kept(found, steady_);
+  }
+
+  std::vector<std::string> doubts() const {
+    std::vector<std::string> lasers;
+    for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
+      const std::string& lambda = model_.names()[slot(model_, laser, kLambda)];
+      lasers.push_back(lambda.substr(0, lambda.rfind('.')));
+    }
+    std::vector<std::string> found = disagreements(agreement_, lasers);
+    const Eigen::VectorXd priors = ranges_of(settings_.prior, model_, free_);
+    const Eigen::VectorXd moved = (picked(model_, free_) - picked(start_, free_)).cwiseQuotient(priors);
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      constexpr double kFar = 2;  // of what the start was trusted to
+      if (std::abs(moved[static_cast<Eigen::Index>(k)]) < kFar) continue;
+      found.push_back(fmt::format("{} was refined to far from where it started: one of both is wrong",
+                                  model_.names()[free_[k]]));
+    }
+    return found;
+  }
+
   SensorModel start_;
   SensorModel model_;
   const Sample& sample_;
   std::vector<std::size_t> free_;
+  std::vector<bool> steady_;  // of the surfels
+  Agreement agreement_;
   std::unique_ptr<FlatSurfaces> surfaces_;
   const RefinementSettings& settings_;
   Eigen::MatrixXd information_;
@@ -123,6 +163,10 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
   result.outcome.unobservable = std::move(parameters.unobservable);
   result.rounds = round;
   result.converged = converged;
+  if (!converged && round == settings.max_rounds) {
+    result.outcome.doubts.push_back(
+        fmt::format("the refinement still moved after {} rounds: its standard errors are too small", round));
+  }
   return result;
 }
 

@@ -20,8 +20,22 @@ struct End {
   std::vector<std::string> doubts;  // all that it says against itself
 };
 
-void add(std::vector<std::string>& to, const std::vector<std::string>& more) {
-  to.insert(to.end(), more.begin(), more.end());
+void add(std::vector<std::string>& to, const std::vector<Unobservable>& unobservable) {
+  for (const Unobservable& u : unobservable) to.push_back(u.parameter + " is not observable: " + u.reason);
+}
+
+/// calibrate.refine.
+/// @throws Error  as it does
+End refined(const SensorModel& start, const Sample& sample, const TrialSettings& settings) {
+  RefinementSettings refinement = settings.refinement;
+  refinement.surfels.noise = settings.noise;
+  const Refinement found = refine_by_surfels(start, sample, refinement);
+  End end{.model = found.outcome.model,
+          .std_error = found.outcome.covariance.diagonal().cwiseSqrt(),
+          .free = found.outcome.free,
+          .doubts = found.outcome.doubts};
+  add(end.doubts, found.outcome.unobservable);
+  return end;
 }
 
 /// calibrate.rqe and calibrate.refine.
@@ -31,18 +45,10 @@ End calibrated(const SensorModel& start, const Sample& sample, const TrialSettin
   RqeCalibrationSettings rqe = settings.rqe;
   rqe.full_field = settings.beams == BeamChoice::kAll;
   rqe.noise = settings.noise;
-  RefinementSettings refinement = settings.refinement;
-  refinement.surfels.noise = settings.noise;
   const Outcome crispest = calibrate_by_rqe(start, sample, measure, rqe);
-  const Refinement refined = refine_by_surfels(crispest.model, sample, refinement);
-  End end{.model = refined.outcome.model,
-          .std_error = refined.outcome.covariance.diagonal().cwiseSqrt(),
-          .free = refined.outcome.free,
-          .doubts = crispest.doubts};
-  add(end.doubts, refined.outcome.doubts);
-  for (const auto* list : {&crispest.unobservable, &refined.outcome.unobservable}) {
-    for (const Unobservable& u : *list) end.doubts.push_back(u.parameter + " is not observable: " + u.reason);
-  }
+  End end = refined(crispest.model, sample, settings);
+  end.doubts.insert(end.doubts.begin(), crispest.doubts.begin(), crispest.doubts.end());
+  add(end.doubts, crispest.unobservable);
   return end;
 }
 
@@ -77,7 +83,7 @@ class Exploration {
     const Sample sample = recording_.sample();
     BasinRecording result{.seed = seed_, .parameters = {}, .starts = {}, .doubts = {}, .failure = {}};
     try {
-      const End optimum = calibrated(truth, sample, settings_.trial, measure_);
+      const End optimum = refined(truth, sample, settings_.trial);
       result.doubts = optimum.doubts;
       for (const std::size_t parameter : optimum.free) result.parameters.push_back(truth.names()[parameter]);
       for (std::size_t k = 0; k < starts; ++k) {

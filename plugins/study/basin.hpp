@@ -31,7 +31,7 @@ struct BasinSettings {
   unsigned threads = 1;
 };
 
-/// How a calibration ended, against one of the same recording that started at the truth.
+/// How a calibration ended, against the optimum at the truth: calibrate.refine alone, from the truth on.
 enum class Ending {
   kSame,     ///< in the same optimum
   kDoubted,  ///< elsewhere, and it said that it is not sure, or gave no result
@@ -54,8 +54,8 @@ struct BasinRecording {
   std::uint64_t seed = 0;
   std::vector<std::string> parameters;  ///< those that are calibrated
   std::vector<BasinStart> starts;
-  std::vector<std::string> doubts;  ///< of the calibration that started at the truth
-  std::string failure;  ///< why the calibration fails even from the truth; there are no starts then
+  std::vector<std::string> doubts;  ///< of the refinement that started at the truth
+  std::string failure;  ///< why the refinement fails even from the truth; there are no starts then
 };
 
 /// Calibrates recordings from starts all over the range: calibrate.rqe, then calibrate.refine. What a

@@ -18,14 +18,17 @@ BasinStage::BasinStage() {
 void BasinStage::describe(StageDescription<BasinStage>& d) {
   d.name("study.basin").summary("calibrates from starts all over the range, and sees where each ends");
   d.details(
-      "Simulated recordings are calibrated by calibrate.rqe and calibrate.refine, first from the truth, then "
-      "from "
-      "starts drawn evenly over the range: tau, alpha and eta of each laser, and lambda of all but the "
-      "first. "
-      "Counted is how many end in the same optimum, elsewhere but saying that they are not sure (a doubt, a "
-      "parameter that is named unobservable, an error), or elsewhere and sure of it. The truth of each "
-      "recording "
-      "is drawn up to 2 cm, 3 degrees, 5 degrees (lambda) and 40 ms from the rig's nominal values.");
+      "Simulated recordings are calibrated by calibrate.rqe and calibrate.refine from starts drawn evenly "
+      "over "
+      "the range: tau, alpha and eta of each laser, and lambda of all but the first. Counted is how many end "
+      "in "
+      "the optimum at the truth (calibrate.refine alone, started at the truth), elsewhere but saying that "
+      "they "
+      "are not sure (a doubt, a parameter that is named unobservable, an error), or elsewhere and sure of "
+      "it. "
+      "The truth of each recording is drawn up to 2 cm, 3 degrees, 5 degrees (lambda) and 40 ms from the "
+      "rig's "
+      "nominal values.");
   describe_scene(d, &BasinStage::scene_);
   const auto trial = &BasinStage::trial;
   d.option("beams", trial, &TrialSettings::beams,

@@ -65,13 +65,13 @@ std::string basin_text(const std::vector<BasinRecording>& recordings) {
   };
   std::string text =
       fmt::format("{} starts on {} recordings\n", tally.starts, recordings.size() - tally.failed);
-  text += line("ended in the same optimum as from the truth", tally.same);
+  text += line("ended in the optimum at the truth", tally.same);
   text += line("  of these said to be not sure", tally.same_doubted);
   text += line("elsewhere, and said to be not sure", tally.doubted);
   text += line("elsewhere, and sure", tally.silent);
   for (const BasinRecording& recording : recordings) {
     if (!recording.failure.empty()) {
-      text += fmt::format("recording {}: even from the truth {}\n", recording.seed, recording.failure);
+      text += fmt::format("recording {}: even from the truth: {}\n", recording.seed, recording.failure);
     }
     for (std::size_t k = 0; k < recording.starts.size(); ++k) {
       if (recording.starts[k].ending != Ending::kSame) text += told(recording, k) + "\n";

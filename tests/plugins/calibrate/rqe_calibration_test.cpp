@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "grabbers/simulate/shapes.hpp"
 #include "pipeline/data/error.hpp"
 #include "tests/plugins/calibrate/support.hpp"
 
@@ -29,6 +30,7 @@ TEST(CalibrateByRqe, FindsAScannerThatIsOffByCentimetresDegreesAndMilliseconds) 
   }
   EXPECT_EQ(outcome.free.size(), 11U);
   EXPECT_TRUE(outcome.unobservable.empty());
+  EXPECT_THAT(outcome.doubts, testing::IsEmpty());
   EXPECT_GT(outcome.covariance.diagonal().minCoeff(), 0);
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   EXPECT_GT(told.size(), 3U);
@@ -65,6 +67,38 @@ TEST(CalibrateByRqe, SeesOnlySpotsAtCommensurateRates) {
   scanner.motion.max_rate = 1.91;
   const auto many = simulate_measurements(scanner, office());
   EXPECT_FALSE(sees_single_spots(sample_of(many), {}));
+}
+
+TEST(CalibrateByRqe, FindsWhereALaserSitsThatIsThoughtToBeOnTheSpinAxis) {
+  auto scanner = misplaced_scanner(1, 5.0);
+  const auto recording = simulate_measurements(scanner, office());
+  Calibration nominal = nominal_calibration(default_rig());
+  nominal.lasers[1].tau.value = 0;  // where α turns its cloud as λ does
+  RqeCalibrationSettings settings = quick();
+  settings.full_field = false;
+  const auto measure = rqe_measure();
+  const Outcome outcome = calibrate_by_rqe(SensorModel(nominal), sample_of(recording), *measure, settings);
+  EXPECT_TRUE(outcome.unobservable.empty());
+  const Eigen::VectorXd error = outcome.model.values() - SensorModel(recording.truth).values();
+  EXPECT_LT(std::abs(error[5]), 0.03) << "τ, with the bias of σ = 10 cm in two beams";
+  EXPECT_LT(std::abs(error[6]), 3 * kDegree) << "α";
+}
+
+TEST(CalibrateByRqe, IsNotSureInARoomThatLooksTheSameFromBehind) {
+  const Scene twin{.name = "twin",
+                   .surfaces = walls("wall", {{-4, -3}, {4, -3}, {4, 3}, {-4, 3}}, -1, 1, 0.5)};
+  ScannerSettings scanner;
+  scanner.rig.lasers.resize(2);
+  scanner.truth = nominal_calibration(scanner.rig);
+  scanner.duration = 5;
+  const auto recording = simulate_measurements(scanner, twin);
+  RqeCalibrationSettings settings = quick();
+  settings.full_field = false;
+  const auto measure = rqe_measure();
+  const Outcome outcome =
+      calibrate_by_rqe(SensorModel(recording.truth), sample_of(recording), *measure, settings);
+  ASSERT_EQ(outcome.doubts.size(), 1U);
+  EXPECT_THAT(outcome.doubts[0], testing::StartsWith("laser2.lambda at "));
 }
 
 TEST(CalibrateByRqe, RefusesAPlateThatStandsStill) {

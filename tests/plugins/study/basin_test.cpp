@@ -58,7 +58,7 @@ TEST(Basin, SaysWhyARecordingHasNoStarts) {
   settings.trial.motion.max_rate = 0;
   const auto recordings = explore_basin(settings, make_rqe);
   ASSERT_EQ(recordings.size(), 1U);
-  EXPECT_THAT(recordings[0].failure, HasSubstr("stands still"));
+  EXPECT_THAT(recordings[0].failure, HasSubstr("no flat surface"));
   EXPECT_EQ(tally_of(recordings).failed, 1U);
 }
 
