@@ -55,25 +55,44 @@ Rows weighted_rows(const Surfel& surfel, std::span<const std::uint32_t> members,
   return all;
 }
 
+/// Sums matrices over a surfel's beams.
+/// @param add  is given some of the beams, their rows, and the matrix to add to
+template <class Add>
+Eigen::MatrixXd sum_of_rows(const Surfel& surfel, std::span<const std::uint32_t> members,
+                            std::span<const SurfelResidual> residuals, std::size_t parameters,
+                            const DerivativeRows& derivatives, const Eigen::MatrixXd& zero, const Add& add) {
+  constexpr std::size_t kBlock = 8192;  // beams that are summed in a row
+  std::vector<Eigen::MatrixXd> blocks(blocks_of(members.size(), kBlock));
+  for_blocks(members.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    blocks[block] = zero;
+    for (std::size_t k = begin; k < end; k += kChunk) {
+      const auto some = members.subspan(k, std::min(kChunk, end - k));
+      add(some, weighted_rows(surfel, some, residuals.subspan(k, some.size()), parameters, derivatives),
+          blocks[block]);
+    }
+  });
+  Eigen::MatrixXd sum = zero;
+  for (const auto& block : blocks) sum += block;
+  return sum;
+}
+
 /// Σ rowᵀ row over a surfel's beams.
 Eigen::MatrixXd gram(const Surfel& surfel, std::span<const std::uint32_t> members,
                      std::span<const SurfelResidual> residuals, std::size_t parameters,
                      const DerivativeRows& derivatives) {
-  constexpr std::size_t kBlock = 8192;  // beams that are summed in a row
   const auto columns = static_cast<Eigen::Index>(parameters + 4);
-  std::vector<Eigen::MatrixXd> blocks(blocks_of(members.size(), kBlock));
-  for_blocks(members.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    blocks[block].setZero(columns, columns);
-    for (std::size_t k = begin; k < end; k += kChunk) {
-      const std::size_t count = std::min(kChunk, end - k);
-      const Rows rows = weighted_rows(surfel, members.subspan(k, count), residuals.subspan(k, count),
-                                      parameters, derivatives);
-      blocks[block].selfadjointView<Eigen::Upper>().rankUpdate(rows.transpose());
-    }
-  });
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns, columns);
-  for (const auto& block : blocks) sum += block;
+  const Eigen::MatrixXd sum = sum_of_rows(
+      surfel, members, residuals, parameters, derivatives, Eigen::MatrixXd::Zero(columns, columns),
+      [](auto, const Rows& rows, Eigen::MatrixXd& block) {
+        block.selfadjointView<Eigen::Upper>().rankUpdate(rows.transpose());
+      });
   return sum.selfadjointView<Eigen::Upper>();
+}
+
+/// What each of its own parameters of the plane does in the parameters' stead: 3 × m.
+Eigen::MatrixXd planes_share(const Eigen::MatrixXd& gram) {
+  const Eigen::Index m = gram.cols() - 4;
+  return solve_semidefinite(gram.topLeftCorner(3, 3), gram.topRightCorner(3, m));
 }
 
 NormalEquations without_plane(const Eigen::MatrixXd& gram, std::span<const SurfelResidual> residuals) {
@@ -164,6 +183,35 @@ NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams,
   NormalEquations total(parameters);
   for (const NormalEquations& sum : sums) total += sum;
   return total;
+}
+
+Eigen::MatrixXd pull_of_blocks(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
+                               const DerivativeRows& derivatives, const SurfelSettings& settings,
+                               std::span<const std::uint32_t> blocks) {
+  const auto m = static_cast<Eigen::Index>(parameters);
+  const Eigen::Index count = blocks.empty() ? 0 : std::ranges::max(blocks) + 1;
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(m, count);
+  const auto first = batches(surfels);
+  std::vector<Eigen::MatrixXd> sums(first.size() - 1, zero);
+  for_each_index(sums.size(), [&](std::size_t b) {
+    for (std::size_t s = first[b]; s < first[b + 1]; ++s) {
+      const Surfel& surfel = surfels.surfels[s];
+      const auto members = surfels.beams_of(surfel);
+      const auto residuals = residuals_of(surfel, surfels, beams, settings);
+      const Eigen::MatrixXd share = planes_share(gram(surfel, members, residuals, parameters, derivatives));
+      sums[b] += sum_of_rows(surfel, members, residuals, parameters, derivatives, zero,
+                             [&](auto some, const Rows& rows, Eigen::MatrixXd& pulls) {
+                               const Eigen::MatrixXd own = rows.rightCols(m) - rows.leftCols<3>() * share;
+                               for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+                                 const auto block = blocks[some[static_cast<std::size_t>(i)]];
+                                 pulls.col(block) += rows(i, 3) * own.row(i).transpose();
+                               }
+                             });
+    }
+  });
+  Eigen::MatrixXd pulls = zero;
+  for (const auto& sum : sums) pulls += sum;
+  return pulls * pulls.transpose();
 }
 
 }  // namespace crisp

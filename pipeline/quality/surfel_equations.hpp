@@ -55,4 +55,15 @@ using DerivativeRows = std::function<void(const Surfel& surfel, std::span<const 
 NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
                                  const DerivativeRows& derivatives, const SurfelSettings& settings);
 
+/// How errors that beams share show in the equations: the sums of the beams' pulls on the parameters, after
+/// the planes have been projected out, scatter by more than independent noise explains.
+///
+/// @param blocks  n numbers from 0: beams of one block may share an error, those of different blocks do not
+/// @return        m × m: Σ over the blocks of their pull times its transpose, which has the expectation
+///                covariance_factor() · matrix · (stiffness / weight)² if all errors are independent
+/// Deterministic, on any number of threads.
+Eigen::MatrixXd pull_of_blocks(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
+                               const DerivativeRows& derivatives, const SurfelSettings& settings,
+                               std::span<const std::uint32_t> blocks);
+
 }  // namespace crisp

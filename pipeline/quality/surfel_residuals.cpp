@@ -128,35 +128,35 @@ void weigh(double outlier, const Views& views, std::vector<SurfelResidual>& resi
   }
 }
 
-/// Square cells over a surfel's plane.
+/// Rectangular cells over a surfel's plane.
 class CellsOnPlane {
  public:
-  explicit CellsOnPlane(const std::vector<SurfelResidual>& residuals, double side) : side_(side) {
+  CellsOnPlane(const std::vector<SurfelResidual>& residuals, const Eigen::Vector2d& sides) : sides_(sides) {
     for (const SurfelResidual& r : residuals) box_.extend(Eigen::Vector2d(r.u, r.v));
-    columns_ = along(box_.sizes().x()) + 1;
-    count_ = columns_ * (along(box_.sizes().y()) + 1);
+    columns_ = along(0, box_.max().x()) + 1;
+    count_ = columns_ * (along(1, box_.max().y()) + 1);
   }
   std::size_t count() const { return count_; }
-  std::size_t of(const SurfelResidual& r) const {
-    return along(r.v - box_.min().y()) * columns_ + along(r.u - box_.min().x());
-  }
+  std::size_t of(const SurfelResidual& r) const { return along(1, r.v) * columns_ + along(0, r.u); }
 
  private:
-  std::size_t along(double distance) const { return static_cast<std::size_t>(distance / side_); }
-  double side_;
+  std::size_t along(Eigen::Index axis, double at) const {
+    return static_cast<std::size_t>((at - box_.min()[axis]) / sides_[axis]);
+  }
+  Eigen::Vector2d sides_;
   Eigen::AlignedBox2d box_;
   std::size_t columns_ = 0;
   std::size_t count_ = 0;
 };
 
-/// Beams that met something else within the noise of the plane, an edge of it or what stands before it, come
-/// in patches: there the views' own planes are missed by more than chance and more than bumps explain.
-void leave_out_strangers(const Views& views, std::vector<SurfelResidual>& residuals) {
-  constexpr double kSide = 0.1;  // [m]
+/// Leaves out the cells in which beams miss the planes of their views by more than chance and more than bumps
+/// explain.
+void leave_out_strange_cells(const Views& views, const Eigen::Vector2d& sides,
+                             std::vector<SurfelResidual>& residuals) {
   constexpr double kChance = 3;  // standard deviations of a cell's mean
   constexpr double kBump = 0.3;  // [spreads]
   const auto left = within_views(residuals, views);
-  const CellsOnPlane cells(residuals, kSide);
+  const CellsOnPlane cells(residuals, sides);
   std::vector<double> sum(cells.count(), 0);
   std::vector<double> count(cells.count(), 0);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
@@ -168,6 +168,14 @@ void leave_out_strangers(const Views& views, std::vector<SurfelResidual>& residu
     const std::size_t cell = cells.of(r);
     const double n = std::max(1.0, count[cell]);
     if (std::abs(sum[cell]) / n > std::max(kBump, kChance / std::sqrt(n))) r.weight = 0;
+  }
+}
+
+/// Beams that met something else within the noise of the plane, an edge of it or what stands before it, come
+/// in patches and in narrow strips, mostly along the borders.
+void leave_out_strangers(const Views& views, std::vector<SurfelResidual>& residuals) {
+  for (const auto& [along, across] : {std::pair{0.1, 0.1}, {0.5, 0.025}, {0.025, 0.5}}) {
+    leave_out_strange_cells(views, {along, across}, residuals);
   }
 }
 

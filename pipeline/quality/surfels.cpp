@@ -84,10 +84,34 @@ double misfit(const Surfel& surfel, const Surfels& surfels, const BeamsView& bea
   return std::sqrt(sum / std::max(weight, 1.0));
 }
 
-/// Leaves out surfels in which views disagree by far more than they do elsewhere. Where each view is but a
-/// line, an edge looks like lines that disagree; a wrong calibration makes them disagree on whole walls too.
-void leave_out_odd_ones(Surfels& found, const BeamsView& beams, const SurfelSettings& settings) {
+}  // namespace
+
+Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
+  check(beams, settings);
+  const SurfelCells cells = cells_of(beams, settings);
+  const auto pieces = flat_pieces(beams, cells, settings);
+  const auto regions = joined(pieces, cells, settings);
+  Surfels result;
+  result.surfels.resize(regions.size());
+  sort_members(region_of_beams(beams, cells, pieces, regions, settings), result);
+  std::erase_if(result.surfels,
+                [&](const Surfel& surfel) { return surfel.end - surfel.begin < settings.min_points; });
+  for_each_index(result.surfels.size(), [&](std::size_t s) {
+    Surfel& surfel = result.surfels[s];
+    set_plane(surfel, result.beams_of(surfel), beams, cells);
+    refine(surfel, result, beams, settings);
+  });
+  // Where each view is but a line, an edge looks like lines that disagree.
   constexpr double kFarMore = 3;
+  leave_out_odd_ones(result, beams, settings, kFarMore);
+  std::ranges::stable_sort(result.surfels, std::ranges::greater{},
+                           [](const Surfel& surfel) { return surfel.end - surfel.begin; });
+  return result;
+}
+
+void leave_out_odd_ones(Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
+                        double times) {
+  constexpr double kChance = 2.1;  // 3 standard deviations of n beams' root mean square, times √n
   std::vector<double> misfits(found.surfels.size());
   for_each_index(misfits.size(),
                  [&](std::size_t s) { misfits[s] = misfit(found.surfels[s], found, beams, settings); });
@@ -107,32 +131,11 @@ void leave_out_odd_ones(Surfels& found, const BeamsView& beams, const SurfelSett
   }
   std::vector<Surfel> kept;
   for (std::size_t s = 0; s < misfits.size(); ++s) {
-    if (misfits[s] <= kFarMore * std::max(median, 1.0)) kept.push_back(found.surfels[s]);
+    const Surfel& surfel = found.surfels[s];
+    const double chance = kChance / std::sqrt(std::max(1U, surfel.end - surfel.begin));
+    if (misfits[s] <= (times + chance) * std::max(median, 1.0)) kept.push_back(surfel);
   }
   found.surfels = std::move(kept);
-}
-
-}  // namespace
-
-Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
-  check(beams, settings);
-  const SurfelCells cells = cells_of(beams, settings);
-  const auto pieces = flat_pieces(beams, cells, settings);
-  const auto regions = joined(pieces, cells, settings);
-  Surfels result;
-  result.surfels.resize(regions.size());
-  sort_members(region_of_beams(beams, cells, pieces, regions, settings), result);
-  std::erase_if(result.surfels,
-                [&](const Surfel& surfel) { return surfel.end - surfel.begin < settings.min_points; });
-  for_each_index(result.surfels.size(), [&](std::size_t s) {
-    Surfel& surfel = result.surfels[s];
-    set_plane(surfel, result.beams_of(surfel), beams, cells);
-    refine(surfel, result, beams, settings);
-  });
-  leave_out_odd_ones(result, beams, settings);
-  std::ranges::stable_sort(result.surfels, std::ranges::greater{},
-                           [](const Surfel& surfel) { return surfel.end - surfel.begin; });
-  return result;
 }
 
 }  // namespace crisp

@@ -26,6 +26,8 @@ class Patches final : public FlatSurfaces {
       surfels_ = find_surfels(beams, settings_);
       surfels_ = claimed(surfels_, beams, settings_, {.margin = settings_.smallest});
       refine_all(surfels_, beams, settings_);
+      constexpr double kMore = 1.3;
+      leave_out_odd_ones(surfels_, beams, settings_, kMore);
     }
     return surfels_;
   }

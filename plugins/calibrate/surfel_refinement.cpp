@@ -25,6 +25,21 @@ namespace {
 
 constexpr double kSpread = 0.1;  // [rad] by which beams in the plate's plane are taken out of it
 
+/// Pieces of the recording that share no error: what is left of the encoder's steps is gone after a tenth of
+/// a second; many enough to see by how much the pieces' pulls scatter.
+std::vector<std::uint32_t> pieces_of(const Sample& sample) {
+  constexpr double kLong = 0.1;  // [s]
+  constexpr double kFewest = 100;
+  const auto [first, last] = std::ranges::minmax(sample.beams.time);
+  const double piece = std::min(kLong, (last - first) / kFewest);
+  std::vector<std::uint32_t> pieces;
+  pieces.reserve(sample.beams.size());
+  for (const double time : sample.beams.time) {
+    pieces.push_back(static_cast<std::uint32_t>((time - first) / std::max(piece, 1e-9)));
+  }
+  return pieces;
+}
+
 /// Equations at a model, with the start as one more observation.
 class Refiner {
  public:
@@ -40,29 +55,26 @@ class Refiner {
   /// @return  whether nothing more is to be expected of the next one
   bool step() {
     const PlacedBeams placed(model_, sample_);
-    const Surfels surfels = steady_ones(surfaces_->update(placed.view(), last_step_), placed.view());
-    if (surfels.surfels.empty()) {
+    found_ = steady_ones(surfaces_->update(placed.view(), last_step_), placed.view());
+    if (found_.surfels.empty()) {
       throw Error(
           "no flat surface is seen by these data",
           "leave calibrate.refine out where nothing is flat, or look closer with a smaller `smallest`");
     }
-    const NormalEquations equations = normal_equations(
-        surfels, placed.view(), free_.size(), surfel_rows(model_, sample_, free_), settings_.surfels);
-    information_ = equations.matrix / equations.covariance_factor();
+    equations_ = normal_equations(found_, placed.view(), free_.size(), surfel_rows(model_, sample_, free_),
+                                  settings_.surfels);
+    information_ = equations_.matrix / equations_.covariance_factor();
     const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
     const Eigen::VectorXd from_start = picked(model_, free_) - picked(start_, free_);
     const Eigen::VectorXd pull =
-        equations.vector / equations.covariance_factor() + prior.cwiseProduct(from_start);
+        equations_.vector / equations_.covariance_factor() + prior.cwiseProduct(from_start);
     const auto n = information_.rows();
     const auto posterior = (information_ + Eigen::MatrixXd(prior.asDiagonal())).eval().ldlt();
     covariance_ = posterior.solve(Eigen::MatrixXd::Identity(n, n));
     covariance_ = covariance_.selfadjointView<Eigen::Lower>();  // to the last bit
     const Eigen::VectorXd change = -posterior.solve(pull);
     model_ = with(model_, free_, picked(model_, free_) + change);
-    agreement_ = agreement(surfels, placed.view(), model_.lasers(), settings_.surfels.noise);
-    surfels_ = surfels.surfels.size();
-    beams_ = equations.beams;
-    chi2_ = equations.chi2 / std::max(1.0, equations.freedom);
+    agreement_ = agreement(found_, placed.view(), model_.lasers(), settings_.surfels.noise);
     last_step_ = (change.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
     return surfaces_->is_settled() && last_step_ < settings_.tolerance;
   }
@@ -77,6 +89,28 @@ class Refiner {
     return told.unobservable;
   }
 
+  /// Widens the standard errors to what the recording's pieces disagree by, where that is more than the noise
+  /// of single beams makes.
+  void widen_by_shared_errors() {
+    if (found_.surfels.empty()) return;
+    const PlacedBeams placed(model_, sample_);
+    const auto pieces = pieces_of(sample_);
+    const auto rows = surfel_rows(model_, sample_, free_);
+    const Eigen::MatrixXd pull =
+        pull_of_blocks(found_, placed.view(), free_.size(), rows, settings_.surfels, pieces);
+    const double count = 1.0 + std::ranges::max(pieces);
+    const auto spent = static_cast<double>(free_.size());
+    if (count <= 2 * spent) return;
+    const Eigen::MatrixXd inverse =
+        equations_.matrix.ldlt().solve(Eigen::MatrixXd::Identity(pull.rows(), pull.cols()));
+    const double stiffer = equations_.weight / equations_.stiffness;
+    const Eigen::VectorXd shared =
+        (inverse * pull * inverse).diagonal() * stiffer * stiffer * count / (count - spent);
+    const Eigen::VectorXd alone = inverse.diagonal() * equations_.covariance_factor();
+    const Eigen::VectorXd wider = (shared.array() / alone.array()).max(1.0).sqrt();
+    covariance_ = wider.asDiagonal() * covariance_ * wider.asDiagonal();
+  }
+
   const SensorModel& model() const { return model_; }
   const std::vector<std::size_t>& free() const { return free_; }
 
@@ -86,9 +120,9 @@ class Refiner {
                         .covariance = covariance_,
                         .unobservable = {},
                         .doubts = doubts()},
-            .surfels = surfels_,
-            .beams = beams_,
-            .chi2 = chi2_};
+            .surfels = found_.surfels.size(),
+            .beams = equations_.beams,
+            .chi2 = equations_.chi2 / std::max(1.0, equations_.freedom)};
   }
 
  private:
@@ -127,12 +161,11 @@ class Refiner {
   Agreement agreement_;
   std::unique_ptr<FlatSurfaces> surfaces_;
   const RefinementSettings& settings_;
+  Surfels found_;  // that count, in the last round
+  NormalEquations equations_;
   Eigen::MatrixXd information_;
   Eigen::MatrixXd covariance_;
   double last_step_ = std::numeric_limits<double>::infinity();
-  std::size_t surfels_ = 0;
-  std::size_t beams_ = 0;
-  double chi2_ = 0;
 };
 
 }  // namespace
@@ -159,6 +192,7 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
     }
   }
   if (refiner.free().empty()) throw Error("these data determine none of the parameters");
+  refiner.widen_by_shared_errors();
   Refinement result = refiner.result();
   result.outcome.unobservable = std::move(parameters.unobservable);
   result.rounds = round;

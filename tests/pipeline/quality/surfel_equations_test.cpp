@@ -5,6 +5,8 @@
 #include <tbb/global_control.h>
 
 #include <Eigen/Dense>
+#include <cmath>
+#include <random>
 
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "tests/pipeline/quality/room.hpp"
@@ -148,6 +150,66 @@ TEST(SurfelEquations, ReduceToWhatOtherParametersCannotExplain) {
   EXPECT_NEAR(equations.reduced({2}, {0, 1}).matrix(0, 0), 0, 1e-9);
   EXPECT_NEAR(equations.reduced({1}, {0, 2}).matrix(0, 0), 2, 1e-9);
   EXPECT_EQ(equations.reduced({1}, {}).matrix(0, 0), 3);
+}
+
+/// Beams of a scan in the order of firing, in pieces: 50 of each laser.
+std::vector<std::uint32_t> pieces_of(const test::RoomScan& scan) {
+  const std::size_t beams = scan.laser.size() / 3;
+  std::vector<std::uint32_t> pieces(scan.laser.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    pieces[i] = static_cast<std::uint32_t>(50 * (i % beams) / beams + 50 * scan.laser[i]);
+  }
+  return pieces;
+}
+
+TEST(PullOfBlocks, IsThatOfTheirBeamsWhereErrorsAreTheirOwn) {
+  const auto scan = test::scan_room(10000, {{0, 0}, {0, 0}, {0, 0}}, 0.012, 11);
+  const SurfelSettings settings{.floor = 1e-4};
+  const auto surfels = find_surfels(scan.beams(), settings);
+  const auto rows = derivatives_of(scan);
+  const auto equations = normal_equations(surfels, scan.beams(), kParameters, rows, settings);
+  const auto pull = pull_of_blocks(surfels, scan.beams(), kParameters, rows, settings, pieces_of(scan));
+  const Eigen::MatrixXd expected =
+      equations.covariance_factor() * equations.matrix * std::pow(equations.stiffness / equations.weight, 2);
+  // Of k independent pulls the sum of squares has a relative standard deviation of √(2/k); each of the
+  // lasers' own parameters has 50, the common one 150.
+  for (Eigen::Index k = 0; k < 5; ++k) {
+    EXPECT_NEAR(pull(k, k) / expected(k, k), 1, 4 * std::sqrt(2.0 / (k < 4 ? 50 : 150))) << k;
+  }
+}
+
+TEST(PullOfBlocks, KnowsOfErrorsThatBeamsShare) {
+  // Each piece of a laser's beams is off along the laser's motion by an error of its own. Thirty estimates of
+  // two parameters: the sum of their squared errors in units of the variances is 60 ± 11.
+  double by_pieces = 0;
+  double by_beams = 0;
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    auto scan = test::scan_room(3000, {{0, 0}, {0, 0}, {0, 0}}, 0.012, seed);
+    const auto pieces = pieces_of(scan);
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> shared(0, 0.01);
+    std::vector<double> off(150);
+    for (double& error : off) error = shared(random);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      scan.points.x[i] -= off[pieces[i]] * scan.outwards[i].y();
+      scan.points.y[i] += off[pieces[i]] * scan.outwards[i].x();
+    }
+    const SurfelSettings settings{.floor = 1e-4};
+    const auto surfels = find_surfels(scan.beams(), settings);
+    const auto rows = derivatives_of(scan);
+    const auto equations = normal_equations(surfels, scan.beams(), kParameters, rows, settings);
+    const Eigen::MatrixXd pull = pull_of_blocks(surfels, scan.beams(), kParameters, rows, settings, pieces);
+    const Eigen::MatrixXd inverse = equations.matrix.inverse();
+    const double stiffer = equations.weight / equations.stiffness;
+    const Eigen::VectorXd variance = stiffer * stiffer * (inverse * pull * inverse).diagonal();
+    const auto found = estimate(equations);
+    for (const Eigen::Index k : {1, 3}) {
+      by_pieces += found.value[k] * found.value[k] / variance[k];
+      by_beams += std::pow(found.value[k] / found.std_error[k], 2);
+    }
+  }
+  EXPECT_NEAR(by_pieces, 60, 4 * 11);
+  EXPECT_GT(by_beams, 2 * 60);
 }
 
 TEST(SurfelEquations, AreTheSameToTheLastBitOnAnyNumberOfThreads) {

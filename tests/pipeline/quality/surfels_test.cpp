@@ -134,6 +134,38 @@ TEST(Surfels, AreNotFoundInScatter) {
   EXPECT_EQ(find_surfels(scan.beams(), {}).surfels.size(), 0U);
 }
 
+/// Moves every other beam of a surfel to and fro across its plane.
+void roughen(test::RoomScan& scan, const Surfels& surfels, const Surfel& surfel, double by) {
+  for (const std::uint32_t i : surfels.beams_of(surfel)) {
+    const double step = i % 2 == 0 ? by : -by;
+    scan.points.x[i] += step * surfel.normal.x();
+    scan.points.y[i] += step * surfel.normal.y();
+    scan.points.z[i] += step * surfel.normal.z();
+  }
+}
+
+TEST(Surfels, AreLeftOutWhereBeamsMissThemByMoreThanElsewhere) {
+  auto scan = test::scan_room(3000, {{0, 0}, {0, 0}, {0, 0}}, 0.012, 12);
+  const SurfelSettings settings;
+  auto surfels = find_surfels(scan.beams(), settings);
+  const auto all = surfels.surfels.size();
+  ASSERT_GT(all, 3U);
+  constexpr double kMore = 1.3;
+  leave_out_odd_ones(surfels, scan.beams(), settings, kMore);
+  EXPECT_EQ(surfels.surfels.size(), all);
+
+  const Surfel odd = surfels.surfels[2];
+  roughen(scan, surfels, odd, 0.02);
+  leave_out_odd_ones(surfels, scan.beams(), settings, kMore);
+  EXPECT_EQ(surfels.surfels.size(), all - 1);
+  for (const Surfel& surfel : surfels.surfels) EXPECT_NE(surfel.begin, odd.begin);
+
+  // But a wrong calibration roughens all of them.
+  for (const Surfel& surfel : surfels.surfels) roughen(scan, surfels, surfel, 0.02);
+  leave_out_odd_ones(surfels, scan.beams(), settings, kMore);
+  EXPECT_EQ(surfels.surfels.size(), all - 1);
+}
+
 TEST(Surfels, OfNothingAreNone) {
   EXPECT_EQ(find_surfels({}, {}).surfels.size(), 0U);
   const auto few = look_down(5, 1, 0, 0, 7);
