@@ -64,9 +64,9 @@ struct Surfels {
 /// The result is the same on any number of threads.
 Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings);
 
-/// Leaves out surfels whose beams miss their plane by far more than those of most surfels do, in units of what
-/// noise explains. A wrong calibration makes views disagree on all surfaces; those that do much worse are
-/// edges, or two sides of something thin.
+/// Leaves out surfels whose beams miss their plane by far more than those of most surfels do, in units of
+/// what noise explains. A wrong calibration makes views disagree on all surfaces; those that do much worse
+/// are edges, or two sides of something thin.
 ///
 /// @param times  so many times as much as most, and what chance makes of so few beams
 void leave_out_odd_ones(Surfels& found, const BeamsView& beams, const SurfelSettings& settings, double times);

@@ -18,26 +18,31 @@ class Patches final : public FlatSurfaces {
   explicit Patches(const SurfelSettings& settings) : settings_(settings) {}
 
   const Surfels& update(const BeamsView& beams, double last_step) override {
+    if (!is_searching_) return surfels_;
     // Beams that join and leave surfaces at their rims would keep the steps from getting any smaller.
     constexpr double kSmallStep = 0.5;
     constexpr int kSearches = 6;
-    if (last_step > kSmallStep && round_++ < kSearches) {
+    is_searching_ = last_step > kSmallStep && round_++ < kSearches;
+    if (is_searching_) {
       // Cells along edges are no surfaces' own, but what was met there tells much.
       surfels_ = find_surfels(beams, settings_);
       surfels_ = claimed(surfels_, beams, settings_, {.margin = settings_.smallest});
       refine_all(surfels_, beams, settings_);
+    } else {
+      // Not earlier: as long as parameters are off, views disagree most on what is far away.
       constexpr double kMore = 1.3;
       leave_out_odd_ones(surfels_, beams, settings_, kMore);
     }
     return surfels_;
   }
 
-  bool is_settled() const override { return true; }
+  bool is_settled() const override { return !is_searching_; }
 
  private:
   SurfelSettings settings_;
   Surfels surfels_;
   int round_ = 0;
+  bool is_searching_ = true;
 };
 
 class UprightWalls final : public FlatSurfaces {
