@@ -34,4 +34,5 @@ if(CRISP_BUILD_TESTS)
 endif()
 if(CRISP_BUILD_BENCHMARKS)
   find_package(benchmark REQUIRED)
+  pkg_check_modules(PCL_KDTREE REQUIRED IMPORTED_TARGET pcl_kdtree)  # a rival
 endif()

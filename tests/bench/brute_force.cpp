@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <vector>
+
+#include "tests/bench/rivals.hpp"
+
+namespace crisp::bench {
+namespace {
+
+struct Pull {
+  float kernel = 0, x = 0, y = 0, z = 0;
+};
+
+Pull all_on(const float* x, const float* y, const float* z, std::size_t n, std::size_t i, float exponent,
+            float floor, float radius2) {
+  Pull sum;
+  for (std::size_t j = 0; j < n; ++j) {
+    const float dx = x[i] - x[j];
+    const float dy = y[i] - y[j];
+    const float dz = z[i] - z[j];
+    const float distance2 = dx * dx + dy * dy + dz * dz;
+    const float g = distance2 < radius2 ? std::exp(-exponent * distance2) : 0.0F;
+    sum.kernel += distance2 < radius2 ? g - floor : 0.0F;
+    sum.x += g * dx;
+    sum.y += g * dy;
+    sum.z += g * dz;
+  }
+  return sum;
+}
+
+}  // namespace
+
+PairSums by_brute_force(const Vectors& cloud, const TruncatedGaussian& kernel) {
+  const std::vector<float> x(cloud.x.begin(), cloud.x.end());
+  const std::vector<float> y(cloud.y.begin(), cloud.y.end());
+  const std::vector<float> z(cloud.z.begin(), cloud.z.end());
+  PairSums sums;
+  sums.pull.assign(cloud.size(), 0);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Pull own =
+        all_on(x.data(), y.data(), z.data(), cloud.size(), i, static_cast<float>(kernel.exponent),
+               static_cast<float>(kernel.floor), static_cast<float>(kernel.radius * kernel.radius));
+    sums.kernel += static_cast<double>(own.kernel);
+    sums.pull.x[i] = static_cast<double>(own.x);
+    sums.pull.y[i] = static_cast<double>(own.y);
+    sums.pull.z[i] = static_cast<double>(own.z);
+  }
+  return sums;
+}
+
+}  // namespace crisp::bench
