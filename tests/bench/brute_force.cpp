@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -19,8 +20,11 @@ Pull all_on(const float* x, const float* y, const float* z, std::size_t n, std::
     const float dy = y[i] - y[j];
     const float dz = z[i] - z[j];
     const float distance2 = dx * dx + dy * dy + dz * dz;
-    const float g = distance2 < radius2 ? std::exp(-exponent * distance2) : 0.0F;
-    sum.kernel += distance2 < radius2 ? g - floor : 0.0F;
+    const bool near = distance2 < radius2;
+    const float inside =
+        std::exp(-exponent * std::min(distance2, radius2));  // numbers that underflow are slow
+    const float g = near ? inside : 0.0F;
+    sum.kernel += near ? g - floor : 0.0F;
     sum.x += g * dx;
     sum.y += g * dy;
     sum.z += g * dz;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <functional>
@@ -142,7 +143,8 @@ Rig rig_of(std::size_t lasers) {
 
 void against_lasers() {
   fmt::print(
-      "\nagainst lasers: a calibration's step (RQE and its gradient by all parameters), 20000 beams each\n");
+      "\nagainst lasers: a calibration's step (RQE and its gradient by all parameters), 60000 beams in "
+      "all\n");
   MeasureRegistry measures;
   register_built_in(measures);
   SearchRegistry searches;
@@ -151,8 +153,7 @@ void against_lasers() {
   for (const std::size_t lasers : {1U, 2U, 4U, 8U}) {
     const Rig rig = rig_of(lasers);
     const auto simulated = simulate_measurements({.rig = rig, .truth = nominal_calibration(rig)}, office());
-    const Sample sample =
-        thin_evenly({.beams = simulated.beams, .plate = &simulated.plate}, 20000 * lasers, 1);
+    const Sample sample = thin_evenly({.beams = simulated.beams, .plate = &simulated.plate}, 60000, 1);
     const SensorModel model(simulated.truth);
     const auto free = free_parameters(model, sample.beams, {}).free;
     auto measure = measures.make("rqe", {}, searches);
@@ -168,21 +169,19 @@ void against_threads() {
   double load[1] = {0};
   if (getloadavg(load, 1) < 1) load[0] = std::nan("");
   fmt::print("\nagainst threads, 1000000 points, wall time (load of the machine: {:.1f})\n", load[0]);
-  double one = 0;
+  struct Took {
+    double wall = 0, cpu = 0;
+  };
+  Took one;
   for (const std::size_t threads : {1U, 2U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     auto search = make_search("grid");
-    double cpu = 0;
-    const double seconds = least(
-        [&] {
-          const double start = cpu_seconds();
-          rqe(cloud.view(), {}, {.sigma = 0.02, .error_bound = false}, *search);
-          cpu = cpu_seconds() - start;
-        },
-        12, wall_seconds);
-    if (threads == 1) one = seconds;
-    fmt::print("  {} threads {:8.1f} ms   x{:.2f}, at {:.2f} cores\n", threads, 1e3 * seconds, one / seconds,
-               cpu / seconds);
+    const auto work = [&] { rqe(cloud.view(), {}, {.sigma = 0.02, .error_bound = false}, *search); };
+    const Took took{.wall = least(work, 12, wall_seconds), .cpu = least(work, 12, cpu_seconds)};
+    if (threads == 1) one = took;
+    fmt::print("  {} threads {:8.1f} ms, x{:.2f}; {:8.1f} ms of CPU time, which is x{:.2f} on free cores\n",
+               threads, 1e3 * took.wall, one.wall / took.wall, 1e3 * took.cpu,
+               static_cast<double>(threads) * one.cpu / took.cpu);
   }
 }
 
@@ -191,6 +190,7 @@ void against_threads() {
 
 int main() {
   using namespace crisp::bench;
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // each line as soon as it is known
   {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     beside_rivals();
