@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 namespace crisp {
 namespace {
@@ -99,8 +101,16 @@ std::size_t beams_for(double sigma, std::size_t most) {
 
 Sample thin_for(double sigma, const Sample& sample) {
   const std::size_t n = sample.beams.size();
-  const std::size_t count = beams_for(sigma, n);
-  return count == n ? sample : thin_evenly(sample, count, 1);
+  const double share =
+      static_cast<double>(beams_for(sigma, n)) / static_cast<double>(std::max<std::size_t>(1, n));
+  std::map<std::pair<std::uint16_t, bool>, double> due;  // of the front and the back beams of each laser
+  return select(sample, [&](std::size_t i) {
+    double& own = due[{sample.beams.laser[i], sample.beams.mirror_angle[i] < 0}];
+    own += share;
+    if (own < 1) return false;
+    own -= 1;
+    return true;
+  });
 }
 
 PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>& pieces) {

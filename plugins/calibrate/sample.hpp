@@ -43,7 +43,8 @@ Sample thin_evenly(const Sample& sample, std::size_t count, std::uint64_t seed);
 /// How many of `most` beams a kernel of width σ [m] is told enough by: wide ones are smooth.
 std::size_t beams_for(double sigma, std::size_t most);
 
-/// Thins evenly to as many.
+/// Thins a sample from the plate's plane to as many, evenly along the time of each laser's front and back
+/// beams: a random choice would leave a wide kernel with valleys of its own.
 Sample thin_for(double sigma, const Sample& sample);
 
 /// Joins pieces of a trajectory that overlap or follow one another.
