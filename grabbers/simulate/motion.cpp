@@ -76,7 +76,8 @@ std::optional<PlateState> Motion::at(double t) const {
   const double change = next->rate - from.rate;
   const double angle = angles_[static_cast<std::size_t>(std::prev(next) - knots_.begin())];
   return PlateState{.angle = angle + width * (from.rate * u + change * smooth_step_integral(u)),
-                    .rate = from.rate + change * u * u * (3 - 2 * u)};
+                    .rate = from.rate + change * u * u * (3 - 2 * u),
+                    .acceleration = change * 6 * u * (1 - u) / width};
 }
 
 Motion make_motion(const MotionSettings& settings, double duration, std::uint64_t seed) {

@@ -4,6 +4,7 @@
 #include "grabbers/capture/register.hpp"
 #include "grabbers/pcd/register.hpp"
 #include "grabbers/simulate/simulate_stage.hpp"
+#include "pipeline/model/catalogue.hpp"
 #include "plugins/assemble/register.hpp"
 #include "plugins/calibrate/register.hpp"
 #include "plugins/clock/register.hpp"
@@ -18,6 +19,7 @@ Builtin::Builtin() {
   registrar_.attach(terms_);
   registrar_.attach(searches_);
   registrar_.attach(measures_);
+  register_built_in(terms_);
   register_built_in(searches_);
   register_built_in(measures_);
   register_capture(registrar_);

@@ -17,6 +17,7 @@ void Measurements::reserve(std::size_t n) {
 void Measurements::append(const Measurements& other) {
   if (range.empty()) epoch_ns = other.epoch_ns;
   if (epoch_ns != other.epoch_ns) throw Error("measurements of different epochs cannot be joined");
+  const bool incidences = (size() == 0 || !cos_incidence.empty()) && !other.cos_incidence.empty();
   const auto join = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   join(range, other.range);
   join(mirror_angle, other.mirror_angle);
@@ -24,6 +25,9 @@ void Measurements::append(const Measurements& other) {
   join(laser, other.laser);
   join(remission, other.remission);
   join(beam, other.beam);
+  if (other.size() == 0) return;
+  join(cos_incidence, other.cos_incidence);
+  if (!incidences) cos_incidence.clear();
 }
 
 }  // namespace crisp

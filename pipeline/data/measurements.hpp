@@ -7,8 +7,9 @@
 
 namespace crisp {
 
-/// n measurements in the order of firing, as a struct of arrays of equal length. No calibration is applied,
-/// so that they can be replayed under any. Usually one scan, but any number of beams of any lasers will do.
+/// n measurements in the order of firing, as a struct of arrays of equal length (cos_incidence may be empty).
+/// No calibration is applied, so that they can be replayed under any. Usually one scan, but any number of
+/// beams of any lasers will do.
 struct Measurements {
   std::int64_t epoch_ns = 0;        ///< [ns since the Unix epoch] zero of `time`; the same for a whole run
   std::vector<float> range;         ///< [m], > 0: beams without an echo are not here
@@ -17,12 +18,14 @@ struct Measurements {
   std::vector<std::uint16_t> laser;  ///< index of the laser in the rig
   std::vector<float> remission;      ///< device's units, 0 where unknown
   std::vector<std::uint16_t> beam;   ///< index of the beam in its scan
+  std::vector<float> cos_incidence;  ///< |cos β| on the surface that was met; empty where nobody has found it
 
   std::size_t size() const { return range.size(); }
   void reserve(std::size_t n);
-  void append(const Measurements& other);  ///< @throws Error if the epochs differ
+  /// Where only one of the two knows the incidences, they are forgotten. @throws Error if the epochs differ
+  void append(const Measurements& other);
 
-  /// One beam of another set, which must have the same epoch.
+  /// One beam of another set, which must have the same epoch, and know the incidences if this one does.
   void append(const Measurements& other, std::size_t i) {
     range.push_back(other.range[i]);
     mirror_angle.push_back(other.mirror_angle[i]);
@@ -30,6 +33,7 @@ struct Measurements {
     laser.push_back(other.laser[i]);
     remission.push_back(other.remission[i]);
     beam.push_back(other.beam[i]);
+    if (!other.cos_incidence.empty()) cos_incidence.push_back(other.cos_incidence[i]);
   }
 };
 

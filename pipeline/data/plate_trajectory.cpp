@@ -44,7 +44,8 @@ PlateState PlateArc::at(double t) const {
   const double u = (t - begin) / width;
   const auto& c = coefficients;
   return {.angle = c[0] + u * (c[1] + u * (c[2] + u * c[3])),
-          .rate = (c[1] + u * (2 * c[2] + u * 3 * c[3])) / width};
+          .rate = (c[1] + u * (2 * c[2] + u * 3 * c[3])) / width,
+          .acceleration = (2 * c[2] + u * 6 * c[3]) / (width * width)};
 }
 
 std::optional<PlateArc> PlateTrajectory::arc(std::size_t interval) const {

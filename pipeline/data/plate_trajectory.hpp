@@ -12,8 +12,9 @@ namespace crisp {
 
 /// Where the plate is at an instant.
 struct PlateState {
-  double angle = 0;  ///< [rad] φ, unwrapped
-  double rate = 0;   ///< [rad/s] dφ/dt
+  double angle = 0;         ///< [rad] φ, unwrapped
+  double rate = 0;          ///< [rad/s] dφ/dt
+  double acceleration = 0;  ///< [rad/s²]
 };
 
 /// φ(t) between two neighbouring readings of the encoder: a cubic of u = (t − begin) / width.

@@ -21,24 +21,28 @@ using Vector3 = Eigen::Matrix<T, 3, 1>;
 /// | phase  | sets                | frame                                                            |
 /// |--------|---------------------|------------------------------------------------------------------|
 /// | time   | time                | the plate's clock                                                |
-/// | plate  | plate_angle         |                                                                  |
+/// | plate  | plate_angle         | what the encoder read is kept in encoder_angle                   |
 /// | mirror | mirror_angle        |                                                                  |
 /// | beam   | origin, direction   | the laser's: the scan plane is z = 0, θ = 0 along +x             |
 /// | mount  | origin, direction   | the plate's, before the turn by φ + λ: x outwards, z = spin axis |
 /// | base   | origin, direction   | the base's: z = spin axis                                        |
 /// | range  | range               |                                                                  |
 ///
-/// The point is origin + range * direction.
+/// The point is origin + range * direction. A term that corrects a reading adds to it what it makes of the
+/// reading itself (hub_time, encoder_angle, measured_mirror, measured_range), not of what other terms have
+/// made of it, so that their order does not matter.
 template <class T>
 struct Beam {
   double measured_range = 0;   ///< [m]
   double measured_mirror = 0;  ///< [rad] θ
   double hub_time = 0;         ///< [s since the run's epoch]
   double remission = 0;        ///< device's units
-  double plate_rate = 0;       ///< [rad/s] at `time`
+  double cos_incidence = 1;    ///< cos β on the surface that was met; 1 where nobody knows it
   std::uint16_t number = 0;    ///< index in its scan
 
   T time{};                                   ///< [s since the run's epoch] hub_time + η
+  T encoder_angle{};                          ///< [rad] φ at `time` as the encoder reads it
+  T plate_rate{};                             ///< [rad/s] its derivative
   T plate_angle{};                            ///< [rad] φ at `time`
   T mirror_angle{};                           ///< [rad] θ
   Vector3<T> origin = Vector3<T>::Zero();     ///< [m]

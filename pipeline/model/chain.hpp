@@ -49,8 +49,11 @@ void trace(const LaserChain& chain, std::span<const T> parameters, std::span<Bea
     const double t = scalar(beam.time);
     const auto state = plate.at(t);
     known[i] = state.has_value();
-    beam.plate_angle = state ? state->angle + state->rate * (beam.time - t) : T(0);
-    beam.plate_rate = state ? state->rate : 0;
+    const PlateState plate_then = state.value_or(PlateState{});
+    const T since = beam.time - t;  // zero but for its derivatives
+    beam.encoder_angle = plate_then.angle + plate_then.rate * since;
+    beam.plate_rate = plate_then.rate + plate_then.acceleration * since;
+    beam.plate_angle = beam.encoder_angle;
   }
   apply_phase(chain, Phase::kPlate, parameters, beams);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/nearest.hpp"
 
 namespace crisp {
 namespace {
@@ -24,9 +25,8 @@ void TermRegistry::add(std::shared_ptr<const ModelTerm> term) {
 std::shared_ptr<const ModelTerm> TermRegistry::get(const std::string& name) const {
   const auto found = find(terms_, name);
   if (found != terms_.end()) return *found;
-  std::string known;
-  for (const auto& other : names()) known += (known.empty() ? "" : ", ") + other;
-  throw Error("unknown model term " + name, known.empty() ? "no terms are known" : "known are " + known);
+  throw Error("there is no term " + name + " of the sensor model",
+              did_you_mean(name, names(), "`crisp effects` lists those that there are"));
 }
 
 bool TermRegistry::knows(const std::string& name) const { return find(terms_, name) != terms_.end(); }

@@ -7,30 +7,20 @@
 #include <vector>
 
 #include "pipeline/model/beam.hpp"
+#include "pipeline/model/effect.hpp"
 
 namespace crisp {
 
 /// Where in the chain a term acts: see the table at Beam.
 enum class Phase { kTime, kPlate, kMirror, kBeam, kMount, kBase, kRange };
 
-/// Whether each laser has its own parameters of a term, or all share the plate's.
-enum class Scope { kLaser, kPlate };
-
-struct TermParameter {
-  std::string name;
-  std::string unit;  ///< "m", "rad", "s" or "1"
-  double lower = 0;  ///< bounds for calibration
-  double upper = 0;
-  double neutral = 0;  ///< the value at which the term changes nothing
-  std::string summary;
-};
-
 struct TermInfo {
-  std::string name;  ///< as in docs: "mirror.cone"
+  std::string name;  ///< as in docs/effects.md: "mirror.cone"
   std::string summary;
   Phase phase = Phase::kRange;
-  Scope scope = Scope::kLaser;
-  std::vector<TermParameter> parameters;
+  Scope scope = Scope::kLaser;  ///< the laser's or the plate's
+  std::vector<EffectParameter> parameters;
+  std::string details;  ///< see EffectInfo
 };
 
 /// One departure of a real scanner from equation (2): parameters, and how they change a beam. Immutable.

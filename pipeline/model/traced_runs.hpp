@@ -62,6 +62,7 @@ void fill(const Measurements& beams, std::size_t begin, std::span<Beam<T>> block
     block[i].hub_time = beams.time[begin + i];
     block[i].remission = beams.remission[begin + i];
     block[i].number = beams.beam[begin + i];
+    block[i].cos_incidence = beams.cos_incidence.empty() ? 1 : beams.cos_incidence[begin + i];
   }
 }
 

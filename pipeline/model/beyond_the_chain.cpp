@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/model/catalogue.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kAnyTime = 1e7;  // [s]
+
+EffectParameter instant() {
+  return {.name = "at",
+          .unit = "s",
+          .lower = -kAnyTime,
+          .upper = kAnyTime,
+          .summary = "when, on the hub's clock since the run's start",
+          .shape = true};
+}
+
+std::vector<EffectInfo> clocks_and_links() {
+  return {
+      {.name = "clock.step",
+       .summary = "a device's clock jumps",
+       .scope = Scope::kDevice,
+       .parameters = {{.name = "by", .unit = "s", .lower = -1e4, .upper = 1e4, .summary = "forwards"},
+                      instant()},
+       .details =
+           "The device's time, and no counter, is discontinuous. A 32-bit count of microseconds also jumps, "
+           "back by 71.6 min, where it wraps; that is no step, and always simulated."},
+      {.name = "latency.step",
+       .summary = "the shortest way of a device's telegrams to the hub becomes another",
+       .scope = Scope::kDevice,
+       .parameters = {{.name = "by", .unit = "s", .lower = -10, .upper = 10, .summary = "later"}, instant()},
+       .details =
+           "The lower envelope of receipt less device time steps, the device's time does not. Milliseconds, "
+           "where a switch or a driver queues from then on."}};
+}
+
+std::vector<EffectInfo> noises() {
+  return {
+      {.name = "noise.range_dependent",
+       .summary = "a laser's noise grows with the range",
+       .scope = Scope::kLaser,
+       .parameters = {{.name = "slope",
+                       .unit = "1",
+                       .lower = 0,
+                       .upper = 0.1,
+                       .summary = "standard deviation a metre of range, far away"}},
+       .details = "`σ(r) = √(σ² + (slope r)²)`. The LMS-151's 12 mm typical and 20 mm at most are a slope of "
+                  "8e-4 at "
+                  "20 m."},
+      {.name = "noise.heavy_tail",
+       .summary = "some of a laser's ranges are much noisier than the others",
+       .scope = Scope::kLaser,
+       .parameters = {{.name = "share", .unit = "1", .lower = 0, .upper = 1, .summary = "of the ranges"},
+                      {.name = "scale",
+                       .unit = "1",
+                       .lower = 1,
+                       .upper = 1e3,
+                       .neutral = 5,
+                       .summary = "how many times larger their standard deviation is",
+                       .shape = true}},
+       .details =
+           "A mixture of two normal distributions (Tukey's contaminated one): with probability `share` the "
+           "noise is `scale` times as large."},
+      {.name = "noise.mixed_pixels",
+       .summary = "at an edge a laser reports ranges between what is before and behind it",
+       .scope = Scope::kLaser,
+       .parameters = {{.name = "divergence",
+                       .unit = "rad",
+                       .lower = 0,
+                       .upper = 0.1,
+                       .summary = "diameter of the spot, by which it grows a metre of range"},
+                      {.name = "aperture",
+                       .unit = "m",
+                       .lower = 0,
+                       .upper = 0.1,
+                       .summary = "diameter of the spot at the laser"},
+                      {.name = "merge",
+                       .unit = "m",
+                       .lower = 0,
+                       .upper = 10,
+                       .neutral = 1,
+                       .summary = "echoes no further apart than that become one",
+                       .shape = true}},
+       .details =
+           "The spot of an LMS-151 is about 14 mrad · r + 8 mm wide. Seven rays stand for it; what they meet "
+           "counts by the light that comes back. Echoes within `merge` of that of the middle are averaged "
+           "with it; where those beyond are stronger together, they are reported in its place."},
+      {.name = "noise.two_peaks",
+       .summary = "a laser's ranges scatter about two values",
+       .scope = Scope::kLaser,
+       .parameters = {{.name = "separation", .unit = "m", .lower = 0, .upper = 0.5, .summary = "of the two"},
+                      {.name = "least",
+                       .unit = "1",
+                       .lower = 0,
+                       .upper = 1,
+                       .neutral = 0.2,
+                       .summary = "smallest weight of the farther one",
+                       .shape = true},
+                      {.name = "most",
+                       .unit = "1",
+                       .lower = 0,
+                       .upper = 1,
+                       .neutral = 0.9,
+                       .summary = "largest weight of it",
+                       .shape = true}},
+       .details =
+           "Each beam of a laser has a weight of its own, drawn evenly, that stays. Half of the separation "
+           "is "
+           "added or taken away. Real LMS1xx: 13.5 to 16.7 mm apart, 4 to 6 mm of noise each, weights 0.2 to "
+           "0.9."},
+      {.name = "noise.quantisation",
+       .summary = "a laser's ranges are multiples of a step",
+       .scope = Scope::kLaser,
+       .parameters =
+           {{.name = "step", .unit = "m", .lower = 0, .upper = 1, .summary = "0: that of the telegram"}},
+       .details = "A comb in the distribution of ranges. Telegrams of LMS1xx have 1 mm."}};
+}
+
+std::vector<EffectInfo> scenes() {
+  return {{.name = "scene.moving",
+           .summary = "something moves while it is recorded",
+           .scope = Scope::kScene,
+           .parameters = {},
+           .details =
+               "A region disagrees with itself at different times. What moves, and how, is written in the "
+               "scene (`scene_file`)."}};
+}
+
+}  // namespace
+
+const std::vector<EffectInfo>& effects_beyond_the_chain() {
+  static const std::vector<EffectInfo> kEffects = [] {
+    std::vector<EffectInfo> all = clocks_and_links();
+    for (auto& effect : noises()) all.push_back(std::move(effect));
+    for (auto& effect : scenes()) all.push_back(std::move(effect));
+    return all;
+  }();
+  return kEffects;
+}
+
+}  // namespace crisp

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/model/catalogue.hpp"
+
+#include <algorithm>
+
+#include "pipeline/model/terms/families.hpp"
+
+namespace crisp {
+
+void register_built_in(TermRegistry& terms) {
+  register_mount_terms(terms);
+  register_mirror_terms(terms);
+  register_encoder_terms(terms);
+  register_plate_terms(terms);
+  register_base_terms(terms);
+  register_timing_terms(terms);
+  register_range_terms(terms);
+  register_range_in_time_terms(terms);
+}
+
+std::vector<EffectInfo> effect_catalogue(const TermRegistry& terms) {
+  std::vector<EffectInfo> all = effects_beyond_the_chain();
+  for (const auto& name : terms.names()) {
+    const TermInfo& info = terms.get(name)->info();
+    all.push_back({.name = info.name,
+                   .summary = info.summary,
+                   .scope = info.scope,
+                   .parameters = info.parameters,
+                   .details = info.details});
+  }
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return all;
+}
+
+}  // namespace crisp

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "pipeline/model/term.hpp"
+
+namespace crisp {
+
+/// Adds the built-in terms.
+void register_built_in(TermRegistry& terms);
+
+/// What befalls clocks, links, noise or the scene, and so is no term of the chain. The simulator can do it,
+/// and a diagnosis may find it.
+const std::vector<EffectInfo>& effects_beyond_the_chain();
+
+/// All effects that have a name: the terms, a plugin's among them, and those beyond the chain; by name.
+std::vector<EffectInfo> effect_catalogue(const TermRegistry& terms);
+
+}  // namespace crisp

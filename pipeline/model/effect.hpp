@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace crisp {
+
+/// What has an effect: each laser with parameters of its own, the plate, each device (lasers and plate: what
+/// has a clock and a link), or the scene.
+enum class Scope { kLaser, kPlate, kDevice, kScene };
+
+struct EffectParameter {
+  std::string name;
+  std::string unit;  ///< of the value: "m", "rad", "s", "1", "m s^2" …
+  double lower = 0;  ///< bounds for calibration
+  double upper = 0;
+  double neutral = 0;  ///< with all parameters at theirs, the effect changes nothing
+  std::string summary;
+  /// It says what form the departure has, not how large it is: while the others are neutral it changes
+  /// nothing at all, so that a search has to step through it.
+  bool shape = false;
+};
+
+/// One departure of a real scanner from equation (2), its clocks, its noise or its scene from the plain ones.
+struct EffectInfo {
+  std::string name;  ///< as in docs/effects.md: "mirror.cone"
+  std::string summary;
+  Scope scope = Scope::kLaser;
+  std::vector<EffectParameter> parameters;
+  std::string details;  ///< its formula, typical sizes and their source, in Markdown
+};
+
+}  // namespace crisp

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <numbers>
+
+#include "pipeline/model/terms/families.hpp"
+
+namespace crisp {
+namespace {
+
+/// A mast that sways in the wind, a tripod that sinks: the whole scanner moves in time, whatever the plate
+/// does.
+struct BaseMotion final : DifferentiableTerm<BaseMotion> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "base.motion",
+        .summary = "the whole scanner drifts or sways",
+        .phase = Phase::kBase,
+        .scope = Scope::kPlate,
+        .parameters =
+            {{.name = "vx", .unit = "m/s", .lower = -1, .upper = 1, .summary = "drift along x"},
+             {.name = "vy", .unit = "m/s", .lower = -1, .upper = 1, .summary = "drift along y"},
+             {.name = "vz", .unit = "m/s", .lower = -1, .upper = 1, .summary = "drift along z"},
+             {.name = "ax", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "along x, of cos 2πft"},
+             {.name = "bx", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "along x, of sin 2πft"},
+             {.name = "ay", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "along y, of cos 2πft"},
+             {.name = "by", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "along y, of sin 2πft"},
+             {.name = "f",
+              .unit = "Hz",
+              .lower = 0.02,
+              .upper = 20,
+              .neutral = 1,
+              .summary = "frequency of the sway",
+              .shape = true}},
+        .details =
+            "`origin += (vx t + ax cos 2πft + bx sin 2πft, vy t + ay cos 2πft + by sin 2πft, vz t)` in the "
+            "base's frame, t on the plate's clock since the run's epoch. A sway at the plate's own rate "
+            "looks like wobble or rocking: another speed tells them apart."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    using std::cos;
+    using std::sin;
+    const T& t = beam.time;
+    const T turned = 2 * std::numbers::pi * p[7] * t;
+    const T c = cos(turned);
+    const T s = sin(turned);
+    beam.origin += Vector3<T>(p[0] * t + p[3] * c + p[4] * s, p[1] * t + p[5] * c + p[6] * s, p[2] * t);
+  }
+};
+
+}  // namespace
+
+void register_base_terms(TermRegistry& terms) { terms.add(std::make_shared<BaseMotion>()); }
+
+}  // namespace crisp

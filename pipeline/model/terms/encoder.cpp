@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// By how much the plate is elsewhere than its encoder reads, φ being what it reads and ω its rate.
+#include <cmath>
+
+#include "pipeline/model/terms/families.hpp"
+
+namespace crisp {
+namespace {
+
+/// The encoder's disk turns about a point beside its centre.
+struct EncoderEccentricity final : DifferentiableTerm<EncoderEccentricity> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "encoder.eccentricity",
+        .summary = "the plate's encoder errs once a turn",
+        .phase = Phase::kPlate,
+        .scope = Scope::kPlate,
+        .parameters = {{.name = "a", .unit = "rad", .lower = -0.1, .upper = 0.1, .summary = "of cos φ"},
+                       {.name = "b", .unit = "rad", .lower = -0.1, .upper = 0.1, .summary = "of sin φ"}},
+        .details =
+            "`φ + a cos φ + b sin φ`. A disk of 20 mm radius that is 20 µm off its axis errs by up to "
+            "0.06°."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    using std::cos;
+    using std::sin;
+    beam.plate_angle += p[0] * cos(beam.encoder_angle) + p[1] * sin(beam.encoder_angle);
+  }
+};
+
+/// The disk is tilted or oval, or its signals are of unequal strength.
+struct EncoderSecondHarmonic final : DifferentiableTerm<EncoderSecondHarmonic> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "encoder.second_harmonic",
+        .summary = "the plate's encoder errs twice a turn",
+        .phase = Phase::kPlate,
+        .scope = Scope::kPlate,
+        .parameters = {{.name = "a", .unit = "rad", .lower = -0.1, .upper = 0.1, .summary = "of cos 2φ"},
+                       {.name = "b", .unit = "rad", .lower = -0.1, .upper = 0.1, .summary = "of sin 2φ"}},
+        .details =
+            "`φ + a cos 2φ + b sin 2φ`. Typically 0.02° to 0.2°. A laser's front and back, half a turn "
+            "apart, err alike: only lasers at other azimuths show it."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    using std::cos;
+    using std::sin;
+    const T twice = 2.0 * beam.encoder_angle;
+    beam.plate_angle += p[0] * cos(twice) + p[1] * sin(twice);
+  }
+};
+
+/// The plate trails or leads its encoder by the play between them. A sign of the rate would toss about where
+/// the rate is noise around zero, and has no derivative: a hyperbolic tangent is 0 there, and the sign to
+/// 0.5 % from 0.15 rad/s (1.4 turns a minute) on.
+struct EncoderBacklash final : DifferentiableTerm<EncoderBacklash> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "encoder.backlash",
+        .summary = "there is play between the plate and its encoder",
+        .phase = Phase::kPlate,
+        .scope = Scope::kPlate,
+        .parameters = {{.name = "delta",
+                        .unit = "rad",
+                        .lower = -0.1,
+                        .upper = 0.1,
+                        .summary = "half the play: by how much the plate is ahead of the encoder"}},
+        .details =
+            "`φ + δ tanh(ω / 0.05 rad/s)`, which is `φ + δ sign(ω)` but for a plate that hardly moves. "
+            "Typically 0.1°. Without a reversal it is a common λ."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    using std::tanh;
+    constexpr double kSlow = 0.05;  // [rad/s]
+    beam.plate_angle += p[0] * tanh(beam.plate_rate / kSlow);
+  }
+};
+
+/// Drag winds up what is between plate and encoder. It works against the motion and grows with the square of
+/// the rate, so that it changes sign with the rate, unlike ω².
+struct EncoderSpeedLag final : DifferentiableTerm<EncoderSpeedLag> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "encoder.speed_lag",
+        .summary = "the plate is off its encoder by an angle that grows with the square of its rate",
+        .phase = Phase::kPlate,
+        .scope = Scope::kPlate,
+        .parameters = {{.name = "k",
+                        .unit = "s^2",
+                        .lower = -0.01,
+                        .upper = 0.01,
+                        .summary = "angle [rad] a squared rate [rad/s]"}},
+        .details = "`φ + k ω |ω|`. Over a narrow range of rates it is a common η."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    using std::abs;
+    beam.plate_angle += p[0] * beam.plate_rate * abs(beam.plate_rate);
+  }
+};
+
+}  // namespace
+
+void register_encoder_terms(TermRegistry& terms) {
+  terms.add(std::make_shared<EncoderEccentricity>());
+  terms.add(std::make_shared<EncoderSecondHarmonic>());
+  terms.add(std::make_shared<EncoderBacklash>());
+  terms.add(std::make_shared<EncoderSpeedLag>());
+}
+
+}  // namespace crisp

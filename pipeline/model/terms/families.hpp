@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pipeline/model/term.hpp"
+
+namespace crisp {
+
+// The built-in terms, by what of the scanner they are of.
+void register_mount_terms(TermRegistry& terms);
+void register_mirror_terms(TermRegistry& terms);
+void register_encoder_terms(TermRegistry& terms);
+void register_plate_terms(TermRegistry& terms);
+void register_base_terms(TermRegistry& terms);
+void register_timing_terms(TermRegistry& terms);
+void register_range_terms(TermRegistry& terms);
+void register_range_in_time_terms(TermRegistry& terms);
+
+}  // namespace crisp

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How a laser sits on the plate, beyond λ, τ and α. In the plate's frame at the laser: x outwards, y along
+// the tangent (the way of increasing φ), z the spin axis.
+#include <cmath>
+
+#include "pipeline/model/terms/families.hpp"
+
+namespace crisp {
+namespace {
+
+/// The beam starts y further along the tangent.
+struct TangentialOffset final : DifferentiableTerm<TangentialOffset> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "mount.tangential_offset",
+        .summary = "the beams of a laser start beside its radius",
+        .phase = Phase::kMount,
+        .scope = Scope::kLaser,
+        .parameters =
+            {{.name = "y", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "along the tangent"}},
+        .details = "`origin += (0, y, 0)` in the plate's frame at the laser. Typically 1 to 5 mm."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    beam.origin.y() += p[0];
+  }
+};
+
+/// The beam starts z higher.
+struct AxialOffset final : DifferentiableTerm<AxialOffset> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "mount.axial_offset",
+        .summary = "a laser sits higher on the plate than the others",
+        .phase = Phase::kMount,
+        .scope = Scope::kLaser,
+        .parameters = {{.name = "z", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "along the axis"}},
+        .details =
+            "`origin += (0, 0, z)` in the plate's frame. Typically 1 to 20 mm. What is common to all "
+            "lasers moves the whole cloud and cannot be found: that of one of them is to stay 0."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    beam.origin.z() += p[0];
+  }
+};
+
+/// The mirror's angle counts from elsewhere than the rig's `mount` says.
+struct MirrorZero final : DifferentiableTerm<MirrorZero> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "mount.mirror_zero",
+        .summary = "a laser is turned within its scan plane against its mount angle",
+        .phase = Phase::kMirror,
+        .scope = Scope::kLaser,
+        .parameters =
+            {{.name = "theta", .unit = "rad", .lower = -0.2, .upper = 0.2, .summary = "added to θ"}},
+        .details = "`θ + theta`. Typically 0.1° to 1°. A laser's front and back see it with opposite signs."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    beam.mirror_angle += p[0];
+  }
+};
+
+/// The scan plane is turned about the tangent through the laser.
+struct ScanPlaneTilt final : DifferentiableTerm<ScanPlaneTilt> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "mount.scan_plane_tilt",
+        .summary = "a laser's scan plane leans against the spin axis",
+        .phase = Phase::kMount,
+        .scope = Scope::kLaser,
+        .parameters = {{.name = "tilt",
+                        .unit = "rad",
+                        .lower = -0.2,
+                        .upper = 0.2,
+                        .summary = "right-handed about the tangent: the beam at θ = 0 leans to the axis"}},
+        .details =
+            "`direction = Ry(tilt) direction` in the plate's frame at the laser. Typically 0.1° to 1°. "
+            "In a narrow field of view it looks like α."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    using std::cos;
+    using std::sin;
+    const T c = cos(p[0]);
+    const T s = sin(p[0]);
+    const Vector3<T> d = beam.direction;
+    beam.direction = {c * d.x() + s * d.z(), d.y(), c * d.z() - s * d.x()};
+  }
+};
+
+}  // namespace
+
+void register_mount_terms(TermRegistry& terms) {
+  terms.add(std::make_shared<TangentialOffset>());
+  terms.add(std::make_shared<AxialOffset>());
+  terms.add(std::make_shared<MirrorZero>());
+  terms.add(std::make_shared<ScanPlaneTilt>());
+}
+
+}  // namespace crisp

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is added to the range r that a laser reports to have the true one.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pipeline/model/terms/families.hpp"
+
+namespace crisp {
+namespace {
+
+struct RangeOffset final : DifferentiableTerm<RangeOffset> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "range.offset",
+        .summary = "a laser's ranges are all too short or too long",
+        .phase = Phase::kRange,
+        .scope = Scope::kLaser,
+        .parameters = {{.name = "c", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "added to r"}},
+        .details =
+            "`r + c`. The data sheet of the LMS-151 allows ±30 mm typically, ±40 mm at most. Flat walls "
+            "bulge by c cos β; what is common to all lasers is nearly invisible to crispness."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    beam.range += p[0];
+  }
+};
+
+struct RangeScale final : DifferentiableTerm<RangeScale> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "range.scale",
+        .summary = "a laser's ranges are all too short or too long by a share",
+        .phase = Phase::kRange,
+        .scope = Scope::kLaser,
+        .parameters = {{.name = "s", .unit = "1", .lower = -0.05, .upper = 0.05, .summary = "share of r"}},
+        .details =
+            "`r (1 + s)`. Below 0.3 %. What is common to all lasers changes the size of the whole cloud: "
+            "only a known length shows it."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    beam.range += p[0] * beam.measured_range;
+  }
+};
+
+/// The spot on a tilted surface is spread in depth by r · spread · tan β, which stretches the echo; where
+/// both its own length and that spread count, the echo's length grows as the root of their squares.
+struct RangeIncidence final : DifferentiableTerm<RangeIncidence> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "range.incidence",
+        .summary = "a laser reads off as the incidence grows",
+        .phase = Phase::kRange,
+        .scope = Scope::kLaser,
+        .parameters = {{.name = "c", .unit = "m", .lower = -1, .upper = 1, .summary = "how strong"},
+                       {.name = "spread",
+                        .unit = "1/m",
+                        .lower = 0.01,
+                        .upper = 1,
+                        .neutral = 0.06,
+                        .summary =
+                            "spread of the spot in depth at 45°, in lengths of the echo a metre of range",
+                        .shape = true}},
+        .details =
+            "`r + c (√(1 + (spread r tan β)²) − 1)`. With a c of 47 mm and a spread of 0.06/m it is 6 mm at "
+            "60°, 14 mm at 70° and 46 mm at 80°, 5 m away, which is what Laconte et al. (Lidar measurement "
+            "bias estimation via return waveform modelling, ICRA 2019) measured, an LMS-151 among the "
+            "sensors. β comes from the surfaces, so the term does nothing until somebody has found them, "
+            "and counts a β beyond 87° as 87°."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    using std::sqrt;
+    constexpr double kGrazing = 0.05;  // cosine of the steepest incidence that is told apart
+    const double cosine = std::clamp(std::abs(beam.cos_incidence), kGrazing, 1.0);
+    const double tangent = std::sqrt(1 - cosine * cosine) / cosine;
+    const T spread = p[1] * (beam.measured_range * tangent);
+    beam.range += p[0] * (sqrt(1.0 + spread * spread) - 1.0);
+  }
+};
+
+/// A weak echo crosses the threshold late. Amplitudes spread over decades, so their logarithm counts, whose
+/// zero is at a remission of 100.
+struct RangeIntensity final : DifferentiableTerm<RangeIntensity> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "range.intensity",
+        .summary = "a laser's ranges depend on the strength of the echo (range walk)",
+        .phase = Phase::kRange,
+        .scope = Scope::kLaser,
+        .parameters = {{.name = "a", .unit = "m", .lower = -0.2, .upper = 0.2, .summary = "of u"},
+                       {.name = "b", .unit = "m", .lower = -0.2, .upper = 0.2, .summary = "of u²"}},
+        .details =
+            "`r + a u + b u²` with `u = ln(I / 100)`, I the remission in the device's units; nothing where "
+            "it is unknown (0). Millimetres to centimetres. As the remission falls with the incidence, it "
+            "is confounded with range.incidence; neighbouring dark and light patches tell."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    if (!(beam.remission > 0)) return;
+    constexpr double kMiddle = 100;
+    const double u = std::log(beam.remission / kMiddle);
+    beam.range += p[0] * u + p[1] * (u * u);
+  }
+};
+
+struct RangeCyclic final : DifferentiableTerm<RangeCyclic> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "range.cyclic",
+        .summary = "a laser's ranges err with a period in range",
+        .phase = Phase::kRange,
+        .scope = Scope::kLaser,
+        .parameters = {{.name = "a", .unit = "m", .lower = -0.1, .upper = 0.1, .summary = "of sin 2πr/P"},
+                       {.name = "b", .unit = "m", .lower = -0.1, .upper = 0.1, .summary = "of cos 2πr/P"},
+                       {.name = "P",
+                        .unit = "m",
+                        .lower = 0.05,
+                        .upper = 50,
+                        .neutral = 1,
+                        .summary = "period",
+                        .shape = true}},
+        .details =
+            "`r + a sin 2πr/P + b cos 2πr/P`, which is `A sin(2πr/P + p)` with `A² = a² + b²` and "
+            "`tan p = b/a`, but linear in what is to be found. Typically millimetres: crosstalk and the "
+            "steps of a time-to-digital converter. P is to exceed 2πA, so that a distance has one range."};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    using std::cos;
+    using std::sin;
+    const T turned = (2 * std::numbers::pi * beam.measured_range) / p[2];
+    beam.range += p[0] * sin(turned) + p[1] * cos(turned);
+  }
+};
+
+}  // namespace
+
+void register_range_terms(TermRegistry& terms) {
+  terms.add(std::make_shared<RangeOffset>());
+  terms.add(std::make_shared<RangeScale>());
+  terms.add(std::make_shared<RangeIncidence>());
+  terms.add(std::make_shared<RangeIntensity>());
+  terms.add(std::make_shared<RangeCyclic>());
+}
+
+}  // namespace crisp

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+
+#include "pipeline/model/catalogue.hpp"
+#include "tests/pipeline/model/support.hpp"
+
+namespace crisp {
+
+inline const TermRegistry& built_in_terms() {
+  static const TermRegistry kTerms = [] {
+    TermRegistry terms;
+    register_built_in(terms);
+    return terms;
+  }();
+  return kTerms;
+}
+
+/// The term's parameters: those that are given, and the others neutral.
+inline TermParameters with_values(const TermInfo& info, const std::map<std::string, double>& given = {}) {
+  TermParameters term{.term = info.name, .parameters = {}};
+  for (const auto& parameter : info.parameters) {
+    const auto found = given.find(parameter.name);
+    const double value = found == given.end() ? parameter.neutral : found->second;
+    term.parameters.push_back({.name = parameter.name, .unit = parameter.unit, .value = value});
+  }
+  return term;
+}
+
+/// Puts a term into the first laser or the plate, as it is of.
+inline void add_term(Calibration& calibration, const std::string& name,
+                     const std::map<std::string, double>& given = {}) {
+  const auto& info = built_in_terms().get(name)->info();
+  auto& owner = info.scope == Scope::kPlate ? calibration.plate_terms : calibration.lasers[0].terms;
+  owner.push_back(with_values(info, given));
+}
+
+/// Where one beam ends, with one term in the chain.
+inline Eigen::Vector3d point_with(const std::string& term, const std::map<std::string, double>& given,
+                                  Calibration calibration, const Measurements& beam,
+                                  const PlateTrajectory& plate) {
+  add_term(calibration, term, given);
+  const auto placed = SensorModel(calibration, built_in_terms()).place(beam, plate);
+  return placed.points.col(0);
+}
+
+}  // namespace crisp
