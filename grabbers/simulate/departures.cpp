@@ -2,75 +2,31 @@
 #include "grabbers/simulate/departures.hpp"
 
 #include <algorithm>
-#include <variant>
 
 #include "grabbers/simulate/random.hpp"
 #include "pipeline/data/error.hpp"
-#include "pipeline/files/quantity.hpp"
 
 namespace crisp {
 namespace {
-
-/// "laser2.mirror.cone.kappa=0.3deg" taken apart.
-struct Effect {
-  std::string owner;  ///< empty: not given
-  std::string term;
-  std::string parameter;
-  std::string value;
-};
-
-Effect split(const std::string& text, const Calibration& truth) {
-  const auto equals = text.find('=');
-  const auto last_dot = text.substr(0, equals).rfind('.');
-  if (equals == std::string::npos || last_dot == std::string::npos) {
-    throw Error("the effect '" + text + "' is not understood",
-                "write it as laser2.mirror.cone.kappa=0.3deg or encoder.eccentricity.a=0.1deg");
-  }
-  Effect effect{.owner = {},
-                .term = text.substr(0, last_dot),
-                .parameter = text.substr(last_dot + 1, equals - last_dot - 1),
-                .value = text.substr(equals + 1)};
-  const std::string first = effect.term.substr(0, effect.term.find('.'));
-  if (first == "plate" || truth.find(first)) {
-    // A term of its own may begin with "plate." too: then the name as a whole decides, below.
-    effect.owner = first;
-    effect.term.erase(0, std::min(first.size() + 1, effect.term.size()));
-  }
-  return effect;
-}
 
 /// The term's parameters in this list, added with neutral values if need be.
 TermParameters& find_or_add(std::vector<TermParameters>& terms, const TermInfo& info) {
   const auto found =
       std::find_if(terms.begin(), terms.end(), [&](const auto& term) { return term.term == info.name; });
   if (found != terms.end()) return *found;
-  TermParameters added{.term = info.name, .parameters = {}};
-  for (const auto& parameter : info.parameters) {
-    added.parameters.push_back({.name = parameter.name, .unit = parameter.unit, .value = parameter.neutral});
-  }
-  return terms.emplace_back(std::move(added));
+  return terms.emplace_back(neutral_parameters(info));
 }
 
-double parse_value(const std::string& effect, const std::string& text, const std::string& unit) {
-  const auto parsed = parse_quantity(text, unit);
-  if (const auto* complaint = std::get_if<Complaint>(&parsed)) {
-    throw Error("the effect '" + effect + "': " + complaint->text);
-  }
-  return std::get<double>(parsed);
-}
-
-void set(std::vector<TermParameters>& terms, const TermInfo& info, const std::string& effect,
-         const Effect& parts) {
+void set(std::vector<TermParameters>& terms, const TermInfo& info, const Effect& effect) {
   auto& parameters = find_or_add(terms, info).parameters;
-  const auto found = std::find_if(parameters.begin(), parameters.end(),
-                                  [&](const auto& known) { return known.name == parts.parameter; });
-  if (found == parameters.end()) {
-    std::string known;
-    for (const auto& parameter : info.parameters) known += (known.empty() ? "" : ", ") + parameter.name;
-    throw Error("the effect '" + effect + "': " + info.name + " has no parameter '" + parts.parameter + "'",
-                "it has " + known);
+  for (const auto& [name, value] : effect.values) {
+    const auto found = std::ranges::find(parameters, name, &Parameter::name);
+    if (found == parameters.end()) {  // of a calibration's file: read_effects() knows the others
+      throw Error("the calibration's " + info.name + " has no parameter " + name,
+                  "compare it with `crisp effects`");
+    }
+    found->value = value;
   }
-  found->value = parse_value(effect, parts.value, found->unit);
 }
 
 }  // namespace
@@ -91,25 +47,21 @@ Calibration draw_truth(const Calibration& nominal, const Departures& departures,
   return truth;
 }
 
-void add_effect(Calibration& truth, const std::string& effect, const TermRegistry& terms) {
-  Effect parts = split(effect, truth);
-  if (parts.owner == "plate" && terms.knows("plate." + parts.term)) {
-    parts.term = "plate." + parts.term;
-    parts.owner.clear();
-  }
-  const auto term = terms.get(parts.term);
-  const TermInfo& info = term->info();
-  if (info.scope == Scope::kPlate) {
-    if (!parts.owner.empty() && parts.owner != "plate") {
-      throw Error("the effect '" + effect + "': " + info.name + " is the plate's, not one laser's");
+void add_terms(Calibration& truth, const std::vector<Effect>& effects, const TermRegistry& terms) {
+  for (const auto& effect : effects) {
+    if (!terms.knows(effect.name)) {
+      throw Error(
+          effect.name + " is no term of the sensor model, so that this stage cannot simulate it",
+          effect.name == "scene.moving"
+              ? "things move where the scene says so: `walk` of a thing in a scene_file, or scene: people"
+              : "grabber.simulate can",
+          effect.place);
     }
-    return set(truth.plate_terms, info, effect, parts);
-  }
-  if (parts.owner == "plate") {
-    throw Error("the effect '" + effect + "': " + info.name + " is each laser's, not the plate's");
-  }
-  for (auto& laser : truth.lasers) {
-    if (parts.owner.empty() || parts.owner == laser.name) set(laser.terms, info, effect, parts);
+    const TermInfo& info = terms.get(effect.name)->info();
+    if (info.scope == Scope::kPlate) set(truth.plate_terms, info, effect);
+    for (std::size_t i = 0; info.scope == Scope::kLaser && i < truth.lasers.size(); ++i) {
+      if (!effect.owner || *effect.owner == i) set(truth.lasers[i].terms, info, effect);
+    }
   }
 }
 

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <vector>
 
+#include "grabbers/simulate/effects.hpp"
 #include "pipeline/data/calibration.hpp"
 #include "pipeline/model/term.hpp"
 
@@ -21,12 +22,10 @@ struct Departures {
 /// @throws Error if a departure is negative
 Calibration draw_truth(const Calibration& nominal, const Departures& departures, std::uint64_t seed);
 
-/// Adds an effect of the model's catalogue to a truth, or sets a further parameter of one that is there.
+/// Adds effects that are terms of the sensor model to a truth, or sets further parameters of those that are
+/// there. Parameters that nobody sets stay at the value that changes nothing.
 ///
-/// @param effect  "laser2.mirror.cone.kappa=0.3deg", "plate.encoder.eccentricity.a=0.1deg", or without the
-///                owner: for the plate, or for every laser, as the term is of. Parameters that nobody sets
-///                stay at the value that changes nothing.
-/// @throws Error  that says which part is not understood and what is known
-void add_effect(Calibration& truth, const std::string& effect, const TermRegistry& terms);
+/// @throws Error for an effect that is no term
+void add_terms(Calibration& truth, const std::vector<Effect>& effects, const TermRegistry& terms);
 
 }  // namespace crisp

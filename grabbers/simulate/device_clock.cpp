@@ -11,7 +11,7 @@ std::size_t DeviceClock::resets_before(double hub_time) const {
 }
 
 double DeviceClock::seconds(double hub_time) const {
-  const auto run = [&](double t) { return t / (1 + skew) - drift * t * t / 2; };
+  const auto run = [&](double t) { return t / (1 + skew) - drift * t * t / 2 + step.before(t); };
   const std::size_t past = resets_before(hub_time);
   return past == 0 ? start + run(hub_time) : run(hub_time) - run(resets[past - 1]);
 }

@@ -8,14 +8,16 @@
 
 namespace crisp {
 
-Link::Link(const LinkSettings& settings, double minimum, std::uint64_t seed, const std::string& name)
+Link::Link(const LinkSettings& settings, double minimum, std::uint64_t seed, const std::string& name,
+           Step step)
     : settings_(settings),
       minimum_(minimum),
+      step_(step),
       jitter_(seed, name + ".link.jitter"),
       stalls_(seed, name + ".link.stalls"),
       last_arrival_(-std::numeric_limits<double>::infinity()) {
-  if (!(minimum >= 0 && settings.jitter >= 0 && settings.stall_rate >= 0 && settings.stall_time >= 0 &&
-        settings.seconds_per_byte >= 0)) {
+  if (!(minimum >= 0 && minimum + step.by >= 0 && settings.jitter >= 0 && settings.stall_rate >= 0 &&
+        settings.stall_time >= 0 && settings.seconds_per_byte >= 0)) {
     throw Error("the delays of the link of " + name + " must not be negative");
   }
   const double never = std::numeric_limits<double>::infinity();
@@ -30,7 +32,8 @@ double Link::arrival(double sent, std::size_t bytes) {
   }
   const double handed_on = sent >= stall_begin_ ? stall_end_ : sent;
   const double free = last_arrival_ + static_cast<double>(bytes) * settings_.seconds_per_byte;
-  last_arrival_ = std::max(handed_on + minimum_ + jitter_.exponential(settings_.jitter), free);
+  last_arrival_ =
+      std::max(handed_on + minimum_ + step_.before(sent) + jitter_.exponential(settings_.jitter), free);
   return last_arrival_;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "grabbers/simulate/device_clock.hpp"
 #include "grabbers/simulate/random.hpp"
 
 namespace crisp {
@@ -22,8 +23,10 @@ class Link {
  public:
   /// @param minimum  [s] this link's own, in place of the settings'
   /// @param name     of the device, for its random numbers
+  /// @param step     of the minimum
   /// @throws Error if a time or rate is negative
-  Link(const LinkSettings& settings, double minimum, std::uint64_t seed, const std::string& name);
+  Link(const LinkSettings& settings, double minimum, std::uint64_t seed, const std::string& name,
+       Step step = {});
 
   /// Hub time [s] at which a telegram arrives in full. Telegrams must be sent in order.
   double arrival(double sent, std::size_t bytes);
@@ -31,6 +34,7 @@ class Link {
  private:
   LinkSettings settings_;
   double minimum_;
+  Step step_;
   RandomStream jitter_;
   RandomStream stalls_;
   double stall_begin_ = 0;

@@ -45,6 +45,7 @@ void append(SimulatedMeasurements& result, const Sweep& sweep, const ScannerSett
     to.remission.push_back(sweep.remissions[i]);
     to.beam.push_back(sweep.beams[i]);
     result.surface.push_back(sweep.surfaces[i]);
+    result.cos_incidence.push_back(sweep.cos_incidences[i]);
   }
 }
 
@@ -53,8 +54,11 @@ void append(SimulatedMeasurements& result, const Sweep& sweep, const ScannerSett
 SimulatedMeasurements simulate_measurements(const ScannerSettings& settings, const Scene& scene,
                                             const Motion& motion, const TermRegistry& terms) {
   SweepSimulator sweeps(settings, scene, motion, terms);
-  SimulatedMeasurements result{
-      .beams = {}, .surface = {}, .plate = read_encoder(settings, motion), .truth = settings.truth};
+  SimulatedMeasurements result{.beams = {},
+                               .surface = {},
+                               .cos_incidence = {},
+                               .plate = read_encoder(settings, motion),
+                               .truth = settings.truth};
   result.beams.epoch_ns = kEpoch;
   for (Sweep sweep = sweeps.next(); sweep.revolution.begin < settings.duration; sweep = sweeps.next()) {
     append(result, sweep, settings);

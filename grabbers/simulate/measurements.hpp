@@ -19,6 +19,7 @@ namespace crisp {
 struct SimulatedMeasurements {
   Measurements beams;
   std::vector<std::uint32_t> surface;  ///< for each beam, the index of the scene's thing that it met
+  std::vector<float> cos_incidence;    ///< of each beam on it, which `beams` is not told
   PlateTrajectory plate;    ///< reaches 0.25 s beyond the beams at both ends, so that any lag is covered
   Calibration truth;        ///< of which the beams were made
   std::size_t no_echo = 0;  ///< beams that nothing came back from

@@ -8,17 +8,18 @@
 
 namespace crisp {
 
-Mirror::Mirror(const MirrorSettings& settings, std::uint64_t seed, const std::string& laser)
+Mirror::Mirror(const MirrorSettings& settings, std::uint64_t seed, const std::string& laser, double excess)
     : settings_(settings), jitter_(seed, laser + ".mirror.jitter") {
   if (!(settings.frequency > 0)) throw Error("the mirror of " + laser + " must turn faster than 0 Hz");
-  if (!(std::abs(settings.slowest) < 0.5 && settings.wander >= 0 && settings.wander < 0.5 &&
-        settings.jitter >= 0 && settings.jitter < 0.05)) {
+  if (!(std::abs(settings.slowest) < 0.5 && std::abs(excess * settings.frequency) < 0.5 &&
+        settings.wander >= 0 && settings.wander < 0.5 && settings.jitter >= 0 && settings.jitter < 0.05)) {
     throw Error("the mirror of " + laser + " departs too far from its nominal period");
   }
   constexpr double kTurn = 2 * std::numbers::pi;
   RandomStream random(seed, laser + ".mirror");
   time_ = random.uniform() / settings.frequency;
   slowness_ = random.uniform(0, settings.slowest);
+  if (excess != 0) slowness_ = excess * settings.frequency;
   for (auto& wave : waves_) {
     wave = {.amplitude = settings.wander / static_cast<double>(waves_.size()),
             .angular_frequency = kTurn * random.uniform(0.1, 0.6),

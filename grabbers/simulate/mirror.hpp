@@ -27,7 +27,8 @@ struct Revolution {
 /// The turns of one laser's mirror, one after the other. The first begins within a period after time 0.
 class Mirror {
  public:
-  Mirror(const MirrorSettings& settings, std::uint64_t seed, const std::string& laser);
+  /// @param excess  [s] of the mean period over the nominal one; 0: as drawn
+  Mirror(const MirrorSettings& settings, std::uint64_t seed, const std::string& laser, double excess = 0);
 
   Revolution next();
 

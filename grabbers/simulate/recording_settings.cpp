@@ -21,6 +21,13 @@ DeviceTruth draw_device(const RecordingSettings& settings, std::size_t index, co
     device.clock.skew = random.uniform(-settings.clocks.skew, settings.clocks.skew);
     device.clock.drift = random.uniform(-settings.clocks.drift, settings.clocks.drift);
   }
+  if (!settings.device_effects.empty()) {
+    const DeviceEffects& effects = settings.device_effects[index];
+    device.clock.skew += effects.skew;
+    device.clock.drift += effects.drift;
+    device.clock.step = effects.clock;
+    device.latency = effects.latency;
+  }
   for (const auto& restart : settings.faults.restarts) {
     if (restart.device == name) device.clock.resets.push_back(restart.time);
   }
@@ -51,6 +58,10 @@ void check(const RecordingSettings& settings) {
   }
   if (!settings.stamp_lags.empty() && settings.stamp_lags.size() != lasers) {
     throw Error("the simulation needs one stamp lag a laser, or none at all");
+  }
+  const auto& effects = settings.device_effects;
+  if (!effects.empty() && effects.size() != lasers + 1) {
+    throw Error("the simulation needs the effects of each laser and of the plate, or none at all");
   }
   check_names(settings);
 }

@@ -55,11 +55,21 @@ struct FaultSettings {
   bool silent(const std::string& device, double time) const;
 };
 
+/// How one device's clock and link depart from those of the others: effects `clock.*` and `latency.*` of the
+/// catalogue. The defaults change nothing.
+struct DeviceEffects {
+  double skew = 0;   ///< beyond what is drawn
+  double drift = 0;  ///< [1/s] beyond what is drawn
+  Step clock;
+  Step latency;
+};
+
 /// One device as it is: what clock alignment and calibration should find.
 struct DeviceTruth {
   std::string name;
   DeviceClock clock;
   double minimum_delay = 0;  ///< [s] of its link
+  Step latency;              ///< of the minimum delay
   double stamp_lag = 0;      ///< [s] how much later the scan's stamp is than the rig's offsets say
 };
 
@@ -72,6 +82,7 @@ struct RecordingSettings {
   TelegramSettings telegrams;
   FaultSettings faults;
   std::vector<double> stamp_lags;                     ///< [s] one a laser; empty: none
+  std::vector<DeviceEffects> device_effects;          ///< the lasers' and last the plate's; empty: none
   std::vector<DeviceClock> clock_overrides;           ///< the lasers' and last the plate's; empty: drawn
   std::int64_t start_ns = 1'767'225'600'000'000'000;  ///< [ns since the Unix epoch] hub time 0
 };

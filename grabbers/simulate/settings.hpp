@@ -8,17 +8,11 @@
 
 #include "grabbers/simulate/mirror.hpp"
 #include "grabbers/simulate/motion.hpp"
+#include "grabbers/simulate/noise.hpp"
 #include "pipeline/data/calibration.hpp"
 #include "pipeline/data/rig.hpp"
 
 namespace crisp {
-
-/// What a laser makes of a true distance. The defaults are those of the LMS-151's data sheet.
-struct RangeSettings {
-  double sigma = 0.012;      ///< [m] standard deviation of the noise
-  double quantum = 0.001;    ///< [m] ranges are multiples of it; 0: not rounded
-  double max_distance = 50;  ///< [m] nothing comes back from beyond
-};
 
 /// Which beams a laser reports, by their reported angles: first, first + step, … last.
 struct FieldOfView {
@@ -30,6 +24,12 @@ struct FieldOfView {
   std::size_t beams() const;
 };
 
+/// How one laser departs from the others of its kind, beyond what the true calibration says.
+struct LaserEffects {
+  NoiseEffects noise;
+  double mirror_excess = 0;  ///< [s] of its mirror's mean period over the nominal one; 0: as drawn
+};
+
 /// The scanner to simulate: what is true of it. All lasers are of one kind; their mirrors, clocks and noise
 /// are their own.
 struct ScannerSettings {
@@ -39,11 +39,17 @@ struct ScannerSettings {
   FieldOfView field;
   std::vector<std::uint16_t> beams;  ///< indices of the only beams to fire; empty: all
   RangeSettings range;
+  std::vector<LaserEffects> laser_effects;  ///< one a laser; empty: none
   MotionSettings motion;
   double plate_frequency = 500;   ///< [Hz] encoder readings a second
   bool encoder_quantised = true;  ///< whole counts, as the encoder reports them; false: exact angles
   double duration = 10;           ///< [s]
   std::uint64_t seed = 1;
+
+  /// The effects of one laser, whether there are any or not.
+  LaserEffects effects_of(std::size_t laser) const {
+    return laser_effects.empty() ? LaserEffects{} : laser_effects.at(laser);
+  }
 };
 
 }  // namespace crisp

@@ -38,26 +38,32 @@ Restart parse_restart(const std::string& text) {
 
 }  // namespace
 
-RecordingSettings SimulateStage::settings(const RunSettings& run) const {
+RecordingSettings SimulateStage::settings(const RunSettings& run, std::vector<Effect>& of_truth) const {
   RecordingSettings result = settings_;
   result.scanner.rig = run.rig;
   result.scanner.seed = seed_.value_or(run.seed);
   for (const auto& text : silences_) result.faults.silences.push_back(parse_silence(text));
   for (const auto& text : restarts_) result.faults.restarts.push_back(parse_restart(text));
+  of_truth = apply_device_effects(
+      read_effects(hidden_.effects, run.rig, recording_catalogue(known_terms(run))), result);
   return result;
 }
 
 void SimulateStage::check(const RunSettings& run) const {
-  RecordingSettings planned = settings(run);
+  std::vector<Effect> effects;
+  RecordingSettings planned = settings(run, effects);
   planned.scanner.truth = hidden_.drawn(run, planned.scanner.seed);
+  add_terms(planned.scanner.truth, effects, known_terms(run));
   draw_devices(planned);
   make_motion(planned.scanner.motion, planned.scanner.duration, planned.scanner.seed);
   planned.scanner.field.beams();
 }
 
 void SimulateStage::process(const Inputs&, Outputs& out, Context& context) {
-  simulated_ = settings(context.run());
+  std::vector<Effect> effects;
+  simulated_ = settings(context.run(), effects);
   simulated_.scanner.truth = hidden_.load(context, simulated_.scanner.seed);
+  add_terms(simulated_.scanner.truth, effects, known_terms(context.run()));
   const Scene surroundings = scene_.load(context);
   simulated_scene_ = surroundings.name;
 

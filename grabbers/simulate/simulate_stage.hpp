@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/recorded_capture.hpp"
 #include "grabbers/simulate/recording.hpp"
 #include "grabbers/simulate/world.hpp"
@@ -41,8 +42,9 @@ class SimulateStage final : public Stage {
   RangeSettings& range() { return settings_.scanner.range; }
   MotionSettings& motion() { return settings_.scanner.motion; }
 
-  /// The settings for this run, all but the truth, which a file may hold.
-  RecordingSettings settings(const RunSettings& run) const;
+  /// The settings for this run with all effects but those of the true calibration, which a file may hold;
+  /// these are left in `of_truth`.
+  RecordingSettings settings(const RunSettings& run, std::vector<Effect>& of_truth) const;
 
   RecordingSettings settings_;
   TruthChoice hidden_{.departures = {.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04},

@@ -15,28 +15,26 @@ namespace {
 constexpr double kFirstPossibleBeam = -45 * kDegree;  // reported angle that the mirror's index stands for
 constexpr double kSmallestRange = 0.016;              // [m] what a device sends below is a code, not a range
 
-/// A Lambertian surface's echo in the device's units: it fades with the square of the range from 10 m on.
-float remission(double reflectance, const Hit& hit) {
-  constexpr double kFade = 10;
-  const double share = hit.distance / kFade;
-  return static_cast<float>(std::round(254 * reflectance * hit.cos_incidence / (1 + share * share)));
-}
+/// What a device of 8 bits makes of an echo.
+float remission(const SpotEcho& echo) { return static_cast<float>(std::round(254 * echo.strength)); }
 
 /// The range that the model's terms turn into the true distance: found by stepping, since terms are small.
 double reported_range(const LaserChain& chain, std::span<const double> parameters, Beam<double> beam,
                       double distance) {
   if (chain.phases[static_cast<std::size_t>(Phase::kRange)].empty()) return distance;
-  constexpr int kSteps = 20;
-  constexpr double kClose = 1e-9;  // [m]
+  constexpr int kSteps = 200;
+  constexpr double kClose = 1e-12;  // [m]
   beam.measured_range = distance;
   for (int step = 0; step < kSteps; ++step) {
     beam.range = beam.measured_range;
     apply_phase<double>(chain, Phase::kRange, parameters, {&beam, 1});
     const double miss = distance - beam.range;
     beam.measured_range += miss;
-    if (std::abs(miss) < kClose) break;
+    if (std::abs(miss) < kClose) return beam.measured_range;
   }
-  return beam.measured_range;
+  throw Error("the effects of a laser's range are so strong that a distance of " + std::to_string(distance) +
+                  " m has no single range",
+              "make them smaller");
 }
 
 void check(const ScannerSettings& settings) {
@@ -45,8 +43,8 @@ void check(const ScannerSettings& settings) {
                     " lasers, but the rig has " + std::to_string(settings.rig.lasers.size()),
                 "give the truth of each laser of the rig, in its order");
   }
-  if (!(settings.range.sigma >= 0 && settings.range.quantum >= 0 && settings.range.max_distance > 0)) {
-    throw Error("the noise, the step and the reach of a laser's range must not be negative");
+  if (!settings.laser_effects.empty() && settings.laser_effects.size() != settings.rig.lasers.size()) {
+    throw Error("the simulation needs the effects of each laser, or none at all");
   }
   for (const auto beam : settings.beams) {
     if (beam >= settings.field.beams()) {
@@ -69,16 +67,20 @@ SweepSimulator::SweepSimulator(const ScannerSettings& settings, const Scene& sce
                                const TermRegistry& terms)
     : settings_(settings), motion_(&motion), caster_(scene), model_(settings.truth, terms) {
   check(settings_);
-  for (std::size_t k = 0; k < scene.things(); ++k) reflectances_.push_back(scene.reflectance_of(k));
+  std::vector<double> reflectances;
+  for (std::size_t k = 0; k < scene.things(); ++k) reflectances.push_back(scene.reflectance_of(k));
   beams_ = fired_beams(settings_);
   traced_.resize(beams_.size());
   for (std::size_t i = 0; i < settings_.rig.lasers.size(); ++i) {
     const auto& name = settings_.rig.lasers[i].name;
-    Laser& laser = lasers_.emplace_back(Laser{.mirror = Mirror(settings_.mirror, settings_.seed, name),
-                                              .noise = RandomStream(settings_.seed, name + ".noise"),
-                                              .foliage = RandomStream(settings_.seed, name + ".foliage"),
-                                              .upcoming = {},
-                                              .parameters = {}});
+    const LaserEffects effects = settings_.effects_of(i);
+    Laser& laser = lasers_.emplace_back(Laser{
+        .mirror = Mirror(settings_.mirror, settings_.seed, name, effects.mirror_excess),
+        .noise = RangeNoise(settings_.range, effects.noise, settings_.field.beams(), settings_.seed, name),
+        .foliage = RandomStream(settings_.seed, name + ".foliage"),
+        .spot = Spot(effects.noise, settings_.range.max_distance, reflectances),
+        .upcoming = {},
+        .parameters = {}});
     laser.upcoming = laser.mirror.next();
     for (const auto slot : model_.chain(i).slots) {
       laser.parameters.push_back(model_.values()[static_cast<Eigen::Index>(slot)]);
@@ -121,23 +123,24 @@ void SweepSimulator::aim(Laser& laser, Sweep& sweep) {
 void SweepSimulator::measure(Laser& laser, Sweep& sweep) {
   sweep.ranges.assign(beams_.size(), 0);
   sweep.remissions.assign(beams_.size(), 0);
+  sweep.cos_incidences.assign(beams_.size(), 0);
   sweep.surfaces.assign(beams_.size(), 0);
-  const auto& range = settings_.range;
   for (std::size_t i = 0; i < beams_.size(); ++i) {
-    const double noise = range.sigma * laser.noise.normal();
-    const auto hit = caster_.cast({traced_[i].origin, traced_[i].direction}, range.max_distance,
-                                  {.time = sweep.times[i], .chance = &laser.foliage});
-    if (!hit) continue;
-    const float strength = remission(reflectances_[hit->surface], *hit);
-    traced_[i].remission = strength;
-    const double measured =
-        noise + reported_range(model_.chain(sweep.laser), laser.parameters, traced_[i], hit->distance);
-    const double stepped =
-        range.quantum > 0 ? range.quantum * std::round(measured / range.quantum) : measured;
-    if (!(stepped >= kSmallestRange)) continue;
-    sweep.ranges[i] = static_cast<float>(stepped);
-    sweep.remissions[i] = strength;
-    sweep.surfaces[i] = hit->surface;
+    const RangeNoise::Draw noise = laser.noise.draw(beams_[i]);
+    Beam<double>& beam = traced_[i];
+    const auto echo = laser.spot.echo(caster_, {beam.origin, beam.direction},
+                                      {.time = sweep.times[i], .chance = &laser.foliage});
+    if (!echo) continue;
+    beam.remission = remission(*echo);
+    beam.cos_incidence = echo->hit.cos_incidence;
+    const double range =
+        reported_range(model_.chain(sweep.laser), laser.parameters, beam, echo->hit.distance);
+    const double reported = laser.noise.reported(range, noise);
+    if (!(reported >= kSmallestRange)) continue;
+    sweep.ranges[i] = static_cast<float>(reported);
+    sweep.remissions[i] = static_cast<float>(beam.remission);
+    sweep.cos_incidences[i] = static_cast<float>(beam.cos_incidence);
+    sweep.surfaces[i] = echo->hit.surface;
   }
 }
 

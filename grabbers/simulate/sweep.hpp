@@ -7,10 +7,10 @@
 
 #include "grabbers/simulate/mirror.hpp"
 #include "grabbers/simulate/motion.hpp"
-#include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scene.hpp"
 #include "grabbers/simulate/settings.hpp"
+#include "grabbers/simulate/spot.hpp"
 #include "pipeline/model/chain.hpp"
 
 namespace crisp {
@@ -23,6 +23,7 @@ struct Sweep {
   std::vector<double> times;            ///< [s] true time at which each was fired
   std::vector<float> ranges;            ///< [m] as the device measures them; 0 where nothing came back
   std::vector<float> remissions;        ///< 0 to 254
+  std::vector<float> cos_incidences;    ///< |cos β| on what was met; of no use at range 0
   std::vector<std::uint32_t> surfaces;  ///< index of the scene's thing that was met; of no use at range 0
 };
 
@@ -44,8 +45,9 @@ class SweepSimulator {
  private:
   struct Laser {
     Mirror mirror;
-    RandomStream noise;
+    RangeNoise noise;
     RandomStream foliage;
+    Spot spot;
     Revolution upcoming;
     std::vector<double> parameters;  ///< of its chain: λ, τ, α, η and those of its terms
   };
@@ -54,7 +56,6 @@ class SweepSimulator {
   void measure(Laser& laser, Sweep& sweep);
 
   ScannerSettings settings_;
-  std::vector<double> reflectances_;  ///< of the scene's things
   const Motion* motion_;
   RayCaster caster_;
   SensorModel model_;

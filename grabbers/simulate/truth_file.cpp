@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "grabbers/simulate/device_effects.hpp"
 #include "pipeline/files/calibration_file.hpp"
 
 namespace crisp {
@@ -36,6 +37,9 @@ Calibration truth_to_write(const RecordingTruth& truth, const RecordingSettings&
   provenance["hub.epoch_ns"] = fmt::format("{}", settings.start_ns);
   for (const auto& laser : truth.lasers) add_device(provenance, laser);
   add_device(provenance, truth.plate);
+  for_each_device_effect(settings, [&](const std::string& name, double value) {
+    provenance["effect " + name] = fmt::format("{}", value);
+  });
   return result;
 }
 

@@ -31,9 +31,7 @@ Scene SceneChoice::load(Context& context) const {
 }
 
 Calibration TruthChoice::drawn(const RunSettings& run, std::uint64_t seed) const {
-  Calibration truth = draw_truth(nominal_calibration(run.rig), departures, seed);
-  for (const auto& effect : effects) add_effect(truth, effect, known_terms(run));
-  return truth;
+  return draw_truth(nominal_calibration(run.rig), departures, seed);
 }
 
 Calibration TruthChoice::load(Context& context, std::uint64_t seed) const {
@@ -41,7 +39,6 @@ Calibration TruthChoice::load(Context& context, std::uint64_t seed) const {
   Calibration truth = read_calibration(calibration_file);
   context.reads(calibration_file);
   check_lasers(truth, context.rig(), calibration_file);
-  for (const auto& effect : effects) add_effect(truth, effect, known_terms(context.run()));
   return truth;
 }
 

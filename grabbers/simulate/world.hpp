@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "grabbers/simulate/departures.hpp"
 #include "grabbers/simulate/scene.hpp"
@@ -25,12 +24,12 @@ struct SceneChoice {
 struct TruthChoice {
   Departures departures;
   std::filesystem::path calibration_file;  ///< in place of one that is drawn around nominal, unless empty
-  std::vector<std::string> effects;        ///< put on top: see add_effect()
+  OptionGroups effects;                    ///< put on top: see read_effects()
 
-  /// Drawn around nominal, with the effects; reads no file.
+  /// Drawn around nominal; reads no file.
   Calibration drawn(const RunSettings& run, std::uint64_t seed) const;
 
-  /// The file's, or else drawn, with the effects.
+  /// The file's, or else drawn.
   /// @throws Error if the file is not a calibration of the run's rig
   Calibration load(Context& context, std::uint64_t seed) const;
 };

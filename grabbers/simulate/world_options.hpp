@@ -36,9 +36,10 @@ void describe_truth(StageDescription<S>& d, Way way) {
   d.option("eta_off", way, off, &Departures::eta, "largest departure of a drawn η from nominal")
       .unit("s")
       .range(0, 1);
-  d.option("effects", way, &TruthChoice::effects,
-           "terms of the sensor model to put into the truth: `laser2.mirror.cone.kappa=0.3deg`; without an "
-           "owner, into every laser or the plate, as the term is of");
+  d.option(
+      "effects", way, &TruthChoice::effects,
+      "what departs from a plain scanner: `{encoder.eccentricity: {a: 0.1deg}, laser2.mirror.cone: {kappa: "
+      "0.3deg}}`, by the names that `crisp effects` lists; without an owner it befalls all that can have it");
 }
 
 /// @param way  to a MotionSettings

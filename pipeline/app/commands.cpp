@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 
+#include "pipeline/app/effect_reference.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/rig_file.hpp"
+#include "pipeline/model/catalogue.hpp"
 #include "pipeline/stage/reference.hpp"
 
 namespace crisp {
@@ -93,6 +96,29 @@ ExitStatus stages_command(const StagesRequest& request, const Registrar& registr
     for (const auto* type : stages.all()) std::cout << "\n" << stage_markdown(*type);
   } else {
     print_stage_list(stages);
+  }
+  return ExitStatus::done;
+}
+
+ExitStatus effects_command(const EffectsRequest& request, const Registrar& registrar) {
+  const auto catalogue = effect_catalogue(registrar.get<TermRegistry>());
+  if (!request.name.empty()) {
+    const auto effect = std::ranges::find(catalogue, request.name, &EffectInfo::name);
+    if (effect == catalogue.end()) {
+      std::vector<std::string> names;
+      for (const auto& known : catalogue) names.push_back(known.name);
+      print_errors(Error("there is no effect '" + request.name + "'",
+                         did_you_mean(request.name, names, "crisp effects lists them")));
+      return ExitStatus::misused;
+    }
+    std::cout << effect_text(*effect);
+  } else if (request.markdown) {
+    std::cout << effects_markdown(catalogue);
+  } else {
+    for (const auto& effect : catalogue) {
+      std::cout << (request.names ? effect.name : fmt::format("{:<26}{}", effect.name, effect.summary))
+                << "\n";
+    }
   }
   return ExitStatus::done;
 }

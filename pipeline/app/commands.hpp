@@ -51,6 +51,14 @@ struct StagesRequest {
 };
 ExitStatus stages_command(const StagesRequest& request, const Registrar& registrar);
 
+/// `crisp effects`.
+struct EffectsRequest {
+  std::string name;  ///< empty: all of them
+  bool names = false;
+  bool markdown = false;
+};
+ExitStatus effects_command(const EffectsRequest& request, const Registrar& registrar);
+
 /// `crisp plugins`: every file that was tried, and the reason of each refusal.
 ExitStatus plugins_command(const PluginLoader& loader);
 

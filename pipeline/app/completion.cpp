@@ -28,7 +28,7 @@ _crisp() {{
   elif [[ $word == -* || -z $command ]]; then
     COMPREPLY=($(compgen -W "$options" -- "$word"))
   elif [[ -n $stages ]]; then
-    COMPREPLY=($(compgen -W "$("${{COMP_WORDS[0]}}" stages --names 2>/dev/null)" -- "$word"))
+    COMPREPLY=($(compgen -W "$("${{COMP_WORDS[0]}}" $stages --names 2>/dev/null)" -- "$word"))
   fi
 }}
 complete -o default -F _crisp crisp
@@ -43,7 +43,7 @@ std::string bash_completion(const std::vector<CommandWords>& commands) {
     names.push_back(command.name);
     cases += fmt::format("    {}) options=$'{}'; values=$'{}'; stages={} ;;\n", command.name,
                          fmt::join(command.options, "\\n"), fmt::join(command.with_value, "\\n"),
-                         command.takes_stage ? "1" : "");
+                         command.takes_name ? command.name : "");
   }
   return fmt::format(kScript, fmt::arg("names", fmt::join(names, "|")), fmt::arg("cases", cases),
                      fmt::arg("top", fmt::format("{}\\n--help\\n--version", fmt::join(names, "\\n"))));

@@ -11,7 +11,7 @@ struct CommandWords {
   std::string name;
   std::vector<std::string> options;     ///< "--seed", "-i", …
   std::vector<std::string> with_value;  ///< those of them behind which a value stands
-  bool takes_stage = false;             ///< its argument is a stage's name, else a file
+  bool takes_name = false;              ///< its argument is what the command lists: a stage, an effect
 };
 
 /// A script for bash that completes commands, options, stage names and files; to be sourced, or installed as

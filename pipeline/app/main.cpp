@@ -39,6 +39,7 @@ struct CommandLine {
   std::optional<std::uint64_t> monte_carlo_only;
   PipelineArguments validate;
   StagesRequest stages;
+  EffectsRequest effects;
   fs::path validate_file, info_file;
   std::optional<fs::path> info_rig;
   std::string shell;
@@ -50,6 +51,7 @@ struct CommandLine {
   CLI::App* monte_carlo_app = nullptr;
   CLI::App* validate_app = nullptr;
   CLI::App* stages_app = nullptr;
+  CLI::App* effects_app = nullptr;
   CLI::App* plugins_app = nullptr;
   CLI::App* info_app = nullptr;
   CLI::App* completion_app = nullptr;
@@ -65,6 +67,7 @@ struct CommandLine {
     add_figures();
     add_validate();
     add_stages();
+    add_effects();
     plugins_app = command("plugins", "List the plugins that were tried, and why any were refused");
     add_info();
     completion_app = command("completion", "Print a script that completes crisp's command line");
@@ -208,6 +211,14 @@ struct CommandLine {
     add_arguments(validate_app, validate);
   }
 
+  void add_effects() {
+    effects_app = command("effects", "List the effects that a scanner can have, or tell all of one");
+    CLI::Option* name = effects_app->add_option("name", effects.name, "An effect")->type_name("EFFECT");
+    effects_app->add_flag("--names", effects.names, "Names only")->excludes(name);
+    effects_app->add_flag("--markdown", effects.markdown, "All of them as a page of the docs")
+        ->excludes(name);
+  }
+
   void add_stages() {
     stages_app = command("stages", "List the stages, or tell all of one");
     stages_app->add_option("name", stages.name, "A stage")->type_name("STAGE");
@@ -244,7 +255,7 @@ RunRequest monte_carlo_request(const CommandLine& line) {
 std::vector<CommandWords> completion_words(const CommandLine& line) {
   std::vector<CommandWords> commands;
   for (const CLI::App* sub : line.app.get_subcommands({})) {
-    CommandWords words{sub->get_name(), {}, {}, sub == line.stages_app};
+    CommandWords words{sub->get_name(), {}, {}, sub == line.stages_app || sub == line.effects_app};
     for (const CLI::Option* option : sub->get_options()) {
       std::vector<std::string> names;
       for (const auto& name : option->get_lnames()) names.push_back("--" + name);
@@ -302,6 +313,7 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.monte_carlo_app->parsed()) return run_command(monte_carlo_request(line), registrar);
   if (line.validate_app->parsed()) return validate_command(line.validate_file, line.validate, registrar);
   if (line.stages_app->parsed()) return stages_command(line.stages, registrar);
+  if (line.effects_app->parsed()) return effects_command(line.effects, registrar);
   if (line.info_app->parsed()) return info_command(line.info_file, line.info_rig, line.info_json, registrar);
   std::cout << bash_completion(completion_words(line));
   return ExitStatus::done;

@@ -123,7 +123,7 @@ std::vector<EffectInfo> scenes() {
            .parameters = {},
            .details =
                "A region disagrees with itself at different times. What moves, and how, is written in the "
-               "scene (`scene_file`)."}};
+               "scene, as a `walk` of one of its things: `scene: people`, or a `scene_file`."}};
 }
 
 }  // namespace

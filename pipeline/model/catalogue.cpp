@@ -18,6 +18,14 @@ void register_built_in(TermRegistry& terms) {
   register_range_in_time_terms(terms);
 }
 
+TermParameters neutral_parameters(const TermInfo& term) {
+  TermParameters neutral{.term = term.name, .parameters = {}};
+  for (const auto& p : term.parameters) {
+    neutral.parameters.push_back({.name = p.name, .unit = p.unit, .value = p.neutral});
+  }
+  return neutral;
+}
+
 std::vector<EffectInfo> effect_catalogue(const TermRegistry& terms) {
   std::vector<EffectInfo> all = effects_beyond_the_chain();
   for (const auto& name : terms.names()) {

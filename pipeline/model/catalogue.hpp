@@ -3,12 +3,16 @@
 
 #include <vector>
 
+#include "pipeline/data/calibration.hpp"
 #include "pipeline/model/term.hpp"
 
 namespace crisp {
 
 /// Adds the built-in terms.
 void register_built_in(TermRegistry& terms);
+
+/// A term's parameters as a calibration has them, all at the values that change nothing.
+TermParameters neutral_parameters(const TermInfo& term);
 
 /// What befalls clocks, links, noise or the scene, and so is no term of the chain. The simulator can do it,
 /// and a diagnosis may find it.

@@ -27,6 +27,8 @@ std::string type_name(const Option& option) {
       return "a name";
     case OptionType::path:
       return "a path";
+    case OptionType::groups:
+      return "a map of maps: {name: {parameter: value}}";
   }
   return {};
 }
@@ -42,6 +44,12 @@ std::string bounds(const Option& option) {
   if (above) return "at least " + text(option.min);
   if (below) return "at most " + text(option.max);
   return {};
+}
+
+std::string group_text(const OptionGroup& group) {
+  std::vector<std::string> entries;
+  for (const auto& [name, value, place] : group.entries) entries.push_back(name + ": " + value);
+  return fmt::format("{}: {{{}}}", group.name, fmt::join(entries, ", "));
 }
 
 bool has_type(const Option& option, const OptionScalar& scalar) {
@@ -104,6 +112,9 @@ std::optional<std::string> complaint(const Option& option, const OptionValue& va
     if (option.may_be_auto) return std::nullopt;
     return "cannot be 'auto'";
   }
+  const bool groups = std::holds_alternative<OptionGroups>(value);
+  if (groups != (option.type == OptionType::groups)) return groups ? "is a map of maps" : "is no map of maps";
+  if (groups) return std::nullopt;
   const auto* list = std::get_if<std::vector<OptionScalar>>(&value);
   if (option.list != (list != nullptr)) return option.list ? "is not a list" : "is a list";
   if (!list) return scalar_complaint(option, std::get<OptionScalar>(value));
@@ -135,6 +146,10 @@ std::string to_text(const Option& option, const OptionValue& value) {
   if (std::holds_alternative<std::monostate>(value)) return "auto";
   if (const auto* scalar = std::get_if<OptionScalar>(&value)) return scalar_text(option, *scalar);
   std::vector<std::string> elements;
+  if (const auto* groups = std::get_if<OptionGroups>(&value)) {
+    for (const auto& group : *groups) elements.push_back(group_text(group));
+    return fmt::format("{{{}}}", fmt::join(elements, ", "));
+  }
   for (const auto& scalar : std::get<std::vector<OptionScalar>>(value)) {
     elements.push_back(scalar_text(option, scalar));
   }

@@ -9,14 +9,32 @@
 #include <variant>
 #include <vector>
 
+#include "pipeline/data/error.hpp"
+
 namespace crisp {
 
 /// What one value of an option is.
-enum class OptionType { boolean, integer, number, text, choice, path };
+enum class OptionType { boolean, integer, number, text, choice, path, groups };
 
 using OptionScalar = std::variant<bool, std::int64_t, double, std::string>;
-/// A value of an option: `auto` (monostate), one value, or a list of them. Numbers are in the option's unit.
-using OptionValue = std::variant<std::monostate, OptionScalar, std::vector<OptionScalar>>;
+
+/// One entry of a map of maps: `mirror.cone: {kappa: 0.3deg}`. What names may stand there, and what the
+/// values' units are, is for the owner of the option to say, who also knows where each was written.
+struct OptionGroup {
+  struct Entry {
+    std::string name;
+    std::string value;
+    Place place;  ///< of the value
+  };
+  std::string name;
+  std::vector<Entry> entries;
+  Place place;
+};
+using OptionGroups = std::vector<OptionGroup>;
+
+/// A value of an option: `auto` (monostate), one value, a list of them, or a map of maps. Numbers are in the
+/// option's unit.
+using OptionValue = std::variant<std::monostate, OptionScalar, std::vector<OptionScalar>, OptionGroups>;
 
 /// One option as it was declared: everything that parsing, validation and documentation need to know.
 struct Option {

@@ -33,6 +33,12 @@ struct ValueShape<std::optional<V>> {
   static constexpr bool list = false;
   static constexpr bool automatic = true;
 };
+template <>
+struct ValueShape<OptionGroups> {
+  using Scalar = OptionGroup;
+  static constexpr bool list = false;
+  static constexpr bool automatic = false;
+};
 
 template <class V>
 concept OptionInteger = std::integral<V> && !std::same_as<V, bool>;
@@ -54,6 +60,8 @@ constexpr OptionType option_type() {
     return OptionType::choice;
   else if constexpr (std::same_as<V, std::filesystem::path>)
     return OptionType::path;
+  else if constexpr (std::same_as<V, OptionGroup>)
+    return OptionType::groups;
   else {
     static_assert(std::same_as<V, std::string>, "an option of this type cannot be read from YAML");
     return OptionType::text;
@@ -158,7 +166,8 @@ class OptionDeclaration {
 ///
 /// Between name and help stands the way from T to the member: one pointer to a member or callable, or a chain
 /// of up to three. Members can be bool, integers, double, float, std::string, std::filesystem::path,
-/// enumerations, a std::vector of these, or a std::optional of these (whose absence is written `auto`).
+/// enumerations, a std::vector of these, or a std::optional of these (whose absence is written `auto`); or
+/// OptionGroups.
 template <class T>
 class OptionSet {
  public:
@@ -215,7 +224,9 @@ class OptionSet {
   static Value convert(const OptionValue& value, const Table& table) {
     using Shape = detail::ValueShape<Value>;
     using V = typename Shape::Scalar;
-    if constexpr (Shape::list) {
+    if constexpr (std::same_as<Value, OptionGroups>) {
+      return std::get<OptionGroups>(value);
+    } else if constexpr (Shape::list) {
       Value list;
       for (const auto& scalar : std::get<std::vector<OptionScalar>>(value)) {
         list.push_back(detail::from_scalar<V>(scalar, table));
@@ -233,7 +244,9 @@ class OptionSet {
   static OptionValue describe(const Value& value, const Table& table) {
     using Shape = detail::ValueShape<Value>;
     using V = typename Shape::Scalar;
-    if constexpr (Shape::list) {
+    if constexpr (std::same_as<Value, OptionGroups>) {
+      return value;
+    } else if constexpr (Shape::list) {
       std::vector<OptionScalar> list;
       for (const V& element : value) list.push_back(detail::to_scalar<V>(element, table));
       return list;

@@ -26,6 +26,7 @@ std::optional<OptionScalar> read_scalar(const Option& option, const YamlNode& no
     case OptionType::choice:
       return boxed(read_text(node, wrong));
     case OptionType::path:
+    case OptionType::groups:  // is no scalar: see Reader
       break;
   }
   const auto path = read_text(node, wrong);
@@ -44,6 +45,7 @@ class Reader {
     if (option_.may_be_auto && node.kind == YamlNode::Kind::scalar && node.text == "auto") {
       return std::monostate{};
     }
+    if (option_.type == OptionType::groups) return read_groups(node);
     if (!option_.list) {
       auto scalar = read_element(node);
       if (!scalar) return std::nullopt;
@@ -63,6 +65,26 @@ class Reader {
   }
 
  private:
+  std::optional<OptionValue> read_groups(const YamlNode& node) {
+    const std::size_t before = errors_.size();
+    if (node.kind != YamlNode::Kind::map) refuse(node.place, describe(node) + " is no map");
+    OptionGroups groups;
+    for (const auto& [name, place, values] : node.entries) {
+      OptionGroup& group = groups.emplace_back(OptionGroup{.name = name, .entries = {}, .place = place});
+      if (values.kind != YamlNode::Kind::map && values.kind != YamlNode::Kind::null) {
+        refuse(values.place, name + ": " + describe(values) + " is no map");
+      }
+      for (const auto& [parameter, key, value] : values.entries) {
+        std::string wrong;
+        const auto text = read_text(value, wrong);
+        if (!text) refuse(value.place, name + "." + parameter + ": " + wrong);
+        group.entries.push_back({.name = parameter, .value = text.value_or(""), .place = value.place});
+      }
+    }
+    if (errors_.size() != before) return std::nullopt;
+    return groups;
+  }
+
   std::optional<OptionScalar> read_element(const YamlNode& node) {
     std::string wrong;
     auto scalar = read_scalar(option_, node, folder_, wrong);

@@ -35,11 +35,16 @@ class Builder {
 
   /// Asks a stage whether its options agree with each other and the rig.
   void check(const PipelineNode& node) {
+    const auto tell = [&](const Error& error) {
+      fail(error.place().file.empty() ? node.place : error.place(), node.tag + ": " + error.message(),
+           error.advice());
+    };
     try {
       node.stage->check(run_);
+    } catch (const Errors& several) {
+      for (const auto& error : several.all()) tell(error);
     } catch (const Error& error) {
-      fail(error.place().line ? error.place() : node.place, node.tag + ": " + error.message(),
-           error.advice());
+      tell(error);
     }
   }
 

@@ -100,6 +100,14 @@ nlohmann::json to_json(const OptionValue& value) {
   };
   if (const auto* scalar = std::get_if<OptionScalar>(&value)) return scalar_json(*scalar);
   if (std::holds_alternative<std::monostate>(value)) return "auto";
+  if (const auto* groups = std::get_if<OptionGroups>(&value)) {
+    auto object = nlohmann::json::object();
+    for (const auto& group : *groups) {
+      auto& entries = object[group.name] = nlohmann::json::object();
+      for (const auto& entry : group.entries) entries[entry.name] = entry.value;
+    }
+    return object;
+  }
   auto array = nlohmann::json::array();
   for (const auto& scalar : std::get<std::vector<OptionScalar>>(value)) array.push_back(scalar_json(scalar));
   return array;

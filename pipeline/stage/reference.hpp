@@ -20,7 +20,7 @@ std::string index_markdown(const StageRegistry& stages);
 /// A JSON schema of pipeline files with these stages, for editors that complete and check YAML.
 nlohmann::ordered_json pipeline_schema(const StageRegistry& stages);
 
-/// An option's value for programs: numbers in SI, lists as arrays, "auto".
+/// An option's value for programs: numbers in SI, lists as arrays, maps as objects, "auto".
 nlohmann::json to_json(const OptionValue& value);
 
 }  // namespace crisp

@@ -46,6 +46,11 @@ Json scalar_schema(const Option& option) {
 
 Json option_schema(const Option& option, const OptionValue& fallback) {
   Json schema = scalar_schema(option);
+  if (option.type == OptionType::groups) {
+    const Json values = {{"type", Json::array({"object", "null"})},
+                         {"additionalProperties", {{"type", Json::array({"string", "number"})}}}};
+    schema = {{"type", "object"}, {"additionalProperties", values}};
+  }
   if (option.list) {
     Json list = {{"type", "array"}, {"items", schema}, {"minItems", option.min_count}};
     if (option.max_count != std::numeric_limits<std::size_t>::max()) list["maxItems"] = option.max_count;

@@ -91,7 +91,7 @@ void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const Stag
     return;
   }
   YamlNode node;
-  if (option->list) {
+  if (option->list || option->type == OptionType::groups) {
     const std::size_t before = errors.size();
     node = parse_value(setting.value, setting.text, errors);
     if (errors.size() != before) return;

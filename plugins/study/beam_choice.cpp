@@ -31,14 +31,19 @@ std::vector<std::uint16_t> in_plane_of(const RigLaser& laser, const FieldOfView&
 /// Only the beams that `wanted` lists for their laser.
 SimulatedMeasurements narrowed(const SimulatedMeasurements& all,
                                const std::vector<std::vector<std::uint16_t>>& wanted) {
-  SimulatedMeasurements result{
-      .beams = {}, .surface = {}, .plate = all.plate, .truth = all.truth, .no_echo = all.no_echo};
+  SimulatedMeasurements result{.beams = {},
+                               .surface = {},
+                               .cos_incidence = {},
+                               .plate = all.plate,
+                               .truth = all.truth,
+                               .no_echo = all.no_echo};
   result.beams.epoch_ns = all.beams.epoch_ns;
   for (std::size_t i = 0; i < all.beams.size(); ++i) {
     const auto& of_laser = wanted[all.beams.laser[i]];
     if (std::ranges::find(of_laser, all.beams.beam[i]) == of_laser.end()) continue;
     result.beams.append(all.beams, i);
     result.surface.push_back(all.surface[i]);
+    result.cos_incidence.push_back(all.cos_incidence[i]);
   }
   return result;
 }

@@ -81,8 +81,13 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
   d.option("file", &BoundStage::file_, "where the bounds go, as CSV");
 }
 
+std::vector<Effect> BoundStage::effects(const RunSettings& run) const {
+  return read_effects(truth_.effects, run.rig, effect_catalogue(known_terms(run)));
+}
+
 void BoundStage::check(const RunSettings& run) const {
-  truth_.drawn(run, run.seed);
+  Calibration truth = truth_.drawn(run, run.seed);
+  add_terms(truth, effects(run), known_terms(run));
   make_motion(scanner_.motion, scanner_.duration, run.seed);
   scanner_.field.beams();
 }
@@ -92,6 +97,7 @@ void BoundStage::process(const Inputs&, Outputs&, Context& context) {
   scanner.rig = context.rig();
   scanner.seed = context.seed();
   scanner.truth = truth_.load(context, scanner.seed);
+  add_terms(scanner.truth, effects(context.run()), known_terms(context.run()));
   const Scene scene = scene_.load(context);
   const Motion motion = make_motion(scanner.motion, scanner.duration, scanner.seed);
   const TermRegistry& terms = known_terms(context.run());

@@ -26,6 +26,7 @@ class BoundStage final : public Stage {
   MotionSettings& motion() { return scanner_.motion; }
 
   void tell(const Scene& scene, Context& context) const;
+  std::vector<Effect> effects(const RunSettings& run) const;
 
   ScannerSettings scanner_;
   SceneChoice scene_;

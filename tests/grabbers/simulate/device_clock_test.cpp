@@ -19,6 +19,13 @@ TEST(DeviceClock, LosesTimeQuadraticallyWhenItsSkewGrows) {
   EXPECT_NEAR(clock.seconds(100), 100 - 0.005, 1e-12);
 }
 
+TEST(DeviceClock, JumpsAtItsStep) {
+  const DeviceClock clock{.start = 5, .resets = {20}, .step = {.at = 10, .by = 0.25}};
+  EXPECT_NEAR(clock.seconds(9.999), 14.999, 1e-12);
+  EXPECT_NEAR(clock.seconds(10), 15.25, 1e-12);
+  EXPECT_NEAR(clock.seconds(23), 3, 1e-12) << "after a reset it counts from zero";
+}
+
 TEST(DeviceClock, CountsWholeMicrosecondsThatWrapAt32Bits) {
   const DeviceClock clock{.start = 4294.967290};
   EXPECT_EQ(clock.microseconds(0.0000025), 4294967292U);

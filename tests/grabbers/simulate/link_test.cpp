@@ -26,6 +26,14 @@ TEST(Link, DelaysByTheMinimumAndAnExponentialJitter) {
   EXPECT_NEAR(sum / kTelegrams, 2.1e-3, 4 * 1e-4 / std::sqrt(kTelegrams));
 }
 
+TEST(Link, TakesLongerFromItsStepOn) {
+  Link link({.jitter = 0, .stall_rate = 0, .seconds_per_byte = 0}, 1e-3, 1, "laser1", {.at = 2, .by = 4e-3});
+  EXPECT_NEAR(link.arrival(1.99, 100), 1.991, 1e-12);
+  EXPECT_NEAR(link.arrival(2.01, 100), 2.015, 1e-12);
+  EXPECT_THROW(Link({}, 1e-3, 1, "laser1", {.at = 2, .by = -2e-3}), Error)
+      << "no telegram arrives before it is sent";
+}
+
 TEST(Link, KeepsTelegramsInOrderAndApartByTheirLength) {
   Link link({.jitter = 5e-3, .stall_rate = 1, .stall_time = 0.1, .seconds_per_byte = 1e-6}, 0, 1, "laser1");
   double last = -1;

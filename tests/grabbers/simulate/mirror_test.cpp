@@ -30,6 +30,12 @@ TEST(Mirror, TurnsSlowerThanNominalAndWandersWithinItsBounds) {
   }
 }
 
+TEST(Mirror, HasThePeriodThatWasAskedFor) {
+  // 0.57 % of 20 ms
+  Mirror mirror({.wander = 0}, 1, "laser1", 114e-6);
+  for (int i = 0; i < 10; ++i) EXPECT_NEAR(mirror.next().period, 0.020114, 1e-12);
+}
+
 TEST(Mirror, BeginsEachTurnWhereTheLastOneEnded) {
   const auto all = turns({.jitter = 1e-3}, 1, 1000);
   EXPECT_GE(all.front().begin, 0);

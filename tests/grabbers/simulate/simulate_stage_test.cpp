@@ -10,6 +10,7 @@
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/calibration_file.hpp"
+#include "pipeline/model/catalogue.hpp"
 #include "pipeline/stage/pipeline_file.hpp"
 #include "pipeline/stage/runner.hpp"
 
@@ -47,6 +48,7 @@ class SimulateStageTest : public testing::Test {
     fs::create_directories(folder_);
     Tally::scans = Tally::readings = 0;
     Tally::stop_after_100 = nullptr;
+    register_built_in(terms_);
     registrar_.attach(terms_);
     register_simulate(registrar_);
     registrar_.stage<Tally>();
@@ -123,6 +125,38 @@ TEST_F(SimulateStageTest, TakesItsTruthFromACalibration) {
               HasSubstr("not a calibration of this rig"));
 }
 
+TEST_F(SimulateStageTest, WritesItsEffectsIntoTheTruth) {
+  run("duration: 0.1s, truth: truth.yaml, effects: {encoder.eccentricity: {a: 0.1deg}, laser2.mirror.cone: "
+      "{kappa: 3mrad}, laser3.noise.heavy_tail: {share: 1%}, plate.clock.drift: {drift: 1e-6}}");
+  const Calibration truth = read_calibration(folder_ / "truth.yaml");
+  ASSERT_EQ(truth.plate_terms.size(), 1U);
+  EXPECT_EQ(truth.plate_terms[0].term, "encoder.eccentricity");
+  EXPECT_EQ(truth.plate_terms[0].parameters.at(0).unit, "rad");
+  ASSERT_EQ(truth.lasers[1].terms.size(), 1U);
+  EXPECT_EQ(truth.lasers[1].terms[0].parameters.at(0).value, 3e-3);
+  EXPECT_TRUE(truth.lasers[2].terms.empty());
+  EXPECT_EQ(truth.provenance.at("effect laser3.noise.heavy_tail.share"), "0.01");
+  EXPECT_EQ(truth.provenance.at("plate.clock.drift"), "1e-06");
+  EXPECT_NO_THROW(SensorModel(truth, terms_)) << "assembly takes it as it is";
+}
+
+TEST_F(SimulateStageTest, ReadsEveryTermBackFromTheTruth) {
+  std::string effects;
+  for (const auto& name : terms_.names()) effects += (effects.empty() ? "" : ", ") + name + ": {}";
+  run("duration: 0.1s, first_angle: 0deg, last_angle: 10deg, truth: truth.yaml, effects: {" + effects + "}");
+  const Calibration truth = read_calibration(folder_ / "truth.yaml");
+  EXPECT_EQ(truth.plate_terms.size() + truth.lasers[0].terms.size(), terms_.names().size() - 2)
+      << "clocks drift, and mirrors turn, as devices' own";
+  const SensorModel model(truth, terms_);
+  for (const auto& term : truth.plate_terms) {
+    const auto& info = terms_.get(term.term)->info();
+    for (std::size_t i = 0; i < info.parameters.size(); ++i) {
+      EXPECT_EQ(term.parameters.at(i).unit, info.parameters[i].unit) << term.term;
+      EXPECT_EQ(term.parameters.at(i).value, info.parameters[i].neutral) << term.term;
+    }
+  }
+}
+
 TEST_F(SimulateStageTest, LeavesNoFilesWhenItIsInterrupted) {
   std::atomic<bool> stop = false;
   Tally::stop_after_100 = &stop;
@@ -143,7 +177,12 @@ TEST_F(SimulateStageTest, LosesWhatItsFaultsSay) {
 TEST_F(SimulateStageTest, RefusesBeforeItRunsWhatMakesNoSense) {
   EXPECT_THAT(complaint("min_rate: 3Hz"), HasSubstr("slowest rate must not exceed"));
   EXPECT_THAT(complaint("last_angle: -90deg"), HasSubstr("field of view"));
-  EXPECT_THAT(complaint("effects: [mirror.coin.kappa=3]"), HasSubstr("mirror.coin"));
+  EXPECT_THAT(complaint("effects: {mirror.coin: {kappa: 3}}"), HasSubstr("did you mean 'mirror.cone'?"));
+  EXPECT_THAT(complaint("effects: {mirror.coin: {kappa: 3}}"), HasSubstr("pipeline.yaml:4:"));
+  EXPECT_THAT(complaint("effects: [mirror.cone]"), HasSubstr("a map of maps"));
+  EXPECT_THAT(complaint("effects: {mirror.cone: 3}"), HasSubstr("is no map"));
+  EXPECT_THAT(complaint("effects: {mirror.cone: {kappa: [3]}}"), HasSubstr("mirror.cone.kappa"));
+  EXPECT_THAT(complaint("effects: {scene.moving: {}}"), HasSubstr("scene_file"));
   EXPECT_THAT(complaint("stamp_lags: [1ms]"), HasSubstr("stamp lag"));
   EXPECT_THAT(complaint("scene: beach"), HasSubstr("office"));
   EXPECT_THAT(complaint("scene_file: nowhere.yaml"), HasSubstr("nowhere.yaml"));

@@ -190,6 +190,19 @@ TEST_F(ProgramTest, TellsAllOfAStage) {
   EXPECT_EQ(wrong.error, "error: there is no stage 'toy.wirte'; did you mean 'toy.write'?\n");
 }
 
+TEST_F(ProgramTest, TellsAllOfAnEffect) {
+  const auto outcome = crisp({"effects", "mirror.cone"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("mirror.cone: a laser's beam sweeps a cone"));
+  EXPECT_THAT(outcome.out, HasSubstr("kappa"));
+  EXPECT_THAT(outcome.out, HasSubstr("-0.1 to 0.1 rad; neutral: 0 rad"));
+  EXPECT_THAT(crisp({"effects"}).out, HasSubstr("noise.mixed_pixels"));
+  EXPECT_THAT(crisp({"effects", "--names"}).out, HasSubstr("\nplate.wobble\nrange.cyclic\n"));
+  const auto wrong = crisp({"effects", "mirror.coin"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_EQ(wrong.error, "error: there is no effect 'mirror.coin'; did you mean 'mirror.cone'?\n");
+}
+
 TEST_F(ProgramTest, DescribesPipelinesAsAJsonSchema) {
   const auto schema = nlohmann::json::parse(crisp({"stages", "--json-schema"}).out);
   for (const auto& stage : schema["properties"]["pipeline"]["items"]["anyOf"]) {
@@ -281,6 +294,7 @@ TEST_F(ProgramTest, CompletesItsCommandLineInBash) {
   EXPECT_EQ(completed(CRISP_PROGRAM " va", 1), "validate ");
   EXPECT_EQ(completed(CRISP_PROGRAM " run --se", 2), "--set --seed ");
   EXPECT_EQ(completed(CRISP_PROGRAM " stages write.ca", 2), "write.calibration ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " effects noise.mi", 2), "noise.mixed_pixels ");
   EXPECT_EQ(completed(CRISP_PROGRAM " run --rig x", 3), " ");  // left to bash's own, which knows files
 }
 

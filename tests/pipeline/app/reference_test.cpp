@@ -35,5 +35,15 @@ TEST(Reference, SaysWhatTheStagesDeclare) {
   fs::remove_all(fresh);
 }
 
+TEST(Reference, SaysWhatTheEffectsDeclare) {
+  const fs::path written = fs::path(CRISP_SOURCE_DIR) / "docs" / "effects.md";
+  const fs::path fresh = fs::path(testing::TempDir()) / "crisp-effects.md";
+  ASSERT_EQ(std::system((CRISP_PROGRAM " effects --markdown > " + fresh.string()).c_str()), 0);
+  constexpr std::size_t kLimit = 1 << 20;
+  EXPECT_EQ(read_text_file(written, kLimit), read_text_file(fresh, kLimit))
+      << "run: crisp effects --markdown > docs/effects.md";
+  fs::remove(fresh);
+}
+
 }  // namespace
 }  // namespace crisp

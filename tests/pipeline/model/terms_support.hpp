@@ -19,11 +19,9 @@ inline const TermRegistry& built_in_terms() {
 
 /// The term's parameters: those that are given, and the others neutral.
 inline TermParameters with_values(const TermInfo& info, const std::map<std::string, double>& given = {}) {
-  TermParameters term{.term = info.name, .parameters = {}};
-  for (const auto& parameter : info.parameters) {
-    const auto found = given.find(parameter.name);
-    const double value = found == given.end() ? parameter.neutral : found->second;
-    term.parameters.push_back({.name = parameter.name, .unit = parameter.unit, .value = value});
+  TermParameters term = neutral_parameters(info);
+  for (auto& parameter : term.parameters) {
+    if (const auto found = given.find(parameter.name); found != given.end()) parameter.value = found->second;
   }
   return term;
 }

@@ -25,6 +25,7 @@ struct Thing {
   std::vector<double> widths = {0.5, 0.01};
   std::vector<std::string> names;
   std::optional<double> window;
+  OptionGroups groups;
   Inner inner;
   Inner& get_inner() { return inner; }
 };
@@ -38,6 +39,22 @@ struct Fixture : testing::Test {
   std::string text() const { return to_text(last(), value()); }
   void set(const OptionValue& to) { last().set(&thing, to); }
 };
+
+TEST_F(Fixture, HoldsAMapOfMaps) {
+  options.add("groups", &Thing::groups, "-");
+  EXPECT_EQ(text(), "{}");
+  set(OptionGroups{{.name = "a.b", .entries = {{"c", "1deg", {}}, {"d", "2", {}}}}, {.name = "e"}});
+  EXPECT_EQ(thing.groups.at(0).entries.at(1).value, "2");
+  EXPECT_EQ(text(), "{a.b: {c: 1deg, d: 2}, e: {}}");
+  EXPECT_FALSE(complaint(last(), value()));
+  EXPECT_TRUE(complaint(last(), OptionScalar(1.0)));
+  EXPECT_TRUE(complaint(last(), std::monostate{}));
+}
+
+TEST_F(Fixture, RefusesAMapOfMapsWhereAListIsWanted) {
+  options.add("names", &Thing::names, "-");
+  EXPECT_TRUE(complaint(last(), OptionGroups{}));
+}
 
 TEST_F(Fixture, ReadsAndSetsEveryTypeOfMember) {
   options.add("flag", &Thing::flag, "-");

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/device_effects.hpp"
+
+#include <algorithm>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+/// Where a parameter of an effect lies: in what a laser has, or in what every device has.
+struct Row {
+  std::string effect;
+  std::string parameter;
+  double& (*of_laser)(LaserEffects&) = nullptr;
+  double& (*of_device)(DeviceEffects&) = nullptr;
+};
+
+const std::vector<Row>& rows() {
+  using L = LaserEffects;
+  using D = DeviceEffects;
+  static const std::vector<Row> kRows = {
+      {"noise.range_dependent", "slope", [](L& l) -> double& { return l.noise.slope; }},
+      {"noise.heavy_tail", "share", [](L& l) -> double& { return l.noise.tail_share; }},
+      {"noise.heavy_tail", "scale", [](L& l) -> double& { return l.noise.tail_scale; }},
+      {"noise.mixed_pixels", "divergence", [](L& l) -> double& { return l.noise.divergence; }},
+      {"noise.mixed_pixels", "aperture", [](L& l) -> double& { return l.noise.aperture; }},
+      {"noise.mixed_pixels", "merge", [](L& l) -> double& { return l.noise.merge; }},
+      {"noise.two_peaks", "separation", [](L& l) -> double& { return l.noise.separation; }},
+      {"noise.two_peaks", "least", [](L& l) -> double& { return l.noise.least_weight; }},
+      {"noise.two_peaks", "most", [](L& l) -> double& { return l.noise.most_weight; }},
+      {"noise.quantisation", "step", [](L& l) -> double& { return l.noise.step; }},
+      {"mirror.period", "excess", [](L& l) -> double& { return l.mirror_excess; }},
+      {"clock.drift", "skew", nullptr, [](D& d) -> double& { return d.skew; }},
+      {"clock.drift", "drift", nullptr, [](D& d) -> double& { return d.drift; }},
+      {"clock.step", "by", nullptr, [](D& d) -> double& { return d.clock.by; }},
+      {"clock.step", "at", nullptr, [](D& d) -> double& { return d.clock.at; }},
+      {"latency.step", "by", nullptr, [](D& d) -> double& { return d.latency.by; }},
+      {"latency.step", "at", nullptr, [](D& d) -> double& { return d.latency.at; }},
+  };
+  return kRows;
+}
+
+const Row* find_row(const std::string& effect, const std::string& parameter) {
+  const auto found = std::ranges::find_if(
+      rows(), [&](const Row& row) { return row.effect == effect && row.parameter == parameter; });
+  return found == rows().end() ? nullptr : &*found;
+}
+
+bool befalls_devices(const std::string& effect) {
+  return std::ranges::any_of(rows(), [&](const Row& row) { return row.effect == effect; });
+}
+
+void set(const Row& row, std::size_t device, double value, RecordingSettings& settings) {
+  if (row.of_device) {
+    row.of_device(settings.device_effects[device]) = value;
+  } else if (device < settings.scanner.laser_effects.size()) {
+    row.of_laser(settings.scanner.laser_effects[device]) = value;
+  }
+}
+
+}  // namespace
+
+std::vector<EffectInfo> recording_catalogue(const TermRegistry& terms) {
+  std::vector<EffectInfo> catalogue = effect_catalogue(terms);
+  for (auto& info : catalogue) {
+    const bool clocks =
+        std::ranges::any_of(rows(), [&](const Row& row) { return row.effect == info.name && row.of_device; });
+    if (clocks) info.scope = Scope::kDevice;
+  }
+  return catalogue;
+}
+
+std::vector<Effect> apply_device_effects(std::vector<Effect> effects, RecordingSettings& settings) {
+  const std::size_t lasers = settings.scanner.rig.lasers.size();
+  settings.scanner.laser_effects.resize(lasers);
+  settings.device_effects.resize(lasers + 1);
+  for (const auto& effect : effects) {
+    for (const auto& [parameter, value] : effect.values) {
+      const Row* row = find_row(effect.name, parameter);
+      for (std::size_t device = 0; row && device <= lasers; ++device) {
+        if (!effect.owner || *effect.owner == device) set(*row, device, value, settings);
+      }
+    }
+  }
+  std::erase_if(effects, [](const Effect& effect) { return befalls_devices(effect.name); });
+  return effects;
+}
+
+void for_each_device_effect(const RecordingSettings& settings,
+                            const std::function<void(const std::string& name, double value)>& visit) {
+  const auto& rig = settings.scanner.rig;
+  for (std::size_t device = 0; device <= rig.lasers.size(); ++device) {
+    const bool plate = device == rig.lasers.size();
+    LaserEffects laser = plate ? LaserEffects{} : settings.scanner.effects_of(device);
+    LaserEffects plain_laser;
+    DeviceEffects other = settings.device_effects.empty() ? DeviceEffects{} : settings.device_effects[device];
+    DeviceEffects plain_device;
+    for (const auto& row : rows()) {
+      const double value = row.of_device ? row.of_device(other) : row.of_laser(laser);
+      const double plain = row.of_device ? row.of_device(plain_device) : row.of_laser(plain_laser);
+      if (value == plain) continue;
+      visit((plate ? rig.plate.name : rig.lasers[device].name) + "." + row.effect + "." + row.parameter,
+            value);
+    }
+  }
+}
+
+}  // namespace crisp

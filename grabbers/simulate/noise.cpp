@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/noise.hpp"
+
+#include <cmath>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+bool is_share(double value) { return value >= 0 && value <= 1; }
+
+void check(const RangeSettings& range, const NoiseEffects& effects, const std::string& laser) {
+  if (!(range.sigma >= 0 && range.quantum >= 0 && range.max_distance > 0)) {
+    throw Error("the noise, the step and the reach of a laser's range must not be negative");
+  }
+  if (!(effects.slope >= 0 && effects.tail_scale >= 0 && effects.divergence >= 0 && effects.aperture >= 0 &&
+        effects.merge >= 0 && effects.separation >= 0 && effects.step >= 0)) {
+    throw Error("what the noise of " + laser + " is made of must not be negative");
+  }
+  if (!is_share(effects.tail_share) || !is_share(effects.least_weight) || !is_share(effects.most_weight) ||
+      effects.least_weight > effects.most_weight) {
+    throw Error("shares of the noise of " + laser + " must be from 0 to 1, and the least not above the most");
+  }
+}
+
+}  // namespace
+
+RangeNoise::RangeNoise(const RangeSettings& range, const NoiseEffects& effects, std::size_t beams,
+                       std::uint64_t seed, const std::string& laser)
+    : sigma_(range.sigma),
+      quantum_(effects.step > 0 ? effects.step : range.quantum),
+      effects_(effects),
+      normal_(seed, laser + ".noise"),
+      tail_(seed, laser + ".noise.tail"),
+      peak_(seed, laser + ".noise.peaks") {
+  check(range, effects, laser);
+  if (effects.separation == 0) return;
+  RandomStream random(seed, laser + ".noise.weights");
+  for (std::size_t i = 0; i < beams; ++i) {
+    weights_.push_back(random.uniform(effects.least_weight, effects.most_weight));
+  }
+}
+
+RangeNoise::Draw RangeNoise::draw(std::uint16_t beam) {
+  Draw draw{.normal = normal_.normal()};
+  if (effects_.tail_share > 0 && tail_.chance(effects_.tail_share)) draw.normal *= effects_.tail_scale;
+  if (!weights_.empty()) draw.shift = effects_.separation * (peak_.chance(weights_[beam]) ? 0.5 : -0.5);
+  return draw;
+}
+
+double RangeNoise::reported(double range, const Draw& draw) const {
+  const double noisy = range + draw.shift + std::hypot(sigma_, effects_.slope * range) * draw.normal;
+  return quantum_ > 0 ? quantum_ * std::round(noisy / quantum_) : noisy;
+}
+
+}  // namespace crisp
