@@ -7,9 +7,12 @@
 #include <cmath>
 
 #include "plugins/calibrate/cloud_objective.hpp"
+#include "plugins/calibrate/wanted_terms.hpp"
 
 namespace crisp {
 namespace {
+
+constexpr double kOfBounds = 0.05;  // share of a term's bounds that its parameters are looked for within
 
 using Motion = Eigen::Matrix<double, 3, 6>;
 
@@ -52,7 +55,10 @@ Eigen::VectorXd ranges_of(const SearchRange& range, const SensorModel& model,
                           const std::vector<std::size_t>& free) {
   Eigen::VectorXd ranges(static_cast<Eigen::Index>(free.size()));
   for (std::size_t i = 0; i < free.size(); ++i) {
-    ranges[static_cast<Eigen::Index>(i)] = range_of(range, model.names()[free[i]]);
+    const EffectParameter* term = declared(model, free[i]);
+    const double width = term ? term->upper - term->lower : 0;
+    ranges[static_cast<Eigen::Index>(i)] =
+        width > 0 ? kOfBounds * width : range_of(range, model.names()[free[i]]);
   }
   return ranges;
 }

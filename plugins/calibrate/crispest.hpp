@@ -17,7 +17,7 @@ struct SearchRange {
   double tau = 0.10;     ///< [m]
   double alpha = 0.35;   ///< [rad]
   double eta = 0.10;     ///< [s]
-  double other = 0.05;   ///< parameters of terms beyond equation (2), in their units
+  double other = 0.05;   ///< parameters of terms beyond equation (2) that have no bounds, in their units
 };
 
 /// The range that belongs to a parameter by its name.
@@ -36,7 +36,8 @@ Eigen::MatrixXd search_basis(const SensorModel& model, const Sample& sample,
 /// The model with other values of the free parameters.
 SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x);
 
-/// The values of the parameters in `free`, or the ranges in which they are looked for.
+/// The values of the parameters in `free`, or the ranges in which they are looked for: those of terms are a
+/// share of their bounds.
 Eigen::VectorXd picked(const SensorModel& model, const std::vector<std::size_t>& free);
 Eigen::VectorXd ranges_of(const SearchRange& range, const SensorModel& model,
                           const std::vector<std::size_t>& free);

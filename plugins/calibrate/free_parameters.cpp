@@ -5,6 +5,7 @@
 #include <array>
 
 #include "pipeline/data/error.hpp"
+#include "plugins/calibrate/wanted_terms.hpp"
 
 namespace crisp {
 namespace {
@@ -25,10 +26,19 @@ std::vector<bool> lasers_in(const Measurements& beams, std::size_t lasers) {
   return seen;
 }
 
+/// Whether a parameter is of the chain of a laser that measured something.
+bool feels(const SensorModel& model, const std::vector<bool>& measured, std::size_t parameter) {
+  for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
+    const auto& slots = model.chain(laser).slots;
+    if (measured[laser] && std::ranges::find(slots, parameter) != slots.end()) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 FreeParameters free_parameters(const SensorModel& model, const Measurements& beams,
-                               const std::vector<std::string>& fixed) {
+                               const std::vector<std::string>& fixed, const std::vector<std::string>& terms) {
   const std::vector<bool> measured = lasers_in(beams, model.lasers());
   FreeParameters result;
   bool gauge = false;
@@ -44,6 +54,15 @@ FreeParameters free_parameters(const SensorModel& model, const Measurements& bea
       } else if (!is_fixed(name, fixed)) {
         result.free.push_back(slot);
       }
+    }
+  }
+  for (const std::size_t parameter : parameters_of(model, terms)) {
+    if (feels(model, measured, parameter)) {
+      result.free.push_back(parameter);
+    } else {
+      result.unobservable.push_back({.parameter = model.names()[parameter],
+                                     .reason = "this laser measured nothing",
+                                     .combination = {}});
     }
   }
   return result;

@@ -15,11 +15,14 @@ struct FreeParameters {
 };
 
 /// λ, τ, α and η of every laser that measured something, but for the λ of the first of them: turning the
-/// whole scanner changes nothing. Terms beyond equation (2) are left as they are.
+/// whole scanner changes nothing. Terms beyond equation (2) are left as they are, but for those that are
+/// wanted.
 ///
 /// @param fixed  those to be left alone: "laser1.eta", or "eta" for that of all lasers
+/// @param terms  to be found as well: "encoder.eccentricity", "laser2.mirror.cone"
 FreeParameters free_parameters(const SensorModel& model, const Measurements& beams,
-                               const std::vector<std::string>& fixed);
+                               const std::vector<std::string>& fixed,
+                               const std::vector<std::string>& terms = {});
 
 /// @throws Error  if an entry of `fixed` names no parameter of these lasers
 void check_fixed(const std::vector<std::string>& fixed, const Calibration& calibration);

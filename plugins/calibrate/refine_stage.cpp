@@ -6,6 +6,7 @@
 #include "pipeline/stage/registry.hpp"
 #include "plugins/calibrate/free_parameters.hpp"
 #include "plugins/calibrate/report.hpp"
+#include "plugins/calibrate/wanted_terms.hpp"
 
 namespace crisp {
 namespace {
@@ -39,6 +40,9 @@ void RefineStage::describe(StageDescription<RefineStage>& d) {
       .range(0.01, 100);
   d.option("fixed", &RefineStage::settings_, &RefinementSettings::fixed,
            "parameters that are left as they are: laser1.eta, or eta for that of all lasers");
+  d.option("terms", &RefineStage::settings_, &RefinementSettings::terms,
+           "effects to be found as well, where they are terms of the sensor model: encoder.eccentricity, or "
+           "laser2.mirror.cone of one laser; `crisp effects` lists them");
   d.option("rounds", &RefineStage::settings_, &RefinementSettings::max_rounds, "most steps that are taken")
       .range(1, 1000);
   d.option("sigma", &RefineStage::sigma_, "kernel width of the RQE that judges the result")
@@ -51,6 +55,8 @@ void RefineStage::check(const RunSettings& run) const {
     throw Error("the largest patch is smaller than the smallest", "give a `largest` above `smallest`");
   }
   check_fixed(settings_.fixed, nominal_calibration(run.rig));
+  Calibration with_terms = nominal_calibration(run.rig);
+  add_wanted_terms(with_terms, settings_.terms, run.registrar->get<TermRegistry>());
 }
 
 void RefineStage::process(const Inputs& in, Outputs&, Context&) {
@@ -61,7 +67,10 @@ void RefineStage::process(const Inputs& in, Outputs&, Context&) {
 void RefineStage::finish(Outputs& out, Context& context) {
   const Sample sample = collected_.sample();
   context.count("beams left out of the calibration of a long recording", collected_.left_out());
-  const SensorModel start(*start_, context.run().registrar->get<TermRegistry>());
+  const auto& terms = context.run().registrar->get<TermRegistry>();
+  Calibration with_terms = *start_;
+  add_wanted_terms(with_terms, settings_.terms, terms);
+  const SensorModel start(with_terms, terms);
   const Refinement refined = refine_by_surfels(start, sample, settings_, [&](int round) {
     context.progress(static_cast<double>(round) / (round + 4), fmt::format("round {}", round + 1));
     return !context.interrupted();

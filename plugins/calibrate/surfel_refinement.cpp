@@ -174,8 +174,8 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
                              const RefinementSettings& settings, const RoundReporter& report) {
   const LagRange lag = lag_range(start, settings.prior.eta);
   Sample inside = covered(sample, lag.earliest, lag.latest);
-  FreeParameters parameters =
-      can_be_told(free_parameters(start, inside.beams, settings.fixed), start, inside, SearchRange{});
+  FreeParameters parameters = can_be_told(
+      free_parameters(start, inside.beams, settings.fixed, settings.terms), start, inside, SearchRange{});
   const bool upright = is_in_plane(inside);
   if (upright) inside = spread_upright(inside, kSpread);
   Refiner refiner(start, inside, parameters.free,

@@ -13,6 +13,7 @@ namespace crisp {
 
 struct RefinementSettings {
   std::vector<std::string> fixed;  ///< parameters to be left alone: see free_parameters()
+  std::vector<std::string> terms;  ///< of the model, to be found as well: see wanted_terms.hpp
   SurfelSettings surfels;
   SearchRange prior{.lambda = 0.05, .tau = 0.03, .alpha = 0.05, .eta = 0.01, .other = 0.05};  ///< see below
   int max_rounds = 15;
@@ -31,9 +32,10 @@ struct Refinement {
 /// One step of the work: its number, and whether the work is to go on.
 using RoundReporter = std::function<bool(int round)>;
 
-/// Estimates λ, τ, α and η by weighted least squares in the distances of all beams to the flat surfaces that
-/// they meet, whose planes are estimated with them (projected out). Against RQE it has no bias by a kernel's
-/// width and uses all beams; but it needs a start that is right to some centimetres, which RQE gives.
+/// Estimates λ, τ, α, η and the terms that are wanted by weighted least squares in the distances of all beams
+/// to the flat surfaces that they meet, whose planes are estimated with them (projected out). Against RQE it
+/// has no bias by a kernel's width and uses all beams; but it needs a start that is right to some
+/// centimetres, which RQE gives.
 ///
 /// Each round places the beams, finds the surfaces (anew until steps are small) and takes one Gauss-Newton
 /// step. The start counts as an observation with the standard deviations `prior`; what the data do not tell
