@@ -4,11 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <map>
-
 #include "pipeline/data/error.hpp"
 #include "pipeline/quality/rqe.hpp"
-#include "tests/pipeline/quality/clouds.hpp"
+#include "tests/pipeline/quality/awkward_clouds.hpp"
 
 namespace crisp {
 namespace {
@@ -19,53 +17,11 @@ SearchRegistry built_in() {
   return registry;
 }
 
-/// Clouds that neighbour searches stumble over.
-std::map<std::string, Vectors> awkward_clouds() {
-  std::map<std::string, Vectors> clouds;
-  clouds["random"] = test::random_cube(600, 1, 1);
-  clouds["walls"] = test::room_corner(600, 1, 0.005, 2);
-  clouds["a flat plane"] = test::room_corner(600, 1, 0, 3);
-  clouds["sparse"] = test::random_cube(300, 30, 4);
-  clouds["one point"] = test::random_cube(1, 1, 5);
-  clouds["two points"] = test::random_cube(2, 0.05, 6);
-  clouds["three points"] = test::random_cube(3, 0.1, 7);
-  clouds["17 points, one more than a tile"] = test::random_cube(17, 0.05, 8);
-  clouds["129 points, one more than a group"] = test::random_cube(129, 0.5, 9);
-  for (int i = 0; i < 200; ++i) {
-    test::add(clouds["all points equal"], 3, 3, 3);
-    const int half = i / 2;
-    const int row = i / 6;
-    const int layer = i / 36;
-    test::add(clouds["each point twice"], 0.01 * half, 1, 0.03 * (half % 7));
-    test::add(clouds["a lattice as wide as the radius"], 0.1 * (i % 6), 0.1 * (row % 6), 0.1 * layer);
-    test::add(clouds["a line"], 0.013 * i, 0, 0);
-  }
-  clouds["huge coordinates"] = test::random_cube(600, 1, 10);
-  for (double& x : clouds["huge coordinates"].x) x -= 5.2e6;
-  clouds["outliers"] = test::random_cube(600, 1, 11);
-  test::add(clouds["outliers"], 1e12, 1e12, -1e12);
-  test::add(clouds["outliers"], 1e12, 1e12, -1e12);
-  test::add(clouds["outliers"], -1e9, 0, 0);
-  return clouds;
-}
-
 Neighbours near_all(const std::string& search, const Vectors& cloud, double radius) {
   Neighbours result;
   const auto points = cloud.view();
   built_in().make(search)->index(points, radius)->near(0, cloud.size(), result);
   return result;
-}
-
-/// How many pairs are from `low` to `high` apart.
-double pairs_between(const Vectors& cloud, double low, double high) {
-  double pairs = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const double distance = std::sqrt(squared_distance(cloud.view(), i, j));
-      if (distance >= low && distance <= high) ++pairs;
-    }
-  }
-  return pairs;
 }
 
 TEST(Search, ListsTheNeighboursOfAHandWorkedLine) {
@@ -79,7 +35,7 @@ TEST(Search, ListsTheNeighboursOfAHandWorkedLine) {
 }
 
 TEST(Search, FindsTheSameNeighboursInEveryWay) {
-  for (const auto& [what, cloud] : awkward_clouds()) {
+  for (const auto& [what, cloud] : test::awkward_clouds()) {
     const auto exact = near_all("exact", cloud, 0.1);
     for (const auto& name : built_in().names()) {
       const auto near = near_all(name, cloud, 0.1);
@@ -112,11 +68,11 @@ TEST(Search, OfNoPointsListsNone) {
 
 TEST(Search, GivesTheSameEntropyInEveryWay) {
   // "exact" and "flann" sum in double precision, "grid" in single: some 1e-7 a pair.
-  for (const auto& [what, cloud] : awkward_clouds()) {
+  for (const auto& [what, cloud] : test::awkward_clouds()) {
     const auto weights = test::random_weights(cloud.size(), 13);
     const auto exact = built_in().make("exact");
     const auto truth = rqe(cloud.view(), weights, {.sigma = 0.02}, *exact);
-    const double at_the_radius = pairs_between(cloud, 7 * 0.02 * (1 - 1e-6), 7 * 0.02 * (1 + 1e-6));
+    const double at_the_radius = test::pairs_between(cloud, 7 * 0.02 * (1 - 1e-6), 7 * 0.02 * (1 + 1e-6));
     double largest = 1 / 0.02;  // a gradient of about 1/σ a point is what a close pair makes
     for (const double g : truth.gradient.x) largest = std::max(largest, std::abs(g));
     for (const auto& name : built_in().names()) {

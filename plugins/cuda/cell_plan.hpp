@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pipeline/quality/points.hpp"
+#include "pipeline/quality/spatial_order.hpp"
+#include "plugins/cuda/unit_sums.hpp"
+
+namespace crisp::cuda {
+
+/// Which points are summed side by side, and against which. A slot is a place in `order`.
+struct CellPlan {
+  SpatialOrder order;                     ///< by cells of the radius
+  std::vector<Unit> units;                ///< cell by cell
+  std::vector<SlotRange> near;            ///< see PlanView
+  std::vector<std::uint64_t> near_begin;  ///< see PlanView
+  std::uint64_t tested = 0;               ///< distances that its sums will compute
+  bool needs_double = false;  ///< it reaches so far that a cell may hold points that are far from one another
+};
+
+/// @param radius  [m] within which points are neighbours
+/// @throws Error  for more points than 32 bits can number
+CellPlan plan_cells(const PointsView& points, double radius);
+
+/// Positions [m] and weights in the order of the slots.
+struct Slots {
+  Vectors at;
+  std::vector<double> weight;
+};
+Slots fill_slots(const CellPlan& plan, const PointsView& points, std::span<const double> weights);
+
+}  // namespace crisp::cuda

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "pipeline/quality/search.hpp"
+#include "plugins/cuda/cell_plan.hpp"
+
+namespace crisp::cuda {
+
+/// What all units of a plan gave; see Results.
+struct UnitSums {
+  Vectors pull;                ///< of each slot; empty: unwanted
+  std::vector<double> kernel;  ///< of each unit
+  std::vector<std::uint64_t> pairs;
+};
+
+/// Calls sum_unit() for all units of a plan, in single precision unless the plan needs double.
+using SumUnits = std::function<UnitSums(const CellPlan&, const Slots&, const PairKernel&, bool gradient)>;
+
+/// RQE's sums by units, wherever they are computed. Truncated as "exact" and "flann" are, to a relative error
+/// of some 1e-6 a pair; the same to the last bit each time.
+class UnitSearch final : public Search {
+ public:
+  explicit UnitSearch(SumUnits sum_units) : sum_units_(std::move(sum_units)) {}
+
+  /// That of "grid": lists of neighbours are made by the processor.
+  std::unique_ptr<NeighbourIndex> index(const PointsView& points, double radius) const override;
+  GaussianSums sums(const PointsView& points, std::span<const double> weights,
+                    const TruncatedGaussian& kernel, const SumsWanted& wanted) override;
+
+ private:
+  SumUnits sum_units_;
+};
+
+}  // namespace crisp::cuda

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/cuda/gpu.hpp"
+#include "tests/plugins/cuda/runners.hpp"
+
+namespace crisp::cuda {
+
+std::vector<Runner> gpu_runners() { return {{"Gpu", sum_on_gpu, why_no_gpu()}}; }
+
+}  // namespace crisp::cuda
