@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/capture/flow.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
+
+#include "grabbers/capture/framing_losses.hpp"
 
 namespace crisp {
 namespace {
@@ -165,21 +165,8 @@ void Flow::report() {
   log.note("TCP segments sent again", tcp.repeated_segments);
   log.note("TCP segments out of order", tcp.late_segments);
   log.note("TCP segments that fit nowhere", tcp.strays);
-  if (cola_) {
-    const auto& framer = cola_->counts();
-    log.lose("telegrams with a wrong checksum", framer.checksum_failures);
-    log.lose("telegrams cut by a gap or an end", framer.cut);
-    log.lose("bytes that belong to no whole telegram", framer.skipped_bytes);
-    log.note("times that the next telegram had to be searched", framer.resynchronisations);
-  }
-  if (plate_) {
-    const auto& framer = plate_->counts();
-    for (const auto failure : {PlateFailure::Truncated, PlateFailure::BadChecksum, PlateFailure::BadField}) {
-      log.lose(fmt::format("sentences refused: {}", to_string(failure)), framer.of(failure));
-    }
-    log.note("sentences of other kinds", framer.of(PlateFailure::OtherSentence));
-    log.lose("bytes that belong to no sentence", framer.skipped_bytes);
-  }
+  if (cola_) note_framing(cola_->counts(), log);
+  if (plate_) note_framing(plate_->counts(), log);
 }
 
 }  // namespace crisp

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/simulate/recorded_capture.hpp"
 
-#include <string_view>
-
-#include "grabbers/wire/cola.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_data.hpp"
 #include "pipeline/data/error.hpp"
@@ -13,30 +10,7 @@ namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kHold = 100 * kMillisecond;  // longer than any frame lies before or behind its event
-constexpr std::uint16_t kLaserPort = 2112;
-constexpr std::uint16_t kPlatePort = 4000;
-constexpr std::uint16_t kFirstClientPort = 51000;
 constexpr std::size_t kHeaders = 54;  // Ethernet, IPv4 and TCP: damage behind them hits the payload
-
-Address hub_for(const Address& device, std::uint16_t port) {
-  const bool ipv6 = device.ip.find(':') != std::string::npos;
-  Address hub{.ip = ipv6 ? "fe80::100" : "192.168.0.100", .port = port};
-  if (hub.ip == device.ip) {
-    throw Error("the simulated hub has the address " + hub.ip + ", and so has a device of the rig",
-                "give the device another address");
-  }
-  return hub;
-}
-
-Address with_port(Address address, std::uint16_t usual) {
-  if (address.port == 0) address.port = usual;
-  return address;
-}
-
-Bytes subscription(std::string_view command, ColaLanguage language) {
-  const std::string on = language == ColaLanguage::A ? "1" : std::string(1, '\1');
-  return cola_frame(as_bytes(std::string(command) + " " + std::string(kScanDataName) + " " + on), language);
-}
 
 }  // namespace
 
@@ -77,27 +51,13 @@ RecordedCapture::RecordedCapture(std::filesystem::path path, RecordingSettings s
       sorter_([this](std::int64_t ns, ByteView frame) { file_.write(ns, frame); }, kHold),
       wire_(faults, settings_.scanner.seed,
             [this](std::int64_t ns, ByteView frame) { sorter_.push(ns, frame); }),
-      plate_(with_port(settings_.scanner.rig.plate.address, kPlatePort),
-             hub_for(settings_.scanner.rig.plate.address, kPlatePort),
-             [this](std::int64_t ns, ByteView frame) { wire_.push(ns, frame); }) {
-  lasers_.resize(settings_.scanner.rig.lasers.size());
+      hub_(settings_.scanner.rig, settings_.telegrams.language,
+           [this](std::int64_t ns, ByteView frame) { wire_.push(ns, frame); }),
+      restarts_(settings_.scanner.rig.lasers.size()) {
   constexpr std::int64_t kBefore = 200 * kMillisecond;  // the plate's readings begin 100 ms before time 0
-  for (std::size_t i = 0; i < lasers_.size(); ++i) {
-    connect(i, settings_.start_ns - kBefore + static_cast<std::int64_t>(i) * kMillisecond);
+  for (std::size_t i = 0; i < restarts_.size(); ++i) {
+    hub_.connect(i, settings_.start_ns - kBefore + static_cast<std::int64_t>(i) * kMillisecond);
   }
-}
-
-void RecordedCapture::connect(std::size_t laser, std::int64_t time_ns) {
-  auto& connection = lasers_[laser];
-  const Address server = with_port(settings_.scanner.rig.lasers[laser].address, kLaserPort);
-  const auto port =
-      static_cast<std::uint16_t>(kFirstClientPort + laser + lasers_.size() * connection.restarts);
-  connection.tcp = std::make_unique<TcpConversation>(
-      server, hub_for(server, port), [this](std::int64_t ns, ByteView frame) { wire_.push(ns, frame); });
-  connection.tcp->open(time_ns);
-  const auto language = settings_.telegrams.language;
-  connection.tcp->send(TcpSide::Client, subscription("sEN", language), time_ns + kMillisecond);
-  connection.tcp->send(TcpSide::Server, subscription("sEA", language), time_ns + 2 * kMillisecond);
 }
 
 void RecordedCapture::write(const HubEvent& event) {
@@ -106,24 +66,23 @@ void RecordedCapture::write(const HubEvent& event) {
 }
 
 void RecordedCapture::write(const LaserTelegram& telegram) {
-  auto& connection = lasers_[telegram.laser];
   const double received = 1e-9 * static_cast<double>(telegram.receipt_ns - settings_.start_ns);
   const auto& device = truth_.lasers[telegram.laser];
   const auto restarts = device.clock.resets_before(received - device.minimum_delay);
-  if (restarts != connection.restarts) {
-    connection.restarts = restarts;
-    connect(telegram.laser, telegram.receipt_ns - 5 * kMillisecond);
+  if (restarts != restarts_[telegram.laser]) {
+    restarts_[telegram.laser] = restarts;
+    hub_.connect(telegram.laser, telegram.receipt_ns - 5 * kMillisecond);
   }
-  connection.tcp->send(TcpSide::Server, encode_scan_data(telegram.data, settings_.telegrams.language),
-                       telegram.receipt_ns);
+  hub_.telegram(telegram.laser, encode_scan_data(telegram.data, settings_.telegrams.language),
+                telegram.receipt_ns);
 }
 
 void RecordedCapture::write(const PlateReading& reading) {
-  plate_.send(as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
+  hub_.datagram(as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
 }
 
 void RecordedCapture::close() {
-  for (auto& laser : lasers_) laser.tcp->close(latest_ns_ + 10 * kMillisecond);
+  hub_.close(latest_ns_ + 10 * kMillisecond);
   sorter_.finish();
   file_.close();
 }

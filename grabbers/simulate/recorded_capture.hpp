@@ -3,11 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
-#include <string>
 #include <vector>
 
-#include "grabbers/capture/network_frames.hpp"
+#include "grabbers/capture/hub_traffic.hpp"
 #include "grabbers/capture/pcap_writer.hpp"
 #include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/recording.hpp"
@@ -60,12 +58,6 @@ class RecordedCapture {
   const FaultyWire::Counts& faults() const { return wire_.counts(); }
 
  private:
-  struct LaserConnection {
-    std::unique_ptr<TcpConversation> tcp;
-    std::size_t restarts = 0;
-  };
-
-  void connect(std::size_t laser, std::int64_t time_ns);
   void write(const LaserTelegram& telegram);
   void write(const PlateReading& reading);
 
@@ -74,8 +66,8 @@ class RecordedCapture {
   PcapWriter file_;
   FrameSorter sorter_;
   FaultyWire wire_;
-  std::vector<LaserConnection> lasers_;
-  DatagramSender plate_;
+  HubTraffic hub_;
+  std::vector<std::size_t> restarts_;  ///< of each laser
   std::int64_t latest_ns_ = 0;
 };
 

@@ -2,7 +2,10 @@
 #include "pipeline/app/builtin.hpp"
 
 #include "grabbers/capture/register.hpp"
+#include "grabbers/emulate/emulate_stage.hpp"
+#include "grabbers/live/live_stage.hpp"
 #include "grabbers/pcd/register.hpp"
+#include "grabbers/record/record_stage.hpp"
 #include "grabbers/simulate/simulate_stage.hpp"
 #include "pipeline/model/catalogue.hpp"
 #include "plugins/assemble/register.hpp"
@@ -23,6 +26,9 @@ Builtin::Builtin() {
   register_built_in(searches_);
   register_built_in(measures_);
   register_capture(registrar_);
+  register_live(registrar_);
+  register_emulate(registrar_);
+  register_record(registrar_);
   register_pcd(registrar_);
   register_simulate(registrar_);
   register_clock(registrar_);

@@ -35,6 +35,8 @@ struct CommandLine {
   RunRequest bound;
   RunRequest figures;
   RunRequest monte_carlo;
+  RunRequest record;
+  RunRequest emulate;
   std::uint64_t monte_carlo_runs = 1500;
   std::optional<std::uint64_t> monte_carlo_only;
   PipelineArguments validate;
@@ -49,6 +51,8 @@ struct CommandLine {
   CLI::App* bound_app = nullptr;
   CLI::App* figures_app = nullptr;
   CLI::App* monte_carlo_app = nullptr;
+  CLI::App* record_app = nullptr;
+  CLI::App* emulate_app = nullptr;
   CLI::App* validate_app = nullptr;
   CLI::App* stages_app = nullptr;
   CLI::App* effects_app = nullptr;
@@ -61,6 +65,8 @@ struct CommandLine {
     app.footer(kFooter);
     app.require_subcommand(1);
     add_run();
+    add_record();
+    add_emulate();
     add_bound();
     add_basin();
     add_monte_carlo();
@@ -177,6 +183,34 @@ struct CommandLine {
                       {{"scene", "What stands around: paper, office, hall, street"},
                        {"scene_file", "A scene of your own in YAML"},
                        {"beams", "in_plane: of each laser the two in the plate's plane; or all"}});
+  }
+
+  void add_record() {
+    record_app = command("record", "Record what the devices of a rig send, until Ctrl-C");
+    add_own_pipeline(record_app, "record.yaml", kRecordPipeline, "out", "--threads", record);
+    add_rig(record_app, record.arguments);
+    add_stage_options(
+        record_app, "grabber.live", record,
+        {{"duration", "How long from the first item on, instead of until Ctrl-C"},
+         {"listen", "Address of this machine for the plate's datagrams: 127.0.0.1, or 0.0.0.0 for all"}});
+    add_stage_options(record_app, "write.capture", record,
+                      {{"file", "The capture, instead of hub.pcap in the folder"},
+                       {"most_bytes", "Begin a new file after about so many"},
+                       {"most_seconds", "Begin a new file after so long: 600s"}});
+  }
+
+  void add_emulate() {
+    emulate_app =
+        command("emulate", "Be a simulated scanner's lasers and plate, at 127.0.0.1 or the rig's addresses");
+    add_own_pipeline(emulate_app, "emulate.yaml", kEmulatePipeline, "out", "--threads", emulate);
+    add_rig(emulate_app, emulate.arguments);
+    add_stage_options(emulate_app, "grabber.simulate", emulate,
+                      {{"duration", "How long: 60s"},
+                       {"scene", "What stands around: office, hall, street"},
+                       {"motion", "How the plate turns: constant, varying, reversal, stop_and_go"}});
+    add_stage_options(emulate_app, "emulate.rig", emulate,
+                      {{"speed", "Times real time; 0: as fast as the clients take it"},
+                       {"plate_to", "Where the plate's datagrams are sent: 127.0.0.1:4000"}});
   }
 
   void add_figures() {
@@ -309,6 +343,8 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.run_app->parsed()) return run_command(line.run, registrar);
   if (line.basin_app->parsed()) return run_command(basin_request(line), registrar);
   if (line.bound_app->parsed()) return run_command(line.bound, registrar);
+  if (line.record_app->parsed()) return run_command(line.record, registrar);
+  if (line.emulate_app->parsed()) return run_command(line.emulate, registrar);
   if (line.figures_app->parsed()) return run_command(line.figures, registrar);
   if (line.monte_carlo_app->parsed()) return run_command(monte_carlo_request(line), registrar);
   if (line.validate_app->parsed()) return validate_command(line.validate_file, line.validate, registrar);

@@ -8,7 +8,9 @@ namespace crisp {
 /// Pipelines that are commands of their own: the files in configs/, as they were when crisp was built.
 extern const std::string_view kBasinPipeline;
 extern const std::string_view kBoundPipeline;
+extern const std::string_view kEmulatePipeline;
 extern const std::string_view kFiguresPipeline;
 extern const std::string_view kMonteCarloPipeline;
+extern const std::string_view kRecordPipeline;
 
 }  // namespace crisp

@@ -31,6 +31,7 @@ struct StageType {
   std::vector<StageInput> inputs;
   std::vector<Kind> outputs;
   std::vector<Option> options;
+  bool endless = false;  ///< a source that only ends when it is told to
   std::function<std::unique_ptr<Stage>()> make;
   std::function<void*(Stage&)> options_object;  ///< what Option::set and Option::get want of a stage
 
@@ -66,6 +67,13 @@ class StageDescription {
   template <class T>
   StageDescription& gives() {
     type_.outputs.push_back(Kind::of<T>());
+    return *this;
+  }
+
+  /// A source that has no end of its own: a run that is told to stop ends it as if it had one, and the other
+  /// stages finish with what came.
+  StageDescription& endless() {
+    type_.endless = true;
     return *this;
   }
 

@@ -62,6 +62,8 @@ class Runner {
  public:
   Runner(Pipeline& pipeline, const RunSettings& run, const RunHooks& hooks) : run_(run), hooks_(hooks) {
     for (auto& node : pipeline.nodes) add(node);
+    ends_gently_ = std::any_of(workers_.begin(), workers_.end(),
+                               [](const Worker& worker) { return worker.node->type->endless; });
   }
 
   std::vector<NodeResult> run() {
@@ -215,7 +217,8 @@ class Runner {
     if (is_stopped()) throw Interrupted();
     Worker& worker = workers_[index];
     Outputs out([this, index](const Item& item) { give(index, item); });
-    Context context(run_, worker.result.report, hooks_.stop, progress_of(worker));
+    const bool told_to_stop = !ends_gently_ || worker.node->type->endless;
+    Context context(run_, worker.result.report, told_to_stop ? hooks_.stop : nullptr, progress_of(worker));
     try {
       Stopwatch::Turn turn(stopwatch_, worker.result.seconds);
       body(worker, out, context);
@@ -240,7 +243,10 @@ class Runner {
     return [this, &worker](const Progress& progress) { hooks_.progress(worker.node->tag, progress); };
   }
 
-  bool is_stopped() const { return hooks_.stop && hooks_.stop->load(std::memory_order_relaxed); }
+  /// Whether to leave all as it is. Where a source is endless, being told to stop is its end instead.
+  bool is_stopped() const {
+    return !ends_gently_ && hooks_.stop && hooks_.stop->load(std::memory_order_relaxed);
+  }
 
   /// An error that names its stage already: it passes through the stages that feed that one.
   class Told : public Error {
@@ -250,6 +256,7 @@ class Runner {
   const RunSettings& run_;
   const RunHooks& hooks_;
   std::deque<Worker> workers_;
+  bool ends_gently_ = false;
   Stopwatch stopwatch_;
 };
 

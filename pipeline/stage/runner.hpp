@@ -44,6 +44,7 @@ struct RunHooks {
 ///
 /// A source of which all that it gives is held by others runs before the other sources, so that a known
 /// calibration is there before the data.
+/// Where a source is endless, being told to stop ends that source alone, and the run comes to its end.
 /// @throws Error        what a stage threw, with the stage's tag, and its place in the pipeline's file
 /// @throws Interrupted  when told to stop; no stage has finished then that had not before
 std::vector<NodeResult> run_pipeline(Pipeline& pipeline, const RunSettings& run, const RunHooks& hooks = {});

@@ -3,9 +3,16 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/udp.hpp>
+#include <fstream>
+#include <thread>
 
+#include "pipeline/app/builtin.hpp"
 #include "pipeline/data/degree.hpp"
 #include "pipeline/files/calibration_file.hpp"
+#include "pipeline/files/rig_file.hpp"
 #include "pipeline/files/yaml.hpp"
 #include "tests/end_to_end/calibration_errors.hpp"
 #include "tests/end_to_end/workshop.hpp"
@@ -23,9 +30,9 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(pipelines,
-              UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml",
-                                   "figures.yaml", "monte_carlo.yaml", "picture.yaml", "simulate.yaml"));
+  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml",
+                                              "emulate.yaml", "figures.yaml", "live.yaml", "monte_carlo.yaml",
+                                              "picture.yaml", "record.yaml", "simulate.yaml"));
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
@@ -109,6 +116,94 @@ TEST(Configs, MonteCarloWritesEveryRunAndTheTable) {
                                          "table1.txt", "table1.txt.provenance.json"));
   const std::string runs = test::bytes_of(workshop / "out/monte_carlo.csv");
   EXPECT_EQ(std::ranges::count(runs, '\n'), 1 + 11) << "lambda, tau, alpha, eta of three lasers but lambda 1";
+}
+
+/// configs/loopback.yaml with ports that are free.
+struct FreeLoopback {
+  explicit FreeLoopback(const fs::path& file) {
+    constexpr std::size_t kLimit = 1 << 20;
+    std::string text = read_text_file(CRISP_SOURCE_DIR "/configs/loopback.yaml", kLimit);
+    boost::asio::io_context context;
+    const auto loopback = boost::asio::ip::make_address("127.0.0.1");
+    std::vector<boost::asio::ip::tcp::acceptor> taken;  // at once, so that they differ
+    for (const std::string usual : {"2121", "2122", "2123"}) {
+      taken.emplace_back(context, boost::asio::ip::tcp::endpoint(loopback, 0));
+      text.replace(text.find(usual), 4, std::to_string(taken.back().local_endpoint().port()));
+    }
+    const boost::asio::ip::udp::socket socket(context, boost::asio::ip::udp::endpoint(loopback, 0));
+    plate = std::to_string(socket.local_endpoint().port());
+    text.replace(text.find("4000"), 4, plate);
+    std::ofstream(file) << text;
+  }
+  std::string plate;  ///< port
+};
+
+/// configs/emulate.yaml for a second, in a thread of its own.
+struct Emulation {
+  Emulation(const fs::path& rig, const std::string& plate_port)
+      : thread([rig, plate_port] {
+          Builtin builtin;
+          RunRequest request{.file = CRISP_SOURCE_DIR "/configs/emulate.yaml", .quiet = true};
+          request.arguments.rig = rig;
+          request.arguments.set = {"grabber.simulate.duration=1s",
+                                   "emulate.rig.plate_to=127.0.0.1:" + plate_port};
+          run_command(request, builtin.registrar());
+        }) {}
+  ~Emulation() { thread.join(); }
+  std::thread thread;
+};
+
+TEST(Configs, EmulateIsAScannerOfWhichLiveMakesACloud) {
+  const test::Workshop workshop;
+  workshop.simulate("made", {"duration=1s"});
+  const FreeLoopback ports(workshop / "rig.yaml");
+  const Emulation emulation(workshop / "rig.yaml", ports.plate);
+  const auto live = workshop.run("live.yaml", {}, "out",
+                                 {"duration=0.9s", "calibration=" + (workshop / "made/truth.yaml").string()},
+                                 workshop / "rig.yaml");
+  EXPECT_EQ(live.status, ExitStatus::done) << live.told;
+  EXPECT_THAT(live.files, ElementsAre("cloud.pcd", "cloud.pcd.provenance.json", "summary.json"));
+  EXPECT_EQ(live.count("grabber.live", "items dropped because the pipeline was too slow"), 0U);
+  EXPECT_EQ(live.count("grabber.live", "laser1: telegrams that never came, by their counter"), 0U);
+  ASSERT_NE(live.cloud, nullptr);
+  EXPECT_GT(live.cloud->size(), 541U);  // how many scans came in 0.9 s depends on the machine
+}
+
+TEST(Configs, RecordWritesACaptureOfWhichAssembleMakesACloud) {
+  const test::Workshop workshop;
+  workshop.simulate("made", {"duration=1s"});
+  const FreeLoopback ports(workshop / "rig.yaml");
+  const Emulation emulation(workshop / "rig.yaml", ports.plate);
+  const auto recorded =
+      workshop.run("record.yaml", {}, "recorded", {"grabber.live.duration=0.9s"}, workshop / "rig.yaml");
+  EXPECT_EQ(recorded.status, ExitStatus::done) << recorded.told;
+  EXPECT_THAT(recorded.files, ElementsAre("hub.pcap", "hub.pcap.provenance.json", "summary.json"));
+  const auto assembled =
+      workshop.run("assemble.yaml", workshop / "recorded/hub.pcap", "out",
+                   {"calibration=" + (workshop / "made/truth.yaml").string()}, workshop / "rig.yaml");
+  EXPECT_EQ(assembled.status, ExitStatus::done) << assembled.told;
+  EXPECT_EQ(assembled.stage("grabber.capture")["given"], recorded.stage("grabber.live")["given"])
+      << "what was received is what is read";
+  ASSERT_NE(assembled.cloud, nullptr);
+  EXPECT_GT(assembled.cloud->size(), 541U);
+}
+
+TEST(Configs, EmulateHasTheRigOfLoopback) {
+  Builtin builtin;
+  RunSettings run;
+  run.registrar = &builtin.registrar();
+  load_pipeline(fs::path(CRISP_SOURCE_DIR "/configs/emulate.yaml"), {.only_validate = true}, run);
+  const Rig loopback = read_rig(CRISP_SOURCE_DIR "/configs/loopback.yaml");
+  ASSERT_EQ(run.rig.lasers.size(), loopback.lasers.size());
+  for (std::size_t i = 0; i < loopback.lasers.size(); ++i) {
+    EXPECT_EQ(run.rig.lasers[i].name, loopback.lasers[i].name);
+    EXPECT_EQ(run.rig.lasers[i].address, loopback.lasers[i].address);
+    EXPECT_EQ(run.rig.lasers[i].mount, loopback.lasers[i].mount);
+    EXPECT_EQ(run.rig.lasers[i].nominal.lambda.value, loopback.lasers[i].nominal.lambda.value);
+    EXPECT_EQ(run.rig.lasers[i].nominal.tau.value, loopback.lasers[i].nominal.tau.value);
+  }
+  EXPECT_EQ(run.rig.plate.address, loopback.plate.address);
+  EXPECT_EQ(run.rig.plate.counts_per_revolution, loopback.plate.counts_per_revolution);
 }
 
 TEST(Configs, AssembleSaysWhichCalibrationItMisses) {

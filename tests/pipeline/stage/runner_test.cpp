@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <thread>
+
 #include "tests/pipeline/stage/toy_stages.hpp"
 
 namespace crisp {
@@ -136,6 +138,15 @@ TEST_F(RunnerTest, StopsWithoutFinishingWhenTold) {
   const std::vector<StageSpec> specs = {{.stage = "toy.count"}, {.stage = "toy.log"}};
   EXPECT_THROW(run(specs, {.stop = &stop}), Interrupted);
   EXPECT_TRUE(toy::log().empty());
+}
+
+TEST_F(RunnerTest, FinishesWithWhatCameWhenAnEndlessSourceIsToldToStop) {
+  std::atomic<bool> stop = false;
+  std::thread told([&] { stop = true; });
+  const auto results = run({{.stage = "toy.endless"}, {.stage = "toy.log"}}, {.stop = &stop});
+  told.join();
+  EXPECT_THAT(toy::log().back(), "log finishes");
+  EXPECT_EQ(results.at(0).given, results.at(1).taken) << "all that was given was taken";
 }
 
 }  // namespace

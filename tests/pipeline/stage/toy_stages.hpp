@@ -45,6 +45,17 @@ struct crisp::KindName<crisp::toy::Sum> {
 
 namespace crisp::toy {
 
+/// Gives 1, 2, … until it is told to stop.
+class EndlessStage final : public Stage {
+ public:
+  static void describe(StageDescription<EndlessStage>& d) {
+    d.name("toy.endless").summary("counts without end").endless().gives<Number>();
+  }
+  void process(const Inputs&, Outputs& out, Context& context) override {
+    for (int i = 1; !context.interrupted(); ++i) out.give(Number{i});
+  }
+};
+
 /// Gives first, first + 1, … in process.
 class CountStage final : public Stage {
  public:
@@ -157,6 +168,7 @@ class ThrowStage final : public Stage {
 
 inline void register_toys(Registrar& registrar) {
   registrar.stage<CountStage>();
+  registrar.stage<EndlessStage>();
   registrar.stage<SayStage>();
   registrar.stage<SumStage>();
   registrar.stage<ShareStage>();

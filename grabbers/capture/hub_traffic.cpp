@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/hub_traffic.hpp"
+
+#include <string>
+#include <utility>
+
+#include "grabbers/wire/cola_message.hpp"
+#include "grabbers/wire/scan_data.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::uint16_t kLaserPort = 2112;
+constexpr std::uint16_t kPlatePort = 4000;
+constexpr std::size_t kFirstClientPort = 51000;
+constexpr std::size_t kClientPorts = 14000;
+
+Address hub_for(const Address& device, std::uint16_t port) {
+  const bool ipv6 = device.ip.find(':') != std::string::npos;
+  Address hub{.ip = ipv6 ? "fe80::100" : "192.168.0.100", .port = port};
+  if (hub.ip == device.ip) {
+    throw Error("the simulated hub has the address " + hub.ip + ", and so has a device of the rig",
+                "give the device another address");
+  }
+  return hub;
+}
+
+Address with_port(Address address, std::uint16_t usual) {
+  if (address.port == 0) address.port = usual;
+  return address;
+}
+
+}  // namespace
+
+HubTraffic::HubTraffic(const Rig& rig, ColaLanguage language, FrameSink sink)
+    : language_(language),
+      sink_(std::move(sink)),
+      lasers_(rig.lasers.size()),
+      plate_(with_port(rig.plate.address, kPlatePort), hub_for(rig.plate.address, kPlatePort), sink_) {
+  for (const RigLaser& laser : rig.lasers) addresses_.push_back(with_port(laser.address, kLaserPort));
+}
+
+void HubTraffic::connect(std::size_t laser, std::int64_t time_ns) {
+  const auto port = static_cast<std::uint16_t>(kFirstClientPort + connections_++ % kClientPorts);
+  const Address& server = addresses_.at(laser);
+  auto& connection = lasers_.at(laser);
+  connection = std::make_unique<TcpConversation>(server, hub_for(server, port), sink_);
+  connection->open(time_ns);
+  const std::vector<ColaValue> on{std::uint8_t{1}};
+  connection->send(TcpSide::Client, cola_message("sEN", kScanDataName, on, language_),
+                   time_ns + kMillisecond);
+  connection->send(TcpSide::Server, cola_message("sEA", kScanDataName, on, language_),
+                   time_ns + 2 * kMillisecond);
+}
+
+void HubTraffic::telegram(std::size_t laser, ByteView bytes, std::int64_t time_ns) {
+  lasers_.at(laser)->send(TcpSide::Server, bytes, time_ns);
+}
+
+void HubTraffic::close(std::int64_t time_ns) {
+  for (const auto& laser : lasers_) {
+    if (laser) laser->close(time_ns);
+  }
+}
+
+}  // namespace crisp

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "grabbers/capture/network_frames.hpp"
+#include "grabbers/wire/cola.hpp"
+#include "pipeline/data/rig.hpp"
+
+namespace crisp {
+
+/// What the devices of a rig send to a hub, as frames on the hub's network interface: a TCP connection a
+/// laser, over which the hub has subscribed to scans, and the plate's datagrams.
+class HubTraffic {
+ public:
+  /// @throws Error if an address of the rig is none, or the hub's own (192.168.0.100, fe80::100)
+  HubTraffic(const Rig& rig, ColaLanguage language, FrameSink sink);
+
+  /// Opens a laser's first connection, or a new one; its handshake and subscription end 2 ms after time_ns.
+  void connect(std::size_t laser, std::int64_t time_ns);
+  /// A framed telegram of a connected laser, complete at time_ns.
+  void telegram(std::size_t laser, ByteView bytes, std::int64_t time_ns);
+  void datagram(ByteView bytes, std::int64_t time_ns) { plate_.send(bytes, time_ns); }
+  /// Ends all connections.
+  void close(std::int64_t time_ns);
+
+ private:
+  std::vector<Address> addresses_;
+  ColaLanguage language_;
+  FrameSink sink_;
+  std::vector<std::unique_ptr<TcpConversation>> lasers_;
+  std::size_t connections_ = 0;
+  DatagramSender plate_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/emulate/emulate_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+Address parse_address(const std::string& text) {
+  const auto colon = text.rfind(':');
+  Address address{.ip = text.substr(0, colon)};
+  const char* end = text.data() + text.size();
+  const char* begin = colon == std::string::npos ? end : text.data() + colon + 1;
+  const auto read = std::from_chars(begin, end, address.port);
+  if (read.ec != std::errc() || read.ptr != end || address.port == 0) {
+    throw Error("\"" + text + "\" is no address with a port", "write it like 127.0.0.1:4000");
+  }
+  return address;
+}
+
+}  // namespace
+
+void EmulateStage::describe(StageDescription<EmulateStage>& d) {
+  d.name("emulate.rig")
+      .summary("is the devices that sent these scans and readings, on this machine's network");
+  d.details(
+      "Each laser of the rig becomes a TCP server at its address, which must be one of this machine, and "
+      "speaks "
+      "CoLa-A and CoLa-B with whoever connects: login, configuration, states, errors, and scans for those "
+      "who "
+      "subscribed. The plate becomes a sender of datagrams. Items are sent at the pace at which they were "
+      "received; "
+      "nothing is sent before each laser has somebody to send it to.\n\n"
+      "Faults are drawn for each telegram from the run's seed. A device that starts again, clocks that run "
+      "fast and "
+      "readings that are lost are options of grabber.simulate.\n\n"
+      "A client that does not read misses scans, as it would with the devices; they are counted.");
+  d.takes<Scan>().takes<PlateReading>();
+  d.option("speed", &EmulateStage::settings_, &EmulatorSettings::speed,
+           "times real time; 0: as fast as the clients take it")
+      .range(0, 1e6);
+  d.option("wait", &EmulateStage::settings_, &EmulatorSettings::wait_for_clients,
+           "whether to wait until each laser has a client");
+  d.option("plate_to", &EmulateStage::plate_to_, "where the plate's datagrams are sent");
+  const auto share = [&](const char* name, double EmulatedFaults::*member, const char* help) {
+    d.option(name, &EmulateStage::settings_, &EmulatorSettings::faults, member, help).range(0, 1);
+  };
+  share("dropped", &EmulatedFaults::dropped, "share of the scans in whose place the connection is closed");
+  share("stalled", &EmulatedFaults::stalled,
+        "share of the telegrams before which nothing is sent for a while");
+  d.option("stall", &EmulateStage::settings_, &EmulatorSettings::faults, &EmulatedFaults::stall, "that while")
+      .unit("s")
+      .range(0, 3600);
+  share("split", &EmulatedFaults::split, "share of the telegrams that are sent in pieces of any length");
+  share("damaged", &EmulatedFaults::damaged, "share of the scans with one bit flipped");
+  d.option("network", &EmulateStage::settings_, &EmulatorSettings::network,
+           "whether lasers may listen at other addresses than loopback, for anyone in the network");
+}
+
+void EmulateStage::check(const RunSettings&) const { parse_address(plate_to_); }
+
+void EmulateStage::process(const Inputs& in, Outputs&, Context& context) {
+  if (!emulator_) {
+    settings_.plate_to = parse_address(plate_to_);
+    settings_.faults.seed = context.seed();
+    emulator_ = std::make_unique<Emulator>(context.rig(), settings_);
+  }
+  const auto interrupted = [&] { return context.interrupted(); };
+  if (auto scan = in.share<Scan>()) {
+    emulator_->send(std::move(scan), interrupted);
+    ++scans_;
+  } else {
+    emulator_->send(in.get<PlateReading>(), interrupted);
+    ++readings_;
+  }
+}
+
+void EmulateStage::finish(Outputs&, Context& context) {
+  if (!emulator_) return;
+  emulator_->finish();
+  context.count("scans that a client missed because it did not read", emulator_->scans_missed());
+  context.say(fmt::format("emulated {} scans and {} readings of the plate", scans_, readings_));
+  emulator_.reset();
+}
+
+void register_emulate(Registrar& registrar) { registrar.stage<EmulateStage>(); }
+
+}  // namespace crisp

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "grabbers/emulate/emulator.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+/// `emulate.rig`: is the devices that sent the scans and readings which it takes.
+class EmulateStage final : public Stage {
+ public:
+  static void describe(StageDescription<EmulateStage>& d);
+
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  EmulatorSettings settings_;
+  std::string plate_to_ = "127.0.0.1:4000";
+  std::unique_ptr<Emulator> emulator_;
+  std::uint64_t scans_ = 0;
+  std::uint64_t readings_ = 0;
+};
+
+/// The emulator's stage.
+void register_emulate(Registrar& registrar);
+
+}  // namespace crisp

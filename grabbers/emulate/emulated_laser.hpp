@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "grabbers/emulate/emulated_faults.hpp"
+#include "grabbers/emulate/sick_responder.hpp"
+#include "pipeline/data/rig.hpp"
+
+namespace crisp {
+
+/// A TCP server that speaks as a laser does, to as many clients as come. All of it happens in the thread that
+/// runs the io_context.
+class EmulatedLaser {
+ public:
+  /// Listens from now on, but answers only once the io_context runs.
+  /// @param address  of this machine; port 0: any that is free
+  /// @throws Error if it cannot be listened at
+  EmulatedLaser(boost::asio::io_context& context, const Address& address, const FaultDice& dice);
+  ~EmulatedLaser();
+  EmulatedLaser(const EmulatedLaser&) = delete;
+  EmulatedLaser& operator=(const EmulatedLaser&) = delete;
+
+  std::uint16_t port() const { return port_; }
+  void start() { accept(); }
+  void stop();
+
+  /// Sends a scan to all who subscribed. Who does not read what was sent misses it.
+  /// @return to how many it was not sent for that reason
+  std::size_t send(const ScanData& scan);
+
+  std::size_t subscribers() const;
+  std::size_t waiting_bytes() const;  ///< that the slowest client has not taken yet
+
+ private:
+  class Session;
+  void accept();
+
+  boost::asio::ip::tcp::acceptor acceptor_;
+  std::uint16_t port_ = 0;
+  EmulatedDevice device_;
+  FaultDice dice_;
+  std::vector<std::shared_ptr<Session>> sessions_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/emulate/emulator.hpp"
+
+#include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
+#include <cmath>
+#include <future>
+#include <utility>
+
+#include "grabbers/wire/plate_sentence.hpp"
+#include "grabbers/wire/scan_encoding.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+constexpr auto kNap = 2ms;                          // between two looks at what others do
+constexpr auto kLongestNap = 50ms;                  // so that an interruption is noticed
+constexpr std::size_t kEnoughWaiting = 256 * 1024;  // [bytes] for a client, before the next scan is sent
+
+asio::ip::address ip_of(const std::string& text) {
+  boost::system::error_code failure;
+  auto ip = asio::ip::make_address(text, failure);
+  if (failure) throw Error("\"" + text + "\" is no IP address", "write it like 127.0.0.1");
+  return ip;
+}
+
+}  // namespace
+
+void Emulator::check(const EmulatorSettings& settings) const {
+  if (!(std::isfinite(settings.speed) && settings.speed >= 0)) {
+    throw Error("devices cannot be emulated at that speed",
+                "give how many times real time, or 0 for no pause");
+  }
+  for (const RigLaser& laser : rig_.lasers) {
+    if (settings.network || ip_of(laser.address.ip).is_loopback()) continue;
+    throw Error(
+        "the emulated " + laser.name + " would be open to the network at " + laser.address.ip,
+        "give a rig with loopback addresses, such as configs/loopback.yaml, or allow it: network: true");
+  }
+}
+
+Emulator::Emulator(Rig rig, EmulatorSettings settings)
+    : rig_(std::move(rig)), settings_(std::move(settings)), work_(context_.get_executor()), plate_(context_) {
+  check(settings_);
+  for (RigLaser& laser : rig_.lasers) {
+    lasers_.push_back(std::make_unique<EmulatedLaser>(context_, laser.address,
+                                                      FaultDice(settings_.faults, lasers_.size())));
+    laser.address.port = lasers_.back()->port();
+  }
+  plate_to_ = {ip_of(settings_.plate_to.ip), settings_.plate_to.port};
+  plate_.open(plate_to_.protocol());
+  for (const auto& laser : lasers_) laser->start();
+  thread_ = std::thread([this] { context_.run(); });
+}
+
+Emulator::~Emulator() {
+  in_thread([this] {
+    for (const auto& laser : lasers_) laser->stop();
+  });
+  work_.reset();
+  thread_.join();
+}
+
+void Emulator::in_thread(const std::function<void()>& work) {
+  std::promise<void> done;
+  asio::post(context_, [&] {
+    work();
+    done.set_value();
+  });
+  done.get_future().wait();
+}
+
+std::size_t Emulator::waiting_bytes() {
+  std::size_t most = 0;
+  in_thread([&] {
+    for (const auto& laser : lasers_) most = std::max(most, laser->waiting_bytes());
+  });
+  return most;
+}
+
+void Emulator::await_clients(const Interrupted& interrupted) {
+  bool all = false;
+  while (!all && !interrupted()) {
+    in_thread([&] {
+      all = std::ranges::all_of(lasers_, [](const auto& laser) { return laser->subscribers() > 0; });
+    });
+    if (!all) std::this_thread::sleep_for(kNap);
+  }
+}
+
+void Emulator::await_time(std::int64_t item_ns, const Interrupted& interrupted) {
+  if (settings_.speed == 0) {
+    if (settings_.wait_for_clients) await_clients(interrupted);
+    while (!interrupted() && waiting_bytes() > kEnoughWaiting) std::this_thread::sleep_for(kNap);
+    return;
+  }
+  const std::chrono::duration<double, std::nano> since(static_cast<double>(item_ns - start_->item_ns) /
+                                                       settings_.speed);
+  const auto due = start_->here + std::chrono::duration_cast<std::chrono::nanoseconds>(since);
+  while (!interrupted()) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now >= due) return;
+    std::this_thread::sleep_until(std::min(due, now + kLongestNap));
+  }
+}
+
+void Emulator::send(const HubItem& item, const Interrupted& interrupted) {
+  if (!start_) {
+    if (settings_.wait_for_clients && settings_.speed > 0) await_clients(interrupted);
+    start_ = {std::chrono::steady_clock::now(), receipt_ns(item)};
+  }
+  await_time(receipt_ns(item), interrupted);
+  if (interrupted()) return;
+  if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
+    const ScanData data = to_scan_data(**scan);
+    in_thread([&] { scans_missed_ += lasers_.at((*scan)->laser)->send(data); });
+  } else {
+    const std::string sentence = encode_plate_sentence(std::get<PlateReading>(item));
+    boost::system::error_code nobody_listens;  // as little as a plate would notice
+    plate_.send_to(asio::buffer(sentence), plate_to_, 0, nobody_listens);
+  }
+}
+
+void Emulator::finish() {
+  const auto deadline = std::chrono::steady_clock::now() + 2s;
+  while (waiting_bytes() > 0 && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(kNap);
+}
+
+}  // namespace crisp

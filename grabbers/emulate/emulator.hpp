@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "grabbers/emulate/emulated_laser.hpp"
+#include "grabbers/wire/hub_item.hpp"
+#include "pipeline/data/rig.hpp"
+
+namespace crisp {
+
+struct EmulatorSettings {
+  double speed = 1;              ///< times real time; 0: as fast as the clients take it
+  bool wait_for_clients = true;  ///< whether nothing is sent before each laser has somebody to send it to
+  Address plate_to{"127.0.0.1", 4000};  ///< where the plate's datagrams go
+  EmulatedFaults faults;
+  bool network = false;  ///< whether addresses other than loopback may be listened at
+};
+
+/// The devices of a rig, on this machine's network: a TCP server a laser, and the plate's datagrams.
+class Emulator {
+ public:
+  using Interrupted = std::function<bool()>;
+
+  /// Listens from now on, in a thread of its own.
+  /// @param rig  whose lasers have addresses of this machine; port 0: any that is free
+  /// @throws Error if the speed is negative or no number, an address is none or not loopback (unless
+  /// allowed), or
+  ///         cannot be listened at
+  Emulator(Rig rig, EmulatorSettings settings);
+  ~Emulator();
+  Emulator(const Emulator&) = delete;
+  Emulator& operator=(const Emulator&) = delete;
+
+  /// The rig with the ports that are listened at.
+  const Rig& rig() const { return rig_; }
+
+  /// Sends an item when it is due: as long after the first as it was received after it, divided by the speed.
+  /// At speed 0, once each laser has somebody to send it to, and who has taken most of what was sent before.
+  /// Returns earlier, without sending it, once `interrupted`.
+  void send(const HubItem& item, const Interrupted& interrupted);
+
+  /// Waits until the clients have taken all that was sent, for 2 s at most.
+  void finish();
+
+  std::uint64_t scans_missed() const { return scans_missed_; }  ///< by clients that did not read
+
+ private:
+  void check(const EmulatorSettings& settings) const;
+  void await_clients(const Interrupted& interrupted);
+  void await_time(std::int64_t item_ns, const Interrupted& interrupted);
+  void in_thread(const std::function<void()>& work);
+  std::size_t waiting_bytes();
+
+  Rig rig_;
+  EmulatorSettings settings_;
+  boost::asio::io_context context_{1};
+  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_;
+  std::vector<std::unique_ptr<EmulatedLaser>> lasers_;
+  boost::asio::ip::udp::socket plate_;
+  boost::asio::ip::udp::endpoint plate_to_;
+  struct Start {
+    std::chrono::steady_clock::time_point here;
+    std::int64_t item_ns = 0;
+  };
+  std::optional<Start> start_;  ///< when the first item was sent, and received
+  std::uint64_t scans_missed_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace crisp

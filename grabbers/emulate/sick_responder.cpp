@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/emulate/sick_responder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <map>
+
+#include "grabbers/wire/binary_fields.hpp"
+#include "grabbers/wire/text_fields.hpp"
+
+namespace crisp {
+namespace {
+
+using Values = std::vector<ColaValue>;
+
+constexpr std::uint16_t kMethodDenied = 1, kUnknownMethod = 2, kUnknownVariable = 3, kWriteDenied = 10,
+                        kUnknownCommand = 12, kUnknownEvent = 15;
+constexpr std::uint32_t kAngleStep = 5000, kFrequency = 5000;           // [1/10000°], [1/100 Hz]
+constexpr std::int32_t kFirstAngle = -450'000, kLastAngle = 2'250'000;  // [1/10000°]
+constexpr std::uint8_t kMeasuring = 7, kIdle = 3;
+
+std::uint8_t byte(unsigned value) { return static_cast<std::uint8_t>(value); }
+std::uint16_t word(unsigned value) { return static_cast<std::uint16_t>(value); }
+
+Values scan_configuration() { return {kFrequency, word(1), kAngleStep, kFirstAngle, kLastAngle}; }
+
+/// The variables that can be read, with their values.
+const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, std::less<>>& variables() {
+  static const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, std::less<>> kAll{
+      {"DeviceIdent",
+       [](const auto& device) {
+         return Values{device.name, device.firmware};
+       }},
+      {"FirmwareVersion", [](const auto& device) { return Values{device.firmware}; }},
+      {"LocationName", [](const auto&) { return Values{std::string("not defined")}; }},
+      {"SCdevicestate", [](const auto& device) { return Values{byte(device.measuring ? 1 : 0)}; }},
+      {"LCMstate", [](const auto&) { return Values{byte(0)}; }},
+      {"STlms",
+       [](const auto& device) {
+         return Values{word(device.measuring ? kMeasuring : kIdle),
+                       byte(0),
+                       std::string("00:00:00"),
+                       std::string("01.01.1970"),
+                       word(0),
+                       word(0),
+                       word(0)};
+       }},
+      {"ODoprh", [](const auto&) { return Values{std::uint32_t{0}}; }},
+      {"ODpwrc", [](const auto&) { return Values{std::uint32_t{1}}; }},
+      {"LMPscancfg", [](const auto&) { return scan_configuration(); }},
+      {"LMPoutputRange",
+       [](const auto&) {
+         return Values{word(1), kAngleStep, kFirstAngle, kLastAngle};
+       }},
+      {"LMDscandatacfg",
+       [](const auto&) {
+         return Values{byte(1), byte(0), byte(0), byte(0), byte(0), byte(0),
+                       byte(0), byte(0), byte(0), byte(0), byte(0), word(1)};
+       }},
+      {"LIDinputstate",
+       [](const auto&) {
+         return Values{byte(0), byte(0), byte(0), byte(0)};
+       }},
+  };
+  return kAll;
+}
+
+bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// Level and password of a SetAccessMode.
+bool is_right_password(const ColaTelegram& request) {
+  std::uint8_t level = 0;
+  std::uint32_t password = 0;
+  const auto read = [&](auto reader) {
+    reader.number(level);
+    reader.number(password);
+    return reader.ok() && level == 3 && password == 0xF4724744;
+  };
+  return request.language == ColaLanguage::A ? read(TextReader(as_text(request.parameters)))
+                                             : read(BinaryReader(request.parameters));
+}
+
+}  // namespace
+
+Bytes SickResponder::answer(const ColaTelegram& request) {
+  language_ = request.language;
+  if (request.command == "sRN") return read(request);
+  if (request.command == "sWN") return write(request);
+  if (request.command == "sMN") return call(request);
+  if (request.command == "sEN") return subscribe(request);
+  return cola_error(kUnknownCommand, request.language);
+}
+
+Bytes SickResponder::read(const ColaTelegram& request) const {
+  if (request.name == kScanDataName) {
+    Bytes out;
+    append_scan_data(device_->last, request.language, "sRA", EncoderWidths::Position32, out);
+    return out;
+  }
+  const auto known = variables().find(request.name);
+  if (known == variables().end()) return cola_error(kUnknownVariable, request.language);
+  return cola_message("sRA", request.name, known->second(*device_), request.language);
+}
+
+Bytes SickResponder::write(const ColaTelegram& request) {
+  if (request.name == "EIHstCola") {
+    language_ = first_byte(request).value_or(1) == 1 ? ColaLanguage::B : ColaLanguage::A;
+    return cola_message("sWA", request.name, {}, request.language);
+  }
+  const bool known =
+      is_one_of(request.name, {"LMDscandatacfg", "LMPoutputRange", "LFPmeanfilter", "LFPparticle",
+                               "LFPnto1filter", "FREchoFilter", "LICencset", "LICencres", "LICsrc"});
+  if (!known) return cola_error(kUnknownVariable, request.language);
+  if (!logged_in_) return cola_error(kWriteDenied, request.language);
+  return cola_message("sWA", request.name, {}, request.language);
+}
+
+Bytes SickResponder::call(const ColaTelegram& request) {
+  const auto done = [&](unsigned value) {
+    return cola_message("sAN", request.name, {byte(value)}, request.language);
+  };
+  if (request.name == "SetAccessMode") {
+    logged_in_ = is_right_password(request);
+    return done(logged_in_ ? 1 : 0);
+  }
+  const bool starts = request.name == "LMCstartmeas";
+  const bool stops = is_one_of(request.name, {"LMCstopmeas", "LMCstandby"});
+  const bool configures = request.name == "mLMPsetscancfg";
+  const bool stores = is_one_of(request.name, {"mEEwriteall", "LSPsetdatetime"});
+  if (request.name == "Run") {
+    logged_in_ = false;
+    return done(1);
+  }
+  if (!starts && !stops && !configures && !stores) return cola_error(kUnknownMethod, request.language);
+  if (!logged_in_) return cola_error(kMethodDenied, request.language);
+  if (stores) return done(1);
+  if (configures) {
+    Values values{byte(0)};
+    for (auto& value : scan_configuration()) values.push_back(std::move(value));
+    return cola_message("sAN", request.name, values, request.language);
+  }
+  device_->measuring = starts;
+  return done(0);
+}
+
+Bytes SickResponder::subscribe(const ColaTelegram& request) {
+  if (!is_one_of(request.name, {kScanDataName, "LFErec", "LIDoutputstate", "LIDinputstate"})) {
+    return cola_error(kUnknownEvent, request.language);
+  }
+  const unsigned wanted = first_byte(request).value_or(0);
+  if (request.name == kScanDataName) wants_scans_ = wanted == 1;
+  return cola_message("sEA", request.name, {byte(wanted)}, request.language);
+}
+
+}  // namespace crisp

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/live/live_source.hpp"
+
+#include <boost/asio/post.hpp>
+#include <future>
+#include <utility>
+
+namespace crisp {
+
+LiveSource::LiveSource(const Rig& rig, const LiveSettings& settings)
+    : queue_(settings.queue), work_(context_.get_executor()) {
+  const auto give = [this](HubItem item) { queue_.push(std::move(item)); };
+  for (std::size_t i = 0; i < rig.lasers.size() && settings.lasers; ++i) {
+    const RigLaser& laser = rig.lasers[i];
+    logs_.push_back(std::make_unique<DeviceLog>(DeviceKind::Laser, laser.name, laser.address,
+                                                static_cast<std::uint16_t>(i)));
+    lasers_.push_back(
+        std::make_unique<SickClient>(context_, *logs_.back(), laser.address, settings.sick, give));
+  }
+  if (settings.plate) {
+    logs_.push_back(std::make_unique<DeviceLog>(DeviceKind::Plate, rig.plate.name, rig.plate.address));
+    plate_ =
+        std::make_unique<PlateReceiver>(context_, *logs_.back(), rig.plate.address, settings.plate_at, give);
+  }
+  for (const auto& laser : lasers_) laser->start();
+  if (plate_) plate_->start();
+  thread_ = std::thread([this] { context_.run(); });
+}
+
+LiveSource::~LiveSource() { end_thread(); }
+
+void LiveSource::end_thread() {
+  interrupt();
+  work_.reset();
+  if (thread_.joinable()) thread_.join();
+}
+
+CaptureStatistics LiveSource::close() {
+  end_thread();
+  return statistics();
+}
+
+std::optional<HubItem> LiveSource::next() {
+  constexpr std::chrono::milliseconds kWhile{1000};
+  while (!queue_.closed()) {
+    if (auto item = queue_.pop(kWhile)) return item;
+  }
+  return {};
+}
+
+void LiveSource::interrupt() {
+  queue_.close();
+  boost::asio::post(context_, [this] { stop_devices(); });
+}
+
+void LiveSource::stop_devices() {
+  for (const auto& laser : lasers_) laser->stop();
+  if (plate_) plate_->stop();
+}
+
+void LiveSource::in_thread(const std::function<void()>& work) {
+  if (!thread_.joinable()) return work();
+  std::promise<void> done;
+  boost::asio::post(context_, [&] {
+    work();
+    done.set_value();
+  });
+  done.get_future().wait();
+}
+
+CaptureStatistics LiveSource::statistics() {
+  CaptureStatistics result;
+  in_thread([&] {
+    for (const auto& log : logs_) result.devices.push_back(log->statistics());
+  });
+  result.losses.add("items dropped because the pipeline was too slow", queue_.dropped());
+  return result;
+}
+
+}  // namespace crisp

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "grabbers/capture/capture_statistics.hpp"
+#include "grabbers/live/item_queue.hpp"
+#include "grabbers/live/plate_receiver.hpp"
+#include "grabbers/live/sick_client.hpp"
+#include "pipeline/data/rig.hpp"
+
+namespace crisp {
+
+struct LiveSettings {
+  bool lasers = true;
+  bool plate = true;
+  SickSettings sick;
+  PlateSettings plate_at;
+  std::size_t queue =
+      16384;  ///< items that may wait for the pipeline; then the oldest are dropped, and counted
+};
+
+/// The devices of a rig over the network, as they are now: scans and readings in the order in which this
+/// process received them. A device that is not there is tried again and again; the source ends only when it
+/// is told to.
+class LiveSource final : public ItemSource {
+ public:
+  /// Connects from now on, in a thread of its own.
+  /// @throws Error if an address of the rig is none, or the plate's cannot be listened at
+  explicit LiveSource(const Rig& rig, const LiveSettings& settings = {});
+  ~LiveSource() override;
+
+  std::optional<HubItem> next() override;
+  /// The next item; nothing if none came in time, or after interrupt().
+  std::optional<HubItem> next_within(std::chrono::milliseconds patience) { return queue_.pop(patience); }
+
+  /// Says goodbye to the devices: within 100 ms, whatever the network does.
+  void interrupt() override;
+
+  /// What came so far, and was lost. Damage within a connection is told when that is over.
+  CaptureStatistics statistics();
+  /// interrupt(), waited for. @return all that came, and was lost
+  CaptureStatistics close();
+
+  /// The hub's port that the plate's datagrams are taken at; 0 without a plate.
+  std::uint16_t plate_port() const { return plate_ ? plate_->port() : std::uint16_t{0}; }
+
+ private:
+  void stop_devices();
+  void in_thread(const std::function<void()>& work);
+  void end_thread();
+
+  ItemQueue queue_;
+  std::vector<std::unique_ptr<DeviceLog>> logs_;
+  boost::asio::io_context context_{1};
+  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_;
+  std::vector<std::unique_ptr<SickClient>> lasers_;
+  std::unique_ptr<PlateReceiver> plate_;
+  std::thread thread_;
+};
+
+}  // namespace crisp

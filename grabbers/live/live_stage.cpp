@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/live/live_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <string_view>
+
+#include "grabbers/capture/capture_report.hpp"
+#include "grabbers/live/endpoints.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{50};  // between two looks at whether the run is to stop
+
+constexpr std::string_view kNameOf[] = {"grabber.live", "grabber.sick", "grabber.plate"};
+constexpr std::string_view kSummaryOf[] = {"receives scans and plate readings from the devices themselves",
+                                           "receives scans from the lasers themselves",
+                                           "receives the plate's readings from itself"};
+constexpr std::string_view kAboutLasers =
+    "Each laser of the rig is connected to at its address (port 2112 unless the rig names one). Whether it "
+    "speaks "
+    "CoLa-A or CoLa-B is found out; it is logged into and told to measure, and then sends scans by itself. A "
+    "connection that breaks or falls silent is made anew, the first time after 0.1 s; what never came in "
+    "between is "
+    "counted.";
+constexpr std::string_view kAboutPlate =
+    "The plate's datagrams are taken at the address `listen` of this machine, from the rig's plate only.";
+
+}  // namespace
+
+template <LiveDevices devices>
+void LiveStage<devices>::describe(StageDescription<LiveStage>& d) {
+  constexpr auto index = static_cast<std::size_t>(devices);
+  d.name(std::string(kNameOf[index])).summary(std::string(kSummaryOf[index]));
+  std::string about;
+  if constexpr (kLasers) about += std::string(kAboutLasers) + "\n\n";
+  if constexpr (kPlate) about += std::string(kAboutPlate) + "\n\n";
+  d.details(about +
+            "Times of receipt are those at which this program took the data. Where the stages below are too "
+            "slow, the "
+            "oldest items are dropped, and counted.");
+  d.endless();
+  if constexpr (kLasers) d.template gives<Scan>();
+  if constexpr (kPlate) d.template gives<PlateReading>();
+  d.option("duration", &LiveStage::duration_, "how long from the first item on; auto: until Ctrl-C")
+      .unit("s")
+      .at_least(0);
+  d.option("queue", &LiveStage::settings_, &LiveSettings::queue, "items that may wait for the stages below")
+      .range(1, 1e7);
+  if constexpr (kLasers) {
+    d.option("start", &LiveStage::settings_, &LiveSettings::sick, &SickSettings::start,
+             "whether lasers are logged into and told to measure; otherwise they are only asked for scans");
+    d.option("reply_timeout", &LiveStage::settings_, &LiveSettings::sick, &SickSettings::reply_timeout,
+             "how long a laser's answer is waited for")
+        .unit("s")
+        .range(0.01, 60);
+    d.option("silence", &LiveStage::settings_, &LiveSettings::sick, &SickSettings::silence,
+             "without a scan for so long, a laser is connected to anew")
+        .unit("s")
+        .range(0.05, 600);
+    d.option("longest_pause", &LiveStage::settings_, &LiveSettings::sick, &SickSettings::longest_pause,
+             "between two tries to connect, at most")
+        .unit("s")
+        .range(0.1, 600);
+  }
+  if constexpr (kPlate) {
+    d.option("listen", &LiveStage::settings_, &LiveSettings::plate_at, &PlateSettings::listen,
+             "address of this machine at which the plate's datagrams are taken; 0.0.0.0: all that it has");
+  }
+}
+
+template <LiveDevices devices>
+void LiveStage<devices>::check(const RunSettings& run) const {
+  for (const RigLaser& laser : run.rig.lasers) {
+    if (kLasers) ip_of(laser.address);
+  }
+  if (kPlate) ip_of(run.rig.plate.address);
+}
+
+template <LiveDevices devices>
+void LiveStage<devices>::process(const Inputs&, Outputs& out, Context& context) {
+  using Clock = std::chrono::steady_clock;
+  LiveSource source(context.rig(), settings_);
+  std::optional<Clock::time_point> first;
+  while (!context.interrupted()) {
+    const double elapsed = first ? std::chrono::duration<double>(Clock::now() - *first).count() : 0;
+    if (duration_ && elapsed > *duration_) break;
+    context.progress(duration_ ? elapsed / *duration_ : 0, "receiving");
+    const auto item = source.next_within(kPatience);
+    if (!item) continue;
+    if (!first) first = Clock::now();
+    if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&*item)) {
+      if constexpr (kLasers) out.give(*scan);
+    } else {
+      if constexpr (kPlate) out.give(std::get<PlateReading>(*item));
+    }
+  }
+  report(source.close(), context);
+}
+
+template <LiveDevices devices>
+void LiveStage<devices>::report(const CaptureStatistics& statistics, Context& context) const {
+  context.report(to_json(statistics));
+  context.say(device_table(statistics));
+  for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
+  for (const auto& device : statistics.devices) {
+    for (const auto& [what, n] : device.losses.all()) context.count(device.name + ": " + what, n);
+    for (const auto& [what, n] : device.notes.all()) context.count(device.name + ": " + what, n);
+    if (device.items == 0) context.warn("nothing came from " + title(device));
+  }
+}
+
+void register_live(Registrar& registrar) {
+  registrar.stage<LiveStage<LiveDevices::LasersAndPlate>>();
+  registrar.stage<LiveStage<LiveDevices::Lasers>>();
+  registrar.stage<LiveStage<LiveDevices::Plate>>();
+}
+
+}  // namespace crisp

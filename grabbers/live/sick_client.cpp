@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/live/sick_client.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/write.hpp>
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "grabbers/capture/framing_losses.hpp"
+#include "grabbers/live/endpoints.hpp"
+
+namespace crisp {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+constexpr std::uint16_t kUsualPort = 2112;
+constexpr std::size_t kPiece = 64 * 1024;  // [bytes] read at once
+constexpr double kFirstPause = 0.1;        // [s] before connecting again
+constexpr double kPoll = 0.2;              // [s] between questions whether the laser is ready
+constexpr double kFarewell = 0.05;         // [s] for the answer to the last request
+
+ColaLanguage other(ColaLanguage language) {
+  return language == ColaLanguage::A ? ColaLanguage::B : ColaLanguage::A;
+}
+
+}  // namespace
+
+SickClient::SickClient(asio::io_context& context, DeviceLog& log, const Address& address,
+                       const SickSettings& settings, Give give)
+    : context_(context),
+      log_(log),
+      endpoint_(ip_of(address), address.port == 0 ? kUsualPort : address.port),
+      settings_(settings),
+      give_(std::move(give)),
+      socket_(context),
+      timer_(context),
+      buffer_(kPiece),
+      language_(settings.language),
+      pause_(kFirstPause) {}
+
+void SickClient::start() { connect(); }
+
+void SickClient::connect() {
+  ++connection_;
+  socket_ = tcp::socket(context_);
+  socket_.async_connect(endpoint_, [this, mine = connection_](const error_code& failure) {
+    if (mine != connection_) return;
+    if (failure) return fail(failure.message());
+    begin_dialogue();
+  });
+  wait(settings_.reply_timeout, &SickClient::not_answered);
+}
+
+void SickClient::begin_dialogue() {
+  framer_ = {};
+  languages_tried_ = 1;
+  refusals_told_ = 0;
+  dialogue_.emplace(language_, settings_.start);
+  read();
+  ask();
+}
+
+void SickClient::ask() {
+  say(dialogue_->request());
+  wait(settings_.reply_timeout, &SickClient::not_answered);
+}
+
+void SickClient::not_answered() {
+  if (!dialogue_) return fail("the connection was not answered");
+  if (dialogue_->step() != SickStep::DetectLanguage || languages_tried_ == 2) {
+    return fail("a request was not answered");
+  }
+  ++languages_tried_;
+  language_ = other(language_);
+  dialogue_.emplace(language_, settings_.start);
+  ask();
+}
+
+void SickClient::read() {
+  socket_.async_read_some(asio::buffer(buffer_),
+                          [this, mine = connection_](const error_code& failure, std::size_t bytes) {
+                            if (mine != connection_) return;
+                            if (failure) return fail(failure.message());
+                            take(bytes);
+                            if (mine == connection_) read();
+                          });
+}
+
+void SickClient::take(std::size_t bytes) {
+  const auto sink = [this](const ColaFrame& frame) { take(frame); };
+  framer_.feed(ByteView(buffer_).first(bytes), now_ns(), sink);
+  if (over_) fail(*std::exchange(over_, {}));
+}
+
+void SickClient::take(const ColaFrame& frame) {
+  auto scan = log_.take(frame, settings_.encoder_widths);
+  const bool came = scan.has_value();
+  if (came && !stopping_) give_(std::make_shared<const Scan>(std::move(*scan)));
+  const auto telegram = parse_cola(frame.payload, frame.language);
+  if (!telegram || over_) return;
+  if (stopping_) {
+    if (telegram->command == "sEA") over_ = "farewell";
+  } else if (dialogue_->step() != SickStep::Scans) {
+    proceed(dialogue_->take(*telegram));
+  } else if (came) {
+    await_scan();
+  }
+}
+
+void SickClient::proceed(SickDialogue::Effect effect) {
+  for (; refusals_told_ < dialogue_->refusals().size(); ++refusals_told_) {
+    log_.note("refused by the laser: " + dialogue_->refusals()[refusals_told_]);
+  }
+  if (effect == SickDialogue::Effect::AskLater) return wait(kPoll, &SickClient::ask);
+  if (effect == SickDialogue::Effect::None) return;
+  if (dialogue_->step() == SickStep::Refused) {
+    over_ = "the laser refused to send scans";
+    return;
+  }
+  if (dialogue_->step() != SickStep::Scans) return ask();
+  pause_ = kFirstPause;
+  await_scan();
+}
+
+void SickClient::await_scan() { wait(settings_.silence, &SickClient::silent); }
+
+void SickClient::silent() { fail("no scan came"); }
+
+void SickClient::fail(const std::string& reason) {
+  close();
+  if (stopping_) return;
+  log_.note("connections that failed: " + reason);
+  wait(pause_, &SickClient::connect);
+  pause_ = std::min(2 * pause_, settings_.longest_pause);
+}
+
+void SickClient::close() {
+  framer_.gap([this](const ColaFrame& frame) { log_.take(frame, settings_.encoder_widths); });
+  note_framing(framer_.counts(), log_);
+  framer_ = {};
+  dialogue_.reset();
+  ++connection_;
+  ++wait_;
+  timer_.cancel();
+  error_code ignored;
+  socket_.close(ignored);
+}
+
+void SickClient::stop() {
+  if (stopping_) return;
+  stopping_ = true;
+  if (!dialogue_ || dialogue_->step() != SickStep::Scans) return close();
+  say(unsubscribe_request(language_));
+  wait(kFarewell, &SickClient::close);
+}
+
+void SickClient::say(const Bytes& telegram) {
+  const auto kept = std::make_shared<const Bytes>(telegram);
+  asio::async_write(socket_, asio::buffer(*kept),
+                    [this, kept, mine = connection_](const error_code& failure, std::size_t) {
+                      if (failure && mine == connection_) fail(failure.message());
+                    });
+}
+
+void SickClient::wait(double seconds, Then then) {
+  timer_.expires_after(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)));
+  timer_.async_wait([this, then, mine = ++wait_](const error_code& failure) {
+    if (!failure && mine == wait_) (this->*then)();
+  });
+}
+
+}  // namespace crisp

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/pcl/live_grabber.hpp"
+
+#include <utility>
+
+namespace crisp {
+
+LiveGrabber::LiveGrabber(Rig rig, LiveSettings settings)
+    : SourceGrabber("LiveGrabber", [rig = std::move(rig), settings = std::move(settings)] {
+        return std::make_unique<LiveSource>(rig, settings);
+      }) {}
+
+}  // namespace crisp

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/record/record_stage.hpp"
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+void RecordStage::describe(StageDescription<RecordStage>& d) {
+  d.name("write.capture").summary("records scans and plate readings as a capture that grabber.capture reads");
+  d.details(
+      "A pcap file with nanosecond stamps, as the hub's network interface would have been captured: a TCP "
+      "connection "
+      "a laser (CoLa-B) and the plate's datagrams. What is read from it are the same scans and readings with "
+      "the same "
+      "times of receipt.\n\n"
+      "The file grows in place, and what was received is on the disk soon after: neither Ctrl-C nor a power "
+      "cut "
+      "leaves a file that cannot be read. A file that exists is written on. A disk that is full ends the "
+      "recording, "
+      "and the run's summary says so; the other stages go on.");
+  d.takes<Scan>().takes<PlateReading>();
+  d.option("file", &RecordStage::file_, "the capture").required();
+  d.option("most_bytes", &RecordStage::settings_, &RecorderSettings::most_bytes,
+           "about so large a file may become; then file-2.pcap is begun, and so on; 0: no limit")
+      .range(0, 1e15);
+  d.option("most_seconds", &RecordStage::settings_, &RecorderSettings::most_seconds,
+           "so much time a file may hold; then the next is begun; 0: no limit")
+      .unit("s")
+      .range(0, 1e9);
+  d.option("safe_after", &RecordStage::settings_, &RecorderSettings::safe_after,
+           "within which what was received is on the disk")
+      .unit("s")
+      .range(0, 60);
+}
+
+void RecordStage::write(const HubItem& item, Context& context) {
+  if (failed_) return context.count("items that were not recorded");
+  try {
+    if (!recorder_) recorder_ = std::make_unique<CaptureRecorder>(file_, context.rig(), settings_);
+    recorder_->write(item);
+  } catch (const Error& error) {
+    failed_ = true;
+    context.distrust("the recording ended early: " + error.message());
+    context.count("items that were not recorded");
+  }
+}
+
+void RecordStage::process(const Inputs& in, Outputs&, Context& context) {
+  if (auto scan = in.share<Scan>()) {
+    write(std::move(scan), context);
+  } else {
+    write(in.get<PlateReading>(), context);
+  }
+}
+
+void RecordStage::finish(Outputs&, Context& context) {
+  if (!recorder_) return;
+  try {
+    recorder_->close();
+  } catch (const Error& error) {
+    context.distrust("the recording ended early: " + error.message());
+  }
+  for (const auto& file : recorder_->files()) context.wrote(file);
+}
+
+void register_record(Registrar& registrar) { registrar.stage<RecordStage>(); }
+
+}  // namespace crisp

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "grabbers/record/capture_recorder.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+/// `write.capture`: records what was received, for `grabber.capture`.
+class RecordStage final : public Stage {
+ public:
+  static void describe(StageDescription<RecordStage>& d);
+
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  void write(const HubItem& item, Context& context);
+
+  std::filesystem::path file_;
+  RecorderSettings settings_;
+  std::unique_ptr<CaptureRecorder> recorder_;
+  bool failed_ = false;
+};
+
+/// The recorder's stage.
+void register_record(Registrar& registrar);
+
+}  // namespace crisp

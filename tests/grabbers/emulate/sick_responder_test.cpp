@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/emulate/sick_responder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "grabbers/wire/cola_framer.hpp"
+
+namespace crisp {
+namespace {
+
+using namespace std::string_literals;
+
+/// What is answered to a request without its framing, likewise.
+std::string ask(SickResponder& responder, const std::string& request, ColaLanguage language) {
+  const auto parsed = parse_cola(as_bytes(request), language);
+  EXPECT_TRUE(parsed) << request;
+  std::string answer;
+  ColaFramer framer;
+  framer.feed(responder.answer(*parsed), 0, [&](const ColaFrame& frame) {
+    EXPECT_EQ(frame.language, language) << request;
+    answer += as_text(frame.payload);
+  });
+  return answer;
+}
+
+TEST(SickResponder, RunsTheAsciiDialogueOfLibLms1xxToItsEnd) {
+  EmulatedDevice device;
+  device.measuring = false;
+  SickResponder responder(device);
+  const auto a = [&](const std::string& request) { return ask(responder, request, ColaLanguage::A); };
+  EXPECT_EQ(a("sMN SetAccessMode 03 F4724744"), "sAN SetAccessMode 1");
+  EXPECT_EQ(a("sMN LMCstopmeas"), "sAN LMCstopmeas 0");
+  EXPECT_EQ(a("sRN LMPscancfg"), "sRA LMPscancfg 1388 1 1388 FFF92230 225510");
+  EXPECT_EQ(a("sRN LMPoutputRange"), "sRA LMPoutputRange 1 1388 FFF92230 225510");
+  EXPECT_EQ(a("sWN LMDscandatacfg 01 00 1 1 0 00 00 0 0 0 0 +1"), "sWA LMDscandatacfg");
+  EXPECT_THAT(a("sRN STlms"), testing::StartsWith("sRA STlms 3 "));
+  EXPECT_EQ(a("sMN LMCstartmeas"), "sAN LMCstartmeas 0");
+  EXPECT_THAT(a("sRN STlms"), testing::StartsWith("sRA STlms 7 "));
+  EXPECT_EQ(a("sMN Run"), "sAN Run 1");
+  EXPECT_FALSE(responder.wants_scans());
+  EXPECT_EQ(a("sEN LMDscandata 1"), "sEA LMDscandata 1");
+  EXPECT_TRUE(responder.wants_scans());
+  EXPECT_EQ(responder.language(), ColaLanguage::A);
+  EXPECT_EQ(a("sEN LMDscandata 0"), "sEA LMDscandata 0");
+  EXPECT_FALSE(responder.wants_scans());
+}
+
+TEST(SickResponder, RunsTheBinaryDialogueOfSickScanXdToItsEnd) {
+  EmulatedDevice device;
+  SickResponder responder(device);
+  const auto b = [&](const std::string& request) { return ask(responder, request, ColaLanguage::B); };
+  EXPECT_EQ(b("sRN SCdevicestate"), "sRA SCdevicestate \x01"s);
+  EXPECT_EQ(b("sMN SetAccessMode \x03\xf4\x72\x47\x44"), "sAN SetAccessMode \x01");
+  EXPECT_EQ(b("sWN EIHstCola \x01"), "sWA EIHstCola ");
+  EXPECT_EQ(b("sRN FirmwareVersion"), "sRA FirmwareVersion \0\x07V1.80.2"s);
+  EXPECT_EQ(b("sRN ODoprh").size(), 15U);
+  EXPECT_EQ(b("sRN ODpwrc").size(), 15U);
+  EXPECT_EQ(b("sRN LocationName"), "sRA LocationName \0\x0bnot defined"s);
+  EXPECT_EQ(b("sRN LMPoutputRange"), "sRA LMPoutputRange \0\x01\0\0\x13\x88\xff\xf9\x22\x30\0\x22\x55\x10"s);
+  EXPECT_EQ(b("sWN LMPoutputRange \0\x01\0\0\x13\x88\xff\xf9\x22\x30\0\x22\x55\x10"s), "sWA LMPoutputRange ");
+  EXPECT_EQ(b("sRN field000"), "sFA\0\x03"s);
+  EXPECT_THAT(b("sRN LIDinputstate"), testing::StartsWith("sRA LIDinputstate "));
+  EXPECT_EQ(b("sWN LMDscandatacfg \x01\0\0\0\0\0\0\0\0\0\0\0\x01"s), "sWA LMDscandatacfg ");
+  EXPECT_THAT(b("sRN LMDscandatacfg"), testing::SizeIs(19 + 13));
+  EXPECT_THAT(b("sMN mLMPsetscancfg \0\0\x13\x88\0\x01\0\0\x13\x88\xff\xf9\x22\x30\0\x22\x55\x10"s),
+              testing::StartsWith("sAN mLMPsetscancfg \0\0\0\x13\x88"s));
+  EXPECT_EQ(b("sEN LFErec \x01"), "sEA LFErec \x01");
+  EXPECT_EQ(b("sEN LIDoutputstate \x01"), "sEA LIDoutputstate \x01");
+  EXPECT_EQ(b("sMN LMCstartmeas"), "sAN LMCstartmeas \0"s);
+  EXPECT_EQ(b("sMN Run"), "sAN Run \x01");
+  EXPECT_EQ(b("sEN LMDscandata \x01"), "sEA LMDscandata \x01");
+  EXPECT_TRUE(responder.wants_scans());
+}
+
+TEST(SickResponder, RefusesAsADeviceDoes) {
+  EmulatedDevice device;
+  SickResponder responder(device);
+  const auto a = [&](const std::string& request) { return ask(responder, request, ColaLanguage::A); };
+  EXPECT_EQ(a("sMN LMCstopmeas"), "sFA 1") << "nobody is logged in";
+  EXPECT_TRUE(device.measuring);
+  EXPECT_EQ(a("sWN LMPoutputRange 1 1388 0 0"), "sFA A");
+  EXPECT_EQ(a("sMN SetAccessMode 3 12345678"), "sAN SetAccessMode 0");
+  EXPECT_EQ(a("sMN Dance"), "sFA 2");
+  EXPECT_EQ(a("sEN Weather 1"), "sFA F");
+  EXPECT_EQ(a("sXX LMDscandata"), "sFA C");
+}
+
+TEST(SickResponder, AnswersTheLastScanToWhoAsksForOne) {
+  EmulatedDevice device;
+  device.last.serial_number = 4711;
+  SickResponder responder(device);
+  const std::string answer = ask(responder, "sRN LMDscandata", ColaLanguage::A);
+  EXPECT_THAT(answer, testing::StartsWith("sRA LMDscandata 1 1 1267 "));
+}
+
+}  // namespace
+}  // namespace crisp

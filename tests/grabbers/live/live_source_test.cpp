@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The emulator and the live source in one process, over loopback.
+#include "grabbers/live/live_source.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/asio/write.hpp>
+#include <filesystem>
+#include <future>
+#include <map>
+
+#include "grabbers/capture/capture_reader.hpp"
+#include "grabbers/emulate/emulator.hpp"
+#include "grabbers/simulate/recorded_capture.hpp"
+#include "grabbers/simulate/scenes.hpp"
+#include "grabbers/wire/scan_encoding.hpp"
+#include "pipeline/data/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr auto kPatience = 60s;  // for what comes within milliseconds, so that a busy machine fails nothing
+
+Rig loopback_rig() {
+  Rig rig = default_rig();
+  for (RigLaser& laser : rig.lasers) laser.address = {"127.0.0.1", 0};
+  rig.plate.address = {"127.0.0.1", 0};
+  return rig;
+}
+
+std::vector<HubItem> recorded_items(double seconds = 0.5) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder / "hub.pcap";
+  RecordingSettings settings;
+  settings.scanner.duration = seconds;
+  RecordingSimulator simulator(settings, office());
+  RecordedCapture capture(file, settings, simulator.truth());
+  while (const auto event = simulator.next()) capture.write(*event);
+  capture.close();
+  CaptureReader reader(file, settings.scanner.rig);
+  std::vector<HubItem> items;
+  while (auto item = reader.next()) items.push_back(std::move(*item));
+  return items;
+}
+
+/// Scans of one laser, in their order.
+std::vector<std::shared_ptr<const Scan>> scans_of(const std::vector<HubItem>& items, std::uint16_t laser) {
+  std::vector<std::shared_ptr<const Scan>> scans;
+  for (const HubItem& item : items) {
+    const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item);
+    if (scan != nullptr && (*scan)->laser == laser) scans.push_back(*scan);
+  }
+  return scans;
+}
+
+std::size_t scans_in(const std::vector<HubItem>& items) {
+  return scans_of(items, 0).size() + scans_of(items, 1).size() + scans_of(items, 2).size();
+}
+
+/// Takes items until so many scans have come.
+std::vector<HubItem> take_scans(LiveSource& source, std::size_t scans) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  std::vector<HubItem> items;
+  std::size_t found = 0;
+  while (found < scans && std::chrono::steady_clock::now() < deadline) {
+    auto item = source.next_within(100ms);
+    if (!item) continue;
+    if (!std::holds_alternative<PlateReading>(*item)) ++found;
+    items.push_back(std::move(*item));
+  }
+  return items;
+}
+
+const DeviceStatistics& of(const CaptureStatistics& statistics, const std::string& name) {
+  return *std::ranges::find(statistics.devices, name, &DeviceStatistics::name);
+}
+
+/// The emulator fed in a thread of its own.
+struct Feeding {
+  Feeding(Emulator& emulator, const std::vector<HubItem>& items)
+      : thread([&] {
+          for (const HubItem& item : items) emulator.send(item, [this] { return stop.load(); });
+          emulator.finish();
+        }) {}
+  ~Feeding() {
+    stop = true;
+    thread.join();
+  }
+  std::atomic<bool> stop = false;
+  std::thread thread;
+};
+
+class LiveSourceIn : public testing::TestWithParam<ColaLanguage> {};
+
+TEST_P(LiveSourceIn, GivesScanForScanWhatTheOfflineReaderGives) {
+  const auto recorded = recorded_items();
+  ASSERT_GT(scans_in(recorded), 60U);
+  // The plate's port is known once the source listens, the lasers' once the emulator does.
+  Emulator lasers(loopback_rig(), {.speed = 0});
+  LiveSettings settings{.plate_at = {.port = 0}};
+  settings.sick.language = GetParam();
+  LiveSource source(lasers.rig(), settings);
+  Emulator plate({}, {.speed = 0, .plate_to = {"127.0.0.1", source.plate_port()}});
+  std::vector<HubItem> scans;
+  std::vector<HubItem> readings;
+  for (const HubItem& item : recorded) {
+    (std::holds_alternative<PlateReading>(item) ? readings : scans).push_back(item);
+  }
+  std::vector<HubItem> live;
+  {
+    const Feeding feeding(lasers, scans);
+    live = take_scans(source, scans.size());
+  }
+  for (std::uint16_t laser = 0; laser < 3; ++laser) {
+    const auto expected = scans_of(recorded, laser);
+    const auto found = scans_of(live, laser);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      EXPECT_EQ(to_scan_data(*found[k]), to_scan_data(*expected[k]));
+      EXPECT_EQ(found[k]->angle_step, expected[k]->angle_step);
+      EXPECT_GT(found[k]->receipt_ns, 1'700'000'000'000'000'000);
+    }
+  }
+  // Datagrams may be lost where the kernel's buffer is full; those are counted, but for the last ones.
+  std::vector<PlateReading> came;
+  for (const HubItem& item : readings) {
+    plate.send(item, [] { return false; });
+    while (const auto received = source.next_within(1ms)) came.push_back(std::get<PlateReading>(*received));
+  }
+  while (const auto received = source.next_within(200ms)) came.push_back(std::get<PlateReading>(*received));
+  const auto statistics = source.close();
+  ASSERT_GT(came.size(), readings.size() / 2);
+  const auto first = std::get<PlateReading>(readings.front()).sequence;
+  for (const PlateReading& reading : came) {
+    const auto& sent =
+        std::get<PlateReading>(readings.at(static_cast<std::uint16_t>(reading.sequence - first)));
+    EXPECT_EQ(reading.count, sent.count);
+    EXPECT_EQ(reading.device_us, sent.device_us);
+  }
+  EXPECT_LE(came.size() + of(statistics, "plate").losses.of(kReadingsNeverCame), readings.size());
+  EXPECT_EQ(of(statistics, "laser2").items, scans_of(recorded, 1).size());
+  EXPECT_THAT(of(statistics, "laser2").losses.all(), testing::Each(testing::Pair(testing::_, 0)));
+  EXPECT_EQ(statistics.losses.of("items dropped because the pipeline was too slow"), 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, LiveSourceIn, testing::Values(ColaLanguage::A, ColaLanguage::B),
+                         [](const auto& language) {
+                           return language.param == ColaLanguage::A ? "ColaA" : "ColaB";
+                         });
+
+TEST(LiveSource, GoesOnWhenALaserComesBack) {
+  const auto recorded = recorded_items();
+  const auto some = std::vector<HubItem>(recorded.begin(),
+                                         recorded.begin() + static_cast<std::ptrdiff_t>(recorded.size() / 2));
+  const auto rest = std::vector<HubItem>(recorded.begin() + static_cast<std::ptrdiff_t>(recorded.size() / 2),
+                                         recorded.end());
+  auto emulator = std::make_unique<Emulator>(loopback_rig(), EmulatorSettings{.speed = 0});
+  const Rig rig = emulator->rig();
+  LiveSource source(rig, {.plate = false});
+  {
+    const Feeding feeding(*emulator, some);
+    EXPECT_EQ(take_scans(source, scans_in(some)).size(), scans_in(some));
+  }
+  emulator.reset();
+  emulator = std::make_unique<Emulator>(rig, EmulatorSettings{.speed = 0});
+  {
+    const Feeding feeding(*emulator, rest);
+    EXPECT_EQ(take_scans(source, scans_in(rest)).size(), scans_in(rest));
+  }
+  const auto statistics = source.close();
+  EXPECT_EQ(of(statistics, "laser1").items, scans_of(recorded, 0).size());
+  std::uint64_t failures = 0;
+  for (const auto& [what, n] : of(statistics, "laser1").notes.all()) {
+    if (what.starts_with("connections that failed")) failures += n;
+  }
+  EXPECT_GE(failures, 1U);
+}
+
+/// A server that accepts one client after the other, and sends each the same bytes without end or answer.
+class Babbler {
+ public:
+  explicit Babbler(Bytes bytes)
+      : bytes_(std::move(bytes)), acceptor_(context_, {boost::asio::ip::make_address("127.0.0.1"), 0}) {
+    accept();
+    thread_ = std::thread([this] { context_.run(); });
+  }
+  ~Babbler() {
+    context_.stop();
+    thread_.join();
+  }
+  std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+
+ private:
+  using Socket = boost::asio::ip::tcp::socket;
+  void accept() {
+    acceptor_.async_accept([this](const boost::system::error_code& failure, Socket socket) {
+      if (failure) return;
+      clients_.push_back(std::make_unique<Socket>(std::move(socket)));
+      babble(*clients_.back());
+      accept();
+    });
+  }
+  void babble(Socket& socket) {
+    if (bytes_.empty()) return;
+    boost::asio::async_write(socket, boost::asio::buffer(bytes_),
+                             [this, &socket](const boost::system::error_code& failure, std::size_t) {
+                               if (!failure) babble(socket);
+                             });
+  }
+
+  Bytes bytes_;
+  boost::asio::io_context context_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  std::vector<std::unique_ptr<Socket>> clients_;
+  std::thread thread_;
+};
+
+Rig rig_of_one(std::uint16_t port) {
+  Rig rig = loopback_rig();
+  rig.lasers.resize(1);
+  rig.lasers[0].address.port = port;
+  return rig;
+}
+
+/// Waits until the laser's statistics fulfil a condition.
+template <class Condition>
+bool comes_true(LiveSource& source, const Condition& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (std::chrono::steady_clock::now() < deadline) {
+    const CaptureStatistics statistics = source.statistics();
+    if (condition(of(statistics, "laser1"))) return true;
+    std::this_thread::sleep_for(5ms);
+  }
+  return false;
+}
+
+TEST(LiveSource, CountsGarbageOfAnyLength) {
+  // What claims to be a telegram of 4 GB, and then what is none.
+  Bytes garbage{2, 2, 2, 2, 0xff, 0xff, 0xff, 0xff, 's', 'S', 'N', ' '};
+  garbage.resize(100'000, 0xab);
+  const Babbler babbler(garbage);
+  LiveSource source(rig_of_one(babbler.port()), {.plate = false, .sick = {.reply_timeout = 0.05}});
+  EXPECT_TRUE(comes_true(source, [](const DeviceStatistics& laser) {
+    return laser.losses.of("bytes that belong to no whole telegram") > 1'000'000 &&
+           laser.notes.of("connections that failed: a request was not answered") >= 2;
+  }));
+  const auto statistics = source.close();
+  EXPECT_EQ(of(statistics, "laser1").items, 0U);
+}
+
+TEST(LiveSource, SurvivesAllFaultsOfTheEmulatorAndCountsWhatNeverCame) {
+  const auto recorded = recorded_items(3);
+  Emulator emulator(
+      loopback_rig(),
+      {.speed = 0,
+       .faults = {
+           .dropped = 0.03, .stalled = 0.02, .stall = 0.01, .split = 0.5, .damaged = 0.05, .seed = 7}});
+  LiveSource source(emulator.rig(), {.plate = false, .sick = {.reply_timeout = 5, .silence = 5}});
+  std::map<std::pair<int, std::uint16_t>, std::shared_ptr<const Scan>> sent;
+  for (std::uint16_t laser = 0; laser < 3; ++laser) {
+    for (const auto& scan : scans_of(recorded, laser)) sent[{laser, scan->telegram_counter}] = scan;
+  }
+  std::vector<HubItem> came;
+  {
+    auto feeding = std::async(std::launch::async, [&] {
+      for (const HubItem& item : recorded) emulator.send(item, [] { return false; });
+      emulator.finish();
+    });
+    while (feeding.wait_for(0s) != std::future_status::ready) {
+      while (auto item = source.next_within(10ms)) came.push_back(std::move(*item));
+    }
+    while (auto item = source.next_within(200ms)) came.push_back(std::move(*item));
+  }
+  const auto statistics = source.close();
+  std::uint64_t damaged = 0;
+  for (std::uint16_t laser = 0; laser < 3; ++laser) {
+    const auto scans = scans_of(came, laser);
+    const auto& device = statistics.devices.at(laser);
+    ASSERT_GT(scans.size(), 100U);
+    const auto span =
+        static_cast<std::uint16_t>(scans.back()->telegram_counter - scans.front()->telegram_counter);
+    EXPECT_EQ(scans.size() + device.losses.of(kTelegramsNeverCame), span + 1U)
+        << "what did not come is counted";
+    for (const auto& scan : scans) {
+      EXPECT_EQ(to_scan_data(*scan), to_scan_data(*sent.at({laser, scan->telegram_counter})));
+    }
+    damaged += device.losses.of("telegrams with a wrong checksum");
+    EXPECT_GT(device.losses.of(kTelegramsNeverCame), 0U);
+  }
+  EXPECT_GT(damaged, 0U);
+}
+
+TEST(LiveSource, EndsSoonWhateverTheNetworkDoes) {
+  const Babbler silent({});
+  for (const auto port :
+       {silent.port(), std::uint16_t{1}}) {  // one that never answers, one that nobody serves
+    LiveSource source(rig_of_one(port), {.plate = false, .sick = {.reply_timeout = 3600}});
+    auto end = std::async(std::launch::async, [&] { return source.next().has_value(); });
+    const auto begin = std::chrono::steady_clock::now();
+    source.interrupt();
+    EXPECT_FALSE(end.get());
+    source.close();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    RecordProperty("seconds", std::to_string(took.count()));
+    EXPECT_LT(took.count(), 30) << "0.1 s on a machine that does nothing else";
+  }
+}
+
+TEST(LiveSource, RefusesAddressesThatItCannotUse) {
+  Rig rig = loopback_rig();
+  rig.lasers[1].address.ip = "laser.example";
+  EXPECT_THROW(LiveSource(rig, {.plate = false}), Error);
+  EXPECT_THROW(LiveSource(loopback_rig(), {.lasers = false, .plate_at = {.listen = "192.0.2.1"}}), Error);
+  const LiveSource first(loopback_rig(), {.lasers = false, .plate_at = {.port = 0}});
+  EXPECT_THROW(LiveSource(loopback_rig(), {.lasers = false, .plate_at = {.port = first.plate_port()}}),
+               Error);
+}
+
+TEST(Emulator, ListensAtLoopbackAloneUnlessAllowed) {
+  Rig rig = loopback_rig();
+  rig.lasers[2].address.ip = "0.0.0.0";
+  EXPECT_THROW(Emulator(rig, {}), Error);
+  EXPECT_NO_THROW(Emulator(rig, {.network = true}));
+}
+
+}  // namespace
+}  // namespace crisp

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/record/capture_recorder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "grabbers/capture/capture_reader.hpp"
+#include "grabbers/simulate/recording.hpp"
+#include "grabbers/simulate/scenes.hpp"
+#include "grabbers/wire/scan_encoding.hpp"
+#include "pipeline/data/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<HubItem> simulated_items() {
+  RecordingSettings settings;
+  settings.scanner.duration = 0.5;
+  RecordingSimulator simulator(settings, office());
+  std::vector<HubItem> items;
+  while (const auto event = simulator.next()) {
+    if (const auto* telegram = std::get_if<LaserTelegram>(&*event)) {
+      items.emplace_back(std::make_shared<const Scan>(to_scan(*telegram)));
+    } else {
+      items.emplace_back(std::get<PlateReading>(*event));
+    }
+  }
+  return items;
+}
+
+class CaptureRecorderTest : public testing::Test {
+ protected:
+  static std::vector<HubItem> read(const fs::path& file) {
+    CaptureReader reader(file, default_rig());
+    std::vector<HubItem> items;
+    while (auto item = reader.next()) items.push_back(std::move(*item));
+    for (const auto& device : reader.statistics().devices) {
+      EXPECT_THAT(device.losses.all(), testing::Each(testing::Pair(testing::_, 0))) << device.name;
+    }
+    return items;
+  }
+
+  static void expect_same(const std::vector<HubItem>& read, const std::vector<HubItem>& written) {
+    ASSERT_EQ(read.size(), written.size());
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      ASSERT_EQ(receipt_ns(read[i]), receipt_ns(written[i])) << i;
+      ASSERT_EQ(read[i].index(), written[i].index()) << i;
+      if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&read[i])) {
+        const auto& other = std::get<std::shared_ptr<const Scan>>(written[i]);
+        EXPECT_EQ((*scan)->laser, other->laser);
+        EXPECT_EQ((*scan)->echoes.at(0).ranges, other->echoes.at(0).ranges);
+        EXPECT_EQ(to_scan_data(**scan), to_scan_data(*other));
+      } else {
+        const auto& reading = std::get<PlateReading>(read[i]);
+        const auto& other = std::get<PlateReading>(written[i]);
+        EXPECT_EQ(reading.sequence, other.sequence);
+        EXPECT_EQ(reading.device_us, other.device_us);
+        EXPECT_EQ(reading.count, other.count);
+      }
+    }
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(CaptureRecorderTest, IsReadBackItemForItemWithItsTimes) {
+  const auto items = simulated_items();
+  CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {});
+  for (const HubItem& item : items) recorder.write(item);
+  recorder.close();
+  expect_same(read(folder_ / "hub.pcap"), items);
+}
+
+TEST_F(CaptureRecorderTest, HoldsWhatWasWrittenASecondBeforeAPowerCut) {
+  const auto items = simulated_items();
+  CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {.safe_after = 0});
+  for (const HubItem& item : items) recorder.write(item);
+  // Nothing is closed: what another process sees now is what a power cut would leave.
+  const auto safe = read(folder_ / "hub.pcap");
+  ASSERT_FALSE(safe.empty());
+  EXPECT_LT(receipt_ns(items.back()) - receipt_ns(safe.back()), 50'000'000);
+  expect_same(safe, {items.begin(), items.begin() + static_cast<std::ptrdiff_t>(safe.size())});
+}
+
+TEST_F(CaptureRecorderTest, BeginsANewFileAfterATimeOrASize) {
+  const auto items = simulated_items();
+  for (const RecorderSettings& settings :
+       {RecorderSettings{.most_seconds = 0.2}, RecorderSettings{.most_bytes = 60'000}}) {
+    CaptureRecorder recorder(folder_ / "part.pcap", default_rig(), settings);
+    for (const HubItem& item : items) recorder.write(item);
+    recorder.close();
+    ASSERT_GE(recorder.files().size(), 3U);
+    EXPECT_EQ(recorder.files()[1].filename(), "part-2.pcap");
+    std::vector<HubItem> all;
+    for (const auto& file : recorder.files()) {
+      const auto part = read(file);
+      all.insert(all.end(), part.begin(), part.end());
+      fs::remove(file);
+    }
+    expect_same(all, items);
+  }
+}
+
+TEST_F(CaptureRecorderTest, RefusesAFileThatIsNoCaptureAndAFolderThatIsNotThere) {
+  EXPECT_THROW(CaptureRecorder(folder_ / "none/hub.pcap", default_rig(), {}), Error);
+  std::ofstream(folder_ / "text") << "no capture";
+  EXPECT_THROW(CaptureRecorder(folder_ / "text", default_rig(), {}), Error);
+}
+
+}  // namespace
+}  // namespace crisp
