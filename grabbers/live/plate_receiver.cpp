@@ -16,7 +16,7 @@ namespace asio = boost::asio;
 using asio::ip::udp;
 using boost::system::error_code;
 
-constexpr std::uint16_t kUsualPort = 4000;
+constexpr std::uint16_t kPlatePort = 4000;
 constexpr std::size_t kLargestDatagram = 64 * 1024;
 constexpr int kKernelBuffer =
     1 << 20;  // [bytes] what may wait while the hub is busy; the kernel may give less
@@ -26,7 +26,7 @@ constexpr int kKernelBuffer =
 PlateReceiver::PlateReceiver(asio::io_context& context, DeviceLog& log, const Address& plate,
                              const PlateSettings& settings, Give give)
     : log_(log), plate_(ip_of(plate)), give_(std::move(give)), socket_(context), buffer_(kLargestDatagram) {
-  const std::uint16_t port = settings.port.value_or(plate.port == 0 ? kUsualPort : plate.port);
+  const std::uint16_t port = settings.port.value_or(plate.port == 0 ? kPlatePort : plate.port);
   const udp::endpoint at(ip_of({settings.listen, port}), port);
   error_code failure;
   socket_.open(at.protocol(), failure);

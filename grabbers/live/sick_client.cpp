@@ -19,7 +19,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::uint16_t kUsualPort = 2112;
+constexpr std::uint16_t kScanPort = 2112;
 constexpr std::size_t kPiece = 64 * 1024;  // [bytes] read at once
 constexpr double kFirstPause = 0.1;        // [s] before connecting again
 constexpr double kPoll = 0.2;              // [s] between questions whether the laser is ready
@@ -35,7 +35,7 @@ SickClient::SickClient(asio::io_context& context, DeviceLog& log, const Address&
                        const SickSettings& settings, Give give)
     : context_(context),
       log_(log),
-      endpoint_(ip_of(address), address.port == 0 ? kUsualPort : address.port),
+      endpoint_(ip_of(address), address.port == 0 ? kScanPort : address.port),
       settings_(settings),
       give_(std::move(give)),
       socket_(context),

@@ -8,7 +8,6 @@
 namespace crisp {
 namespace {
 
-constexpr double kUnitsPerDegree = 1e4;
 constexpr double kMillimetre = 1e-3;
 constexpr std::size_t kMostEchoes = 5;
 

@@ -14,6 +14,8 @@
 
 namespace crisp {
 
+inline constexpr double kUnitsPerDegree = 1e4;  ///< of angles in telegrams
+
 /// The name of the telegram below, whole: other telegrams' names begin with it.
 inline constexpr std::string_view kScanDataName = "LMDscandata";
 

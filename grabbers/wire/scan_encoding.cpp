@@ -13,7 +13,6 @@
 namespace crisp {
 namespace {
 
-constexpr double kUnitsPerDegree = 1e4;
 constexpr double kMillimetres = 1e3;
 constexpr double kMostRaw = std::numeric_limits<std::uint16_t>::max();
 

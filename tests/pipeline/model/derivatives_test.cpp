@@ -9,13 +9,6 @@
 namespace crisp {
 namespace {
 
-Calibration two_lasers() {
-  Calibration calibration = one_laser(0.1, 0.2, -0.03, 0.004);
-  calibration.lasers.push_back(one_laser(2.2, 0.18, 0.05, -0.01).lasers.front());
-  calibration.lasers.back().name = "laser2";
-  return calibration;
-}
-
 Measurements random_beams(std::size_t n) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<float> range(0.5F, 20), angle(-1.57F, 3.14F);

@@ -10,7 +10,6 @@ namespace crisp {
 namespace {
 
 // Ranges and mirror angles are stored as floats: 1e-6 is some of their steps at a few metres.
-constexpr double kFloat = 1e-6;
 
 Eigen::Vector3d point(const Calibration& calibration, const Measurements& beam,
                       const PlateTrajectory& plate) {

@@ -22,7 +22,7 @@ PlateTrajectory restless_plate() {
   return {0, times, angles, 0.01};
 }
 
-Measurements random_beams(std::size_t n) {
+Measurements varied_beams(std::size_t n) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<float> range(0.5F, 20), angle(-1.57F, 3.14F), remission(5, 250),
       cosine(0.1F, 1);
@@ -37,13 +37,6 @@ Measurements random_beams(std::size_t n) {
     beams.append(beam);
   }
   return beams;
-}
-
-Calibration two_lasers() {
-  Calibration calibration = one_laser(0.1, 0.2, -0.03, 0.004);
-  calibration.lasers.push_back(one_laser(2.2, 0.18, 0.05, -0.01).lasers.front());
-  calibration.lasers.back().name = "laser2";
-  return calibration;
 }
 
 /// Values between the bounds, near the neutral one so that nothing is extreme.
@@ -68,7 +61,7 @@ Eigen::Matrix3Xd moved(const SensorModel& model, std::size_t parameter, double b
   Eigen::VectorXd values = model.values();
   values[static_cast<Eigen::Index>(parameter)] += by;
   other.set_values(values);
-  return other.place(random_beams(120), restless_plate()).points;
+  return other.place(varied_beams(120), restless_plate()).points;
 }
 
 /// Compares with differences of fourth order: (8 (f(h) − f(−h)) − (f(2h) − f(−2h))) / 12h.
@@ -76,7 +69,7 @@ void expect_right_derivatives(const SensorModel& model) {
   std::vector<std::size_t> free(model.names().size());
   for (std::size_t i = 0; i < free.size(); ++i) free[i] = i;
   PointDerivatives derivatives;
-  const Measurements beams = random_beams(120);
+  const Measurements beams = varied_beams(120);
   const auto placed = model.place(beams, restless_plate(), free, derivatives);
   ASSERT_EQ(placed.index.size(), beams.size());
   for (std::size_t f = 0; f < free.size(); ++f) {
@@ -118,7 +111,7 @@ TEST_P(EveryTerm, ChangesNothingWhileItIsNeutral) {
   } else {
     for (auto& laser : calibration.lasers) laser.terms.push_back(with_values(info()));
   }
-  const Measurements beams = random_beams(300);
+  const Measurements beams = varied_beams(300);
   const auto with = SensorModel(calibration, built_in_terms()).place(beams, restless_plate());
   const auto without = SensorModel(two_lasers()).place(beams, restless_plate());
   ASSERT_EQ(with.index, without.index);
@@ -129,7 +122,7 @@ TEST_P(EveryTerm, ChangesThePointsOtherwise) {
   std::mt19937_64 random(3);
   Calibration calibration = two_lasers();
   add_drawn(calibration, info(), random);
-  const Measurements beams = random_beams(300);
+  const Measurements beams = varied_beams(300);
   const auto with = SensorModel(calibration, built_in_terms()).place(beams, restless_plate());
   const auto without = SensorModel(two_lasers()).place(beams, restless_plate());
   EXPECT_GT((with.points - without.points).cwiseAbs().maxCoeff(), 1e-4);
@@ -191,7 +184,7 @@ TEST(AllTermsTogether, ActAlikeInWhateverOrderThoseThatCorrectReadingsAreListed)
         "clock.drift", "timing.intra_scan", "encoder.eccentricity", "encoder.second_harmonic"}) {
     add_drawn(calibration, built_in_terms().get(name)->info(), random);
   }
-  Measurements beams = random_beams(100);
+  Measurements beams = varied_beams(100);
   beams.laser.assign(beams.size(), 0);
   const auto one = SensorModel(calibration, built_in_terms()).place(beams, restless_plate());
   std::reverse(calibration.lasers[0].terms.begin(), calibration.lasers[0].terms.end());

@@ -10,7 +10,6 @@
 namespace crisp {
 namespace {
 
-constexpr double kFloat = 1e-6;  // [m] ranges and mirror angles are floats
 constexpr double kMrad = 1e-3;
 
 void expect_point(const Eigen::Vector3d& x, double a, double b, double c) {

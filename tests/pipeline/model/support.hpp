@@ -18,6 +18,17 @@ inline Calibration one_laser(double lambda, double tau, double alpha, double eta
   return calibration;
 }
 
+/// Two lasers of which no parameter is zero.
+inline Calibration two_lasers() {
+  Calibration calibration = one_laser(0.1, 0.2, -0.03, 0.004);
+  calibration.lasers.push_back(one_laser(2.2, 0.18, 0.05, -0.01).lasers.front());
+  calibration.lasers.back().name = "laser2";
+  return calibration;
+}
+
+/// Ranges and mirror angles are floats.
+inline constexpr double kFloat = 1e-6;  // [m]
+
 /// One beam of laser 0, fired at t = 1 s.
 inline Measurements one_beam(double range, double mirror) {
   return {.range = {static_cast<float>(range)},
