@@ -6,31 +6,23 @@
 #include <cmath>
 
 #include "pipeline/data/error.hpp"
+#include "tests/grabbers/simulate/moments.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr RangeSettings kPlain{.sigma = 0.012, .quantum = 0};
-constexpr int kDraws = 200'000;
-
-struct Moments {
-  double mean = 0;
-  double variance = 0;
-  double kurtosis = 0;
-};
+using test::kDraws;
+using test::Moments;
 
 /// Of the errors at one range, of beams 0 to 9 in turn.
-Moments moments(const NoiseEffects& effects, double range, const RangeSettings& settings = kPlain) {
+Moments errors_at(const NoiseEffects& effects, double range, const RangeSettings& settings = kPlain) {
   RangeNoise noise(settings, effects, 10, 1, "laser1");
-  double s1 = 0, s2 = 0, s4 = 0;
-  for (int i = 0; i < kDraws; ++i) {
-    const double error = noise.reported(range, noise.draw(static_cast<std::uint16_t>(i % 10))) - range;
-    s1 += error;
-    s2 += error * error;
-    s4 += error * error * error * error;
-  }
-  const double variance = s2 / kDraws;
-  return {.mean = s1 / kDraws, .variance = variance, .kurtosis = s4 / kDraws / variance / variance};
+  std::uint16_t beam = 0;
+  return test::moments([&] {
+    beam = static_cast<std::uint16_t>((beam + 1) % 10);
+    return noise.reported(range, noise.draw(beam)) - range;
+  });
 }
 
 /// A variance of n draws scatters by √((kurtosis − 1) / n).
@@ -40,20 +32,20 @@ void expect_variance(const Moments& m, double variance) {
 }
 
 TEST(RangeNoise, IsNormalWithoutEffects) {
-  const Moments m = moments({}, 5);
+  const Moments m = errors_at({}, 5);
   expect_variance(m, 0.012 * 0.012);
   EXPECT_NEAR(m.kurtosis, 3, 4 * std::sqrt(96.0 / kDraws));
 }
 
 TEST(RangeNoise, GrowsWithTheRangeByItsSlope) {
   // 12 mm and 16 mm make 20 mm.
-  expect_variance(moments({.slope = 8e-4}, 20), 0.020 * 0.020);
-  expect_variance(moments({.slope = 8e-4}, 0.1), 0.012 * 0.012);
+  expect_variance(errors_at({.slope = 8e-4}, 20), 0.020 * 0.020);
+  expect_variance(errors_at({.slope = 8e-4}, 0.1), 0.012 * 0.012);
 }
 
 TEST(RangeNoise, HasTheVarianceAndTheKurtosisOfAMixture) {
   // 10 % of 3 times the spread: variance 0.9 + 0.1 · 9 = 1.8, fourth moment 3 (0.9 + 0.1 · 81) = 27.
-  const Moments m = moments({.tail_share = 0.1, .tail_scale = 3}, 5);
+  const Moments m = errors_at({.tail_share = 0.1, .tail_scale = 3}, 5);
   expect_variance(m, 1.8 * 0.012 * 0.012);
   EXPECT_NEAR(m.kurtosis, 27 / (1.8 * 1.8), 0.3);
 }

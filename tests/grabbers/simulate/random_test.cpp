@@ -4,38 +4,21 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
+
+#include "tests/grabbers/simulate/moments.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr int kDraws = 200'000;
-
-struct Moments {
-  double mean = 0;
-  double variance = 0;
-  double fourth = 0;
-};
-
-Moments moments(const std::function<double()>& draw) {
-  double s1 = 0;
-  double s2 = 0;
-  double s4 = 0;
-  for (int i = 0; i < kDraws; ++i) {
-    const double x = draw();
-    s1 += x;
-    s2 += x * x;
-    s4 += x * x * x * x;
-  }
-  return {s1 / kDraws, s2 / kDraws - s1 * s1 / kDraws / kDraws, s4 / kDraws};
-}
+using test::kDraws;
+using test::moments;
 
 TEST(RandomStream, DrawsNormalNumbersWithTheMomentsOfTheNormalDistribution) {
   RandomStream random(1, "test");
   const auto found = moments([&] { return random.normal(); });
   EXPECT_NEAR(found.mean, 0, 4 * std::sqrt(1.0 / kDraws));
   EXPECT_NEAR(found.variance, 1, 4 * std::sqrt(2.0 / kDraws));
-  EXPECT_NEAR(found.fourth, 3, 4 * std::sqrt(96.0 / kDraws));
+  EXPECT_NEAR(found.kurtosis, 3, 4 * std::sqrt(96.0 / kDraws));
 }
 
 TEST(RandomStream, DrawsUniformAndExponentialNumbersWithTheirMeansAndVariances) {

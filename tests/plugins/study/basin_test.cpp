@@ -8,21 +8,16 @@
 
 #include "pipeline/data/error.hpp"
 #include "plugins/study/basin_text.hpp"
+#include "tests/plugins/study/rqe.hpp"
 
 namespace crisp {
 namespace {
 
 using testing::HasSubstr;
 
-std::unique_ptr<Measure> make_rqe() {
-  SearchRegistry searches;
-  register_built_in(searches);
-  MeasureRegistry measures;
-  register_built_in(measures);
-  return measures.make("rqe", {.search = "grid", .cutoff = 5}, searches);
-}
+using test::make_rqe;
 
-BasinSettings small(std::size_t starts) {
+BasinSettings few_starts(std::size_t starts) {
   BasinSettings settings;
   settings.trial.lasers = 2;
   settings.trial.duration = 5;
@@ -33,7 +28,7 @@ BasinSettings small(std::size_t starts) {
 }
 
 TEST(Basin, DrawsStartsOverTheWholeRangeAndEndsInTheSameOptimum) {
-  BasinSettings settings = small(4);
+  BasinSettings settings = few_starts(4);
   const auto recordings = explore_basin(settings, make_rqe);
   ASSERT_EQ(recordings.size(), 2U);
   EXPECT_EQ(tally_of(recordings).starts, 4U);
@@ -54,7 +49,7 @@ TEST(Basin, DrawsStartsOverTheWholeRangeAndEndsInTheSameOptimum) {
 }
 
 TEST(Basin, SaysWhyARecordingHasNoStarts) {
-  BasinSettings settings = small(2);
+  BasinSettings settings = few_starts(2);
   settings.trial.motion.max_rate = 0;
   const auto recordings = explore_basin(settings, make_rqe);
   ASSERT_EQ(recordings.size(), 1U);

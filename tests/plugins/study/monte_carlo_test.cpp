@@ -10,23 +10,12 @@
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/error.hpp"
 #include "plugins/study/table.hpp"
+#include "tests/plugins/study/rqe.hpp"
 
 namespace crisp {
 namespace {
 
-std::unique_ptr<Measure> make_rqe() {
-  static const auto searches = [] {
-    SearchRegistry registry;
-    register_built_in(registry);
-    return registry;
-  }();
-  static const auto measures = [] {
-    MeasureRegistry registry;
-    register_built_in(registry);
-    return registry;
-  }();
-  return measures.make("rqe", {.search = "grid", .cutoff = 5}, searches);
-}
+using test::make_rqe;
 
 MonteCarloSettings small(std::size_t runs) {
   MonteCarloSettings settings;
