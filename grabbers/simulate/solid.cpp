@@ -19,6 +19,8 @@ template <class... Acts>
 struct Overloaded : Acts... {
   using Acts::operator()...;
 };
+template <class... Acts>
+Overloaded(Acts...) -> Overloaded<Acts...>;  // clang 14 does not find it out by itself
 
 Vector3d turned(const Vector3d& point, double yaw) {
   Vector3d result = point;
