@@ -54,8 +54,7 @@ class SceneReader {
 
   Stand read_stand(const YamlNode& node) {
     YamlMap map(node, "scanner", errors_);
-    const Stand stand{.position = require_vector(map, "position", errors_),
-                      .yaw = map.number("yaw", "rad", 0)};
+    Stand stand{.position = require_vector(map, "position", errors_), .yaw = map.number("yaw", "rad", 0)};
     map.refuse_others();
     return stand;
   }
@@ -196,7 +195,7 @@ class SceneReader {
   }
 
   /// How many copies of a scene are wanted; 1 if that is too many.
-  std::size_t copies(YamlMap& map, const YamlNode& node, const Scene& scene) {
+  static std::size_t copies(YamlMap& map, const YamlNode& node, const Scene& scene) {
     map.require("count");
     const auto count = static_cast<std::size_t>(map.integer("count", 1, 1, kMostCopies));
     if (scene.things() * count <= kMostSurfaces) return count;

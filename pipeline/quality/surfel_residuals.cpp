@@ -131,11 +131,11 @@ void weigh(double outlier, const Views& views, std::vector<SurfelResidual>& resi
 /// Rectangular cells over a surfel's plane.
 class CellsOnPlane {
  public:
-  CellsOnPlane(const std::vector<SurfelResidual>& residuals, const Eigen::Vector2d& sides) : sides_(sides) {
-    for (const SurfelResidual& r : residuals) box_.extend(Eigen::Vector2d(r.u, r.v));
-    columns_ = along(0, box_.max().x()) + 1;
-    count_ = columns_ * (along(1, box_.max().y()) + 1);
-  }
+  CellsOnPlane(const std::vector<SurfelResidual>& residuals, double along_u, double along_v)
+      : sides_(along_u, along_v),
+        box_(box_of(residuals)),
+        columns_(along(0, box_.max().x()) + 1),
+        count_(columns_ * (along(1, box_.max().y()) + 1)) {}
   std::size_t count() const { return count_; }
   std::size_t of(const SurfelResidual& r) const { return along(1, r.v) * columns_ + along(0, r.u); }
 
@@ -143,6 +143,12 @@ class CellsOnPlane {
   std::size_t along(Eigen::Index axis, double at) const {
     return static_cast<std::size_t>((at - box_.min()[axis]) / sides_[axis]);
   }
+  static Eigen::AlignedBox2d box_of(const std::vector<SurfelResidual>& residuals) {
+    Eigen::AlignedBox2d box;
+    for (const SurfelResidual& r : residuals) box.extend(Eigen::Vector2d(r.u, r.v));
+    return box;
+  }
+
   Eigen::Vector2d sides_;
   Eigen::AlignedBox2d box_;
   std::size_t columns_ = 0;
@@ -151,12 +157,12 @@ class CellsOnPlane {
 
 /// Leaves out the cells in which beams miss the planes of their views by more than chance and more than bumps
 /// explain.
-void leave_out_strange_cells(const Views& views, const Eigen::Vector2d& sides,
+void leave_out_strange_cells(const Views& views, double along_u, double along_v,
                              std::vector<SurfelResidual>& residuals) {
   constexpr double kChance = 3;  // standard deviations of a cell's mean
   constexpr double kBump = 0.3;  // [spreads]
   const auto left = within_views(residuals, views);
-  const CellsOnPlane cells(residuals, sides);
+  const CellsOnPlane cells(residuals, along_u, along_v);
   std::vector<double> sum(cells.count(), 0);
   std::vector<double> count(cells.count(), 0);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
@@ -174,9 +180,12 @@ void leave_out_strange_cells(const Views& views, const Eigen::Vector2d& sides,
 /// Beams that met something else within the noise of the plane, an edge of it or what stands before it, come
 /// in patches and in narrow strips, mostly along the borders.
 void leave_out_strangers(const Views& views, std::vector<SurfelResidual>& residuals) {
-  for (const auto& [along, across] : {std::pair{0.1, 0.1}, {0.5, 0.025}, {0.025, 0.5}}) {
-    leave_out_strange_cells(views, {along, across}, residuals);
-  }
+  constexpr double kPatch = 0.1;     // [m]
+  constexpr double kStrip = 0.5;     // [m] long
+  constexpr double kNarrow = 0.025;  // [m] wide
+  leave_out_strange_cells(views, kPatch, kPatch, residuals);
+  leave_out_strange_cells(views, kStrip, kNarrow, residuals);
+  leave_out_strange_cells(views, kNarrow, kStrip, residuals);
 }
 
 /// The residuals from the surfel's own plane.

@@ -48,7 +48,8 @@ std::string bounds(const Option& option) {
 
 std::string group_text(const OptionGroup& group) {
   std::vector<std::string> entries;
-  for (const auto& [name, value, place] : group.entries) entries.push_back(name + ": " + value);
+  for (const auto& [name, value, place] : group.entries)
+    entries.push_back(fmt::format("{}: {}", name, value));
   return fmt::format("{}: {{{}}}", group.name, fmt::join(entries, ", "));
 }
 

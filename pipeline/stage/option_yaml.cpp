@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/stage/option_yaml.hpp"
 
+#include <fmt/format.h>
+
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
@@ -77,7 +79,7 @@ class Reader {
       for (const auto& [parameter, key, value] : values.entries) {
         std::string wrong;
         const auto text = read_text(value, wrong);
-        if (!text) refuse(value.place, name + "." + parameter + ": " + wrong);
+        if (!text) refuse(value.place, fmt::format("{}.{}: {}", name, parameter, wrong));
         group.entries.push_back({.name = parameter, .value = text.value_or(""), .place = value.place});
       }
     }

@@ -60,10 +60,12 @@ struct Worker {
 
 class Runner {
  public:
-  Runner(Pipeline& pipeline, const RunSettings& run, const RunHooks& hooks) : run_(run), hooks_(hooks) {
+  Runner(Pipeline& pipeline, const RunSettings& run, const RunHooks& hooks)
+      : run_(run),
+        hooks_(hooks),
+        ends_gently_(std::any_of(pipeline.nodes.begin(), pipeline.nodes.end(),
+                                 [](const auto& node) { return node.type->endless; })) {
     for (auto& node : pipeline.nodes) add(node);
-    ends_gently_ = std::any_of(workers_.begin(), workers_.end(),
-                               [](const Worker& worker) { return worker.node->type->endless; });
   }
 
   std::vector<NodeResult> run() {

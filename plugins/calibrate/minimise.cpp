@@ -281,7 +281,7 @@ Minimum minimise(const Objective& objective, const Eigen::VectorXd& start, const
   }
   std::unique_lock lock(solver_mutex());
   const Eigen::VectorXd within = start.cwiseMax(box.lower).cwiseMin(box.upper);
-  const Minimum found = solve(objective, within, box, settings, Borders::kIgnored, lock);
+  Minimum found = solve(objective, within, box, settings, Borders::kIgnored, lock);
   if (is_inside(found.x, box) || (settings.interrupted && settings.interrupted())) return found;
   Minimum kept = solve(objective, found.x, box, settings, Borders::kKept, lock);
   kept.iterations += found.iterations;

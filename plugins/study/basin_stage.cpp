@@ -80,15 +80,16 @@ void BasinStage::process(const Inputs&, Outputs&, Context& context) {
   settings.threads = context.threads();
   settings.trial.rig = context.rig();
   settings.trial.scene = scene_.load(context);
-  const auto total =
-      static_cast<double>((settings.starts + settings.starts_a_recording - 1) / settings.starts_a_recording);
-  recordings_ = explore_basin(
-      settings, rqe_maker(context.run()),
-      {.progress =
-           [&](std::size_t done) {
-             context.progress({.done = static_cast<double>(done), .total = total, .unit = "recordings"});
-           },
-       .interrupted = [&] { return context.interrupted(); }});
+  const std::size_t recordings =
+      (settings.starts + settings.starts_a_recording - 1) / settings.starts_a_recording;
+  recordings_ = explore_basin(settings, rqe_maker(context.run()),
+                              {.progress =
+                                   [&](std::size_t done) {
+                                     context.progress({.done = static_cast<double>(done),
+                                                       .total = static_cast<double>(recordings),
+                                                       .unit = "recordings"});
+                                   },
+                               .interrupted = [&] { return context.interrupted(); }});
 }
 
 void BasinStage::finish(Outputs&, Context& context) {

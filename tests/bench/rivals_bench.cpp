@@ -189,14 +189,13 @@ void against_threads() {
 }  // namespace crisp::bench
 
 int main() {
-  using namespace crisp::bench;
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // each line as soon as it is known
   {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    beside_rivals();
-    against_points();
-    against_sigma();
-    against_lasers();
+    crisp::bench::beside_rivals();
+    crisp::bench::against_points();
+    crisp::bench::against_sigma();
+    crisp::bench::against_lasers();
   }
-  against_threads();
+  crisp::bench::against_threads();
 }
