@@ -89,7 +89,7 @@ TEST(Solid, IsAsFarAsTheNearestOfManyPointsOfItsSurface) {
       const Ray ray{.origin = middle, .direction = random_direction(random)};
       const auto through = passage(known.solid, ray);
       ASSERT_TRUE(through);
-      surface.push_back(ray.origin + through->out * ray.direction);
+      surface.emplace_back(ray.origin + through->out * ray.direction);
       EXPECT_TRUE(bounds(known.solid).exteriorDistance(surface.back()) < 1e-9);
       EXPECT_NEAR(distance_to_surface(known.solid, surface.back()), 0, 1e-6);
     }
