@@ -155,7 +155,9 @@ struct Emulation {
 
 /// Where the machine is too busy to send a second's telegrams at their pace, their stamps fit no steady
 /// clock, which is said.
-const auto kOnABusyMachine = testing::AnyOf(ExitStatus::done, ExitStatus::not_trusted);
+testing::Matcher<ExitStatus> done_as_well_as_may_be() {
+  return testing::AnyOf(ExitStatus::done, ExitStatus::not_trusted);
+}
 
 TEST(Configs, EmulateIsAScannerOfWhichLiveMakesACloud) {
   const test::Workshop workshop;
@@ -165,7 +167,7 @@ TEST(Configs, EmulateIsAScannerOfWhichLiveMakesACloud) {
   const auto live = workshop.run("live.yaml", {}, "out",
                                  {"duration=0.9s", "calibration=" + (workshop / "made/truth.yaml").string()},
                                  workshop / "rig.yaml");
-  EXPECT_THAT(live.status, kOnABusyMachine) << live.told;
+  EXPECT_THAT(live.status, done_as_well_as_may_be()) << live.told;
   EXPECT_THAT(live.files, ElementsAre("cloud.pcd", "cloud.pcd.provenance.json", "summary.json"));
   EXPECT_EQ(live.count("grabber.live", "laser1: telegrams that never came, by their counter"), 0U);
   ASSERT_NE(live.cloud, nullptr);
@@ -184,7 +186,7 @@ TEST(Configs, RecordWritesACaptureOfWhichAssembleMakesACloud) {
   const auto assembled =
       workshop.run("assemble.yaml", workshop / "recorded/hub.pcap", "out",
                    {"calibration=" + (workshop / "made/truth.yaml").string()}, workshop / "rig.yaml");
-  EXPECT_THAT(assembled.status, kOnABusyMachine) << assembled.told;
+  EXPECT_THAT(assembled.status, done_as_well_as_may_be()) << assembled.told;
   EXPECT_EQ(assembled.stage("grabber.capture")["given"], recorded.stage("grabber.live")["given"])
       << "what was received is what is read";
   ASSERT_NE(assembled.cloud, nullptr);
