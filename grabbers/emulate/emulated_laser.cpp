@@ -153,6 +153,7 @@ void EmulatedLaser::stop() {
 std::size_t EmulatedLaser::send(const ScanData& scan) {
   device_.last = scan;
   if (!device_.measuring) return 0;
+  const ScanData sent = device_.sent(scan);
   std::size_t missed = 0;
   for (const auto& session : sessions_) {
     if (!session->wants_scans()) continue;
@@ -164,7 +165,7 @@ std::size_t EmulatedLaser::send(const ScanData& scan) {
       session->close();
       continue;
     }
-    Bytes telegram = encode_scan_data(scan, session->language());
+    Bytes telegram = encode_scan_data(sent, session->language());
     if (dice_.damages()) dice_.flip_a_bit(telegram);
     session->send(std::move(telegram));
   }

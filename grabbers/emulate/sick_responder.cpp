@@ -14,16 +14,14 @@ namespace {
 
 using Values = std::vector<ColaValue>;
 
-constexpr std::uint16_t kMethodDenied = 1, kUnknownMethod = 2, kUnknownVariable = 3, kWriteDenied = 10,
-                        kUnknownCommand = 12, kUnknownEvent = 15;
-constexpr std::uint32_t kAngleStep = 5000, kFrequency = 5000;           // [1/10000°], [1/100 Hz]
-constexpr std::int32_t kFirstAngle = -450'000, kLastAngle = 2'250'000;  // [1/10000°]
+constexpr std::uint16_t kMethodDenied = 1, kUnknownMethod = 2, kUnknownVariable = 3, kOutOfRange = 4,
+                        kInvalidData = 5, kWriteDenied = 10, kUnknownCommand = 12, kUnknownEvent = 15;
+constexpr unsigned kOtherFrequency = 1,
+                   kOtherResolution = 2;  // what mLMPsetscancfg answers that it cannot do
 constexpr std::uint8_t kMeasuring = 7, kIdle = 3;
 
 std::uint8_t byte(unsigned value) { return static_cast<std::uint8_t>(value); }
 std::uint16_t word(unsigned value) { return static_cast<std::uint16_t>(value); }
-
-Values scan_configuration() { return {kFrequency, word(1), kAngleStep, kFirstAngle, kLastAngle}; }
 
 /// The variables that can be read, with their values.
 const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, std::less<>>& variables() {
@@ -48,16 +46,10 @@ const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, s
        }},
       {"ODoprh", [](const auto&) { return Values{std::uint32_t{0}}; }},
       {"ODpwrc", [](const auto&) { return Values{std::uint32_t{1}}; }},
-      {"LMPscancfg", [](const auto&) { return scan_configuration(); }},
-      {"LMPoutputRange",
-       [](const auto&) {
-         return Values{word(1), kAngleStep, kFirstAngle, kLastAngle};
-       }},
+      {"LMPscancfg", [](const auto& device) { return to_values(device.settings()); }},
+      {"LMPoutputRange", [](const auto& device) { return to_values(device.output_range()); }},
       {"LMDscandatacfg",
-       [](const auto&) {
-         return Values{byte(1), byte(0), byte(0), byte(0), byte(0), byte(0),
-                       byte(0), byte(0), byte(0), byte(0), byte(0), word(1)};
-       }},
+       [](const auto& device) { return to_values(device.content.value_or(ScanContent())); }},
       {"LIDinputstate",
        [](const auto&) {
          return Values{byte(0), byte(0), byte(0), byte(0)};
@@ -97,7 +89,7 @@ Bytes SickResponder::answer(const ColaTelegram& request) {
 Bytes SickResponder::read(const ColaTelegram& request) const {
   if (request.name == kScanDataName) {
     Bytes out;
-    append_scan_data(device_->last, request.language, "sRA", EncoderWidths::Position32, out);
+    append_scan_data(device_->sent(device_->last), request.language, "sRA", EncoderWidths::Position32, out);
     return out;
   }
   const auto known = variables().find(request.name);
@@ -110,12 +102,40 @@ Bytes SickResponder::write(const ColaTelegram& request) {
     language_ = first_byte(request).value_or(1) == 1 ? ColaLanguage::B : ColaLanguage::A;
     return cola_message("sWA", request.name, {}, request.language);
   }
-  const bool known =
-      is_one_of(request.name, {"LMDscandatacfg", "LMPoutputRange", "LFPmeanfilter", "LFPparticle",
-                               "LFPnto1filter", "FREchoFilter", "LICencset", "LICencres", "LICsrc"});
+  const bool known = is_one_of(
+      request.name, {"LMDscandatacfg", "LMPoutputRange", "LFPmeanfilter", "LFPparticle", "LFPnto1filter",
+                     "FREchoFilter", "LICencset", "LICencres", "LICsrc", "TSCRole"});
   if (!known) return cola_error(kUnknownVariable, request.language);
   if (!logged_in_) return cola_error(kWriteDenied, request.language);
+  if (request.name == "LMPoutputRange") return set_output_range(request);
+  if (request.name == "LMDscandatacfg") return set_content(request);
   return cola_message("sWA", request.name, {}, request.language);
+}
+
+Bytes SickResponder::set_output_range(const ColaTelegram& request) {
+  const auto range = output_range(request);
+  if (!range) return cola_error(kInvalidData, request.language);
+  if (range->first > range->last) return cola_error(kOutOfRange, request.language);
+  device_->range = range;
+  return cola_message("sWA", request.name, {}, request.language);
+}
+
+Bytes SickResponder::set_content(const ColaTelegram& request) {
+  const auto content = scan_content(request);
+  if (!content) return cola_error(kInvalidData, request.language);
+  device_->content = content;
+  return cola_message("sWA", request.name, {}, request.language);
+}
+
+Bytes SickResponder::set_scan(const ColaTelegram& request) const {
+  const auto wanted = scan_settings(request, false);
+  if (!wanted) return cola_error(kInvalidData, request.language);
+  const ScanSettings own = device_->settings();
+  const unsigned status = (wanted->frequency == own.frequency ? 0 : kOtherFrequency) +
+                          (wanted->resolution == own.resolution ? 0 : kOtherResolution);
+  Values values{byte(status)};
+  for (auto& value : to_values(own)) values.push_back(std::move(value));
+  return cola_message("sAN", request.name, values, request.language);
 }
 
 Bytes SickResponder::call(const ColaTelegram& request) {
@@ -137,11 +157,7 @@ Bytes SickResponder::call(const ColaTelegram& request) {
   if (!starts && !stops && !configures && !stores) return cola_error(kUnknownMethod, request.language);
   if (!logged_in_) return cola_error(kMethodDenied, request.language);
   if (stores) return done(1);
-  if (configures) {
-    Values values{byte(0)};
-    for (auto& value : scan_configuration()) values.push_back(std::move(value));
-    return cola_message("sAN", request.name, values, request.language);
-  }
+  if (configures) return set_scan(request);
   device_->measuring = starts;
   return done(0);
 }

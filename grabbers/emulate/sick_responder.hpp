@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-#include <string_view>
-
+#include "grabbers/emulate/emulated_device.hpp"
 #include "grabbers/wire/cola_message.hpp"
-#include "grabbers/wire/scan_data.hpp"
 
 namespace crisp {
-
-/// What an emulated laser is, for all who are connected to it.
-struct EmulatedDevice {
-  std::string name = "LMS1xx";  ///< that it identifies itself with
-  std::string firmware = "V1.80.2";
-  bool measuring = true;
-  ScanData last;  ///< what is answered to who asks for one scan
-};
 
 /// One client's conversation with an emulated laser, without any network: telegrams in, answers out. Serves
 /// the dialogues of the usual drivers, in CoLa-A and CoLa-B; what an LMS1xx does not know, or does not allow
@@ -35,6 +24,9 @@ class SickResponder {
   Bytes read(const ColaTelegram& request) const;
   Bytes write(const ColaTelegram& request);
   Bytes call(const ColaTelegram& request);
+  Bytes set_output_range(const ColaTelegram& request);
+  Bytes set_content(const ColaTelegram& request);
+  Bytes set_scan(const ColaTelegram& request) const;
   Bytes subscribe(const ColaTelegram& request);
 
   EmulatedDevice* device_;

@@ -14,13 +14,13 @@ LiveSource::LiveSource(const Rig& rig, const LiveSettings& settings)
     const RigLaser& laser = rig.lasers[i];
     logs_.push_back(std::make_unique<DeviceLog>(DeviceKind::Laser, laser.name, laser.address,
                                                 static_cast<std::uint16_t>(i)));
-    lasers_.push_back(
-        std::make_unique<SickClient>(context_, *logs_.back(), laser.address, settings.sick, give));
+    lasers_.push_back(std::make_unique<SickClient>(context_, *logs_.back(), laser.address, settings.sick,
+                                                   give, settings.clock));
   }
   if (settings.plate) {
     logs_.push_back(std::make_unique<DeviceLog>(DeviceKind::Plate, rig.plate.name, rig.plate.address));
-    plate_ =
-        std::make_unique<PlateReceiver>(context_, *logs_.back(), rig.plate.address, settings.plate_at, give);
+    plate_ = make_plate_receiver(context_, PlateReadings(*logs_.back(), give, settings.clock),
+                                 rig.plate.address, settings.plate_at);
   }
   for (const auto& laser : lasers_) laser->start();
   if (plate_) plate_->start();

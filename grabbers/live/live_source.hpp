@@ -25,6 +25,7 @@ struct LiveSettings {
   PlateSettings plate_at;
   std::size_t queue =
       16384;  ///< items that may wait for the pipeline; then the oldest are dropped, and counted
+  HubClock clock = now_ns;  ///< that tells when something was received
 };
 
 /// The devices of a rig over the network, as they are now: scans and readings in the order in which this

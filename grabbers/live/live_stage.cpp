@@ -27,7 +27,17 @@ constexpr std::string_view kAboutLasers =
     "between is "
     "counted.";
 constexpr std::string_view kAboutPlate =
-    "The plate's datagrams are taken at the address `listen` of this machine, from the rig's plate only.";
+    "The plate's datagrams are taken at the address `listen` of this machine, from the rig's plate only. "
+    "Over "
+    "`tcp` the rig's plate is connected to, over `serial` a serial line is read; either is opened anew when "
+    "it "
+    "breaks or falls silent.";
+constexpr std::string_view kAboutConfiguration =
+    "Lasers are left as they are configured unless an option says otherwise. What a laser refuses, and scans "
+    "that "
+    "are not as it was told, are said in the summary. Another frequency or resolution makes the motor turn "
+    "anew, "
+    "which takes up to a minute. Nothing is stored beyond the laser's next start.";
 
 }  // namespace
 
@@ -36,7 +46,9 @@ void LiveStage<devices>::describe(StageDescription<LiveStage>& d) {
   constexpr auto index = static_cast<std::size_t>(devices);
   d.name(std::string(kNameOf[index])).summary(std::string(kSummaryOf[index]));
   std::string about;
-  if constexpr (kLasers) about += std::string(kAboutLasers) + "\n\n";
+  if constexpr (kLasers) {
+    about += std::string(kAboutLasers) + "\n\n" + std::string(kAboutConfiguration) + "\n\n";
+  }
   if constexpr (kPlate) about += std::string(kAboutPlate) + "\n\n";
   d.details(about +
             "Times of receipt are those at which this program took the data. Where the stages below are too "
@@ -65,11 +77,51 @@ void LiveStage<devices>::describe(StageDescription<LiveStage>& d) {
              "between two tries to connect, at most")
         .unit("s")
         .range(0.1, 600);
+    describe_configuration(d);
   }
-  if constexpr (kPlate) {
-    d.option("listen", &LiveStage::settings_, &LiveSettings::plate_at, &PlateSettings::listen,
-             "address of this machine at which the plate's datagrams are taken; 0.0.0.0: all that it has");
-  }
+  if constexpr (kPlate) describe_plate(d);
+}
+
+template <LiveDevices devices>
+void LiveStage<devices>::describe_configuration(StageDescription<LiveStage>& d) {
+  const auto option = [&](const char* name, auto SickConfiguration::*member, const char* help) {
+    return d.option(
+        name, [member](LiveStage & stage) -> auto& { return stage.settings_.sick.configuration.*member; },
+        help);
+  };
+  option("scan_frequency", &SickConfiguration::frequency,
+         "how often the mirrors are to turn; auto: as they do")
+      .unit("Hz")
+      .range(1, 1000);
+  option("resolution", &SickConfiguration::resolution, "angle from beam to beam; auto: as it is")
+      .unit("rad")
+      .range(1e-4, 0.1);
+  option("output_range", &SickConfiguration::output_range,
+         "first and last angle that are sent, as the lasers report them; none: as it is")
+      .unit("rad")
+      .count(0, 2);
+  option("remission", &SickConfiguration::remission, "whether remissions are sent; auto: as it is");
+  option("ntp_off", &SickConfiguration::ntp_off,
+         "whether lasers are told not to have their clocks set over the network");
+}
+
+template <LiveDevices devices>
+void LiveStage<devices>::describe_plate(StageDescription<LiveStage>& d) {
+  const auto option = [&](const char* name, auto PlateSettings::*member, const char* help) {
+    return d.option(name, &LiveStage::settings_, &LiveSettings::plate_at, member, help);
+  };
+  option("transport", &PlateSettings::transport, "how the plate's sentences come")
+      .choices({{"udp", PlateTransport::Datagrams},
+                {"tcp", PlateTransport::Tcp},
+                {"serial", PlateTransport::Serial}});
+  option("listen", &PlateSettings::listen,
+         "address of this machine at which the plate's datagrams are taken; 0.0.0.0: all that it has");
+  option("serial", &PlateSettings::serial, "the serial line");
+  option("baud", &PlateSettings::baud, "bits a second on it").range(50, 4e6);
+  option("plate_silence", &PlateSettings::silence,
+         "without a byte for so long, a connection or serial line is opened anew")
+      .unit("s")
+      .range(0.05, 600);
 }
 
 template <LiveDevices devices>
@@ -77,7 +129,11 @@ void LiveStage<devices>::check(const RunSettings& run) const {
   for (const RigLaser& laser : run.rig.lasers) {
     if (kLasers) ip_of(laser.address);
   }
-  if (kPlate) ip_of(run.rig.plate.address);
+  if (kPlate && settings_.plate_at.transport != PlateTransport::Serial) ip_of(run.rig.plate.address);
+  crisp::check(settings_.sick.configuration);
+  if (!settings_.sick.start && !settings_.sick.configuration.is_empty()) {
+    throw Error("lasers that are not logged into cannot be configured", "leave out start: false");
+  }
 }
 
 template <LiveDevices devices>

@@ -27,6 +27,8 @@ class LiveStage final : public Stage {
   void process(const Inputs& in, Outputs& out, Context& context) override;
 
  private:
+  static void describe_configuration(StageDescription<LiveStage>& d);
+  static void describe_plate(StageDescription<LiveStage>& d);
   void report(const CaptureStatistics& statistics, Context& context) const;
 
   LiveSettings settings_{.lasers = kLasers, .plate = kPlate};

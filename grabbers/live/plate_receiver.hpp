@@ -2,51 +2,73 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/udp.hpp>
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "grabbers/capture/device_log.hpp"
-#include "grabbers/wire/hub_item.hpp"
+#include "grabbers/live/endpoints.hpp"
 #include "grabbers/wire/plate_framer.hpp"
 
 namespace crisp {
 
+/// How the plate's sentences come.
+enum class PlateTransport : std::uint8_t {
+  Datagrams,  ///< by UDP, from the rig's plate
+  Tcp,        ///< the rig's plate is a TCP server
+  Serial,     ///< over a serial line of this machine: 8 data bits, no parity, 1 stop bit
+};
+
 struct PlateSettings {
+  PlateTransport transport = PlateTransport::Datagrams;
   std::string listen = "127.0.0.1";   ///< the hub's address that datagrams are taken at; 0.0.0.0: all of them
   std::optional<std::uint16_t> port;  ///< of the hub; 0: any that is free; nothing: the rig's, or 4000
+  std::string serial = "/dev/ttyUSB0";
+  unsigned baud = 115200;    ///< [bit/s] of the serial line
+  double silence = 2;        ///< [s] without a byte after which a connection or line is opened anew
+  double longest_pause = 5;  ///< [s] between two tries; the first are quicker
 };
 
-/// Takes the plate's sentences from UDP datagrams, in the thread that runs the io_context.
-class PlateReceiver {
+/// From the plate's bytes, however they came, to its readings.
+class PlateReadings {
  public:
-  using Give = std::function<void(HubItem)>;
+  PlateReadings(DeviceLog& log, GiveItem give, HubClock clock)
+      : log_(log), give_(std::move(give)), clock_(std::move(clock)) {}
 
-  /// Listens from now on. Datagrams from another address than `plate` are counted, and not read.
-  /// @throws Error if an address is none, or cannot be listened at
-  PlateReceiver(boost::asio::io_context& context, DeviceLog& log, const Address& plate,
-                const PlateSettings& settings, Give give);
-  PlateReceiver(const PlateReceiver&) = delete;
-  PlateReceiver& operator=(const PlateReceiver&) = delete;
-
-  std::uint16_t port() const { return port_; }
-  void start() { receive(); }
-  void stop();
+  /// Bytes that came just now.
+  void take(ByteView bytes);
+  /// The datagram or connection is over: what is incomplete stays so.
+  void gap() { framer_.gap(); }
+  void note(const std::string& what) { log_.note(what); }
+  /// Tells the log what was damaged; once, at the end.
+  void tell_damage();
 
  private:
-  void receive();
-  void take(std::size_t bytes);
-
   DeviceLog& log_;
-  boost::asio::ip::address plate_;
-  Give give_;
-  boost::asio::ip::udp::socket socket_;
-  std::uint16_t port_ = 0;
-  boost::asio::ip::udp::endpoint from_;
-  Bytes buffer_;
+  GiveItem give_;
+  HubClock clock_;
   PlateFramer framer_;
 };
+
+/// Receives the plate's sentences, in the thread that runs the io_context.
+class PlateReceiver {
+ public:
+  PlateReceiver() = default;
+  PlateReceiver(const PlateReceiver&) = delete;
+  PlateReceiver& operator=(const PlateReceiver&) = delete;
+  virtual ~PlateReceiver() = default;
+
+  virtual void start() = 0;
+  virtual void stop() = 0;
+  /// The hub's port that datagrams are taken at; 0 for the other transports.
+  virtual std::uint16_t port() const { return 0; }
+};
+
+/// For datagrams it listens from now on; those from another address than `plate` are counted, and not read.
+/// @throws Error if an address is none, or cannot be listened at. A server or a serial line that is not there
+///               is no error: it is tried again and again.
+std::unique_ptr<PlateReceiver> make_plate_receiver(boost::asio::io_context& context, PlateReadings readings,
+                                                   const Address& plate, const PlateSettings& settings);
 
 }  // namespace crisp

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/live/sick_client.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <boost/asio/write.hpp>
-#include <chrono>
 #include <memory>
 #include <utility>
 
 #include "grabbers/capture/framing_losses.hpp"
-#include "grabbers/live/endpoints.hpp"
 
 namespace crisp {
 namespace {
@@ -21,9 +16,9 @@ using boost::system::error_code;
 
 constexpr std::uint16_t kScanPort = 2112;
 constexpr std::size_t kPiece = 64 * 1024;  // [bytes] read at once
-constexpr double kFirstPause = 0.1;        // [s] before connecting again
 constexpr double kPoll = 0.2;              // [s] between questions whether the laser is ready
 constexpr double kFarewell = 0.05;         // [s] for the answer to the last request
+constexpr double kMotor = 60;              // [s] until it turns at another speed
 
 ColaLanguage other(ColaLanguage language) {
   return language == ColaLanguage::A ? ColaLanguage::B : ColaLanguage::A;
@@ -32,17 +27,18 @@ ColaLanguage other(ColaLanguage language) {
 }  // namespace
 
 SickClient::SickClient(asio::io_context& context, DeviceLog& log, const Address& address,
-                       const SickSettings& settings, Give give)
+                       SickSettings settings, GiveItem give, HubClock clock)
     : context_(context),
       log_(log),
       endpoint_(ip_of(address), address.port == 0 ? kScanPort : address.port),
-      settings_(settings),
+      settings_(std::move(settings)),
       give_(std::move(give)),
+      clock_(std::move(clock)),
       socket_(context),
-      timer_(context),
+      alarm_(context),
+      back_off_(settings_.longest_pause),
       buffer_(kPiece),
-      language_(settings.language),
-      pause_(kFirstPause) {}
+      language_(settings_.language) {}
 
 void SickClient::start() { connect(); }
 
@@ -54,21 +50,22 @@ void SickClient::connect() {
     if (failure) return fail(failure.message());
     begin_dialogue();
   });
-  wait(settings_.reply_timeout, &SickClient::not_answered);
+  alarm_.set(settings_.reply_timeout, [this] { not_answered(); });
 }
 
 void SickClient::begin_dialogue() {
   framer_ = {};
   languages_tried_ = 1;
   refusals_told_ = 0;
-  dialogue_.emplace(language_, settings_.start);
+  compared_ = settings_.configuration.is_empty();
+  dialogue_.emplace(language_, settings_.start, settings_.configuration);
   read();
   ask();
 }
 
 void SickClient::ask() {
   say(dialogue_->request());
-  wait(settings_.reply_timeout, &SickClient::not_answered);
+  alarm_.set(dialogue_->is_slow() ? kMotor : settings_.reply_timeout, [this] { not_answered(); });
 }
 
 void SickClient::not_answered() {
@@ -78,7 +75,7 @@ void SickClient::not_answered() {
   }
   ++languages_tried_;
   language_ = other(language_);
-  dialogue_.emplace(language_, settings_.start);
+  dialogue_.emplace(language_, settings_.start, settings_.configuration);
   ask();
 }
 
@@ -94,13 +91,14 @@ void SickClient::read() {
 
 void SickClient::take(std::size_t bytes) {
   const auto sink = [this](const ColaFrame& frame) { take(frame); };
-  framer_.feed(ByteView(buffer_).first(bytes), now_ns(), sink);
+  framer_.feed(ByteView(buffer_).first(bytes), clock_(), sink);
   if (over_) fail(*std::exchange(over_, {}));
 }
 
 void SickClient::take(const ColaFrame& frame) {
   auto scan = log_.take(frame, settings_.encoder_widths);
   const bool came = scan.has_value();
+  if (came && !compared_ && dialogue_ && dialogue_->step() == SickStep::Scans) note_difference(*scan);
   if (came && !stopping_) give_(std::make_shared<const Scan>(std::move(*scan)));
   const auto telegram = parse_cola(frame.payload, frame.language);
   if (!telegram || over_) return;
@@ -113,31 +111,36 @@ void SickClient::take(const ColaFrame& frame) {
   }
 }
 
+void SickClient::note_difference(const Scan& scan) {
+  compared_ = true;
+  const std::string found = difference(settings_.configuration, scan);
+  if (!found.empty()) log_.note("connections whose scans were not as configured: " + found);
+}
+
 void SickClient::proceed(SickDialogue::Effect effect) {
   for (; refusals_told_ < dialogue_->refusals().size(); ++refusals_told_) {
     log_.note("refused by the laser: " + dialogue_->refusals()[refusals_told_]);
   }
-  if (effect == SickDialogue::Effect::AskLater) return wait(kPoll, &SickClient::ask);
+  if (effect == SickDialogue::Effect::AskLater) return alarm_.set(kPoll, [this] { ask(); });
   if (effect == SickDialogue::Effect::None) return;
   if (dialogue_->step() == SickStep::Refused) {
     over_ = "the laser refused to send scans";
     return;
   }
   if (dialogue_->step() != SickStep::Scans) return ask();
-  pause_ = kFirstPause;
+  back_off_.reset();
   await_scan();
 }
 
-void SickClient::await_scan() { wait(settings_.silence, &SickClient::silent); }
-
-void SickClient::silent() { fail("no scan came"); }
+void SickClient::await_scan() {
+  alarm_.set(settings_.silence, [this] { fail("no scan came"); });
+}
 
 void SickClient::fail(const std::string& reason) {
   close();
   if (stopping_) return;
   log_.note("connections that failed: " + reason);
-  wait(pause_, &SickClient::connect);
-  pause_ = std::min(2 * pause_, settings_.longest_pause);
+  alarm_.set(back_off_.next(), [this] { connect(); });
 }
 
 void SickClient::close() {
@@ -146,8 +149,7 @@ void SickClient::close() {
   framer_ = {};
   dialogue_.reset();
   ++connection_;
-  ++wait_;
-  timer_.cancel();
+  alarm_.cancel();
   error_code ignored;
   socket_.close(ignored);
 }
@@ -157,7 +159,7 @@ void SickClient::stop() {
   stopping_ = true;
   if (!dialogue_ || dialogue_->step() != SickStep::Scans) return close();
   say(unsubscribe_request(language_));
-  wait(kFarewell, &SickClient::close);
+  alarm_.set(kFarewell, [this] { close(); });
 }
 
 void SickClient::say(const Bytes& telegram) {
@@ -166,14 +168,6 @@ void SickClient::say(const Bytes& telegram) {
                     [this, kept, mine = connection_](const error_code& failure, std::size_t) {
                       if (failure && mine == connection_) fail(failure.message());
                     });
-}
-
-void SickClient::wait(double seconds, Then then) {
-  timer_.expires_after(
-      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)));
-  timer_.async_wait([this, then, mine = ++wait_](const error_code& failure) {
-    if (!failure && mine == wait_) (this->*then)();
-  });
 }
 
 }  // namespace crisp

@@ -1,37 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "grabbers/wire/cola.hpp"
+#include "grabbers/live/sick_requests.hpp"
 
 namespace crisp {
-
-/// How far a conversation with a laser is.
-enum class SickStep : std::uint8_t {
-  DetectLanguage,  ///< a harmless question, in the hope that it is understood
-  LogIn,
-  StartMeasuring,
-  Run,         ///< leaves the login
-  AwaitReady,  ///< asked again and again until the laser measures
-  Subscribe,
-  Scans,    ///< they come by themselves
-  Refused,  ///< the laser does not send scans
-};
 
 /// What is said to a laser until its scans come, without any network: requests out, telegrams in.
 class SickDialogue {
  public:
-  /// @param start  whether to log in and have it start measuring; otherwise nothing is changed
-  SickDialogue(ColaLanguage language, bool start) : language_(language), start_(start) {}
+  /// @param start   whether to log in and have it start measuring; otherwise nothing is changed
+  /// @param wanted  how it is to measure; if anything is wanted, it is logged in and started all the same
+  SickDialogue(ColaLanguage language, bool start, SickConfiguration wanted = {});
 
   SickStep step() const { return step_; }
   ColaLanguage language() const { return language_; }
 
   /// The framed request of this step; none once scans come or were refused.
   Bytes request() const;
+  /// Whether the answer to it may take a minute: the motor turns anew.
+  bool is_slow() const { return step_ == SickStep::SetScanSettings; }
 
   /// What a telegram of the laser did to the dialogue.
   enum class Effect : std::uint8_t {
@@ -45,11 +35,14 @@ class SickDialogue {
   const std::vector<std::string>& refusals() const { return refusals_; }
 
  private:
-  bool answers(const ColaTelegram& telegram) const;
+  SickRequest now() const { return sick_request(step_, wanted_, settings_); }
+  bool needs(SickStep step) const;
   Effect advance();
 
   ColaLanguage language_;
   bool start_;
+  SickConfiguration wanted_;
+  ScanSettings settings_;  ///< of the laser
   SickStep step_ = SickStep::DetectLanguage;
   std::vector<std::string> refusals_;
 };

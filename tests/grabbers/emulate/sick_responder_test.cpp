@@ -86,6 +86,35 @@ TEST(SickResponder, RefusesAsADeviceDoes) {
   EXPECT_EQ(a("sXX LMDscandata"), "sFA C");
 }
 
+TEST(SickResponder, PutsInForceWhatIsConfiguredAsFarAsItsScansAllow) {
+  EmulatedDevice device;
+  device.last.channels16 = {{.name = "DIST1",
+                             .start_angle = -450'000,
+                             .angle_step = 5000,
+                             .raw = std::vector<std::uint16_t>(541, 1)},
+                            {.name = "RSSI1",
+                             .start_angle = -450'000,
+                             .angle_step = 5000,
+                             .raw = std::vector<std::uint16_t>(541, 2)}};
+  SickResponder responder(device);
+  const auto a = [&](const std::string& request) { return ask(responder, request, ColaLanguage::A); };
+  a("sMN SetAccessMode 03 F4724744");
+  EXPECT_EQ(a("sMN mLMPsetscancfg 1388 1 1388 FFF92230 225510"),
+            "sAN mLMPsetscancfg 0 1388 1 1388 FFF92230 225510");
+  EXPECT_EQ(a("sMN mLMPsetscancfg +2500 +1 +2500 -450000 +2250000"),
+            "sAN mLMPsetscancfg 3 1388 1 1388 FFF92230 225510")
+      << "neither is possible, and what is in force";
+  EXPECT_EQ(a("sWN LMPoutputRange 1 1388 225510 0"), "sFA 4");
+  EXPECT_EQ(a("sWN LMPoutputRange"), "sFA 5");
+  EXPECT_EQ(a("sWN LMPoutputRange 1 1388 0 3A98"), "sWA LMPoutputRange");
+  EXPECT_EQ(a("sRN LMPoutputRange"), "sRA LMPoutputRange 1 1388 0 3A98");
+  EXPECT_EQ(a("sWN LMDscandatacfg 1 0 0 1 0 0 0 0 0 0 0 1"), "sWA LMDscandatacfg");
+  const ScanData sent = device.sent(device.last);
+  ASSERT_EQ(sent.channels16.size(), 1U) << "no remissions";
+  EXPECT_EQ(sent.channels16[0].start_angle, 0);
+  EXPECT_EQ(sent.channels16[0].raw.size(), 4U) << "0, 0.5, 1 and 1.5 degrees";
+}
+
 TEST(SickResponder, AnswersTheLastScanToWhoAsksForOne) {
   EmulatedDevice device;
   device.last.serial_number = 4711;

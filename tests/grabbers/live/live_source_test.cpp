@@ -15,7 +15,9 @@
 #include "grabbers/simulate/recorded_capture.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
+#include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
+#include "tests/grabbers/live/live_support.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {
@@ -24,14 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-constexpr auto kPatience = 60s;  // for what comes within milliseconds, so that a busy machine fails nothing
-
-Rig loopback_rig() {
-  Rig rig = default_rig();
-  for (RigLaser& laser : rig.lasers) laser.address = {"127.0.0.1", 0};
-  rig.plate.address = {"127.0.0.1", 0};
-  return rig;
-}
+using test::loopback_rig;
+using test::of;
+using test::rig_of_one;
 
 std::vector<HubItem> recorded_items(double seconds = 0.5) {
   const test::TemporaryFolder folder;
@@ -64,7 +61,7 @@ std::size_t scans_in(const std::vector<HubItem>& items) {
 
 /// Takes items until so many scans have come.
 std::vector<HubItem> take_scans(LiveSource& source, std::size_t scans) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  const auto deadline = std::chrono::steady_clock::now() + test::kPatience;
   std::vector<HubItem> items;
   std::size_t found = 0;
   while (found < scans && std::chrono::steady_clock::now() < deadline) {
@@ -74,10 +71,6 @@ std::vector<HubItem> take_scans(LiveSource& source, std::size_t scans) {
     items.push_back(std::move(*item));
   }
   return items;
-}
-
-const DeviceStatistics& of(const CaptureStatistics& statistics, const std::string& name) {
-  return *std::ranges::find(statistics.devices, name, &DeviceStatistics::name);
 }
 
 /// The emulator fed in a thread of its own.
@@ -153,6 +146,31 @@ INSTANTIATE_TEST_SUITE_P(Each, LiveSourceIn, testing::Values(ColaLanguage::A, Co
                            return language.param == ColaLanguage::A ? "ColaA" : "ColaB";
                          });
 
+TEST(LiveSource, ConfiguresALaserAndSaysWhatItDoesNotDo) {
+  const auto scans = scans_of(recorded_items(0.1), 0);
+  Emulator emulator(loopback_rig(1), {.speed = 0});
+  const SickConfiguration wanted{.frequency = 25, .output_range = {0, 90 * kDegree}, .remission = true};
+  LiveSource source(emulator.rig(), {.plate = false, .sick = {.configuration = wanted}});
+  const std::vector<HubItem> items(scans.begin(), scans.end());
+  std::vector<HubItem> came;
+  {
+    const Feeding feeding(emulator, items);
+    came = take_scans(source, items.size());
+  }
+  ASSERT_EQ(came.size(), scans.size());
+  for (const auto& scan : scans_of(came, 0)) {
+    EXPECT_NEAR(scan->start_angle, 0, 1e-6);
+    EXPECT_EQ(scan->echoes.at(0).ranges.size(), 181U);
+  }
+  const auto notes = of(source.close(), "laser1").notes;
+  EXPECT_EQ(
+      test::count_beginning(notes, "refused by the laser: sMN mLMPsetscancfg: answered 1 (the frequency"),
+      1U);
+  EXPECT_EQ(notes.of("connections whose scans were not as configured: 50 Hz instead of 25 Hz, no remissions"),
+            1U)
+      << "the simulated laser has none";
+}
+
 TEST(LiveSource, GoesOnWhenALaserComesBack) {
   const auto recorded = recorded_items();
   const auto some = std::vector<HubItem>(recorded.begin(),
@@ -174,11 +192,7 @@ TEST(LiveSource, GoesOnWhenALaserComesBack) {
   }
   const auto statistics = source.close();
   EXPECT_EQ(of(statistics, "laser1").items, scans_of(recorded, 0).size());
-  std::uint64_t failures = 0;
-  for (const auto& [what, n] : of(statistics, "laser1").notes.all()) {
-    if (what.starts_with("connections that failed")) failures += n;
-  }
-  EXPECT_GE(failures, 1U);
+  EXPECT_GE(test::count_beginning(of(statistics, "laser1").notes, "connections that failed"), 1U);
 }
 
 /// A server that accepts one client after the other, and sends each the same bytes without end or answer.
@@ -220,32 +234,13 @@ class Babbler {
   std::thread thread_;
 };
 
-Rig rig_of_one(std::uint16_t port) {
-  Rig rig = loopback_rig();
-  rig.lasers.resize(1);
-  rig.lasers[0].address.port = port;
-  return rig;
-}
-
-/// Waits until the laser's statistics fulfil a condition.
-template <class Condition>
-bool comes_true(LiveSource& source, const Condition& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (std::chrono::steady_clock::now() < deadline) {
-    const CaptureStatistics statistics = source.statistics();
-    if (condition(of(statistics, "laser1"))) return true;
-    std::this_thread::sleep_for(5ms);
-  }
-  return false;
-}
-
 TEST(LiveSource, CountsGarbageOfAnyLength) {
   // What claims to be a telegram of 4 GB, and then what is none.
   Bytes garbage{2, 2, 2, 2, 0xff, 0xff, 0xff, 0xff, 's', 'S', 'N', ' '};
   garbage.resize(100'000, 0xab);
   const Babbler babbler(garbage);
   LiveSource source(rig_of_one(babbler.port()), {.plate = false, .sick = {.reply_timeout = 0.05}});
-  EXPECT_TRUE(comes_true(source, [](const DeviceStatistics& laser) {
+  EXPECT_TRUE(test::comes_true(source, "laser1", [](const DeviceStatistics& laser) {
     return laser.losses.of("bytes that belong to no whole telegram") > 1'000'000 &&
            laser.notes.of("connections that failed: a request was not answered") >= 2;
   }));

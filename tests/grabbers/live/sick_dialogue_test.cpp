@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/data/degree.hpp"
+#include "pipeline/data/error.hpp"
+
 namespace crisp {
 namespace {
 
@@ -68,6 +71,66 @@ TEST(SickDialogue, GivesUpWhereScansAreRefused) {
   EXPECT_EQ(say(dialogue, "sFA F"), Effect::Next);
   EXPECT_EQ(dialogue.step(), SickStep::Refused);
   EXPECT_THAT(dialogue.request(), testing::IsEmpty());
+}
+
+TEST(SickDialogue, ConfiguresOnlyWhatIsWanted) {
+  SickDialogue dialogue(ColaLanguage::A, true, {.frequency = 25, .remission = true, .ntp_off = true});
+  say(dialogue, "sRA SCdevicestate 1");
+  say(dialogue, "sAN SetAccessMode 1");
+  EXPECT_EQ(as_text(dialogue.request()), "\x02sRN LMPscancfg\x03");
+  say(dialogue, "sRA LMPscancfg 1388 1 1388 FFF92230 225510");
+  EXPECT_EQ(as_text(dialogue.request()), "\x02sMN mLMPsetscancfg 9C4 1 1388 FFF92230 225510\x03")
+      << "the resolution stays";
+  EXPECT_TRUE(dialogue.is_slow());
+  EXPECT_EQ(say(dialogue, "sMA mLMPsetscancfg"), Effect::None) << "the answer is still to come";
+  EXPECT_EQ(say(dialogue, "sAN mLMPsetscancfg 0 9C4 1 1388 FFF92230 225510"), Effect::Next);
+  EXPECT_EQ(as_text(dialogue.request()), "\x02sWN LMDscandatacfg 1 0 1 1 0 0 0 0 0 0 0 1\x03");
+  EXPECT_EQ(say(dialogue, "sWA LMDscandatacfg"), Effect::Next);
+  EXPECT_EQ(as_text(dialogue.request()), "\x02sWN TSCRole 0\x03");
+  EXPECT_EQ(say(dialogue, "sWA TSCRole"), Effect::Next);
+  EXPECT_EQ(dialogue.step(), SickStep::StartMeasuring);
+  EXPECT_THAT(dialogue.refusals(), testing::IsEmpty());
+}
+
+TEST(SickDialogue, DoesNotTurnTheMotorAnewForWhatItDoesAlready) {
+  SickDialogue dialogue(ColaLanguage::A, true,
+                        {.frequency = 50, .output_range = {-20 * kDegree, 200 * kDegree}});
+  say(dialogue, "sRA SCdevicestate 1");
+  say(dialogue, "sAN SetAccessMode 1");
+  say(dialogue, "sRA LMPscancfg 1388 1 9C4 FFF92230 225510");
+  EXPECT_EQ(as_text(dialogue.request()), "\x02sWN LMPoutputRange 1 9C4 FFFCF2C0 1E8480\x03")
+      << "at the resolution that the laser has";
+}
+
+TEST(SickDialogue, SaysWhyASettingIsRefusedAndGoesOn) {
+  SickDialogue dialogue(ColaLanguage::A, true,
+                        {.resolution = 0.25 * kDegree, .output_range = {-20 * kDegree, 200 * kDegree}});
+  say(dialogue, "sRA SCdevicestate 1");
+  say(dialogue, "sAN SetAccessMode 1");
+  say(dialogue, "sRA LMPscancfg 1388 1 1388 FFF92230 225510");
+  EXPECT_EQ(say(dialogue, "sAN mLMPsetscancfg 2 1388 1 1388 FFF92230 225510"), Effect::Next);
+  EXPECT_EQ(say(dialogue, "sFA 4"), Effect::Next);
+  EXPECT_THAT(dialogue.refusals(),
+              testing::ElementsAre("sMN mLMPsetscancfg: answered 2 (the resolution is not possible)",
+                                   testing::StartsWith("sWN LMPoutputRange: sFA 4 (")));
+  EXPECT_EQ(dialogue.step(), SickStep::StartMeasuring);
+}
+
+TEST(SickConfiguration, IsComparedWithWhatTheScansAre) {
+  Scan scan{.scan_frequency = 50, .start_angle = -45 * kDegree, .angle_step = 0.5 * kDegree};
+  scan.echoes = {{.ranges = std::vector<float>(541, 1.0F)}};
+  EXPECT_EQ(difference({.frequency = 50, .resolution = 0.5 * kDegree, .remission = false}, scan), "");
+  EXPECT_EQ(difference({.output_range = {-45 * kDegree, 225 * kDegree}}, scan), "");
+  EXPECT_EQ(difference({.frequency = 25, .resolution = 0.25 * kDegree, .remission = true}, scan),
+            "50 Hz instead of 25 Hz, 0.5 deg from beam to beam instead of 0.25 deg, no remissions");
+  EXPECT_EQ(difference({.output_range = {0, 225 * kDegree}}, scan), "beams from -45 to 225 deg");
+}
+
+TEST(SickConfiguration, RefusesARangeThatIsNone) {
+  EXPECT_NO_THROW(check(SickConfiguration{.output_range = {-0.5, 1}}));
+  for (const std::vector<double>& range : {std::vector<double>{1.0}, {1.0, -0.5}, {0, 7}}) {
+    EXPECT_THROW(check(SickConfiguration{.output_range = range}), Error);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/emulate/emulated_device.hpp"
+
+#include <algorithm>
+
+namespace crisp {
+namespace {
+
+/// Leaves of a channel the values between two angles, which devices give somewhat roundly.
+void crop(ChannelBlock& channel, const OutputRange& range) {
+  const std::int64_t slack = channel.angle_step / 2;
+  const auto inside = [&](std::size_t k) {
+    const auto angle = channel.start_angle + static_cast<std::int64_t>(k) * channel.angle_step;
+    return angle >= range.first - slack && angle <= range.last + slack;
+  };
+  std::size_t first = 0;
+  while (first < channel.raw.size() && !inside(first)) ++first;
+  std::size_t end = first;
+  while (end < channel.raw.size() && inside(end)) ++end;
+  channel.start_angle += static_cast<std::int32_t>(first * channel.angle_step);
+  channel.raw = {channel.raw.begin() + static_cast<std::ptrdiff_t>(first),
+                 channel.raw.begin() + static_cast<std::ptrdiff_t>(end)};
+}
+
+bool is_remission(const ChannelBlock& channel) { return channel.name.starts_with("RSSI"); }
+
+}  // namespace
+
+ScanSettings EmulatedDevice::settings() const {
+  ScanSettings settings{.frequency = last.scan_frequency};
+  if (last.channels16.empty() || last.channels16.front().raw.empty()) return settings;
+  const ChannelBlock& channel = last.channels16.front();
+  settings.resolution = channel.angle_step;
+  settings.first = channel.start_angle;
+  settings.last =
+      channel.start_angle + static_cast<std::int32_t>((channel.raw.size() - 1) * channel.angle_step);
+  return settings;
+}
+
+OutputRange EmulatedDevice::output_range() const {
+  const ScanSettings own = settings();
+  return range.value_or(OutputRange{own.resolution, own.first, own.last});
+}
+
+ScanData EmulatedDevice::sent(ScanData scan) const {
+  if (content && !content->remission) {
+    std::erase_if(scan.channels16, is_remission);
+    std::erase_if(scan.channels8, is_remission);
+  }
+  if (range) {
+    for (ChannelBlock& channel : scan.channels16) crop(channel, *range);
+    for (ChannelBlock& channel : scan.channels8) crop(channel, *range);
+  }
+  return scan;
+}
+
+}  // namespace crisp

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/live/sick_configuration.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pipeline/data/degree.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kRounding = 2e-4 * kDegree;  // of angles in telegrams
+constexpr double kHertz = 0.01;               // likewise of frequencies
+
+}  // namespace
+
+void check(const SickConfiguration& configuration) {
+  const auto& range = configuration.output_range;
+  if (range.empty()) return;
+  const bool good =
+      range.size() == 2 && range[0] < range[1] && range[0] >= -360 * kDegree && range[1] <= 360 * kDegree;
+  if (!good) throw Error("the output range is no range", "give its first and last angle: [-45deg, 225deg]");
+}
+
+std::string difference(const SickConfiguration& wanted, const Scan& scan) {
+  std::string found;
+  const auto add = [&](std::string what) { found += (found.empty() ? "" : ", ") + std::move(what); };
+  if (wanted.frequency && std::abs(*wanted.frequency - scan.scan_frequency) > kHertz) {
+    add(fmt::format("{:g} Hz instead of {:g} Hz", scan.scan_frequency, *wanted.frequency));
+  }
+  if (wanted.resolution && std::abs(*wanted.resolution - scan.angle_step) > kRounding) {
+    add(fmt::format("{:.4g} deg from beam to beam instead of {:.4g} deg", scan.angle_step / kDegree,
+                    *wanted.resolution / kDegree));
+  }
+  const Echo& echo = scan.echoes.front();
+  if (wanted.remission && *wanted.remission == echo.remissions.empty()) {
+    add(*wanted.remission ? "no remissions" : "remissions that were not wanted");
+  }
+  if (!wanted.output_range.empty()) {
+    const double last = scan.start_angle + scan.angle_step * static_cast<double>(echo.ranges.size() - 1);
+    const bool begins = std::abs(scan.start_angle - wanted.output_range[0]) < scan.angle_step + kRounding;
+    const bool ends = std::abs(last - wanted.output_range[1]) < scan.angle_step + kRounding;
+    if (!begins || !ends) {
+      add(fmt::format("beams from {:.4g} to {:.4g} deg", scan.start_angle / kDegree, last / kDegree));
+    }
+  }
+  return found;
+}
+
+}  // namespace crisp

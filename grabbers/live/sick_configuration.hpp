@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/data/scan.hpp"
+
+namespace crisp {
+
+/// How a laser is to measure; what is absent stays as it is.
+struct SickConfiguration {
+  std::optional<double> frequency;   ///< [Hz] of the mirror
+  std::optional<double> resolution;  ///< [rad] from beam to beam
+  std::vector<double> output_range;  ///< [rad] first and last angle, as the device reports them; or empty
+  std::optional<bool> remission;     ///< whether remissions are sent
+  bool ntp_off = false;              ///< the device's clock is not to be set over the network
+
+  bool sets_mirror() const { return frequency || resolution; }
+  bool is_empty() const { return !sets_mirror() && output_range.empty() && !remission && !ntp_off; }
+};
+
+/// @throws Error if the range is not two ascending angles within a turn
+void check(const SickConfiguration& configuration);
+
+/// In what a scan is not as the laser was told to measure, in words; or "". What a laser says of its settings
+/// may differ from how it measures, so that the scan is what counts.
+std::string difference(const SickConfiguration& wanted, const Scan& scan);
+
+}  // namespace crisp

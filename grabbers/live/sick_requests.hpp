@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "grabbers/live/sick_configuration.hpp"
+#include "grabbers/wire/scan_settings.hpp"
+
+namespace crisp {
+
+/// How far a conversation with a laser is.
+enum class SickStep : std::uint8_t {
+  DetectLanguage,    ///< a harmless question, in the hope that it is understood
+  LogIn,             ///< as the authorised client
+  ReadScanSettings,  ///< what is not to be changed stays as it is
+  SetScanSettings,
+  SetScanContent,
+  SetOutputRange,
+  SetNtpOff,
+  StartMeasuring,
+  Run,         ///< leaves the login and puts settings in force
+  AwaitReady,  ///< asked again and again until the laser measures
+  Subscribe,
+  Scans,    ///< they come by themselves
+  Refused,  ///< the laser does not send scans
+};
+
+/// What is asked of a laser in one step, and what answers it.
+struct SickRequest {
+  std::string_view command, name;
+  std::vector<ColaValue> parameters;
+  std::string_view answer;  ///< the command of what is answered
+};
+
+/// @param now  the laser's settings, as it told them
+SickRequest sick_request(SickStep step, const SickConfiguration& wanted, const ScanSettings& now);
+
+/// The settings that `now` are in force with what is wanted in their place.
+ScanSettings changed(ScanSettings now, const SickConfiguration& wanted);
+
+/// Whether an answer (that is no sFA) says that what was asked for is so.
+bool is_granted(SickStep step, const ColaTelegram& answer);
+
+/// Why it is not so, in words: "answered 2 (the resolution is not possible)".
+std::string refusal_text(SickStep step, const ColaTelegram& answer);
+
+}  // namespace crisp
