@@ -31,8 +31,8 @@ std::vector<RecordedTelegram> read_dialogue(const std::filesystem::path& file);
 std::vector<Scan> scans_of(const std::vector<RecordedTelegram>& dialogue);
 
 /// A server that answers with what a real device answered: to each request what was recorded for its name,
-/// and to others the real refusal, or where none was recorded what an emulated laser answers. To who subscribes to scans it
-/// sends all that the device sent by itself, byte for byte.
+/// and to others the real refusal, or where none was recorded what an emulated laser answers. To who
+/// subscribes to scans it sends all that the device sent by itself, byte for byte.
 class RecordedDevice {
  public:
   RecordedDevice(const std::vector<RecordedTelegram>& dialogue, ColaLanguage language);
