@@ -2,9 +2,13 @@
 #include "plugins/assemble/register.hpp"
 
 #include "plugins/assemble/deskew_stage.hpp"
+#include "plugins/assemble/revolutions_stage.hpp"
 
 namespace crisp {
 
-void register_assemble(Registrar& registrar) { registrar.stage<DeskewStage>(); }
+void register_assemble(Registrar& registrar) {
+  registrar.stage<DeskewStage>();
+  registrar.stage<RevolutionsStage>();
+}
 
 }  // namespace crisp

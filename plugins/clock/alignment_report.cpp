@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "plugins/clock/clock_aligner.hpp"
+#include "plugins/clock/aligner.hpp"
 
 namespace crisp {
 namespace {
@@ -52,14 +52,12 @@ std::string doubt_of(const DeviceReport& device) {
 
 }  // namespace
 
-AlignmentReport ClockAligner::report() const {
-  AlignmentReport report;
+AlignmentReport HubTracks::report() const {
+  AlignmentReport report{.devices = reports()};
   for (const auto& laser : lasers_) {
-    report.devices.push_back(laser.report());
     report.counts[laser.laser().name + ": scans without ranges"] = laser.without_ranges();
     if (auto warning = laser.stamp_warning(); !warning.empty()) report.warnings.push_back(std::move(warning));
   }
-  report.devices.push_back(plate_.report());
   for (const auto& device : report.devices) {
     count_losses(device, report.counts);
     warn_of_device(device, report.warnings);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace crisp {
 namespace {
 
@@ -50,16 +52,6 @@ template <class S>
 void AlignStage::describe_alignment(StageDescription<S>& d) {
   d.template takes<Scan>().template takes<PlateReading>();
   d.template gives<PlateTrajectory>().template gives<Measurements>().template gives<ClockMap>();
-  d.option("window", &AlignStage::settings_, &AlignmentSettings::window,
-           "stretch of stamps that one line is fitted to; what is shorter than 1.5 of it has one line; auto: "
-           "60 s, "
-           "and up to 240 s where delays are rough")
-      .unit("s")
-      .range(1, 3600);
-  d.option("margin", &AlignStage::settings_, &AlignmentSettings::margin,
-           "by how much a piece of the plate's trajectory covers more than its measurements' times")
-      .unit("s")
-      .range(0, 10);
   d.option("max_gap", &AlignStage::settings_, &AlignmentSettings::plate, &PlateMotionSettings::max_gap,
            "longest silence of the encoder to interpolate across")
       .unit("s")
@@ -74,6 +66,20 @@ void AlignStage::describe_alignment(StageDescription<S>& d) {
        "mirror_smoothing", &AlignStage::settings_, &AlignmentSettings::mirror_half_width,
        "scans on either side that smooth the motion of a mirror; auto: as many as foretell its stamps best")
       .range(1, 10);
+}
+
+template <class S>
+void AlignStage::describe_windows(StageDescription<S>& d) {
+  d.option("window", &AlignStage::settings_, &AlignmentSettings::window,
+           "stretch of stamps that one line is fitted to; what is shorter than 1.5 of it has one line; auto: "
+           "60 s, "
+           "and up to 240 s where delays are rough")
+      .unit("s")
+      .range(1, 3600);
+  d.option("margin", &AlignStage::settings_, &AlignmentSettings::margin,
+           "by how much a piece of the plate's trajectory covers more than its measurements' times")
+      .unit("s")
+      .range(0, 10);
 }
 
 template <class S>
@@ -98,7 +104,66 @@ void ConvexHullStage::describe(StageDescription<ConvexHullStage>& d) {
       "stamps, "
       "since mirrors turn up to 0.6 % slower than they should, and wander.");
   describe_alignment(d);
+  describe_windows(d);
   describe_fit(d);
+}
+
+void OnlineStage::describe(StageDescription<OnlineStage>& d) {
+  d.name("clock.online")
+      .summary("puts stamps on the hub's clock as they come in, and scans on as soon as they can");
+  d.details(
+      "For live pipelines: each scan is handed on, with its piece of the plate's trajectory, as soon as the "
+      "plate's "
+      "readings cover it. A device's clock is the line below its stamps of the last `window` that "
+      "clock.convex_hull would find; what was handed on is not corrected when it becomes better known. After "
+      "a "
+      "restart of a device its clock is a new one, and its scans wait for `warm_up`. The mirror's motion is "
+      "taken "
+      "from the stamps so far.\n\n"
+      "What is handed on depends on the items and their times of receipt alone: from a recording of a live "
+      "run the "
+      "same stage makes the same measurements. With a calibration from above, the readings that its lags "
+      "need are "
+      "waited for.");
+  describe_alignment(d);
+  d.holds<Calibration>(Need::optional);
+  d.option("window", &OnlineStage::online_, &OnlineSettings::window,
+           "of stamps to which a clock's line is fitted")
+      .unit("s")
+      .range(1, 3600);
+  d.option("warm_up", &OnlineStage::online_, &OnlineSettings::warm_up,
+           "of a device's stamps before its clock is believed")
+      .unit("s")
+      .range(0, 60);
+  d.option("margin", &OnlineStage::online_, &OnlineSettings::margin,
+           "by how much a piece of the plate's trajectory covers more than its scan, as far as it is there "
+           "already")
+      .unit("s")
+      .range(0, 1);
+  d.option("patience", &OnlineStage::online_, &OnlineSettings::patience,
+           "for the plate's readings, after which a scan is handed on without them")
+      .unit("s")
+      .range(0, 60);
+  describe_fit(d);
+}
+
+std::unique_ptr<Aligner> OnlineStage::make_aligner(const Rig& rig, AlignmentSink sink) const {
+  return std::make_unique<OnlineAligner>(rig, settings_, online_, std::move(sink));
+}
+
+void OnlineStage::take_lags(const std::shared_ptr<const Calibration>& calibration) {
+  if (!calibration || calibration == calibration_) return;
+  calibration_ = calibration;
+  const auto [least, greatest] =
+      std::ranges::minmax(calibration->lasers, {}, [](const auto& laser) { return laser.eta.value; });
+  online_.least_lag = least.eta.value;
+  online_.greatest_lag = greatest.eta.value;
+  if (aligner_) static_cast<OnlineAligner&>(*aligner_).set_lags(online_.least_lag, online_.greatest_lag);
+}
+
+void OnlineStage::process(const Inputs& in, Outputs& out, Context& context) {
+  take_lags(in.share<Calibration>());
+  AlignStage::process(in, out, context);
 }
 
 void LinearProgramStage::describe(StageDescription<LinearProgramStage>& d) {
@@ -108,6 +173,7 @@ void LinearProgramStage::describe(StageDescription<LinearProgramStage>& d) {
       "all "
       "stamps (Moon, Skelly, Towsley 1999). The two agree to rounding; one checks the other.");
   describe_alignment(d);
+  describe_windows(d);
   describe_fit(d);
 }
 
@@ -120,16 +186,20 @@ void ReceiptStage::describe(StageDescription<ReceiptStage>& d) {
       "to "
       "report the delays that are trusted here.");
   describe_alignment(d);
+  describe_windows(d);
+}
+
+std::unique_ptr<Aligner> AlignStage::make_aligner(const Rig& rig, AlignmentSink sink) const {
+  return std::make_unique<ClockAligner>(rig, settings_, std::move(sink));
 }
 
 void AlignStage::process(const Inputs& in, Outputs& out, Context& context) {
   out_ = &out;
   if (!aligner_) {
     settings_.drift = drift_ * kPpmPerHour;
-    aligner_.emplace(
-        context.rig(), settings_,
-        AlignmentSink{.trajectory = [this](PlateTrajectory plate) { out_->give(std::move(plate)); },
-                      .measurements = [this](Measurements scan) { out_->give(std::move(scan)); }});
+    aligner_ = make_aligner(context.rig(),
+                            {.trajectory = [this](PlateTrajectory plate) { out_->give(std::move(plate)); },
+                             .measurements = [this](Measurements scan) { out_->give(std::move(scan)); }});
   }
   if (auto scan = in.share<Scan>()) aligner_->add(std::move(scan));
   if (const auto* reading = in.find<PlateReading>()) aligner_->add(*reading);

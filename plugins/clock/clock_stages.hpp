@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
+#include <memory>
 
+#include "pipeline/data/calibration.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/clock/clock_aligner.hpp"
+#include "plugins/clock/online_aligner.hpp"
 
 namespace crisp {
 
@@ -19,13 +21,16 @@ class AlignStage : public Stage {
   template <class S>
   static void describe_alignment(StageDescription<S>& d);
   template <class S>
+  static void describe_windows(StageDescription<S>& d);
+  template <class S>
   static void describe_fit(StageDescription<S>& d);
+  virtual std::unique_ptr<Aligner> make_aligner(const Rig& rig, AlignmentSink sink) const;
 
   AlignmentSettings settings_;
   double drift_ = 200;  ///< [ppm/h]
+  std::unique_ptr<Aligner> aligner_;
 
  private:
-  std::optional<ClockAligner> aligner_;
   Outputs* out_ = nullptr;  ///< of the call that is going on
 };
 
@@ -40,6 +45,23 @@ class LinearProgramStage final : public AlignStage {
  public:
   LinearProgramStage() { settings_.find = line_by_linear_program; }
   static void describe(StageDescription<LinearProgramStage>& d);
+};
+
+/// `clock.online`
+class OnlineStage final : public AlignStage {
+ public:
+  OnlineStage() { settings_.mirror_half_width = 5; }
+  static void describe(StageDescription<OnlineStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+
+ protected:
+  std::unique_ptr<Aligner> make_aligner(const Rig& rig, AlignmentSink sink) const override;
+
+ private:
+  void take_lags(const std::shared_ptr<const Calibration>& calibration);
+
+  OnlineSettings online_;
+  std::shared_ptr<const Calibration> calibration_;
 };
 
 /// `clock.receipt`

@@ -67,7 +67,49 @@ void FittedClock::drop_last_segment() {
     return;
   }
   map_.stamps -= segments_.back().stamps.size();
+  if (segments_.back().followed) map_.pieces.pop_back();
   segments_.pop_back();
+}
+
+void FittedClock::follow(double window) {
+  while (segments_.size() > 2) segments_.pop_front();  // the last may still turn out to be none
+  Segment& segment = segments_.back();
+  forget_before(segment, segment.last_device - window);
+  const ClockLine line = line_of(segment);
+  if (segment.followed) map_.pieces.pop_back();
+  const double first = segment.device(0);
+  const double begin = map_.pieces.empty() ? first : first - 0.75e-6 * kResetGap_us;  // as in carry_on()
+  map_.pieces.push_back({.device_begin = begin,
+                         .hub_begin = segment.first_hub + (begin - first) + line.lead(begin - first),
+                         .rate = 1 + line.slope,
+                         .rate_std_error = kMostSkew});
+  segment.followed = true;
+  map_.device_end = segment.device(segment.last_device);
+  const Stamp& latest = segment.stamps.back();
+  delays_.add(std::abs(latest.lead - line.lead(latest.device)));
+}
+
+double FittedClock::followed() const {
+  return segments_.empty() || !segments_.back().followed ? 0 : segments_.back().last_device;
+}
+
+/// Forgets what a line of the stamps from `device` [s] on does not need: the hull keeps one vertex before.
+void FittedClock::forget_before(Segment& segment, double device) {
+  const auto vertices = segment.hull.vertices();
+  const auto inside =
+      std::ranges::find_if(vertices, [&](const Stamp& vertex) { return vertex.device > device; });
+  if (inside == vertices.begin()) return;
+  const double first = std::prev(inside)->device;
+  segment.hull.forget_before(first);
+  auto& stamps = segment.stamps;
+  const auto kept =
+      std::ranges::partition_point(stamps, [&](const Stamp& stamp) { return stamp.device < first; });
+  if (kept - stamps.begin() > stamps.end() - kept) stamps.erase(stamps.begin(), kept);
+}
+
+ClockLine FittedClock::line_of(const Segment& segment) const {
+  const auto vertices = segment.hull.vertices();
+  return find_(vertices, 0.5 * (vertices.front().device + segment.last_device));
 }
 
 std::optional<FittedClock::WindowFit> FittedClock::fit(const Segment& segment, double begin,
@@ -159,10 +201,17 @@ bool FittedClock::idle() const {
 }
 
 void FittedClock::finish() {
+  std::optional<double> followed_error;
+  if (!segments_.empty() && segments_.back().followed) {
+    followed_error = errors_of_line(segments_.back().stamps, line_of(segments_.back())).slope;
+    map_.pieces.back().rate_std_error = *followed_error;
+  }
   for (auto& segment : segments_) close(segment);
   segments_.clear();
   cut_ = true;
-  map_.skew_std_error = fitted_time_ > 0 ? std::sqrt(squared_errors_) / fitted_time_ : kMostSkew;
+  map_.skew_std_error = followed_error     ? *followed_error
+                        : fitted_time_ > 0 ? std::sqrt(squared_errors_) / fitted_time_
+                                           : kMostSkew;
   map_.residual_median = delays_.quantile(0.5);
   map_.residual_95 = delays_.quantile(0.95);
 }

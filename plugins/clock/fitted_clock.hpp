@@ -48,6 +48,13 @@ class FittedClock {
   /// No stamps come any more: carries the map on to its end.
   void finish();
 
+  /// Instead of settling: makes the map the line of the last `window` seconds [s] of the segment's stamps,
+  /// for a clock that is read while its stamps come in. To be called after each add(); O(1) on the average
+  /// but for the hull's vertices.
+  void follow(double window);
+  /// [s] How long the segment is that is followed.
+  double followed() const;
+
   /// Whether all stamps so far are settled.
   bool idle() const;
   /// What is settled so far.
@@ -68,6 +75,7 @@ class FittedClock {
     std::vector<Stamp> stamps;  ///< of the windows that are not yet settled
     std::optional<Knot> first_knot;
     std::optional<Knot> last_knot;
+    bool followed = false;  ///< the map's last piece is its
 
     double device(double stamp_device) const { return 1e-6 * static_cast<double>(first_us) + stamp_device; }
     double hub(const Stamp& stamp) const { return first_hub + stamp.device + stamp.lead; }
@@ -78,6 +86,8 @@ class FittedClock {
     LineErrors errors;
   };
 
+  ClockLine line_of(const Segment& segment) const;
+  void forget_before(Segment& segment, double device);
   std::optional<WindowFit> fit(const Segment& segment, double begin, double end) const;
   void settle(Segment& segment, double begin, double end);
   void carry_on(Segment& segment, const Knot& knot);

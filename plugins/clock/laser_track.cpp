@@ -19,29 +19,30 @@ double seconds(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
 
 }  // namespace
 
-void LaserTrack::add(std::shared_ptr<const Scan> scan, double hub) {
+bool LaserTrack::add(std::shared_ptr<const Scan> scan, double hub) {
   if (scan->echoes.empty() || scan->echoes.front().ranges.empty()) {
     ++without_ranges_;
-    return;
+    return false;
   }
   const auto handover_us = static_cast<std::int32_t>(scan->transmission_time_us - scan->scan_time_us);
   const double handover = seconds(handover_us);
   if (handover < kEarliestHandover || handover > kLongestHandover) {
     stamps_.count_damaged();
-    return;
+    return false;
   }
   if (nominal_period_ == 0 && scan->scan_frequency > 0) {
     nominal_period_ = 1 / scan->scan_frequency;
     stamps_.set_period(nominal_period_);
   }
   const auto arrival = stamps_.accept(scan->scan_counter, scan->transmission_time_us, scan->receipt_ns, hub);
-  if (arrival.kind == StampKind::repeated) return;
+  if (arrival.kind == StampKind::repeated) return false;
   if (arrival.kind == StampKind::returned && !pending_.empty()) pending_.pop_back();
   turn_ += arrival.kind == StampKind::next ? arrival.steps : kNewRun;
   handovers_.add(handover);
   pending_.push_back({.scan = std::move(scan),
                       .stamp = {.turn = turn_, .time = seconds(arrival.device_us - handover_us)},
                       .stamp_receipt = hub - handover});
+  return true;
 }
 
 double LaserTrack::base(const Pending& scan, double device_time) const {

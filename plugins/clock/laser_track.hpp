@@ -29,8 +29,9 @@ class LaserTrack {
         half_width_(mirror_half_width) {}
 
   /// @param hub [s since the epoch] receipt
+  /// @return whether the clock has another stamp
   /// @throws Error as DeviceStamps::accept
-  void add(std::shared_ptr<const Scan> scan, double hub);
+  bool add(std::shared_ptr<const Scan> scan, double hub);
   /// Hands out the scans that begin before `limit` [s since the epoch], up to which the map must be settled.
   void take_before(double limit, std::vector<TimedScan>& out);
 

@@ -28,9 +28,9 @@ PlateTrack::PlateTrack(const RigPlate& plate, DeviceStamps stamps, TimeSource so
   }
 }
 
-void PlateTrack::add(const PlateReading& reading, double hub) {
+bool PlateTrack::add(const PlateReading& reading, double hub) {
   const auto arrival = stamps_.accept(reading.sequence, reading.device_us, reading.receipt_ns, hub);
-  if (arrival.kind == StampKind::repeated) return;
+  if (arrival.kind == StampKind::repeated) return false;
   if (arrival.kind == StampKind::reset) {
     before_reset_ = {.last = last_, .zero_is_lost = zero_is_lost_};
     zero_is_lost_ = zero_is_lost_ || has_lost_zero(reading, hub);
@@ -38,11 +38,11 @@ void PlateTrack::add(const PlateReading& reading, double hub) {
   if (arrival.kind == StampKind::returned) undo_reset();
   if (source_ == TimeSource::receipt && taken_ > 0 && hub <= last_.receipt) {
     ++simultaneous_;
-    return;
+    return true;
   }
   if (zero_is_lost_) {
     ++after_lost_zero_;
-    return;
+    return true;
   }
   Reading next{.device = 1e-6 * static_cast<double>(arrival.device_us),
                .receipt = hub,
@@ -54,6 +54,7 @@ void PlateTrack::add(const PlateReading& reading, double hub) {
   } else {
     take(next);
   }
+  return true;
 }
 
 void PlateTrack::take(const Reading& next) {
@@ -105,6 +106,11 @@ bool PlateTrack::has_lost_zero(const PlateReading& reading, double hub) const {
 
 double PlateTrack::time(const Reading& reading) const {
   return source_ == TimeSource::receipt ? reading.receipt : stamps_.map().to_hub(reading.device);
+}
+
+std::optional<double> PlateTrack::latest() const {
+  if (readings_.empty() || stamps_.map().pieces.empty()) return {};
+  return time(readings_.back());
 }
 
 PlateTrajectory PlateTrack::piece(double begin, double end, std::int64_t epoch_ns,

@@ -25,11 +25,14 @@ class PlateTrack {
   PlateTrack(const RigPlate& plate, DeviceStamps stamps, TimeSource source);
 
   /// @param hub [s since the epoch] receipt
+  /// @return whether the clock has another stamp
   /// @throws Error as DeviceStamps::accept
-  void add(const PlateReading& reading, double hub);
+  bool add(const PlateReading& reading, double hub);
   /// The plate from the last reading at or before `begin` to the first at or after `end` [s since the epoch],
   /// as far as there are readings.
   PlateTrajectory piece(double begin, double end, std::int64_t epoch_ns, const PlateMotionSettings& settings);
+  /// [s since the epoch] When the latest reading was taken, as the clock is known now.
+  std::optional<double> latest() const;
   /// Forgets the readings before this hub time [s since the epoch].
   void forget_before(double hub);
 

@@ -2,6 +2,7 @@
 #include "plugins/write/register.hpp"
 
 #include "plugins/write/calibration_stage.hpp"
+#include "plugins/write/clouds_stage.hpp"
 #include "plugins/write/measurements_stage.hpp"
 #include "plugins/write/pcd_stage.hpp"
 #include "plugins/write/picture_stage.hpp"
@@ -10,6 +11,7 @@ namespace crisp {
 
 void register_write(Registrar& registrar) {
   registrar.stage<WriteCalibrationStage>();
+  registrar.stage<WriteCloudsStage>();
   registrar.stage<WriteMeasurementsStage>();
   registrar.stage<WritePcdStage>();
   registrar.stage<WritePictureStage>();

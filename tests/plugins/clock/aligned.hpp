@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "plugins/clock/clock_aligner.hpp"
+#include "plugins/clock/online_aligner.hpp"
 #include "tests/plugins/clock/simulated_scanner.hpp"
 
 namespace crisp::testing {
@@ -36,18 +37,18 @@ struct Aligned {
 
 using Turns = std::vector<SimulatedLaser::Turn>;
 
-/// Feeds all telegrams in the order of their receipt.
-inline Aligned align(const std::vector<Turns>& lasers, const std::vector<PlateReading>& readings,
-                     const AlignmentSettings& settings = {}, Rig rig = default_rig()) {
-  Aligned out;
-  rig.lasers.resize(lasers.size());
-  ClockAligner aligner(
-      rig, settings,
-      {.trajectory =
-           [&](PlateTrajectory p) {
-             out.stretches.push_back({std::move(p), {}});
-           },
-       .measurements = [&](Measurements m) { out.stretches.back().scans.push_back(std::move(m)); }});
+/// Keeps what an aligner hands out.
+inline AlignmentSink sink_into(Aligned& out) {
+  return {.trajectory =
+              [&](PlateTrajectory p) {
+                out.stretches.push_back({std::move(p), {}});
+              },
+          .measurements = [&](Measurements m) { out.stretches.back().scans.push_back(std::move(m)); }};
+}
+
+/// Feeds all telegrams to an aligner in the order of their receipt.
+inline AlignmentReport feed(Aligner& aligner, const std::vector<Turns>& lasers,
+                            const std::vector<PlateReading>& readings) {
   std::multimap<std::int64_t, std::function<void()>> arrivals;
   for (const auto& turns : lasers) {
     for (const auto& turn : turns) {
@@ -58,7 +59,24 @@ inline Aligned align(const std::vector<Turns>& lasers, const std::vector<PlateRe
     arrivals.emplace(reading.receipt_ns, [&] { aligner.add(reading); });
   }
   for (const auto& [receipt, arrive] : arrivals) arrive();
-  out.report = aligner.finish();
+  return aligner.finish();
+}
+
+inline Aligned align(const std::vector<Turns>& lasers, const std::vector<PlateReading>& readings,
+                     const AlignmentSettings& settings = {}, Rig rig = default_rig()) {
+  Aligned out;
+  rig.lasers.resize(lasers.size());
+  ClockAligner aligner(rig, settings, sink_into(out));
+  out.report = feed(aligner, lasers, readings);
+  return out;
+}
+
+inline Aligned align_online(const std::vector<Turns>& lasers, const std::vector<PlateReading>& readings,
+                            const OnlineSettings& online = {}, Rig rig = default_rig()) {
+  Aligned out;
+  rig.lasers.resize(lasers.size());
+  OnlineAligner aligner(rig, {.mirror_half_width = 5}, online, sink_into(out));
+  out.report = feed(aligner, lasers, readings);
   return out;
 }
 

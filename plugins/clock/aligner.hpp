@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/data/rig.hpp"
+#include "pipeline/data/scan.hpp"
+#include "plugins/clock/laser_track.hpp"
+#include "plugins/clock/plate_track.hpp"
+
+namespace crisp {
+
+/// How stamps become hub times.
+struct AlignmentSettings {
+  LineFinder find = line_by_convex_hull;
+  TimeSource source = TimeSource::clock;
+  double drift = 200e-6 / 3600;  ///< [1/s] largest change of a clock's rate in a second
+  std::optional<double> window;  ///< [s] stretch of stamps that one line is fitted to; none: automatic
+  double margin = 0.25;          ///< [s] by which a trajectory covers more than its measurements' times
+  PlateMotionSettings plate;
+  std::optional<unsigned> mirror_half_width;  ///< stamps on either side that smooth the mirror's motion
+};
+
+/// What an alignment did, for people and for the summary.
+struct AlignmentReport {
+  std::vector<DeviceReport> devices;  ///< the lasers in the order of the rig, then the plate
+  std::map<std::string, std::uint64_t> counts;
+  std::vector<std::string> warnings;
+  std::vector<std::string> doubts;  ///< why the times cannot be trusted
+};
+
+/// Where an alignment puts what it makes: the plate's trajectory over a time first, then measurements in it.
+struct AlignmentSink {
+  std::function<void(PlateTrajectory)> trajectory;
+  std::function<void(Measurements)> measurements;
+};
+
+/// From scans and readings in the order of receipt to measurements and the plate's trajectory on the hub's
+/// clock. The epoch is the whole second before the first receipt.
+class Aligner {
+ public:
+  Aligner() = default;
+  Aligner(const Aligner&) = delete;
+  Aligner& operator=(const Aligner&) = delete;
+  virtual ~Aligner() = default;
+
+  /// @throws Error if a device's clock cannot be used at all
+  virtual void add(std::shared_ptr<const Scan> scan) = 0;
+  virtual void add(const PlateReading& reading) = 0;
+  /// Hands out all that is left.
+  /// @throws Error if there was no scan of any laser, or no reading of the plate
+  virtual AlignmentReport finish() = 0;
+};
+
+/// What an aligner knows of a rig's devices.
+class HubTracks {
+ public:
+  HubTracks(const Rig& rig, const AlignmentSettings& settings);
+
+  /// Notes that something was received. @return [s since the epoch] when
+  double arrive(std::int64_t receipt_ns);
+  /// The track that a scan belongs to; nullptr, and counted, if the rig has no such laser.
+  LaserTrack* track_of(const Scan& scan);
+
+  std::vector<LaserTrack>& lasers() { return lasers_; }
+  const std::vector<LaserTrack>& lasers() const { return lasers_; }
+  const RigLaser& laser(std::size_t index) const { return lasers_[index].laser(); }
+  PlateTrack& plate() { return plate_; }
+  const PlateTrack& plate() const { return plate_; }
+  std::int64_t epoch_ns() const { return epoch_ns_; }
+  double now() const { return now_; }  ///< [s since the epoch] latest receipt
+
+  /// @throws Error as Aligner::finish()
+  void refuse_if_missing() const;
+  void finish_clocks();
+  std::vector<DeviceReport> reports() const;
+  AlignmentReport report() const;
+
+ private:
+  std::vector<LaserTrack> lasers_;
+  PlateTrack plate_;
+  std::int64_t epoch_ns_ = 0;
+  bool begun_ = false;
+  double now_ = 0;
+  std::uint64_t unknown_lasers_ = 0;
+  std::uint64_t back_in_time_ = 0;
+};
+
+}  // namespace crisp

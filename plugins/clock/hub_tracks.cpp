@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "pipeline/data/error.hpp"
+#include "plugins/clock/aligner.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+DeviceStamps stamps_of(const std::string& device, const AlignmentSettings& settings) {
+  return {device, FittedClock(device, settings.find, settings.drift), 0};
+}
+
+std::vector<LaserTrack> tracks_of(const Rig& rig, const AlignmentSettings& settings) {
+  std::vector<LaserTrack> tracks;
+  for (const auto& laser : rig.lasers) {
+    tracks.emplace_back(laser, stamps_of(laser.name, settings), settings.source,
+                        settings.mirror_half_width.value_or(0));
+  }
+  return tracks;
+}
+
+}  // namespace
+
+HubTracks::HubTracks(const Rig& rig, const AlignmentSettings& settings)
+    : lasers_(tracks_of(rig, settings)),
+      plate_(rig.plate, stamps_of(rig.plate.name, settings), settings.source) {}
+
+double HubTracks::arrive(std::int64_t receipt_ns) {
+  if (!begun_) epoch_ns_ = receipt_ns - ((receipt_ns % kSecond_ns) + kSecond_ns) % kSecond_ns;
+  const double hub = 1e-9 * static_cast<double>(receipt_ns - epoch_ns_);
+  if (!begun_) now_ = hub;
+  begun_ = true;
+  if (hub < now_ - 1) ++back_in_time_;
+  now_ = std::max(now_, hub);
+  return hub;
+}
+
+LaserTrack* HubTracks::track_of(const Scan& scan) {
+  if (scan.laser < lasers_.size()) return &lasers_[scan.laser];
+  ++unknown_lasers_;
+  return nullptr;
+}
+
+void HubTracks::refuse_if_missing() const {
+  if (std::all_of(lasers_.begin(), lasers_.end(),
+                  [](const auto& l) { return l.report().clock.stamps == 0; })) {
+    throw Error("there is no scan of any laser of the rig",
+                "check the addresses in the rig, or what was recorded");
+  }
+  if (plate_.report().clock.stamps == 0) {
+    throw Error("there is no reading of the plate (" + plate_.report().clock.device + ")",
+                "check the plate's address in the rig, or what was recorded: without its angle nothing can "
+                "be placed");
+  }
+}
+
+void HubTracks::finish_clocks() {
+  for (auto& laser : lasers_) laser.clock().finish();
+  plate_.clock().finish();
+}
+
+std::vector<DeviceReport> HubTracks::reports() const {
+  std::vector<DeviceReport> reports;
+  for (const auto& laser : lasers_) reports.push_back(laser.report());
+  reports.push_back(plate_.report());
+  return reports;
+}
+
+}  // namespace crisp

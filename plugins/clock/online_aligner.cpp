@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/clock/online_aligner.hpp"
+
+#include <limits>
+#include <utility>
+
+namespace crisp {
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kFuture = 1;        // [s] a scan that claims to be younger is not waited for
+constexpr double kReadingsKept = 2;  // [s] longer than any scan waits and reaches back
+
+double last_beam(const TimedScan& scan) {
+  const std::size_t beams = scan.scan->echoes.front().ranges.size();
+  return scan.beam_time(beams > 0 ? beams - 1 : 0);
+}
+
+}  // namespace
+
+OnlineAligner::OnlineAligner(const Rig& rig, const AlignmentSettings& alignment, const OnlineSettings& online,
+                             AlignmentSink sink)
+    : alignment_(alignment), settings_(online), sink_(std::move(sink)), tracks_(rig, alignment) {}
+
+void OnlineAligner::set_lags(double least, double greatest) {
+  settings_.least_lag = least;
+  settings_.greatest_lag = greatest;
+}
+
+void OnlineAligner::add(std::shared_ptr<const Scan> scan) {
+  const double hub = tracks_.arrive(scan->receipt_ns);
+  LaserTrack* laser = tracks_.track_of(*scan);
+  if (laser == nullptr) return;
+  if (!laser->add(std::move(scan), hub)) return;
+  laser->clock().follow(settings_.window);
+  if (laser->clock().followed() >= settings_.warm_up) {
+    std::vector<TimedScan> timed;
+    laser->take_before(kForever, timed);
+    for (auto& one : timed) waiting_.push_back(std::move(one));
+  }
+  release();
+}
+
+void OnlineAligner::add(const PlateReading& reading) {
+  const double hub = tracks_.arrive(reading.receipt_ns);
+  PlateTrack& plate = tracks_.plate();
+  if (plate.add(reading, hub)) plate.clock().follow(settings_.window);
+  plate.forget_before(hub - kReadingsKept);
+  release();
+}
+
+bool OnlineAligner::is_covered(const TimedScan& scan) const {
+  const PlateTrack& plate = tracks_.plate();
+  if (plate.clock().followed() < settings_.warm_up) return false;
+  const auto latest = plate.latest();
+  return latest && *latest >= last_beam(scan) + settings_.greatest_lag;
+}
+
+void OnlineAligner::release() {
+  while (!waiting_.empty()) {
+    const TimedScan& scan = waiting_.front();
+    const bool covered = is_covered(scan);
+    const double longest = settings_.patience + settings_.warm_up + settings_.greatest_lag;
+    const double waited = tracks_.now() - last_beam(scan);
+    if (!covered && waited < longest && waited > -kFuture) return;
+    if (!covered) ++impatient_;
+    hand_out(scan);
+    waiting_.pop_front();
+  }
+}
+
+void OnlineAligner::hand_out(const TimedScan& scan) {
+  sink_.trajectory(tracks_.plate().piece(scan.begin + settings_.least_lag - settings_.margin,
+                                         last_beam(scan) + settings_.greatest_lag + settings_.margin,
+                                         tracks_.epoch_ns(), alignment_.plate));
+  sink_.measurements(measurements_of(scan, tracks_.laser(scan.scan->laser), tracks_.epoch_ns()));
+}
+
+AlignmentReport OnlineAligner::finish() {
+  tracks_.refuse_if_missing();
+  for (const auto& scan : std::exchange(waiting_, {})) hand_out(scan);
+  tracks_.finish_clocks();
+  AlignmentReport report = tracks_.report();
+  report.counts["scans that did not wait longer for the plate"] = impatient_;
+  return report;
+}
+
+}  // namespace crisp

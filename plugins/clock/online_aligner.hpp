@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <deque>
+
+#include "plugins/clock/aligner.hpp"
+
+namespace crisp {
+
+/// How stamps become hub times while they come in.
+struct OnlineSettings {
+  double window = 60;     ///< [s] of stamps that a clock's line is fitted to
+  double warm_up = 0.5;   ///< [s] of stamps of a device before its line is believed
+  double margin = 0.06;   ///< [s] by which a trajectory covers more than its scan, as far as it is known
+  double patience = 0.2;  ///< [s] for the plate's readings, after which a scan goes without them
+  double least_lag = 0;   ///< [s] of any laser behind the plate: the least η, and
+  double greatest_lag =
+      0;  ///< [s] the greatest, so that the readings that a scan is placed by are waited for
+};
+
+/// From scans and readings in the order of receipt to measurements, each scan as soon as the plate's readings
+/// cover it. A device's clock is the line below its stamps of the last minute; what was handed out is not
+/// corrected when the line becomes better known. So what is handed out depends on the items alone, and their
+/// times of receipt: a recording of them gives the same again.
+class OnlineAligner final : public Aligner {
+ public:
+  /// @param alignment  `find`, `drift`, `source`, `plate` and `mirror_half_width` count here
+  OnlineAligner(const Rig& rig, const AlignmentSettings& alignment, const OnlineSettings& online,
+                AlignmentSink sink);
+
+  void add(std::shared_ptr<const Scan> scan) override;
+  void add(const PlateReading& reading) override;
+  AlignmentReport finish() override;
+
+  /// From now on. See OnlineSettings.
+  void set_lags(double least, double greatest);
+  /// The devices' clocks as they are known now: the lasers in the rig's order, then the plate.
+  std::vector<DeviceReport> devices() const { return tracks_.reports(); }
+  /// Scans that wait for the plate.
+  std::size_t waiting() const { return waiting_.size(); }
+
+ private:
+  bool is_covered(const TimedScan& scan) const;
+  void hand_out(const TimedScan& scan);
+  void release();
+
+  AlignmentSettings alignment_;
+  OnlineSettings settings_;
+  AlignmentSink sink_;
+  HubTracks tracks_;
+  std::deque<TimedScan> waiting_;
+  std::uint64_t impatient_ = 0;  ///< scans that went without the plate's readings
+};
+
+}  // namespace crisp
