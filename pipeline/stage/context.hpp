@@ -26,6 +26,20 @@ struct Progress {
 };
 using ProgressSink = std::function<void(const Progress&)>;
 
+/// A number that programs watch while a run goes on, in the manner of Prometheus.
+struct Gauge {
+  std::string name;  ///< "scans_total", "clock_skew_ppm": of small letters, digits and _
+  double value = 0;
+  std::string device = {};  ///< which it is of, if any
+};
+
+/// How a stage of a run without end is doing just now.
+struct StageStatus {
+  std::string line;  ///< for people: "laser1 50.0 Hz, laser2 50.1 Hz, plate 500 Hz"
+  std::vector<Gauge> gauges = {};
+};
+using StatusSink = std::function<void(const StageStatus&)>;
+
 /// What a run was told, the same for all of its stages.
 struct RunSettings {
   Rig rig = default_rig();
@@ -82,14 +96,32 @@ class Context {
   void progress(const Progress& progress) const {
     if (progress_) progress_(progress);
   }
+  /// Whether anybody wants to know the status.
+  bool is_watched() const { return static_cast<bool>(status_); }
+  /// How the stage is doing; what it told before is replaced.
+  void tell(const StageStatus& status) const {
+    if (status_) status_(status);
+  }
   /// The run is to stop: return soon. The run then ends without calling finish(), so nothing is written.
-  bool interrupted() const { return stop_ && stop_->load(std::memory_order_relaxed); }
+  bool interrupted() const { return is_set(stop_) || is_set(abandoned_); }
+
+  /// Who is told the status, and what else the run may be ended by.
+  void watch(StatusSink status, const std::atomic<bool>* abandoned) {
+    status_ = std::move(status);
+    abandoned_ = abandoned;
+  }
 
  private:
+  static bool is_set(const std::atomic<bool>* flag) {
+    return flag != nullptr && flag->load(std::memory_order_relaxed);
+  }
+
   const RunSettings* run_;
   StageReport* report_;
   const std::atomic<bool>* stop_;
   ProgressSink progress_;
+  StatusSink status_;
+  const std::atomic<bool>* abandoned_ = nullptr;
 };
 
 }  // namespace crisp

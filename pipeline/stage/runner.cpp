@@ -2,43 +2,15 @@
 #include "pipeline/stage/runner.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
+#include <mutex>
 #include <new>
+#include <thread>
+
+#include "pipeline/stage/stopwatch.hpp"
 
 namespace crisp {
 namespace {
-
-/// Measures each stage's own time: a stage's clock stands while the stages that it feeds are at work.
-class Stopwatch {
- public:
-  using Clock = std::chrono::steady_clock;
-
-  class Turn {
-   public:
-    Turn(Stopwatch& watch, double& seconds) : watch_(watch), before_(watch.running_) {
-      watch_.switch_to(&seconds);
-    }
-    ~Turn() { watch_.switch_to(before_); }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-
-   private:
-    Stopwatch& watch_;
-    double* before_;
-  };
-
- private:
-  void switch_to(double* seconds) {
-    const auto now = Clock::now();
-    if (running_) *running_ += std::chrono::duration<double>(now - since_).count();
-    running_ = seconds;
-    since_ = now;
-  }
-
-  double* running_ = nullptr;
-  Clock::time_point since_;
-};
 
 /// One stage at work: its inputs' latest items, and what waits for those that are not there yet.
 struct Worker {
@@ -80,11 +52,43 @@ class Runner {
 
  private:
   void run_all() {
-    for (const auto source : sources())
-      call(source, [&](Worker& w, Outputs& out, Context& context) {
-        w.node->stage->process(Inputs({}), out, context);
-      });
+    std::vector<std::size_t> endless;
+    for (const auto source : sources()) {
+      if (workers_[source].node->type->endless) {
+        endless.push_back(source);
+      } else {
+        pull(source);
+      }
+    }
+    if (endless.size() == 1) pull(endless.front());
+    if (endless.size() > 1) pull_together(endless);
     for (std::size_t i = 0; i < workers_.size(); ++i) finish(i);
+  }
+
+  void pull(std::size_t source) {
+    call(source,
+         [](Worker& w, Outputs& out, Context& context) { w.node->stage->process(Inputs({}), out, context); });
+  }
+
+  /// Each in a thread of its own. What they give runs through the stages below one item after the other.
+  void pull_together(const std::vector<std::size_t>& sources) {
+    together_ = true;
+    std::exception_ptr failure;
+    {
+      std::vector<std::jthread> threads;
+      for (const auto source : sources) {
+        threads.emplace_back([&, source] {
+          try {
+            pull(source);
+          } catch (...) {
+            const std::lock_guard lock(turn_);
+            if (!abandoned_.exchange(true)) failure = std::current_exception();
+          }
+        });
+      }
+    }
+    together_ = false;
+    if (failure) std::rethrow_exception(failure);
   }
 
   std::vector<NodeResult> results() {
@@ -199,7 +203,9 @@ class Runner {
   }
 
   void give(std::size_t from, const Item& item) {
-    if (is_stopped()) throw Interrupted();
+    const bool waits_its_turn = together_ && workers_[from].node->type->endless;
+    const auto turn = waits_its_turn ? std::unique_lock(turn_) : std::unique_lock<std::mutex>();
+    if (is_stopped() || abandoned_) throw Interrupted();
     Worker& worker = workers_[from];
     const auto& outputs = worker.node->type->outputs;
     const auto output = std::find(outputs.begin(), outputs.end(), item.kind);
@@ -208,6 +214,7 @@ class Runner {
     }
     if (!item.value) throw Error("it gives a " + std::string(item.kind.name()) + " that is null");
     ++worker.given[static_cast<std::size_t>(output - outputs.begin())];
+    if (hooks_.given) hooks_.given(worker.node->tag, item);
     for (const auto& edge : worker.edges) {
       if (edge.kind == item.kind) deliver(edge.to, edge.input, item);
     }
@@ -219,11 +226,17 @@ class Runner {
     if (is_stopped()) throw Interrupted();
     Worker& worker = workers_[index];
     Outputs out([this, index](const Item& item) { give(index, item); });
-    const bool told_to_stop = !ends_gently_ || worker.node->type->endless;
-    Context context(run_, worker.result.report, told_to_stop ? hooks_.stop : nullptr, progress_of(worker));
+    const bool endless = worker.node->type->endless;
+    Context context(run_, worker.result.report, !ends_gently_ || endless ? hooks_.stop : nullptr,
+                    progress_of(worker));
+    context.watch(status_of(worker), &abandoned_);
     try {
-      Stopwatch::Turn turn(stopwatch_, worker.result.seconds);
-      body(worker, out, context);
+      if (together_ && endless) {  // it mostly waits, and the stopwatch is for what takes turns
+        body(worker, out, context);
+      } else {
+        const Stopwatch::Turn turn(stopwatch_, worker.result.seconds);
+        body(worker, out, context);
+      }
     } catch (const Interrupted&) {
       throw;
     } catch (const Told&) {
@@ -242,7 +255,18 @@ class Runner {
 
   ProgressSink progress_of(const Worker& worker) const {
     if (!hooks_.progress) return {};
-    return [this, &worker](const Progress& progress) { hooks_.progress(worker.node->tag, progress); };
+    return [this, &worker](const Progress& progress) {
+      const std::lock_guard lock(told_);
+      hooks_.progress(worker.node->tag, progress);
+    };
+  }
+
+  StatusSink status_of(const Worker& worker) const {
+    if (!hooks_.status) return {};
+    return [this, &worker](const StageStatus& status) {
+      const std::lock_guard lock(told_);
+      hooks_.status(worker.node->tag, status);
+    };
   }
 
   /// Whether to leave all as it is. Where a source is endless, being told to stop is its end instead.
@@ -260,6 +284,10 @@ class Runner {
   std::deque<Worker> workers_;
   bool ends_gently_ = false;
   Stopwatch stopwatch_;
+  std::atomic<bool> together_ = false;   ///< several sources are being pulled
+  std::atomic<bool> abandoned_ = false;  ///< one of them failed
+  std::mutex turn_;                      ///< of the source that gives
+  mutable std::mutex told_;              ///< of what the hooks are told
 };
 
 }  // namespace

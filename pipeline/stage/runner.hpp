@@ -34,6 +34,9 @@ struct NodeResult {
 struct RunHooks {
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string& tag, const Progress& progress)> progress = {};
+  std::function<void(const std::string& tag, const StageStatus& status)> status = {};
+  /// Called with each item before it runs through the stages below.
+  std::function<void(const std::string& tag, const Item& item)> given = {};
   /// What the stages had done and reported when one of them threw; called before run_pipeline throws.
   std::function<void(std::vector<NodeResult> until_then)> failed = {};
 };
@@ -45,6 +48,9 @@ struct RunHooks {
 /// A source of which all that it gives is held by others runs before the other sources, so that a known
 /// calibration is there before the data.
 /// Where a source is endless, being told to stop ends that source alone, and the run comes to its end.
+/// Several endless sources run at the same time, each in a thread of its own, after the others; what they
+/// give takes turns, so that no stage below is ever called twice at the same time. One that fails ends the
+/// others.
 /// @throws Error        what a stage threw, with the stage's tag, and its place in the pipeline's file
 /// @throws Interrupted  when told to stop; no stage has finished then that had not before
 std::vector<NodeResult> run_pipeline(Pipeline& pipeline, const RunSettings& run, const RunHooks& hooks = {});

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <chrono>
+#include <map>
 #include <thread>
 
 #include "tests/pipeline/stage/toy_stages.hpp"
@@ -147,6 +150,44 @@ TEST_F(RunnerTest, FinishesWithWhatCameWhenAnEndlessSourceIsToldToStop) {
   told.join();
   EXPECT_THAT(toy::log().back(), "log finishes");
   EXPECT_EQ(results.at(0).given, results.at(1).taken) << "all that was given was taken";
+}
+
+TEST_F(RunnerTest, PullsEndlessSourcesAtTheSameTimeAndGivesTheirItemsInTurn) {
+  std::atomic<bool> stop = false;
+  std::map<std::string, int> given;
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  RunHooks hooks{.stop = &stop};
+  hooks.given = [&](const std::string& tag, const Item& item) {
+    EXPECT_EQ(item.as<toy::Number>()->value, ++given[tag]) << "each source's in their order";
+    const bool both = given["a"] > 100 && given["b"] > 100;
+    if (both || std::chrono::steady_clock::now() > deadline) stop = true;
+  };
+  const auto results = run({{.stage = "toy.endless", .tag = "a"},
+                            {.stage = "toy.endless", .tag = "b"},
+                            {.stage = "toy.log", .inputs = {{{"a"}, {"b"}}}}},
+                           hooks);
+  EXPECT_GT(given["a"], 100);
+  EXPECT_GT(given["b"], 100);
+  EXPECT_EQ(results.at(2).taken.at("Number"),
+            results.at(0).given.at("Number") + results.at(1).given.at("Number"));
+  EXPECT_EQ(toy::log().back(), "log finishes");
+}
+
+TEST_F(RunnerTest, EndsAllEndlessSourcesWhenAStageBelowOneFails) {
+  EXPECT_THAT(message_of({{.stage = "toy.endless", .tag = "a"},
+                          {.stage = "toy.endless", .tag = "b"},
+                          {.stage = "toy.throw", .inputs = {{{"b"}}}}}),
+              HasSubstr("toy.throw"));
+}
+
+TEST_F(RunnerTest, PassesOnWhatAStageTellsOfItself) {
+  std::vector<std::string> told;
+  RunHooks hooks;
+  hooks.status = [&](const std::string& tag, const StageStatus& status) {
+    told.push_back(tag + " " + status.line + " " + status.gauges.at(0).name);
+  };
+  run({{.stage = "toy.tell"}}, hooks);
+  EXPECT_THAT(told, ElementsAre("toy.tell is well health"));
 }
 
 }  // namespace

@@ -56,6 +56,17 @@ class EndlessStage final : public Stage {
   }
 };
 
+/// Tells that it is well.
+class TellStage final : public Stage {
+ public:
+  static void describe(StageDescription<TellStage>& d) {
+    d.name("toy.tell").summary("tells of itself").gives<Word>();
+  }
+  void process(const Inputs&, Outputs&, Context& context) override {
+    if (context.is_watched()) context.tell({.line = "is well", .gauges = {{.name = "health", .value = 1}}});
+  }
+};
+
 /// Gives first, first + 1, … in process.
 class CountStage final : public Stage {
  public:
@@ -169,6 +180,7 @@ class ThrowStage final : public Stage {
 inline void register_toys(Registrar& registrar) {
   registrar.stage<CountStage>();
   registrar.stage<EndlessStage>();
+  registrar.stage<TellStage>();
   registrar.stage<SayStage>();
   registrar.stage<SumStage>();
   registrar.stage<ShareStage>();
