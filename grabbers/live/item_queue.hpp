@@ -50,6 +50,10 @@ class ItemQueue {
     changed_.notify_all();
   }
 
+  std::size_t size() const {
+    const std::lock_guard lock(mutex_);
+    return items_.size();
+  }
   bool closed() const {
     const std::lock_guard lock(mutex_);
     return closed_;

@@ -42,6 +42,9 @@ class LiveSource final : public ItemSource {
   /// The next item; nothing if none came in time, or after interrupt().
   std::optional<HubItem> next_within(std::chrono::milliseconds patience) { return queue_.pop(patience); }
 
+  /// Items that wait to be taken.
+  std::size_t waiting() const { return queue_.size(); }
+
   /// Says goodbye to the devices: within 100 ms, whatever the network does.
   void interrupt() override;
 

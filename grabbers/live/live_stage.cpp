@@ -8,12 +8,19 @@
 
 #include "grabbers/capture/capture_report.hpp"
 #include "grabbers/live/endpoints.hpp"
+#include "grabbers/live/live_status.hpp"
 #include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr std::chrono::milliseconds kPatience{50};  // between two looks at whether the run is to stop
+
+constexpr double kTellEvery = 0.5;  // [s]
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 constexpr std::string_view kNameOf[] = {"grabber.live", "grabber.sick", "grabber.plate"};
 constexpr std::string_view kSummaryOf[] = {"receives scans and plate readings from the devices themselves",
@@ -138,23 +145,40 @@ void LiveStage<devices>::check(const RunSettings& run) const {
 
 template <LiveDevices devices>
 void LiveStage<devices>::process(const Inputs&, Outputs& out, Context& context) {
-  using Clock = std::chrono::steady_clock;
   LiveSource source(context.rig(), settings_);
-  std::optional<Clock::time_point> first;
+  LiveStatus status;
+  std::optional<double> first;
+  double told = seconds_now();
   while (!context.interrupted()) {
-    const double elapsed = first ? std::chrono::duration<double>(Clock::now() - *first).count() : 0;
+    const double now = seconds_now();
+    const double elapsed = first ? now - *first : 0;
     if (duration_ && elapsed > *duration_) break;
-    context.progress(duration_ ? elapsed / *duration_ : 0, "receiving");
+    if (context.is_watched() && now - told >= kTellEvery) {
+      told = now;
+      context.tell(status.tell(source.statistics(), now, source.waiting(), running(elapsed)));
+    }
     const auto item = source.next_within(kPatience);
     if (!item) continue;
-    if (!first) first = Clock::now();
-    if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&*item)) {
-      if constexpr (kLasers) out.give(*scan);
-    } else {
-      if constexpr (kPlate) out.give(std::get<PlateReading>(*item));
-    }
+    if (!first) first = now;
+    give(*item, out);
+    if (context.is_watched()) status.passed(1e-9 * static_cast<double>(now_ns() - receipt_ns(*item)));
   }
   report(source.close(), context);
+}
+
+template <LiveDevices devices>
+void LiveStage<devices>::give(const HubItem& item, Outputs& out) {
+  if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
+    if constexpr (kLasers) out.give(*scan);
+  } else {
+    if constexpr (kPlate) out.give(std::get<PlateReading>(item));
+  }
+}
+
+template <LiveDevices devices>
+std::string LiveStage<devices>::running(double elapsed) const {
+  return duration_ ? fmt::format("{:.0f} s of {:g} s", elapsed, *duration_)
+                   : fmt::format("{:.0f} s", elapsed);
 }
 
 template <LiveDevices devices>

@@ -29,6 +29,8 @@ class LiveStage final : public Stage {
  private:
   static void describe_configuration(StageDescription<LiveStage>& d);
   static void describe_plate(StageDescription<LiveStage>& d);
+  static void give(const HubItem& item, Outputs& out);
+  std::string running(double elapsed) const;
   void report(const CaptureStatistics& statistics, Context& context) const;
 
   LiveSettings settings_{.lasers = kLasers, .plate = kPlate};

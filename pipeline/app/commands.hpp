@@ -32,6 +32,7 @@ struct RunRequest {
   std::uint64_t seed = 1;
   bool quiet = false;
   bool verbose = false;
+  std::optional<std::uint16_t> metrics;  ///< port at 127.0.0.1 for a program that watches the run
 };
 /// Runs a pipeline; writes its summary to stdout, progress and errors to stderr.
 ExitStatus run_command(const RunRequest& request, const Registrar& registrar);

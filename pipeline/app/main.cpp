@@ -124,6 +124,9 @@ struct CommandLine {
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
     to->add_option("--seed", request.seed, "Seed of all that is drawn at random")->capture_default_str();
+    to->add_option("--metrics", request.metrics,
+                   "While it runs, tell how it is doing at http://127.0.0.1:PORT/metrics, for Prometheus")
+        ->type_name("PORT");
     CLI::Option* quiet = to->add_flag("--quiet", request.quiet, "Print warnings and errors only");
     to->add_flag("--verbose", request.verbose, "Also print options and what flowed")->excludes(quiet);
   }

@@ -10,26 +10,42 @@
 
 namespace crisp {
 
-ProgressPrinter::ProgressPrinter(std::ostream& out, bool terminal, Clock clock)
-    : out_(out), terminal_(terminal), clock_(std::move(clock)) {}
+ProgressPrinter::ProgressPrinter(std::ostream& out, bool terminal, Clock clock, std::size_t width)
+    : out_(out), terminal_(terminal), clock_(std::move(clock)), width_(width) {}
 
-void ProgressPrinter::show(const std::string& tag, const Progress& progress) {
+bool ProgressPrinter::is_due(double now) const {
   constexpr double kRefresh = 0.1;    // [s] on a terminal
   constexpr double kPlainEvery = 10;  // [s] elsewhere
-  const double now = clock_();
-  const bool begins = tag != tag_;
-  if (!begins && now - shown_ < (terminal_ ? kRefresh : kPlainEvery)) return;
-  if (begins) {
-    tag_ = tag;
-    began_ = now;
-  }
-  shown_ = now;
-  const std::string text = line(progress, now - began_);
+  return now - shown_ >= (terminal_ ? kRefresh : kPlainEvery);
+}
+
+void ProgressPrinter::print(const std::string& text) {
   if (terminal_)
     out_ << "\r\x1b[K" << text << std::flush;
   else
     out_ << text << std::endl;
   on_screen_ = terminal_;
+}
+
+void ProgressPrinter::show_status(const std::string& line) {
+  const double now = clock_();
+  const bool begins = !status_shown_;
+  if (!begins && !is_due(now)) return;
+  shown_ = now;
+  status_shown_ = true;
+  print(terminal_ && width_ > 1 && line.size() >= width_ ? line.substr(0, width_ - 1) : line);
+}
+
+void ProgressPrinter::show(const std::string& tag, const Progress& progress) {
+  const double now = clock_();
+  const bool begins = tag != tag_;
+  if (!begins && !is_due(now)) return;
+  if (begins) {
+    tag_ = tag;
+    began_ = now;
+  }
+  shown_ = now;
+  print(line(progress, now - began_));
 }
 
 void ProgressPrinter::clear() {

@@ -15,25 +15,33 @@ class ProgressPrinter {
  public:
   using Clock = std::function<double()>;  ///< seconds since any fixed moment
 
-  ProgressPrinter(std::ostream& out, bool terminal, Clock clock);
+  /// @param width  of the terminal; 0: unknown
+  ProgressPrinter(std::ostream& out, bool terminal, Clock clock, std::size_t width = 0);
   ~ProgressPrinter() { clear(); }
   ProgressPrinter(const ProgressPrinter&) = delete;
   ProgressPrinter& operator=(const ProgressPrinter&) = delete;
 
   void show(const std::string& tag, const Progress& progress);
+  /// The status of a run without end: on a terminal the line is refreshed and cut at its width, elsewhere it
+  /// is a plain line every ten seconds.
+  void show_status(const std::string& line);
   /// Removes the line from the terminal, so that something else can be printed.
   void clear();
 
  private:
+  bool is_due(double now) const;
+  void print(const std::string& text);
   std::string line(const Progress& progress, double elapsed) const;
 
   std::ostream& out_;
   bool terminal_;
   Clock clock_;
+  std::size_t width_;
   std::string tag_;
   double began_ = 0;  ///< when the stage reported first
   double shown_ = 0;
   bool on_screen_ = false;
+  bool status_shown_ = false;
 };
 
 }  // namespace crisp

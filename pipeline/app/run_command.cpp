@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
@@ -10,9 +11,11 @@
 #include <iostream>
 
 #include "pipeline/app/commands.hpp"
+#include "pipeline/app/metrics_server.hpp"
 #include "pipeline/app/progress.hpp"
 #include "pipeline/app/run_record.hpp"
 #include "pipeline/app/signals.hpp"
+#include "pipeline/app/status_board.hpp"
 #include "pipeline/app/summary.hpp"
 
 namespace crisp {
@@ -50,12 +53,27 @@ RunRecord begin_record(const LoadedPipeline& loaded, const RunSettings& run) {
   return record;
 }
 
-std::vector<NodeResult> run_with_progress(Pipeline& pipeline, const RunSettings& run, bool quiet,
-                                          RunRecord& record) {
-  ProgressPrinter printer(std::cerr, isatty(STDERR_FILENO) == 1, seconds_now);
+/// Columns of the terminal; 0 if there is none.
+std::size_t terminal_width() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+std::vector<NodeResult> run_with_progress(Pipeline& pipeline, const RunSettings& run,
+                                          const RunRequest& request, RunRecord& record) {
+  StatusBoard board;
+  std::optional<MetricsServer> metrics;
+  if (request.metrics) metrics.emplace(*request.metrics, [&board] { return board.prometheus(); });
+  ProgressPrinter printer(std::cerr, isatty(STDERR_FILENO) == 1, seconds_now, terminal_width());
   RunHooks hooks{.stop = StopOnSignal::flag()};
   hooks.failed = [&](std::vector<NodeResult> until_then) { record.nodes = std::move(until_then); };
-  if (!quiet) {
+  if (!request.quiet || metrics) {
+    hooks.status = [&](const std::string& tag, const StageStatus& status) {
+      board.tell(tag, status);
+      if (!request.quiet) printer.show_status(board.line());
+    };
+  }
+  if (!request.quiet) {
     hooks.progress = [&](const std::string& tag, const Progress& progress) { printer.show(tag, progress); };
   }
   return run_pipeline(pipeline, run, hooks);
@@ -66,7 +84,7 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
   RunRecord record = begin_record(loaded, run);
   const double began = seconds_now();
   try {
-    record.nodes = run_with_progress(loaded.pipeline, run, request.quiet, record);
+    record.nodes = run_with_progress(loaded.pipeline, run, request, record);
     record.seconds = seconds_now() - began;
     record.inputs = hash_inputs(record);
     write_records(record, run.output);

@@ -164,6 +164,24 @@ void OnlineStage::take_lags(const std::shared_ptr<const Calibration>& calibratio
 void OnlineStage::process(const Inputs& in, Outputs& out, Context& context) {
   take_lags(in.share<Calibration>());
   AlignStage::process(in, out, context);
+  if (context.is_watched()) tell(context);
+}
+
+void OnlineStage::tell(Context& context) {
+  constexpr double kTellEvery = 0.5;  // [s]
+  const auto& aligner = static_cast<const OnlineAligner&>(*aligner_);
+  if (aligner.now() - told_ < kTellEvery) return;
+  told_ = aligner.now();
+  StageStatus status{.line = "skew"};
+  for (const DeviceReport& device : aligner.devices()) {
+    const double skew = device.clock.pieces.empty() ? 0 : 1e6 * (device.clock.pieces.back().rate - 1);
+    status.line += fmt::format(" {:+.1f}", skew);
+    status.gauges.push_back({"clock_skew_ppm", skew, device.clock.device});
+    status.gauges.push_back({"clock_resets_total", static_cast<double>(device.resets), device.clock.device});
+  }
+  status.line += fmt::format(" ppm, {} scans wait for the plate", aligner.waiting());
+  status.gauges.push_back({"scans_waiting", static_cast<double>(aligner.waiting())});
+  context.tell(status);
 }
 
 void LinearProgramStage::describe(StageDescription<LinearProgramStage>& d) {

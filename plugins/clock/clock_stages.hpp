@@ -58,10 +58,12 @@ class OnlineStage final : public AlignStage {
   std::unique_ptr<Aligner> make_aligner(const Rig& rig, AlignmentSink sink) const override;
 
  private:
+  void tell(Context& context);
   void take_lags(const std::shared_ptr<const Calibration>& calibration);
 
   OnlineSettings online_;
   std::shared_ptr<const Calibration> calibration_;
+  double told_ = 0;  ///< [s since the epoch]
 };
 
 /// `clock.receipt`

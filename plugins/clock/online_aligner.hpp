@@ -36,6 +36,7 @@ class OnlineAligner final : public Aligner {
   void set_lags(double least, double greatest);
   /// The devices' clocks as they are known now: the lasers in the rig's order, then the plate.
   std::vector<DeviceReport> devices() const { return tracks_.reports(); }
+  double now() const { return tracks_.now(); }  ///< [s since the epoch] latest receipt
   /// Scans that wait for the plate.
   std::size_t waiting() const { return waiting_.size(); }
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/live/live_status.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace crisp {
+namespace {
+
+double quantile_of(std::vector<double>& values, double share) {
+  if (values.empty()) return 0;
+  const auto index = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + index, values.end());
+  return values[static_cast<std::size_t>(index)];
+}
+
+/// Items that never came, by the device's own counter: other losses are of bytes and telegrams of the same.
+std::uint64_t never_came(const DeviceStatistics& device) {
+  return device.losses.of(device.kind == DeviceKind::Laser ? kTelegramsNeverCame : kReadingsNeverCame);
+}
+
+}  // namespace
+
+std::uint64_t lost_items(const CaptureStatistics& statistics) {
+  std::uint64_t lost = 0;
+  for (const auto& [what, n] : statistics.losses.all()) lost += n;
+  for (const auto& device : statistics.devices) lost += never_came(device);
+  return lost;
+}
+
+StageStatus LiveStatus::tell(const CaptureStatistics& statistics, double now, std::size_t waiting,
+                             const std::string& running) {
+  StageStatus status{.line = running};
+  const double elapsed = asked_ ? now - *asked_ : 0;
+  for (const auto& device : statistics.devices) {
+    const std::uint64_t before = std::exchange(items_[device.name], device.items);
+    const double rate = elapsed > 0 ? static_cast<double>(device.items - before) / elapsed : 0;
+    status.line += fmt::format("{}{} {:.1f} Hz", status.line.empty() ? "" : ", ", device.name, rate);
+    status.gauges.push_back({"items_total", static_cast<double>(device.items), device.name});
+    status.gauges.push_back({"items_lost_total", static_cast<double>(never_came(device)), device.name});
+    status.gauges.push_back({"rate_hertz", rate, device.name});
+  }
+  asked_ = now;
+  const double latency = quantile_of(latencies_, 0.99);
+  latencies_.clear();
+  const std::uint64_t lost = lost_items(statistics);
+  status.line += fmt::format(", lost {}, queue {}, latency {:.1f} ms", lost, waiting, 1e3 * latency);
+  status.gauges.push_back({"lost_total", static_cast<double>(lost)});
+  status.gauges.push_back({"queue_items", static_cast<double>(waiting)});
+  status.gauges.push_back({"latency_seconds", latency});
+  return status;
+}
+
+}  // namespace crisp

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/app/status_board.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace crisp {
+namespace {
+
+/// A text between the quotes of a label.
+std::string label(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '\\' || c == '"') escaped += '\\';
+    if (c == '\n') {
+      escaped += "\\n";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+}  // namespace
+
+void StatusBoard::tell(const std::string& tag, const StageStatus& status) {
+  const std::lock_guard lock(mutex_);
+  const auto known = std::ranges::find(stages_, tag, &std::pair<std::string, StageStatus>::first);
+  if (known == stages_.end()) {
+    stages_.emplace_back(tag, status);
+  } else {
+    known->second = status;
+  }
+}
+
+std::string StatusBoard::line() const {
+  const std::lock_guard lock(mutex_);
+  std::string line;
+  for (const auto& [tag, status] : stages_) {
+    if (status.line.empty()) continue;
+    line += (line.empty() ? "" : " | ") + status.line;
+  }
+  return line;
+}
+
+std::string StatusBoard::prometheus() const {
+  const std::lock_guard lock(mutex_);
+  std::map<std::string, std::string> metrics;  // the samples of a metric stand together
+  for (const auto& [tag, status] : stages_) {
+    for (const Gauge& gauge : status.gauges) {
+      const std::string device =
+          gauge.device.empty() ? "" : fmt::format(",device=\"{}\"", label(gauge.device));
+      metrics[gauge.name] +=
+          fmt::format("crisp_{}{{stage=\"{}\"{}}} {}\n", gauge.name, label(tag), device, gauge.value);
+    }
+  }
+  std::string text;
+  for (const auto& [name, samples] : metrics) {
+    text +=
+        fmt::format("# TYPE crisp_{} {}\n{}", name, name.ends_with("_total") ? "counter" : "gauge", samples);
+  }
+  return text;
+}
+
+}  // namespace crisp
