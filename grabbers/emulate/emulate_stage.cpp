@@ -35,9 +35,9 @@ void EmulateStage::describe(StageDescription<EmulateStage>& d) {
       "subscribed. The plate becomes a sender of datagrams. Items are sent at the pace at which they were "
       "received; "
       "nothing is sent before each laser has somebody to send it to.\n\n"
-      "Faults are drawn for each telegram from the run's seed. A device that starts again, clocks that run "
-      "fast and "
-      "readings that are lost are options of grabber.simulate.\n\n"
+      "Faults are drawn for each telegram from the run's seed. A laser that is `restarted` closes its "
+      "connections, "
+      "and its clock and counters begin at zero.\n\n"
       "A client that does not read misses scans, as it would with the devices; they are counted.");
   d.takes<Scan>().takes<PlateReading>();
   d.option("speed", &EmulateStage::settings_, &EmulatorSettings::speed,
@@ -56,7 +56,15 @@ void EmulateStage::describe(StageDescription<EmulateStage>& d) {
       .unit("s")
       .range(0, 3600);
   share("split", &EmulatedFaults::split, "share of the telegrams that are sent in pieces of any length");
-  share("damaged", &EmulatedFaults::damaged, "share of the scans with one bit flipped");
+  share("damaged", &EmulatedFaults::damaged,
+        "share of the scans and of the plate's sentences with one bit flipped");
+  share("restarted", &EmulatedFaults::restarted, "share of the scans before which the laser starts again");
+  share("lost", &EmulatedFaults::lost, "share of the plate's datagrams that are not sent");
+  d.option("skews", &EmulateStage::settings_, &EmulatorSettings::faults, &EmulatedFaults::skews,
+           "by how much each laser's clock runs fast, besides what it did: 100ppm")
+      .unit("1")
+      .range(-0.01, 0.01)
+      .count(0, 1000);
   d.option("network", &EmulateStage::settings_, &EmulatorSettings::network,
            "whether lasers may listen at other addresses than loopback, for anyone in the network");
 }
@@ -82,8 +90,16 @@ void EmulateStage::process(const Inputs& in, Outputs&, Context& context) {
 void EmulateStage::finish(Outputs&, Context& context) {
   if (!emulator_) return;
   emulator_->finish();
-  context.count("scans that a client missed because it did not read", emulator_->scans_missed());
-  context.say(fmt::format("emulated {} scans and {} readings of the plate", scans_, readings_));
+  const EmulatedLedger ledger = emulator_->ledger();
+  context.count("scans that a client missed because it did not read", ledger.missed);
+  context.count("scans that nobody had asked for", ledger.unheard);
+  context.report({{"dropped", ledger.dropped},
+                  {"stalled", ledger.stalled},
+                  {"damaged", ledger.damaged + ledger.readings_damaged},
+                  {"restarted", ledger.restarted},
+                  {"lost", ledger.readings_lost}});
+  context.say(fmt::format("emulated {} scans and {} readings of the plate, with {} faults", scans_, readings_,
+                          ledger.faults()));
   emulator_.reset();
 }
 

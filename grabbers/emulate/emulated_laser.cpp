@@ -29,11 +29,12 @@ constexpr std::size_t kMostSessions = 16;
 /// One client.
 class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
  public:
-  Session(tcp::socket socket, EmulatedDevice& device, FaultDice& dice)
+  Session(tcp::socket socket, EmulatedDevice& device, FaultDice& dice, EmulatedLedger& ledger)
       : socket_(std::move(socket)),
         timer_(socket_.get_executor()),
         responder_(device),
         dice_(dice),
+        ledger_(ledger),
         buffer_(4096) {}
 
   void read() {
@@ -72,6 +73,7 @@ class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
 
   void begin_telegram() {
     if (!dice_.stalls()) return write();
+    ++ledger_.stalled;
     timer_.expires_after(
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(dice_.stall())));
     timer_.async_wait([self = shared_from_this()](const error_code& failure) {
@@ -101,7 +103,8 @@ class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
   tcp::socket socket_;
   asio::steady_timer timer_;
   SickResponder responder_;
-  FaultDice& dice_;  ///< of the laser, which outlives its sessions
+  FaultDice& dice_;         ///< of the laser, which outlives its sessions
+  EmulatedLedger& ledger_;  ///< likewise
   Bytes buffer_;
   ColaFramer framer_;
   std::deque<Bytes> waiting_;
@@ -109,8 +112,9 @@ class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
   std::size_t written_ = 0;  ///< [bytes] of the first that waits
 };
 
-EmulatedLaser::EmulatedLaser(asio::io_context& context, const Address& address, const FaultDice& dice)
-    : acceptor_(context), dice_(dice) {
+EmulatedLaser::EmulatedLaser(asio::io_context& context, const Address& address, const FaultDice& dice,
+                             const EmulatedClock& clock)
+    : acceptor_(context), dice_(dice), clock_(clock) {
   error_code failure;
   const auto ip = asio::ip::make_address(address.ip, failure);
   const tcp::endpoint at(ip, address.port);
@@ -136,7 +140,7 @@ void EmulatedLaser::accept() {
     if (!failure && sessions_.size() < kMostSessions) {
       error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
-      sessions_.push_back(std::make_shared<Session>(std::move(socket), device_, dice_));
+      sessions_.push_back(std::make_shared<Session>(std::move(socket), device_, dice_, ledger_));
       sessions_.back()->read();
     }
     if (acceptor_.is_open()) accept();
@@ -150,26 +154,42 @@ void EmulatedLaser::stop() {
   sessions_.clear();
 }
 
-std::size_t EmulatedLaser::send(const ScanData& scan) {
+void EmulatedLaser::restart() {
+  ++ledger_.restarted;
+  clock_.restart();
+  device_.range.reset();  // nothing was stored
+  device_.content.reset();
+  for (const auto& session : sessions_) session->close();
+}
+
+void EmulatedLaser::send(ScanData scan) {
+  if (dice_.restarts()) restart();
+  clock_.stamp(scan);
   device_.last = scan;
-  if (!device_.measuring) return 0;
-  const ScanData sent = device_.sent(scan);
-  std::size_t missed = 0;
-  for (const auto& session : sessions_) {
-    if (!session->wants_scans()) continue;
-    if (session->waiting_bytes() > kMostWaiting) {
-      ++missed;
-      continue;
-    }
-    if (dice_.drops()) {
-      session->close();
-      continue;
-    }
-    Bytes telegram = encode_scan_data(sent, session->language());
-    if (dice_.damages()) dice_.flip_a_bit(telegram);
-    session->send(std::move(telegram));
+  if (!device_.measuring || subscribers() == 0) {
+    ++ledger_.unheard;
+    return;
   }
-  return missed;
+  scan = device_.sent(std::move(scan));
+  for (const auto& session : sessions_) {
+    if (session->wants_scans()) send(*session, scan);
+  }
+}
+
+void EmulatedLaser::send(Session& session, const ScanData& scan) {
+  if (session.waiting_bytes() > kMostWaiting) {
+    ++ledger_.missed;
+    return;
+  }
+  if (dice_.drops()) {
+    ++ledger_.dropped;
+    return session.close();
+  }
+  Bytes telegram = encode_scan_data(scan, session.language());
+  const bool damaged = dice_.damages();
+  if (damaged) dice_.flip_a_bit(telegram);
+  ++(damaged ? ledger_.damaged : ledger_.delivered);
+  session.send(std::move(telegram));
 }
 
 std::size_t EmulatedLaser::subscribers() const {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "grabbers/emulate/emulated_clock.hpp"
 #include "grabbers/emulate/emulated_faults.hpp"
 #include "grabbers/emulate/sick_responder.hpp"
 #include "pipeline/data/rig.hpp"
@@ -21,7 +22,8 @@ class EmulatedLaser {
   /// Listens from now on, but answers only once the io_context runs.
   /// @param address  of this machine; port 0: any that is free
   /// @throws Error if it cannot be listened at
-  EmulatedLaser(boost::asio::io_context& context, const Address& address, const FaultDice& dice);
+  EmulatedLaser(boost::asio::io_context& context, const Address& address, const FaultDice& dice,
+                const EmulatedClock& clock);
   ~EmulatedLaser();
   EmulatedLaser(const EmulatedLaser&) = delete;
   EmulatedLaser& operator=(const EmulatedLaser&) = delete;
@@ -31,8 +33,10 @@ class EmulatedLaser {
   void stop();
 
   /// Sends a scan to all who subscribed. Who does not read what was sent misses it.
-  /// @return to how many it was not sent for that reason
-  std::size_t send(const ScanData& scan);
+  void send(ScanData scan);
+
+  /// What befell what was sent so far.
+  const EmulatedLedger& ledger() const { return ledger_; }
 
   std::size_t subscribers() const;
   std::size_t waiting_bytes() const;  ///< that the slowest client has not taken yet
@@ -40,11 +44,15 @@ class EmulatedLaser {
  private:
   class Session;
   void accept();
+  void restart();
+  void send(Session& session, const ScanData& scan);
 
   boost::asio::ip::tcp::acceptor acceptor_;
   std::uint16_t port_ = 0;
   EmulatedDevice device_;
   FaultDice dice_;
+  EmulatedClock clock_;
+  EmulatedLedger ledger_;
   std::vector<std::shared_ptr<Session>> sessions_;
 };
 

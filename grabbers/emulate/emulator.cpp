@@ -45,11 +45,16 @@ void Emulator::check(const EmulatorSettings& settings) const {
 }
 
 Emulator::Emulator(Rig rig, EmulatorSettings settings)
-    : rig_(std::move(rig)), settings_(std::move(settings)), work_(context_.get_executor()), plate_(context_) {
+    : rig_(std::move(rig)),
+      settings_(std::move(settings)),
+      work_(context_.get_executor()),
+      plate_(context_),
+      plate_dice_(settings_.faults, rig_.lasers.size()) {
   check(settings_);
   for (RigLaser& laser : rig_.lasers) {
     lasers_.push_back(std::make_unique<EmulatedLaser>(context_, laser.address,
-                                                      FaultDice(settings_.faults, lasers_.size())));
+                                                      FaultDice(settings_.faults, lasers_.size()),
+                                                      EmulatedClock(skew_of(lasers_.size()))));
     laser.address.port = lasers_.back()->port();
   }
   plate_to_ = {ip_of(settings_.plate_to.ip), settings_.plate_to.port};
@@ -64,6 +69,19 @@ Emulator::~Emulator() {
   });
   work_.reset();
   thread_.join();
+}
+
+double Emulator::skew_of(std::size_t laser) const {
+  const auto& skews = settings_.faults.skews;
+  return laser < skews.size() ? skews[laser] : 0;
+}
+
+EmulatedLedger Emulator::ledger() {
+  EmulatedLedger ledger = plate_ledger_;
+  in_thread([&] {
+    for (const auto& laser : lasers_) ledger += laser->ledger();
+  });
+  return ledger;
 }
 
 void Emulator::in_thread(const std::function<void()>& work) {
@@ -118,12 +136,23 @@ void Emulator::send(const HubItem& item, const Interrupted& interrupted) {
   if (interrupted()) return;
   if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
     const ScanData data = to_scan_data(**scan);
-    in_thread([&] { scans_missed_ += lasers_.at((*scan)->laser)->send(data); });
+    in_thread([&] { lasers_.at((*scan)->laser)->send(data); });
   } else {
-    const std::string sentence = encode_plate_sentence(std::get<PlateReading>(item));
-    boost::system::error_code nobody_listens;  // as little as a plate would notice
-    plate_.send_to(asio::buffer(sentence), plate_to_, 0, nobody_listens);
+    send(std::get<PlateReading>(item));
   }
+}
+
+void Emulator::send(const PlateReading& reading) {
+  if (plate_dice_.loses()) {
+    ++plate_ledger_.readings_lost;
+    return;
+  }
+  std::string sentence = encode_plate_sentence(reading);
+  const bool damaged = plate_dice_.damages();
+  if (damaged) plate_dice_.flip_a_bit(sentence);
+  ++(damaged ? plate_ledger_.readings_damaged : plate_ledger_.readings);
+  boost::system::error_code nobody_listens;  // as little as a plate would notice
+  plate_.send_to(asio::buffer(sentence), plate_to_, 0, nobody_listens);
 }
 
 void Emulator::finish() {

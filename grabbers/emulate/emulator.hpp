@@ -52,12 +52,15 @@ class Emulator {
   /// Waits until the clients have taken all that was sent, for 2 s at most.
   void finish();
 
-  std::uint64_t scans_missed() const { return scans_missed_; }  ///< by clients that did not read
+  /// What befell what was sent so far.
+  EmulatedLedger ledger();
 
  private:
   void check(const EmulatorSettings& settings) const;
   void await_clients(const Interrupted& interrupted);
   void await_time(std::int64_t item_ns, const Interrupted& interrupted);
+  void send(const PlateReading& reading);
+  double skew_of(std::size_t laser) const;
   void in_thread(const std::function<void()>& work);
   std::size_t waiting_bytes();
 
@@ -73,7 +76,8 @@ class Emulator {
     std::int64_t item_ns = 0;
   };
   std::optional<Start> start_;  ///< when the first item was sent, and received
-  std::uint64_t scans_missed_ = 0;
+  FaultDice plate_dice_;
+  EmulatedLedger plate_ledger_;
   std::thread thread_;
 };
 

@@ -96,10 +96,7 @@ void SickClient::take(std::size_t bytes) {
 }
 
 void SickClient::take(const ColaFrame& frame) {
-  auto scan = log_.take(frame, settings_.encoder_widths);
-  const bool came = scan.has_value();
-  if (came && !compared_ && dialogue_ && dialogue_->step() == SickStep::Scans) note_difference(*scan);
-  if (came && !stopping_) give_(std::make_shared<const Scan>(std::move(*scan)));
+  const bool came = take_scan(frame);
   const auto telegram = parse_cola(frame.payload, frame.language);
   if (!telegram || over_) return;
   if (stopping_) {
@@ -109,6 +106,14 @@ void SickClient::take(const ColaFrame& frame) {
   } else if (came) {
     await_scan();
   }
+}
+
+bool SickClient::take_scan(const ColaFrame& frame) {
+  auto scan = log_.take(frame, settings_.encoder_widths);
+  if (!scan) return false;
+  if (!compared_ && dialogue_ && dialogue_->step() == SickStep::Scans) note_difference(*scan);
+  if (!stopping_) give_(std::make_shared<const Scan>(std::move(*scan)));
+  return true;
 }
 
 void SickClient::note_difference(const Scan& scan) {
@@ -144,7 +149,7 @@ void SickClient::fail(const std::string& reason) {
 }
 
 void SickClient::close() {
-  framer_.gap([this](const ColaFrame& frame) { log_.take(frame, settings_.encoder_widths); });
+  framer_.gap([this](const ColaFrame& frame) { take_scan(frame); });
   note_framing(framer_.counts(), log_);
   framer_ = {};
   dialogue_.reset();

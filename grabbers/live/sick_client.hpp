@@ -47,6 +47,7 @@ class SickClient {
   void read();
   void take(std::size_t bytes);
   void take(const ColaFrame& frame);
+  bool take_scan(const ColaFrame& frame);  ///< gives it on, if it is one that did not come before
   void proceed(SickDialogue::Effect effect);
   void await_scan();
   void fail(const std::string& reason);

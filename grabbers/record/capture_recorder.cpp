@@ -2,6 +2,7 @@
 #include "grabbers/record/capture_recorder.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <utility>
 
@@ -46,13 +47,22 @@ struct CaptureRecorder::File {
   FrameSorter sorter;
   HubTraffic hub;
   std::vector<bool> connected;
+  /// Puts on the disk what was written. Of what is held for its order, only once nothing more seems to come.
+  void make_safe() {
+    if (!written) sorter.finish();
+    written = false;
+    pcap.flush(true);
+  }
+
   std::optional<std::int64_t> first_ns, latest_ns;  ///< of the items
-  std::chrono::steady_clock::time_point safe_since = std::chrono::steady_clock::now();
+  bool written = false;                             ///< since it was made safe
 };
 
 CaptureRecorder::CaptureRecorder(std::filesystem::path file, Rig rig, const RecorderSettings& settings)
     : first_(std::move(file)), rig_(std::move(rig)), settings_(settings) {
   open();
+  if (settings_.safe_after > 0)
+    keeper_ = std::jthread([this](const std::stop_token& stop) { keep_safe(stop); });
 }
 
 CaptureRecorder::~CaptureRecorder() {
@@ -60,6 +70,20 @@ CaptureRecorder::~CaptureRecorder() {
     close();
   } catch (const Error&) {  // close() tells it to those who ask; what is on the disk is whole all the same
     file_.reset();
+  }
+}
+
+void CaptureRecorder::keep_safe(const std::stop_token& stop) {
+  const std::chrono::duration<double> pause(settings_.safe_after / 2);
+  std::unique_lock lock(mutex_);
+  while (!ended_.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); })) {
+    if (!file_) continue;
+    try {
+      file_->make_safe();
+    } catch (...) {
+      failure_ = std::current_exception();
+      return;
+    }
   }
 }
 
@@ -73,16 +97,21 @@ void CaptureRecorder::open() {
   files_.push_back(std::move(path));
 }
 
-void CaptureRecorder::write(const HubItem& item) {
-  if (!file_) throw Error("a capture that was closed cannot be written to");
-  const std::int64_t now_ns = receipt_ns(item);
+void CaptureRecorder::rotate(std::int64_t now_ns) {
   const double seconds = file_->first_ns ? 1e-9 * static_cast<double>(now_ns - *file_->first_ns) : 0;
   const bool full =
       settings_.most_bytes > 0 && static_cast<double>(file_->pcap.bytes()) >= settings_.most_bytes;
-  if (full || (settings_.most_seconds > 0 && seconds >= settings_.most_seconds)) {
-    close();
-    open();
-  }
+  if (!full && (settings_.most_seconds == 0 || seconds < settings_.most_seconds)) return;
+  end_file();
+  open();
+}
+
+void CaptureRecorder::write(const HubItem& item) {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(failure_);
+  if (!file_) throw Error("a capture that was closed cannot be written to");
+  const std::int64_t now_ns = receipt_ns(item);
+  rotate(now_ns);
   File& file = *file_;
   if (!file.first_ns) file.first_ns = now_ns;
   file.latest_ns = std::max(file.latest_ns.value_or(now_ns), now_ns);
@@ -91,16 +120,19 @@ void CaptureRecorder::write(const HubItem& item) {
   } else {
     file.write(std::get<PlateReading>(item));
   }
-  const auto here = std::chrono::steady_clock::now();
-  if (std::chrono::duration<double>(here - file.safe_since).count() < settings_.safe_after) return;
-  file.pcap.flush(true);
-  file.safe_since = here;
+  file.written = true;
+  if (settings_.safe_after == 0) file.make_safe();
+}
+
+void CaptureRecorder::end_file() {
+  if (const auto file = std::exchange(file_, nullptr)) file->end();
 }
 
 void CaptureRecorder::close() {
-  if (!file_) return;
-  const auto file = std::exchange(file_, nullptr);
-  file->end();
+  keeper_.request_stop();
+  if (keeper_.joinable()) keeper_.join();
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  end_file();
 }
 
 }  // namespace crisp

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <memory>
+#include <mutex>
+#include <thread>
 #include <vector>
 
 #include "grabbers/capture/hub_traffic.hpp"
@@ -23,7 +26,8 @@ struct RecorderSettings {
 
 /// Writes scans and readings as the capture that the hub's network interface would have made of them: a
 /// reader gives them back as they are, times of receipt included. The file grows in place and holds whole
-/// records only, so that it can be read whenever and however the writing ends.
+/// records only, so that it can be read whenever and however the writing ends. A thread of its own puts it on
+/// the disk, whether anything more comes or not.
 class CaptureRecorder {
  public:
   /// @param file  the first one; the next are name-2.pcap, name-3.pcap … A file that exists is written on.
@@ -43,12 +47,20 @@ class CaptureRecorder {
  private:
   struct File;
   void open();
+  void rotate(std::int64_t now_ns);
+  void end_file();
+  void keep_safe(const std::stop_token& stop);
 
   std::filesystem::path first_;
   Rig rig_;
   RecorderSettings settings_;
   std::vector<std::filesystem::path> files_;
+
+  std::mutex mutex_;  ///< of what follows
+  std::condition_variable_any ended_;
   std::unique_ptr<File> file_;
+  std::exception_ptr failure_;  ///< of the thread
+  std::jthread keeper_;
 };
 
 }  // namespace crisp

@@ -154,11 +154,8 @@ std::unique_ptr<Aligner> OnlineStage::make_aligner(const Rig& rig, AlignmentSink
 void OnlineStage::take_lags(const std::shared_ptr<const Calibration>& calibration) {
   if (!calibration || calibration == calibration_) return;
   calibration_ = calibration;
-  const auto [least, greatest] =
-      std::ranges::minmax(calibration->lasers, {}, [](const auto& laser) { return laser.eta.value; });
-  online_.least_lag = least.eta.value;
-  online_.greatest_lag = greatest.eta.value;
-  if (aligner_) static_cast<OnlineAligner&>(*aligner_).set_lags(online_.least_lag, online_.greatest_lag);
+  online_ = with_lags(online_, *calibration);
+  if (aligner_) static_cast<OnlineAligner&>(*aligner_).set_lags(*calibration);
 }
 
 void OnlineStage::process(const Inputs& in, Outputs& out, Context& context) {

@@ -50,7 +50,7 @@ class LinearProgramStage final : public AlignStage {
 /// `clock.online`
 class OnlineStage final : public AlignStage {
  public:
-  OnlineStage() { settings_.mirror_half_width = 5; }
+  OnlineStage() { settings_.mirror_half_width = kOnlineMirror; }
   static void describe(StageDescription<OnlineStage>& d);
   void process(const Inputs& in, Outputs& out, Context& context) override;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/clock/online_aligner.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -18,14 +19,17 @@ double last_beam(const TimedScan& scan) {
 
 }  // namespace
 
+OnlineSettings with_lags(OnlineSettings settings, const Calibration& calibration) {
+  if (calibration.lasers.empty()) return settings;
+  const auto lag = [](const LaserCalibration& laser) { return laser.eta.value; };
+  settings.least_lag = lag(*std::ranges::min_element(calibration.lasers, {}, lag));
+  settings.greatest_lag = lag(*std::ranges::max_element(calibration.lasers, {}, lag));
+  return settings;
+}
+
 OnlineAligner::OnlineAligner(const Rig& rig, const AlignmentSettings& alignment, const OnlineSettings& online,
                              AlignmentSink sink)
     : alignment_(alignment), settings_(online), sink_(std::move(sink)), tracks_(rig, alignment) {}
-
-void OnlineAligner::set_lags(double least, double greatest) {
-  settings_.least_lag = least;
-  settings_.greatest_lag = greatest;
-}
 
 void OnlineAligner::add(std::shared_ptr<const Scan> scan) {
   const double hub = tracks_.arrive(scan->receipt_ns);

@@ -3,6 +3,7 @@
 
 #include <deque>
 
+#include "pipeline/data/calibration.hpp"
 #include "plugins/clock/aligner.hpp"
 
 namespace crisp {
@@ -18,6 +19,12 @@ struct OnlineSettings {
       0;  ///< [s] the greatest, so that the readings that a scan is placed by are waited for
 };
 
+/// Stamps on either side that smooth the mirror's motion, unless told otherwise: of those so far.
+inline constexpr unsigned kOnlineMirror = 5;
+
+/// The settings with the lags of a calibration's lasers.
+OnlineSettings with_lags(OnlineSettings settings, const Calibration& calibration);
+
 /// From scans and readings in the order of receipt to measurements, each scan as soon as the plate's readings
 /// cover it. A device's clock is the line below its stamps of the last minute; what was handed out is not
 /// corrected when the line becomes better known. So what is handed out depends on the items alone, and their
@@ -32,8 +39,8 @@ class OnlineAligner final : public Aligner {
   void add(const PlateReading& reading) override;
   AlignmentReport finish() override;
 
-  /// From now on. See OnlineSettings.
-  void set_lags(double least, double greatest);
+  /// From now on it waits for what these lasers' lags need.
+  void set_lags(const Calibration& calibration) { settings_ = with_lags(settings_, calibration); }
   /// The devices' clocks as they are known now: the lasers in the rig's order, then the plate.
   std::vector<DeviceReport> devices() const { return tracks_.reports(); }
   double now() const { return tracks_.now(); }  ///< [s since the epoch] latest receipt

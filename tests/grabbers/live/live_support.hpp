@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
 #include <chrono>
 #include <string>
 #include <thread>
@@ -24,6 +26,13 @@ inline Rig loopback_rig(std::size_t lasers = 3) {
   for (RigLaser& laser : rig.lasers) laser.address = {"127.0.0.1", 0};
   rig.plate.address = {"127.0.0.1", 0};
   return rig;
+}
+
+/// A port for datagrams that nobody uses just now.
+inline std::uint16_t free_datagram_port() {
+  boost::asio::io_context context;
+  const boost::asio::ip::udp::socket socket(context, {boost::asio::ip::make_address("127.0.0.1"), 0});
+  return socket.local_endpoint().port();
 }
 
 inline Rig rig_of_one(std::uint16_t port) {

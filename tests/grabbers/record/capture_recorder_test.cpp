@@ -3,14 +3,20 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <chrono>
+#include <csignal>
 #include <fstream>
+#include <thread>
 
 #include "grabbers/capture/capture_reader.hpp"
+#include "grabbers/record/record_stage.hpp"
 #include "grabbers/simulate/recording.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 #include "pipeline/data/error.hpp"
+#include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {
@@ -35,11 +41,12 @@ std::vector<HubItem> simulated_items() {
 
 class CaptureRecorderTest : public testing::Test {
  protected:
-  static std::vector<HubItem> read(const fs::path& file) {
+  static std::vector<HubItem> read(const fs::path& file, bool ends_early = false) {
     CaptureReader reader(file, default_rig());
     std::vector<HubItem> items;
     while (auto item = reader.next()) items.push_back(std::move(*item));
     for (const auto& device : reader.statistics().devices) {
+      if (ends_early) continue;  // within a telegram
       EXPECT_THAT(device.losses.all(), testing::Each(testing::Pair(testing::_, 0))) << device.name;
     }
     return items;
@@ -85,6 +92,81 @@ TEST_F(CaptureRecorderTest, HoldsWhatWasWrittenASecondBeforeAPowerCut) {
   ASSERT_FALSE(safe.empty());
   EXPECT_LT(receipt_ns(items.back()) - receipt_ns(safe.back()), 50'000'000);
   expect_same(safe, {items.begin(), items.begin() + static_cast<std::ptrdiff_t>(safe.size())});
+}
+
+TEST_F(CaptureRecorderTest, PutsOnTheDiskWhatCameAlsoWhenNothingMoreComes) {
+  const auto items = simulated_items();
+  CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {.safe_after = 0.05});
+  for (const HubItem& item : items) recorder.write(item);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  std::vector<HubItem> safe;
+  while (safe.size() < items.size() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    safe = read(folder_ / "hub.pcap");
+  }
+  expect_same(safe, items);
+}
+
+/// No file may become larger, while it lives: as on a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(CaptureRecorderTest, LeavesWholeRecordsOnAFullDisk) {
+  const auto items = simulated_items();
+  {
+    const FullDisk full(50'000);
+    CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {});
+    EXPECT_THROW(
+        {
+          for (int i = 0; i < 100; ++i) {
+            for (const HubItem& item : items) recorder.write(item);
+          }
+        },
+        Error);
+  }
+  const auto safe = read(folder_ / "hub.pcap", true);
+  ASSERT_FALSE(safe.empty());
+  expect_same(safe, {items.begin(), items.begin() + static_cast<std::ptrdiff_t>(safe.size())});
+}
+
+TEST_F(CaptureRecorderTest, EndsOnAFullDiskWithoutThePipeline) {
+  const auto items = simulated_items();
+  auto stage = test::StageDriver::of<RecordStage>(
+      {{"file", OptionValue(OptionScalar((folder_ / "hub.pcap").string()))}});
+  std::uint64_t fed = 0;
+  {
+    const FullDisk full(50'000);
+    for (int i = 0; i < 3; ++i) {
+      for (const HubItem& item : items) {
+        if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
+          stage.feed(*scan);
+        } else {
+          stage.feed(std::get<PlateReading>(item));
+        }
+        ++fed;
+      }
+    }
+    stage.finish();
+  }
+  ASSERT_EQ(stage.report().doubts.size(), 1U);
+  EXPECT_THAT(stage.report().doubts[0],
+              testing::StartsWith("the recording ended early: cannot write the capture"));
+  const std::uint64_t missing = stage.report().counts.at("items that were not recorded");
+  EXPECT_GT(missing, fed / 2);
+  EXPECT_LT(missing, fed);
 }
 
 TEST_F(CaptureRecorderTest, BeginsANewFileAfterATimeOrASize) {
