@@ -64,7 +64,6 @@ struct PcapWriter::File {
   Pcap pcap;
   std::unique_ptr<pcap_dumper_t, Free> dump;
   std::uint64_t length = kPcapFileHeader;
-  std::uint64_t safe_length = kPcapFileHeader;  ///< of the records that reached the operating system whole
 
   std::FILE* stream() const { return pcap_dump_file(dump.get()); }
 
@@ -72,8 +71,10 @@ struct PcapWriter::File {
   [[noreturn]] void fail() {
     const int error = errno;
     dump.reset();
-    std::error_code ignored;
-    std::filesystem::resize_file(path, safe_length, ignored);
+    try {
+      std::filesystem::resize_file(path, whole_records(path));
+    } catch (const std::exception&) {  // there is not even a header: what failed first is what is told
+    }
     throw cannot_write(path, error);
   }
 };
@@ -89,7 +90,7 @@ PcapWriter::PcapWriter(std::filesystem::path path, PcapMode mode) : file_(std::m
   const bool continued =
       !f.replaced && std::filesystem::exists(f.path) && std::filesystem::file_size(f.path) > 0;
   if (continued) {
-    f.length = f.safe_length = whole_records(f.path);
+    f.length = whole_records(f.path);
     std::filesystem::resize_file(f.path, f.length);
   }
   f.pcap.reset(pcap_open_dead_with_tstamp_precision(DLT_EN10MB, kSnapshot, PCAP_TSTAMP_PRECISION_NANO));
@@ -128,7 +129,6 @@ void PcapWriter::flush(bool durable) {
   if (!f.dump) return;
   if (pcap_dump_flush(f.dump.get()) != 0 || std::ferror(f.stream()) != 0) f.fail();
   if (durable && fdatasync(fileno(f.stream())) != 0 && errno != EINVAL) f.fail();  // EINVAL: a pipe
-  f.safe_length = f.length;
 }
 
 void PcapWriter::close() {

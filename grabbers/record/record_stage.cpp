@@ -40,6 +40,7 @@ void RecordStage::write(const HubItem& item, Context& context) {
     recorder_->write(item);
   } catch (const Error& error) {
     failed_ = true;
+    end();
     context.distrust("the recording ended early: " + error.message());
     context.count("items that were not recorded");
   }
@@ -53,14 +54,19 @@ void RecordStage::process(const Inputs& in, Outputs&, Context& context) {
   }
 }
 
+void RecordStage::end() {
+  if (recorder_) files_ = recorder_->files();
+  recorder_.reset();
+}
+
 void RecordStage::finish(Outputs&, Context& context) {
-  if (!recorder_) return;
   try {
-    recorder_->close();
+    if (recorder_) recorder_->close();
   } catch (const Error& error) {
     context.distrust("the recording ended early: " + error.message());
   }
-  for (const auto& file : recorder_->files()) context.wrote(file);
+  end();
+  for (const auto& file : files_) context.wrote(file);
 }
 
 void register_record(Registrar& registrar) { registrar.stage<RecordStage>(); }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "grabbers/record/capture_recorder.hpp"
 #include "pipeline/stage/context.hpp"
@@ -21,10 +22,12 @@ class RecordStage final : public Stage {
 
  private:
   void write(const HubItem& item, Context& context);
+  void end();
 
   std::filesystem::path file_;
   RecorderSettings settings_;
   std::unique_ptr<CaptureRecorder> recorder_;
+  std::vector<std::filesystem::path> files_;  ///< once it has ended
   bool failed_ = false;
 };
 

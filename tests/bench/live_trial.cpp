@@ -282,7 +282,7 @@ int attempt(const Trial& trial, const fs::path& folder) {
   Sent sent;
   std::thread listener([&] {
     if (read(pipe_ends[0], &sent, sizeof sent) == static_cast<ssize_t>(sizeof sent)) {
-      std::this_thread::sleep_for(std::chrono::seconds(2));  // for what is on its way
+      std::this_thread::sleep_for(std::chrono::seconds(1));  // for what is on its way
     }
     stop = true;
   });
