@@ -131,6 +131,17 @@ void PcapWriter::flush(bool durable) {
   if (durable && fdatasync(fileno(f.stream())) != 0 && errno != EINVAL) f.fail();  // EINVAL: a pipe
 }
 
+std::function<void()> PcapWriter::syncer() const {
+  const auto close_it = [](const int* descriptor) {
+    ::close(*descriptor);
+    delete descriptor;
+  };
+  const std::shared_ptr<const int> descriptor(new int(dup(fileno(file_->stream()))), close_it);
+  return [descriptor, path = file_->path] {
+    if (fdatasync(*descriptor) != 0 && errno != EINVAL) throw cannot_write(path, errno);  // EINVAL: a pipe
+  };
+}
+
 void PcapWriter::close() {
   auto& f = *file_;
   if (!f.dump) return;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "grabbers/wire/bytes.hpp"
@@ -35,6 +36,10 @@ class PcapWriter {
 
   /// Hands everything to the operating system, and to the disk if `durable`. @throws Error as write()
   void flush(bool durable = false);
+
+  /// What puts on the disk all that flush() has handed to the operating system. May be called from another
+  /// thread, while this one writes on, and as long as one likes. @throws Error as write()
+  std::function<void()> syncer() const;
 
   /// Flushes, closes, and gives a replacing file its name. @throws Error as write()
   void close();

@@ -44,14 +44,16 @@ struct CaptureRecorder::File {
   }
 
   PcapWriter pcap;
+  std::function<void()> sync = pcap.syncer();
   FrameSorter sorter;
   HubTraffic hub;
   std::vector<bool> connected;
-  /// Puts on the disk what was written. Of what is held for its order, only once nothing more seems to come.
-  void make_safe() {
+  /// Hands to the operating system what was written. Of what is held for its order, only once nothing more
+  /// seems to come.
+  void flush() {
     if (!written) sorter.finish();
     written = false;
-    pcap.flush(true);
+    pcap.flush();
   }
 
   std::optional<std::int64_t> first_ns, latest_ns;  ///< of the items
@@ -79,8 +81,13 @@ void CaptureRecorder::keep_safe(const std::stop_token& stop) {
   while (!ended_.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); })) {
     if (!file_) continue;
     try {
-      file_->make_safe();
-    } catch (...) {
+      file_->flush();
+      const auto sync = file_->sync;
+      lock.unlock();  // the disk may take its time
+      sync();
+      lock.lock();
+    } catch (const Error&) {
+      if (!lock.owns_lock()) lock.lock();
       failure_ = std::current_exception();
       return;
     }
@@ -121,7 +128,9 @@ void CaptureRecorder::write(const HubItem& item) {
     file.write(std::get<PlateReading>(item));
   }
   file.written = true;
-  if (settings_.safe_after == 0) file.make_safe();
+  if (settings_.safe_after > 0) return;
+  file.flush();
+  file.sync();
 }
 
 void CaptureRecorder::end_file() {

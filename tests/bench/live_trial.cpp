@@ -181,10 +181,9 @@ class Watch {
     }
     const double now = monotonic();
     if (begun == 0) begun = now;
-    if (memory_begin == 0 && now - begun > 10) memory_begin = resident_megabytes();
     if (now - memory_asked_ > 1) {
       memory_asked_ = now;
-      memory_end = resident_megabytes();
+      memory.push_back(resident_megabytes());
     }
     last_ = now;
   }
@@ -195,11 +194,15 @@ class Watch {
     return latencies_[static_cast<std::size_t>(share * static_cast<double>(latencies_.size() - 1))];
   }
   double elapsed() const { return last_ - begun; }
+  double most_memory(std::size_t half) const {
+    const auto middle = memory.begin() + static_cast<std::ptrdiff_t>(memory.size() / 2);
+    return half == 0 ? *std::max_element(memory.begin(), middle) : *std::max_element(middle, memory.end());
+  }
 
   std::uint64_t scans = 0, readings = 0, points = 0;
   Fingerprint fingerprint;
   double begun = 0;
-  double memory_begin = 0, memory_end = 0;
+  std::vector<double> memory;  ///< [MiB] each second
 
  private:
   void arrive(const Cloud& cloud) {
@@ -313,8 +316,8 @@ int attempt(const Trial& trial, const fs::path& folder) {
             << "latency from a telegram's arrival to its points: median " << 1e3 * watch.quantile(0.5)
             << " ms, 99 % " << 1e3 * watch.quantile(0.99) << " ms, most " << 1e3 * watch.quantile(1)
             << " ms\n"
-            << "resident memory: " << watch.memory_begin << " MiB after 10 s, " << watch.memory_end
-            << " MiB at the end\n"
+            << "resident memory: at most " << watch.most_memory(0) << " MiB in the first half, "
+            << watch.most_memory(1) << " MiB in the second\n"
             << "stopped within " << 1e3 * stopping << " ms\n"
             << "measurements from the recording: " << offline.fingerprint.scans << " scans, "
             << (same ? "byte for byte the same" : "NOT THE SAME") << "\n"
