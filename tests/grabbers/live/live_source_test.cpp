@@ -247,6 +247,18 @@ TEST(LiveSource, CountsGarbageOfAnyLength) {
   EXPECT_EQ(of(statistics, "laser1").items, 0U);
 }
 
+TEST(LiveSource, CountsTelegramsWithoutEnd) {
+  // One in CoLa-A that never ends, and within it the beginnings of many in CoLa-B that are too long.
+  std::string endless = "\x02sSN LMDscandata 1 1 ";
+  for (int i = 0; i < 1000; ++i) endless += "7 \x02\x02\x02\x02\x7f\xff\xff\xff" + std::string(100, 'F');
+  const Babbler babbler(Bytes(endless.begin(), endless.end()));
+  LiveSource source(rig_of_one(babbler.port()), {.plate = false, .sick = {.reply_timeout = 0.05}});
+  EXPECT_TRUE(test::comes_true(source, "laser1", [](const DeviceStatistics& laser) {
+    return laser.losses.of("bytes that belong to no whole telegram") > 1'000'000;
+  }));
+  EXPECT_EQ(of(source.close(), "laser1").items, 0U);
+}
+
 TEST(LiveSource, SurvivesAllFaultsOfTheEmulatorAndCountsWhatNeverCame) {
   const auto recorded = recorded_items(3);
   Emulator emulator(
