@@ -180,7 +180,11 @@ class Watch {
       arrive(*cloud);
     }
     const double now = monotonic();
-    if (begun == 0) begun = now;
+    if (scans + readings == 0) return;  // what is there before the devices are
+    if (begun == 0) {
+      begun = now;
+      begun_cpu = cpu_seconds();
+    }
     if (now - memory_asked_ > 1) {
       memory_asked_ = now;
       memory.push_back(resident_megabytes());
@@ -201,8 +205,8 @@ class Watch {
 
   std::uint64_t scans = 0, readings = 0, points = 0;
   Fingerprint fingerprint;
-  double begun = 0;
-  std::vector<double> memory;  ///< [MiB] each second
+  double begun = 0, begun_cpu = 0;  ///< [s]
+  std::vector<double> memory;       ///< [MiB] each second
 
  private:
   void arrive(const Cloud& cloud) {
@@ -289,11 +293,10 @@ int attempt(const Trial& trial, const fs::path& folder) {
     }
     stop = true;
   });
-  const double cpu = cpu_seconds();
   RunHooks hooks{.stop = &stop};
   hooks.given = [&](const std::string& tag, const Item& item) { watch.given(tag, item); };
   const auto results = run(kLive, "live", folder, rig, hooks);
-  const double cost = cpu_seconds() - cpu;
+  const double cost = cpu_seconds() - watch.begun_cpu;
   listener.join();
   const double stopping = time_to_stop(rig);
   kill(scanner, SIGKILL);
