@@ -26,6 +26,14 @@ struct Free {
 };
 using Pcap = std::unique_ptr<pcap_t, Free>;
 
+struct Descriptor {
+  explicit Descriptor(int open) : number(open) {}
+  ~Descriptor() { ::close(number); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number;
+};
+
 Error cannot_write(const std::filesystem::path& path, int error) {
   return Error(fmt::format("cannot write the capture {}: {}", path.string(), std::strerror(error)),
                "check the folder, its permissions and the space on the disk");
@@ -132,13 +140,10 @@ void PcapWriter::flush(bool durable) {
 }
 
 std::function<void()> PcapWriter::syncer() const {
-  const auto close_it = [](const int* descriptor) {
-    ::close(*descriptor);
-    delete descriptor;
-  };
-  const std::shared_ptr<const int> descriptor(new int(dup(fileno(file_->stream()))), close_it);
-  return [descriptor, path = file_->path] {
-    if (fdatasync(*descriptor) != 0 && errno != EINVAL) throw cannot_write(path, errno);  // EINVAL: a pipe
+  const auto duplicate = std::make_shared<const Descriptor>(dup(fileno(file_->stream())));
+  return [duplicate, path = file_->path] {
+    if (fdatasync(duplicate->number) != 0 && errno != EINVAL)
+      throw cannot_write(path, errno);  // EINVAL: a pipe
   };
 }
 
