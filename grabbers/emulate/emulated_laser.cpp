@@ -112,9 +112,9 @@ class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
   std::size_t written_ = 0;  ///< [bytes] of the first that waits
 };
 
-EmulatedLaser::EmulatedLaser(asio::io_context& context, const Address& address, const FaultDice& dice,
+EmulatedLaser::EmulatedLaser(asio::io_context& context, const Address& address, FaultDice dice,
                              const EmulatedClock& clock)
-    : acceptor_(context), dice_(dice), clock_(clock) {
+    : acceptor_(context), dice_(std::move(dice)), clock_(clock) {
   error_code failure;
   const auto ip = asio::ip::make_address(address.ip, failure);
   const tcp::endpoint at(ip, address.port);

@@ -22,7 +22,7 @@ class EmulatedLaser {
   /// Listens from now on, but answers only once the io_context runs.
   /// @param address  of this machine; port 0: any that is free
   /// @throws Error if it cannot be listened at
-  EmulatedLaser(boost::asio::io_context& context, const Address& address, const FaultDice& dice,
+  EmulatedLaser(boost::asio::io_context& context, const Address& address, FaultDice dice,
                 const EmulatedClock& clock);
   ~EmulatedLaser();
   EmulatedLaser(const EmulatedLaser&) = delete;

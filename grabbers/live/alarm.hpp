@@ -17,7 +17,7 @@ class Alarm {
  public:
   explicit Alarm(boost::asio::io_context& context) : timer_(context) {}
 
-  void set(double seconds, std::function<void()> ring) {
+  void set(double seconds, const std::function<void()>& ring) {
     timer_.expires_after(
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)));
     timer_.async_wait([this, mine = ++current_, ring](const boost::system::error_code& failure) {

@@ -87,7 +87,7 @@ class FittedClock {
   };
 
   ClockLine line_of(const Segment& segment) const;
-  void forget_before(Segment& segment, double device);
+  static void forget_before(Segment& segment, double device);
   std::optional<WindowFit> fit(const Segment& segment, double begin, double end) const;
   void settle(Segment& segment, double begin, double end);
   void carry_on(Segment& segment, const Knot& knot);
