@@ -20,6 +20,7 @@ pkg_check_modules(PCL_COMMON REQUIRED IMPORTED_TARGET pcl_common)
 pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)
 pkg_check_modules(PCAP REQUIRED IMPORTED_TARGET libpcap)
 pkg_check_modules(TINS REQUIRED IMPORTED_TARGET libtins)
+pkg_check_modules(JEMALLOC IMPORTED_TARGET jemalloc)  # for speed alone
 
 add_library(crisp_flann INTERFACE IMPORTED GLOBAL)
 target_link_libraries(crisp_flann INTERFACE flann::flann_cpp lz4)

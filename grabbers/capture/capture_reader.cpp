@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <map>
 #include <string_view>
 #include <unordered_map>
 
@@ -34,6 +35,7 @@ struct CaptureReader::Traffic {
   ItemMerge merge;
   Flow::Give give = [this](HubItem item) { merge.push(std::move(item)); };
   CaptureStatistics totals;
+  std::map<std::uint32_t, std::uint64_t> link_types;  ///< packets
   std::int64_t newest_ns = 0, given_ns = 0;
   bool ended = false;
   std::atomic<bool> interrupted = false;
@@ -56,7 +58,7 @@ bool CaptureReader::Traffic::read_packet() {
   totals.last_ns = newest_ns;
   ++totals.packets;
   totals.bytes += packet->bytes.size();
-  totals.link_types.add(link_type_name(packet->link_type));
+  ++link_types[packet->link_type];
   const auto found = dissect_ip(*packet);
   if (const auto* reason = std::get_if<NoIp>(&found)) {
     if (*reason == NoIp::Damaged) totals.losses.add("packets with damaged headers");
@@ -172,6 +174,7 @@ double CaptureReader::progress() const {
 
 CaptureStatistics CaptureReader::statistics() const {
   auto statistics = traffic_->totals;
+  for (const auto& [type, n] : traffic_->link_types) statistics.link_types.add(link_type_name(type), n);
   statistics.file_bytes = traffic_->file.offset();
   statistics.losses.add(traffic_->file.losses());
   statistics.notes.add(traffic_->file.notes());

@@ -70,7 +70,7 @@ void DeviceLog::note_time(std::int64_t time_ns) {
   s.last_ns = std::max(s.last_ns, time_ns);
 }
 
-std::optional<Scan> DeviceLog::take(const ColaFrame& frame, EncoderWidths widths) {
+std::shared_ptr<const Scan> DeviceLog::take(const ColaFrame& frame, EncoderWidths widths) {
   const auto telegram = parse_cola(frame.payload, frame.language);
   if (!telegram) {
     lose("telegrams that begin like none");
@@ -79,30 +79,31 @@ std::optional<Scan> DeviceLog::take(const ColaFrame& frame, EncoderWidths widths
   if (const auto code = cola_error_code(*telegram)) {
     count_telegram(fmt::format("sFA {} ({})", *code, cola_error_text(*code)));
   } else {
-    count_telegram(fmt::format("{} {}", telegram->command, telegram->name));
+    kind_.assign(telegram->command).append(1, ' ').append(telegram->name);
+    count_telegram(kind_);
   }
   const bool scan =
       telegram->name == kScanDataName && (telegram->command == "sSN" || telegram->command == "sRA");
-  return scan ? take_scan(*telegram, frame.completed_ns, widths) : std::nullopt;
+  return scan ? take_scan(*telegram, frame.completed_ns, widths) : nullptr;
 }
 
-std::optional<Scan> DeviceLog::take_scan(const ColaTelegram& telegram, std::int64_t time_ns,
-                                         EncoderWidths widths) {
+std::shared_ptr<const Scan> DeviceLog::take_scan(const ColaTelegram& telegram, std::int64_t time_ns,
+                                                 EncoderWidths widths) {
   const auto failure = decode_scan_data(telegram, widths, data_);
   if (failure != FieldFailure::None) {
     lose(fmt::format("scan telegrams that cannot be read: {}", to_string(failure)));
     return {};
   }
   if (data_.appended > 0) note("scan telegrams with unknown fields at their end");
-  Scan scan;
-  const auto refusal = to_scan(data_, laser_, time_ns, scan);
+  auto scan = scans_.get();
+  const auto refusal = to_scan(data_, laser_, time_ns, *scan);
   if (refusal != ScanFailure::None) {
     lose(fmt::format("scan telegrams that hold no scan: {}", to_string(refusal)));
     return {};
   }
-  if (!is_new(scan.telegram_counter, scan.transmission_time_us, time_ns)) return {};
+  if (!is_new(scan->telegram_counter, scan->transmission_time_us, time_ns)) return {};
   note_time(time_ns);
-  note_scan(scan);
+  note_scan(*scan);
   return scan;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <string>
 
 #include "grabbers/capture/capture_statistics.hpp"
 #include "grabbers/capture/rough_clock.hpp"
@@ -9,6 +11,7 @@
 #include "grabbers/capture/sequence_tracker.hpp"
 #include "grabbers/wire/cola_framer.hpp"
 #include "grabbers/wire/scan_conversion.hpp"
+#include "pipeline/data/pool.hpp"
 #include "pipeline/data/scan.hpp"
 
 namespace crisp {
@@ -20,8 +23,8 @@ class DeviceLog {
   /// @param laser index of the laser in the rig
   DeviceLog(DeviceKind kind, std::string name, Address address, std::uint16_t laser = 0);
 
-  /// A telegram of a laser; gives a scan if it holds one that did not come before.
-  std::optional<Scan> take(const ColaFrame& frame, EncoderWidths widths);
+  /// A telegram of a laser; gives a scan if it holds one that did not come before, otherwise nullptr.
+  std::shared_ptr<const Scan> take(const ColaFrame& frame, EncoderWidths widths);
   /// A reading of a plate; gives it if it did not come before.
   std::optional<PlateReading> take(const PlateReading& reading);
   /// A telegram that TCP sent again after it had come.
@@ -34,7 +37,8 @@ class DeviceLog {
   DeviceStatistics statistics() const;
 
  private:
-  std::optional<Scan> take_scan(const ColaTelegram& telegram, std::int64_t time_ns, EncoderWidths widths);
+  std::shared_ptr<const Scan> take_scan(const ColaTelegram& telegram, std::int64_t time_ns,
+                                        EncoderWidths widths);
   bool is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns);
   void count_telegram(std::string_view kind);
   void note_time(std::int64_t time_ns);
@@ -43,6 +47,8 @@ class DeviceLog {
   DeviceStatistics statistics_;
   std::uint16_t laser_ = 0;
   ScanData data_;
+  Pool<Scan> scans_;
+  std::string kind_;  ///< of a telegram: here to keep its memory
   SequenceTracker tracker_;
   RoughClock clock_;
   RunningMedian handover_, period_;

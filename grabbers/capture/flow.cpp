@@ -130,7 +130,7 @@ void Flow::take_frame(const ColaFrame& frame) {
   }
   if (!settle(Speech::Cola)) return;
   auto scan = device_->log.take(frame, settings_.encoder_widths);
-  if (scan && is_of_rig()) give_(std::make_shared<const Scan>(std::move(*scan)));
+  if (scan && is_of_rig()) give_(std::move(scan));
 }
 
 void Flow::take_reading(const PlateReading& reading) {

@@ -59,13 +59,19 @@ std::uint32_t internet_sum(ByteView bytes, std::uint32_t sum) {
 }  // namespace crisp
 
 std::size_t std::hash<crisp::FlowKey>::operator()(const crisp::FlowKey& key) const noexcept {
-  // FNV-1a; addresses of one network differ in few bytes.
-  std::size_t mixed = 0xcbf29ce484222325;
-  const auto mix = [&](std::size_t value) { mixed = (mixed ^ value) * 0x100000001b3; };
+  // Addresses of one network differ in few bits; each step spreads those of a word over all that follow.
+  std::uint64_t mixed = 0;
+  const auto mix = [&](std::uint64_t value) {
+    mixed = (mixed ^ value) * 0x9e3779b97f4a7c15;
+    mixed ^= mixed >> 32;
+  };
   for (const auto* end : {&key.from, &key.to}) {
-    for (const auto byte : end->ip) mix(byte);
+    std::array<std::uint64_t, 2> words{};
+    static_assert(sizeof words == sizeof end->ip);
+    std::memcpy(words.data(), end->ip.data(), sizeof words);
+    for (const auto word : words) mix(word);
     mix(end->port);
   }
-  mix(static_cast<std::size_t>(key.transport));
+  mix(static_cast<std::uint64_t>(key.transport));
   return mixed;
 }

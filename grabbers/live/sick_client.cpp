@@ -112,7 +112,7 @@ bool SickClient::take_scan(const ColaFrame& frame) {
   auto scan = log_.take(frame, settings_.encoder_widths);
   if (!scan) return false;
   if (!compared_ && dialogue_ && dialogue_->step() == SickStep::Scans) note_difference(*scan);
-  if (!stopping_) give_(std::make_shared<const Scan>(std::move(*scan)));
+  if (!stopping_) give_(std::move(scan));
   return true;
 }
 

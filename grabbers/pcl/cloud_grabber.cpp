@@ -35,9 +35,11 @@ CloudGrabber::~CloudGrabber() noexcept { CloudGrabber::stop(); }
 
 void CloudGrabber::start() {
   if (!isRunning()) {
-    aligner_.emplace(rig_, AlignmentSettings{.mirror_half_width = kOnlineMirror}, settings_.online,
-                     AlignmentSink{.trajectory = [this](PlateTrajectory plate) { plate_ = std::move(plate); },
-                                   .measurements = [this](const Measurements& scan) { place(scan); }});
+    aligner_.emplace(
+        rig_, AlignmentSettings{.mirror_half_width = kOnlineMirror}, settings_.online,
+        AlignmentSink{
+            .trajectory = [this](PlateTrajectory plate) { plate_ = std::move(plate); },
+            .measurements = [this](const std::shared_ptr<const Measurements>& scan) { place(*scan); }});
     revolutions_.emplace(settings_.revolutions,
                          [this](const Cloud::ConstPtr& cloud) { (*cloud_signal_)(cloud); });
   }

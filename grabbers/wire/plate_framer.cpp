@@ -8,6 +8,16 @@ void PlateFramer::gap() {
   line_.clear();
 }
 
+/// Takes those bytes off the front that are within a sentence and do not end it; returns how many.
+std::size_t PlateFramer::lengthen(ByteView bytes) {
+  if (line_.empty() || line_.size() > kLongestPlateSentence) return 0;
+  const auto room = bytes.first(std::min(bytes.size(), kLongestPlateSentence + 1 - line_.size()));
+  const auto end =
+      std::find_if(room.begin(), room.end(), [](auto byte) { return byte == '$' || byte == '\n'; });
+  line_.append(room.begin(), end);
+  return static_cast<std::size_t>(end - room.begin());
+}
+
 std::optional<PlateReading> PlateFramer::take(char c) {
   if (c == '$') {
     gap();  // of a sentence that lost its end

@@ -28,9 +28,14 @@ class PlateFramer {
   /// @param arrival_ns [ns] hub time at which these bytes arrived: the reading's receipt time
   template <class Sink>
   void feed(ByteView bytes, std::int64_t arrival_ns, Sink&& sink) {
-    for (const auto byte : bytes) {
+    while (!bytes.empty()) {
+      const auto byte = bytes.front();
       latest_ns_ = line_.empty() || byte == '$' ? arrival_ns : std::max(latest_ns_, arrival_ns);
-      if (const auto reading = take(static_cast<char>(byte))) sink(*reading);
+      const auto inside = lengthen(bytes);
+      if (inside == 0) {
+        if (const auto reading = take(static_cast<char>(byte))) sink(*reading);
+      }
+      bytes = bytes.subspan(std::max<std::size_t>(inside, 1));
     }
   }
 
@@ -43,6 +48,7 @@ class PlateFramer {
   bool waiting() const { return !line_.empty(); }
 
  private:
+  std::size_t lengthen(ByteView bytes);
   std::optional<PlateReading> take(char c);
   std::optional<PlateReading> finish_line();
 

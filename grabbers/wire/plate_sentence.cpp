@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::string_view kTalker = "PPLT,";
 constexpr std::size_t kChecksumEnd = 3;  // "*04"
+constexpr std::string_view kHexDigits = "0123456789ABCDEF";
 
 std::uint8_t checksum(std::string_view body) {
   return std::accumulate(body.begin(), body.end(), std::uint8_t{0},
@@ -52,7 +53,8 @@ PlateFailure decode_plate_sentence(std::string_view line, PlateReading& reading)
     return PlateFailure::Truncated;
   }
   auto body = line.substr(1, line.size() - 1 - kChecksumEnd);
-  if (line.substr(line.size() - kChecksumEnd) != fmt::format("*{:02X}", checksum(body))) {
+  const unsigned sum = checksum(body);
+  if (line[line.size() - 2] != kHexDigits[sum / 16] || line.back() != kHexDigits[sum % 16]) {
     return PlateFailure::BadChecksum;
   }
   if (!body.starts_with(kTalker)) return PlateFailure::OtherSentence;

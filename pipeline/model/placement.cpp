@@ -82,12 +82,13 @@ bool are_dense(const Measurements& beams, std::size_t begin, std::size_t end, co
 void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
                         const TakePlaced& take) const {
   check_epochs(beams, plate);
-  std::vector<std::vector<double>> parameters;
-  for (const auto& chain : chains_) parameters.push_back(chain_values(chain, values_));
-  const std::vector<simd::BareLaser> bare = bare_lasers(chains_, values_);
+  std::vector<std::vector<double>> parameters(chains_.size());
+  for (std::size_t k = 0; k < chains_.size(); ++k) {
+    if (!chains_[k].bare) parameters[k] = chain_values(chains_[k], values_);
+  }
   Tracer<double> tracer(beams, plate);
   Gathering points(take);
-  StrewnBeams strewn(bare, plate);
+  StrewnBeams strewn(bare_, plate);
   for (std::size_t i = 0; i < beams.size();) {
     const LaserChain& chain = chain_of(chains_, beams, i);
     const std::size_t laser = beams.laser[i];
@@ -95,7 +96,7 @@ void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
       const std::size_t end = run_end(beams, i, StrewnBeams::kCapacity);
       if (are_dense(beams, i, end, plate)) {
         points.add(strewn);
-        i = points.add_bare(beams, i, bare[laser], tracer.cursor());
+        i = points.add_bare(beams, i, bare_[laser], tracer.cursor());
         continue;
       }
       for (; i < end; ++i) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/model/traced_runs.hpp"
 
 namespace crisp {
 namespace {
@@ -83,6 +84,7 @@ SensorModel::SensorModel(Calibration calibration, const TermRegistry& terms)
     next += kBaseParameters + count_parameters(laser.terms);
   }
   add_parameters("plate", calibration_.plate_terms);
+  bare_ = bare_lasers(chains_, values_);
 }
 
 void SensorModel::add_parameters(const std::string& owner, const std::vector<TermParameters>& terms) {
@@ -101,6 +103,7 @@ std::size_t SensorModel::index(const std::string& name) const {
 void SensorModel::set_values(const Eigen::VectorXd& values) {
   if (values.size() != values_.size()) throw Error("the sensor model was given a wrong number of values");
   values_ = values;
+  bare_ = bare_lasers(chains_, values_);
 }
 
 Calibration SensorModel::calibration() const {

@@ -12,6 +12,7 @@
 #include "pipeline/data/calibration.hpp"
 #include "pipeline/data/measurements.hpp"
 #include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/model/bare_chain.hpp"
 #include "pipeline/model/term.hpp"
 
 namespace crisp {
@@ -96,6 +97,7 @@ class SensorModel {
   std::vector<std::string> names_;
   Eigen::VectorXd values_;
   std::vector<LaserChain> chains_;
+  std::vector<simd::BareLaser> bare_;  ///< the chains as equation (2) alone takes them, at values_
 };
 
 }  // namespace crisp

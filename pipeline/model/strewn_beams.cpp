@@ -4,12 +4,13 @@
 namespace crisp {
 
 StrewnBeams::StrewnBeams(std::span<const simd::BareLaser> lasers, const PlateTrajectory& plate)
-    : lasers_(lasers), plates_(lasers.size(), PlateTrajectory::Cursor(plate)) {}
+    : lasers_(lasers), plate_(plate) {}
 
 void StrewnBeams::add(const Measurements& beams, std::size_t i) {
   const std::size_t laser = beams.laser[i];
   const simd::BareLaser& own = lasers_[laser];
   const double time = beams.time[i] + own.eta;
+  if (plates_.empty()) plates_.assign(lasers_.size(), PlateTrajectory::Cursor(plate_));
   const auto arc = plates_[laser].arc(time);
   if (!arc) return;
   if (beams_.empty()) {  // only where there are such beams at all

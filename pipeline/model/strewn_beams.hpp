@@ -64,7 +64,9 @@ class StrewnBeams {
   static constexpr std::size_t kSize = kCapacity + simd::kBeyond;
 
   std::span<const simd::BareLaser> lasers_;
-  std::vector<PlateTrajectory::Cursor> plates_;  // one a laser: each has times of its own
+  const PlateTrajectory& plate_;
+  std::vector<PlateTrajectory::Cursor>
+      plates_;  // one a laser, once there is a beam: each has times of its own
   std::vector<std::uint32_t> index_;
   std::vector<float> range_;
   std::vector<float> mirror_;

@@ -3,8 +3,9 @@
 
 namespace crisp {
 
-Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model) {
-  auto cloud = std::make_shared<Cloud>();
+Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model,
+                std::shared_ptr<Cloud> into) {
+  const auto cloud = std::move(into);
   cloud->header.frame_id = "base";
   cloud->header.stamp = static_cast<std::uint64_t>(beams.epoch_ns / 1000);  // PCL's stamps are microseconds
   cloud->points.resize(beams.size());
@@ -25,7 +26,7 @@ Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const S
   cloud->points.resize(placed);
   cloud->width = static_cast<std::uint32_t>(placed);
   cloud->height = 1;
-  return {.cloud = std::move(cloud), .outside = beams.size() - placed};
+  return {.cloud = cloud, .outside = beams.size() - placed};
 }
 
 }  // namespace crisp

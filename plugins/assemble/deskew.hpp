@@ -21,8 +21,10 @@ struct Deskewed {
 ///
 /// @param beams  n measurements: range [m], mirror angle [rad], hub time [s since the epoch], laser
 /// @param plate  φ(t) [rad] on the hub's clock, with the same epoch
+/// @param into   what becomes the cloud: nobody else holds it; its memory is used, not what it held
 /// @return the cloud in the base's frame [m], in the order of the measurements
 /// @throws Error if `beams` names a laser that `model` does not have, or the epochs differ
-Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model);
+Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model,
+                std::shared_ptr<Cloud> into = std::make_shared<Cloud>());
 
 }  // namespace crisp

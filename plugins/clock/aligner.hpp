@@ -11,6 +11,7 @@
 
 #include "pipeline/data/measurements.hpp"
 #include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/data/pool.hpp"
 #include "pipeline/data/rig.hpp"
 #include "pipeline/data/scan.hpp"
 #include "plugins/clock/laser_track.hpp"
@@ -40,7 +41,7 @@ struct AlignmentReport {
 /// Where an alignment puts what it makes: the plate's trajectory over a time first, then measurements in it.
 struct AlignmentSink {
   std::function<void(PlateTrajectory)> trajectory;
-  std::function<void(Measurements)> measurements;
+  std::function<void(std::shared_ptr<const Measurements>)> measurements;
 };
 
 /// From scans and readings in the order of receipt to measurements and the plate's trajectory on the hub's
@@ -72,7 +73,8 @@ class HubTracks {
 
   std::vector<LaserTrack>& lasers() { return lasers_; }
   const std::vector<LaserTrack>& lasers() const { return lasers_; }
-  const RigLaser& laser(std::size_t index) const { return lasers_[index].laser(); }
+  /// What a scan measured, on the hub's clock.
+  std::shared_ptr<const Measurements> measurements_of(const TimedScan& scan);
   PlateTrack& plate() { return plate_; }
   const PlateTrack& plate() const { return plate_; }
   std::int64_t epoch_ns() const { return epoch_ns_; }
@@ -87,6 +89,7 @@ class HubTracks {
  private:
   std::vector<LaserTrack> lasers_;
   PlateTrack plate_;
+  Pool<Measurements> measurements_;
   std::int64_t epoch_ns_ = 0;
   bool begun_ = false;
   double now_ = 0;

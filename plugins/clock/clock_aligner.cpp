@@ -84,8 +84,9 @@ void ClockAligner::hand_out(double limit) {
   sink_.trajectory(
       plate.piece(scans.front().begin - settings_.margin, end + settings_.margin, epoch_ns, settings_.plate));
   for (auto& scan : scans) {
-    sink_.measurements(measurements_of(scan, tracks_.laser(scan.scan->laser), epoch_ns));
+    auto measurements = tracks_.measurements_of(scan);
     scan.scan.reset();
+    sink_.measurements(std::move(measurements));
   }
   plate.forget_before(limit - settings_.margin - kLate);
 }

@@ -212,9 +212,10 @@ void AlignStage::process(const Inputs& in, Outputs& out, Context& context) {
   out_ = &out;
   if (!aligner_) {
     settings_.drift = drift_ * kPpmPerHour;
-    aligner_ = make_aligner(context.rig(),
-                            {.trajectory = [this](PlateTrajectory plate) { out_->give(std::move(plate)); },
-                             .measurements = [this](Measurements scan) { out_->give(std::move(scan)); }});
+    aligner_ = make_aligner(
+        context.rig(),
+        {.trajectory = [this](PlateTrajectory plate) { out_->give(std::move(plate)); },
+         .measurements = [this](std::shared_ptr<const Measurements> scan) { out_->give(std::move(scan)); }});
   }
   if (auto scan = in.share<Scan>()) aligner_->add(std::move(scan));
   if (const auto* reading = in.find<PlateReading>()) aligner_->add(*reading);

@@ -44,6 +44,12 @@ LaserTrack* HubTracks::track_of(const Scan& scan) {
   return nullptr;
 }
 
+std::shared_ptr<const Measurements> HubTracks::measurements_of(const TimedScan& scan) {
+  auto measurements = measurements_.get();
+  fill_measurements(scan, lasers_[scan.scan->laser].laser(), epoch_ns_, *measurements);
+  return measurements;
+}
+
 void HubTracks::refuse_if_missing() const {
   if (std::all_of(lasers_.begin(), lasers_.end(),
                   [](const auto& l) { return l.report().clock.stamps == 0; })) {

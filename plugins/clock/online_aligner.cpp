@@ -77,7 +77,7 @@ void OnlineAligner::hand_out(const TimedScan& scan) {
   sink_.trajectory(tracks_.plate().piece(scan.begin + settings_.least_lag - settings_.margin,
                                          last_beam(scan) + settings_.greatest_lag + settings_.margin,
                                          tracks_.epoch_ns(), alignment_.plate));
-  sink_.measurements(measurements_of(scan, tracks_.laser(scan.scan->laser), tracks_.epoch_ns()));
+  sink_.measurements(tracks_.measurements_of(scan));
 }
 
 AlignmentReport OnlineAligner::finish() {

@@ -36,7 +36,8 @@ double TimedScan::beam_time(std::size_t k) const {
   return begin + (angle - kFirstPossible) / kTurn * period;
 }
 
-Measurements measurements_of(const TimedScan& timed, const RigLaser& laser, std::int64_t epoch_ns) {
+void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64_t epoch_ns,
+                       Measurements& out) {
   const Scan& scan = *timed.scan;
   const auto& ranges = scan.echoes.front().ranges;
   const auto& remissions = scan.echoes.front().remissions;
@@ -46,8 +47,8 @@ Measurements measurements_of(const TimedScan& timed, const RigLaser& laser, std:
   const double time_step = scan.angle_step / kTurn * timed.period;
   const double first_angle = scan.start_angle - laser.mount;
 
-  Measurements out;
   out.epoch_ns = epoch_ns;
+  out.cos_incidence.clear();
   resize(out, beams);
   std::size_t n = 0;
   for (std::size_t k = 0; k < beams; ++k) {
@@ -68,7 +69,7 @@ Measurements measurements_of(const TimedScan& timed, const RigLaser& laser, std:
   }
   resize(out, n);
   std::fill(out.laser.begin(), out.laser.end(), scan.laser);
-  return out;
+  if (!has_remissions) std::fill(out.remission.begin(), out.remission.end(), 0.0F);
 }
 
 }  // namespace crisp

@@ -25,6 +25,8 @@ struct TimedScan {
 /// @param timed   with at least one echo; the first is taken
 /// @param laser   says by how much the reported angles are off θ
 /// @param epoch_ns [ns since the Unix epoch]
-Measurements measurements_of(const TimedScan& timed, const RigLaser& laser, std::int64_t epoch_ns);
+/// @param out     holds them afterwards, and nothing else
+void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64_t epoch_ns,
+                       Measurements& out);
 
 }  // namespace crisp

@@ -41,7 +41,7 @@ void align(benchmark::State& state, const AlignmentSettings& settings) {
     ClockAligner aligner(
         default_rig(), settings,
         {.trajectory = [](const PlateTrajectory& plate) { benchmark::DoNotOptimize(plate.size()); },
-         .measurements = [&](const Measurements& scan) { beams += scan.size(); }});
+         .measurements = [&](const std::shared_ptr<const Measurements>& scan) { beams += scan->size(); }});
     for (const auto& event : all) std::visit([&](const auto& received) { aligner.add(received); }, event);
     benchmark::DoNotOptimize(aligner.finish());
   }

@@ -56,7 +56,8 @@ Aligned align(const std::vector<HubItem>& items, const Rig& rig) {
       rig, {.mirror_half_width = kOnlineMirror}, {},
       {.trajectory = [](const PlateTrajectory&) {},
        .measurements =
-           [&](const Measurements& scan) {
+           [&](const std::shared_ptr<const Measurements>& given) {
+             const Measurements& scan = *given;
              if (scan.size() == 0) return;
              aligned.times[{scan.laser.front(), hash_of(scan)}] = {
                  1e-9 * static_cast<double>(scan.epoch_ns % 1'000'000'000'000) + scan.time.front(),

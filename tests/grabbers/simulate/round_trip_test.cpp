@@ -123,9 +123,11 @@ struct Aligned {
 
 Aligned align(const Recording& recording, const Rig& rig) {
   Aligned aligned;
-  ClockAligner aligner(rig, {},
-                       {.trajectory = [&](PlateTrajectory plate) { aligned.plate = std::move(plate); },
-                        .measurements = [&](const Measurements& beams) { aligned.beams.append(beams); }});
+  ClockAligner aligner(
+      rig, {},
+      {.trajectory = [&](PlateTrajectory plate) { aligned.plate = std::move(plate); },
+       .measurements =
+           [&](const std::shared_ptr<const Measurements>& beams) { aligned.beams.append(*beams); }});
   auto reading = recording.readings.begin();
   for (const auto& scan : recording.scans) {
     for (; reading != recording.readings.end() && reading->receipt_ns < scan.receipt_ns; ++reading) {

@@ -39,11 +39,13 @@ using Turns = std::vector<SimulatedLaser::Turn>;
 
 /// Keeps what an aligner hands out.
 inline AlignmentSink sink_into(Aligned& out) {
-  return {.trajectory =
-              [&](PlateTrajectory p) {
-                out.stretches.push_back({std::move(p), {}});
-              },
-          .measurements = [&](Measurements m) { out.stretches.back().scans.push_back(std::move(m)); }};
+  return {
+      .trajectory =
+          [&](PlateTrajectory p) {
+            out.stretches.push_back({std::move(p), {}});
+          },
+      .measurements =
+          [&](const std::shared_ptr<const Measurements>& m) { out.stretches.back().scans.push_back(*m); }};
 }
 
 /// Feeds all telegrams to an aligner in the order of their receipt.

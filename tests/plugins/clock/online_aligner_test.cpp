@@ -63,7 +63,7 @@ std::vector<double> waits(const OnlineSettings& settings, const std::function<bo
   OnlineAligner aligner(rig, {}, settings,
                         {.trajectory = [](const PlateTrajectory&) {},
                          .measurements =
-                             [&](const Measurements&) {
+                             [&](const std::shared_ptr<const Measurements>&) {
                                const auto& scan = turns.at(waits.size()).scan;
                                waits.push_back(now - 1e-9 * static_cast<double>(scan.receipt_ns - kStart_ns));
                              }});
