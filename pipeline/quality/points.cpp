@@ -4,22 +4,32 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
 namespace {
 
 bool is_a_position(double value) { return std::abs(value) <= 1e12; }
 
+bool are_positions(std::span<const double> values) {
+  constexpr std::size_t kBlock = 65536;  // values
+  std::vector<char> good(blocks_of(values.size(), kBlock));
+  for_blocks(values.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    good[block] = std::ranges::all_of(values.subspan(begin, end - begin), is_a_position) ? 1 : 0;
+  });
+  return std::ranges::all_of(good, [](char block) { return block != 0; });
+}
+
 }  // namespace
 
 void Vectors::assign(std::size_t n, double value) {
-  x.assign(n, value);
-  y.assign(n, value);
-  z.assign(n, value);
+  const std::array<std::vector<double>*, 3> axes{&x, &y, &z};
+  for_each_index(axes.size(), [&](std::size_t axis) { axes[axis]->assign(n, value); });
 }
 
 void check(const PointsView& points) {
@@ -30,11 +40,10 @@ void check(const PointsView& points) {
         "give as many of each");
   }
   for (const auto& axis : {points.x, points.y, points.z}) {
+    if (are_positions(axis)) continue;
     const auto bad = std::ranges::find_if_not(axis, is_a_position);
-    if (bad != axis.end()) {
-      throw Error(fmt::format("point {} has a coordinate of {} m", bad - axis.begin(), *bad),
-                  "leave out points without a valid position");
-    }
+    throw Error(fmt::format("point {} has a coordinate of {} m", bad - axis.begin(), *bad),
+                "leave out points without a valid position");
   }
 }
 

@@ -18,21 +18,19 @@ struct Slots {
   std::vector<float> weight;
 };
 
-Slots fill_slots(const Tiles& tiles, const PointsView& points, std::span<const double> weights,
-                 double scale) {
+Slots fill_slots(const Tiles& tiles, std::span<const double> weights, double scale) {
   const std::size_t padded = tiles.points() + simd::kPadding;
-  const std::array<std::span<const double>, 3> axes{points.x, points.y, points.z};
   Slots slots;
-  slots.weight.resize(padded);
-  for (auto& axis : slots.offset) axis.resize(padded);
+  const std::array<std::vector<float>*, 4> all{&slots.offset[0], &slots.offset[1], &slots.offset[2],
+                                               &slots.weight};
+  for_each_index(all.size(), [&](std::size_t i) { all[i]->resize(padded); });
   for_blocks(tiles.size(), 1024, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       for (std::uint32_t slot = tiles.begin()[t]; slot < tiles.begin()[t + 1]; ++slot) {
-        const std::uint32_t i = tiles.order()[slot];
-        slots.weight[slot] = static_cast<float>(weights[i]);
+        slots.weight[slot] = static_cast<float>(weights[tiles.order()[slot]]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
           const double middle = 0.5 * (tiles.boxes().low[axis][t] + tiles.boxes().high[axis][t]);
-          slots.offset[axis][slot] = static_cast<float>(scale * (axes[axis][i] - middle));
+          slots.offset[axis][slot] = static_cast<float>(scale * (tiles.at(axis)[slot] - middle));
         }
       }
     }
@@ -90,7 +88,7 @@ GaussianSums sum_over_tiles(const Tiles& tiles, const PointsView& points, std::s
                             const TruncatedGaussian& kernel, bool gradient) {
   const double scale = std::sqrt(kernel.exponent * std::numbers::log2e);
   const simd::PairKernel pair{kernel.radius, scale, static_cast<float>(kernel.floor)};
-  const Slots slots = fill_slots(tiles, points, weights, scale);
+  const Slots slots = fill_slots(tiles, weights, scale);
   const simd::TileArrays data = arrays(tiles, slots);
   GaussianSums result;
   if (gradient) result.pull.assign(points.size(), 0);

@@ -15,7 +15,8 @@ std::array<std::span<const double>, 3> axes(const PointsView& points) {
   return {points.x, points.y, points.z};
 }
 
-constexpr std::size_t kCutBlock = 65536;  // points
+constexpr std::size_t kCutBlock = 65536;     // points
+constexpr std::size_t kGatherBlock = 16384;  // points
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Each box of a level from the kFanOut below it.
@@ -50,7 +51,8 @@ double squared_gap(const Boxes& a, std::size_t i, const Boxes& b, std::size_t j)
 
 Tiles::Tiles(const PointsView& points, double reach, std::vector<std::uint32_t> order)
     : reach_(reach), order_(std::move(order)) {
-  cut(points);
+  gather(points);
+  cut();
   std::size_t boxes = size();
   do {
     const std::size_t above = (boxes + kFanOut - 1) / kFanOut;
@@ -58,43 +60,55 @@ Tiles::Tiles(const PointsView& points, double reach, std::vector<std::uint32_t> 
     boxes = above;
   } while (boxes > 1);
   levels_.emplace_back(boxes);
-  refresh(points);
+  set_tile_boxes();
 }
 
-void Tiles::cut(const PointsView& points) {
+void Tiles::gather(const PointsView& points) {
+  const auto coordinates = axes(points);
+  for (auto& axis : at_) axis.resize(order_.size());
+  for_blocks(order_.size(), kGatherBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t slot = begin; slot < end; ++slot) at_[axis][slot] = coordinates[axis][order_[slot]];
+    }
+  });
+}
+
+void Tiles::cut() {
   std::vector<std::vector<std::uint32_t>> begins(blocks_of(order_.size(), kCutBlock));
   for_blocks(order_.size(), kCutBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    begins[block] = cut(points, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+    begins[block] = cut(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
   });
   for (const auto& some : begins) begin_.insert(begin_.end(), some.begin(), some.end());
   begin_.push_back(static_cast<std::uint32_t>(order_.size()));
 }
 
-std::vector<std::uint32_t> Tiles::cut(const PointsView& points, std::uint32_t begin,
-                                      std::uint32_t end) const {
+std::vector<std::uint32_t> Tiles::cut(std::uint32_t begin, std::uint32_t end) const {
   constexpr double kLargest = 1.75;  // of the reach: tiles well filled where points are few, small elsewhere
-  const auto coordinates = axes(points);
   std::vector<std::uint32_t> begins;
   std::array<double, 3> low{};
   std::array<double, 3> high{};
   for (std::uint32_t slot = begin; slot < end; ++slot) {
     bool fits = !begins.empty() && slot - begins.back() < kCapacity;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double at = coordinates[axis][order_[slot]];
+      const double at = at_[axis][slot];
       low[axis] = std::min(low[axis], at);
       high[axis] = std::max(high[axis], at);
       fits = fits && high[axis] - low[axis] <= kLargest * reach_;
     }
     if (fits) continue;
     begins.push_back(slot);
-    for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = high[axis] = coordinates[axis][order_[slot]];
+    for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = high[axis] = at_[axis][slot];
   }
   return begins;
 }
 
 bool Tiles::refresh(const PointsView& points) {
+  gather(points);
+  return set_tile_boxes();
+}
+
+bool Tiles::set_tile_boxes() {
   constexpr std::size_t kBlock = 1024;  // tiles
-  const auto coordinates = axes(points);
   Boxes& tiles = levels_.front();
   std::vector<char> compact(blocks_of(size(), kBlock), 1);
   for_blocks(size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -103,8 +117,8 @@ bool Tiles::refresh(const PointsView& points) {
         double low = kInfinity;
         double high = -kInfinity;
         for (std::uint32_t slot = begin_[t]; slot < begin_[t + 1]; ++slot) {
-          low = std::min(low, coordinates[axis][order_[slot]]);
-          high = std::max(high, coordinates[axis][order_[slot]]);
+          low = std::min(low, at_[axis][slot]);
+          high = std::max(high, at_[axis][slot]);
         }
         tiles.low[axis][t] = low;
         tiles.high[axis][t] = high;

@@ -38,7 +38,8 @@ class Tiles {
   std::size_t size() const { return begin_.size() - 1; }
   std::size_t points() const { return order_.size(); }
   double reach() const { return reach_; }
-  std::span<const std::uint32_t> order() const { return order_; }  ///< slot → index of the point
+  std::span<const std::uint32_t> order() const { return order_; }           ///< slot → index of the point
+  std::span<const double> at(std::size_t axis) const { return at_[axis]; }  ///< [m] by slot: x, y or z
   std::span<const std::uint32_t> begin() const {
     return begin_;
   }                                                       ///< tile → its first slot; one more than tiles
@@ -52,13 +53,16 @@ class Tiles {
   void near_tiles(const std::array<double, 3>& at, std::vector<std::uint32_t>& near) const;
 
  private:
-  void cut(const PointsView& points);
-  std::vector<std::uint32_t> cut(const PointsView& points, std::uint32_t begin, std::uint32_t end) const;
+  void gather(const PointsView& points);
+  void cut();
+  std::vector<std::uint32_t> cut(std::uint32_t begin, std::uint32_t end) const;
+  bool set_tile_boxes();
   struct Query;
   void near_below(std::size_t level, std::size_t box, const Query& query) const;
 
   double reach_;
   std::vector<std::uint32_t> order_;
+  std::array<std::vector<double>, 3> at_;  // by slot: what is looked up all over the cloud is looked up once
   std::vector<std::uint32_t> begin_;
   std::vector<Boxes> levels_;  // tiles, groups, groups of groups …; each filled up to a multiple of kFanOut
 };
