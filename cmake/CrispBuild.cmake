@@ -131,14 +131,15 @@ function(crisp_fuzz name)
 endfunction()
 
 # crisp_benchmark(<name> SOURCES ... LIBRARIES ...) makes one Google Benchmark program, <name>_bench.
-# Benchmarks are no tests: nothing fails for being slow.
+# Benchmarks are no tests: nothing fails for being slow. Their memory comes from where the program's does.
 function(crisp_benchmark name)
   if(NOT CRISP_BUILD_BENCHMARKS)
     return()
   endif()
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIBRARIES")
   add_executable(${name}_bench ${arg_SOURCES})
-  target_link_libraries(${name}_bench PRIVATE ${arg_LIBRARIES} benchmark::benchmark_main crisp_settings)
+  target_link_libraries(${name}_bench PRIVATE ${arg_LIBRARIES} benchmark::benchmark_main crisp_allocator
+                        crisp_settings)
   target_compile_definitions(${name}_bench PRIVATE CRISP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set_target_properties(${name}_bench PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bench")
 endfunction()
