@@ -76,14 +76,18 @@ std::optional<PlateArc> PlateTrajectory::Cursor::arc(double t) {
   const auto& times = trajectory_->times_;
   if (times.size() < 2 || !(t >= times.front() && t <= times.back())) return std::nullopt;
   constexpr int kSteps = 16;  // beyond these a bisection is cheaper than walking
-  const auto last = static_cast<double>(times.size() - 2);
+  const auto last = static_cast<std::ptrdiff_t>(times.size() - 2);
+  const auto most = static_cast<double>(last);
   for (int step = 0; step < kSteps; ++step) {
     const double from = times[interval_];
     const double to = times[interval_ + 1];
     if (t >= from && t <= to) return trajectory_->arc(interval_);
     // Readings are about even: as many intervals on as this one's width goes into the way.
-    const double on = std::floor((t - from) / (to - from));  // not 0
-    interval_ = static_cast<std::size_t>(std::clamp(static_cast<double>(interval_) + on, 0.0, last));
+    const double on = std::clamp((t - from) / (to - from), -most, most);
+    auto whole = static_cast<std::ptrdiff_t>(on);  // rounded down, for which std::floor() may be a call
+    if (on < static_cast<double>(whole)) --whole;
+    interval_ = static_cast<std::size_t>(
+        std::clamp(static_cast<std::ptrdiff_t>(interval_) + whole, std::ptrdiff_t{0}, last));
   }
   const auto next = std::upper_bound(times.begin() + 1, times.end() - 1, t);
   interval_ = static_cast<std::size_t>(next - times.begin()) - 1;

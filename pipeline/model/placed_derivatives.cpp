@@ -48,12 +48,11 @@ std::vector<std::vector<Jet>> seeded_parameters(const std::vector<LaserChain>& c
 
 /// Placed points and their derivatives, where all chains are equation (2) alone.
 Placed place_bare(const Measurements& beams, const PlateTrajectory& plate,
-                  const std::vector<LaserChain>& chains, const Eigen::VectorXd& values, const FreeSlots& free,
-                  PointDerivatives& derivatives) {
+                  const std::vector<LaserChain>& chains, std::span<const simd::BareLaser> lasers,
+                  const FreeSlots& free, PointDerivatives& derivatives) {
   Placed result;
   result.points.resize(3, static_cast<Eigen::Index>(beams.size()));
   result.index.reserve(beams.size());
-  const auto lasers = bare_lasers(chains, values);
   StrewnBeams strewn(lasers, plate);
   for (std::size_t i = 0; i < beams.size();) {
     strewn.clear();
@@ -110,20 +109,20 @@ void differentiate(const Measurements& beams, const PlateTrajectory& plate,
 Placed SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
                           const std::vector<std::size_t>& free, PointDerivatives& derivatives) const {
   check_epochs(beams, plate);
-  const FreeSlots slots = free_slots(chains_, free);
+  const FreeSlots slots = free_slots(fixed_->chains, free);
   derivatives.columns = slots.columns;
   derivatives.stride = 0;
   for (const auto& columns : slots.columns) derivatives.stride = std::max(derivatives.stride, columns.size());
   const auto room_for = [&](std::size_t points) {
     derivatives.values.setZero(3, static_cast<Eigen::Index>(points * derivatives.stride));
   };
-  if (std::ranges::all_of(chains_, &LaserChain::bare)) {
+  if (std::ranges::all_of(fixed_->chains, &LaserChain::bare)) {
     room_for(beams.size());
-    return place_bare(beams, plate, chains_, values_, slots, derivatives);
+    return place_bare(beams, plate, fixed_->chains, bare_, slots, derivatives);
   }
   Placed result = place(beams, plate);
   room_for(result.index.size());
-  differentiate(beams, plate, chains_, values_, slots, derivatives);
+  differentiate(beams, plate, fixed_->chains, values_, slots, derivatives);
   return result;
 }
 

@@ -82,15 +82,15 @@ bool are_dense(const Measurements& beams, std::size_t begin, std::size_t end, co
 void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
                         const TakePlaced& take) const {
   check_epochs(beams, plate);
-  std::vector<std::vector<double>> parameters(chains_.size());
-  for (std::size_t k = 0; k < chains_.size(); ++k) {
-    if (!chains_[k].bare) parameters[k] = chain_values(chains_[k], values_);
+  std::vector<std::vector<double>> parameters(fixed_->chains.size());
+  for (std::size_t k = 0; k < fixed_->chains.size(); ++k) {
+    if (!fixed_->chains[k].bare) parameters[k] = chain_values(fixed_->chains[k], values_);
   }
   Tracer<double> tracer(beams, plate);
   Gathering points(take);
   StrewnBeams strewn(bare_, plate);
   for (std::size_t i = 0; i < beams.size();) {
-    const LaserChain& chain = chain_of(chains_, beams, i);
+    const LaserChain& chain = chain_of(fixed_->chains, beams, i);
     const std::size_t laser = beams.laser[i];
     if (chain.bare) {
       const std::size_t end = run_end(beams, i, StrewnBeams::kCapacity);

@@ -45,6 +45,15 @@ std::size_t count_parameters(const std::vector<TermParameters>& terms) {
   return n;
 }
 
+void add_names(std::vector<std::string>& names, const std::string& owner,
+               const std::vector<TermParameters>& terms) {
+  for (const auto& term : terms) {
+    for (const auto& parameter : term.parameters) {
+      names.push_back(owner + "." + term.term + "." + parameter.name);
+    }
+  }
+}
+
 /// Calls visit(parameter) for every parameter of a calibration, in the order of SensorModel::values().
 template <class AnyCalibration, class Visit>
 void for_each_parameter(AnyCalibration& calibration, Visit visit) {
@@ -62,52 +71,52 @@ void for_each_parameter(AnyCalibration& calibration, Visit visit) {
 
 }  // namespace
 
-SensorModel::SensorModel(Calibration calibration, const TermRegistry& terms)
-    : calibration_(std::move(calibration)) {
-  std::vector<double> values;
-  for_each_parameter(calibration_, [&](const Parameter& parameter) { values.push_back(parameter.value); });
-  values_ = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-
-  std::size_t first_plate = values.size() - count_parameters(calibration_.plate_terms);
+SensorModel::Fixed SensorModel::resolve(Calibration calibration, const TermRegistry& terms) {
+  Fixed fixed(std::move(calibration));
+  std::size_t first_plate = 0;
+  for_each_parameter(fixed.calibration, [&](const Parameter&) { ++first_plate; });
+  first_plate -= count_parameters(fixed.calibration.plate_terms);
   std::size_t next = 0;
-  for (const auto& laser : calibration_.lasers) {
+  for (const auto& laser : fixed.calibration.lasers) {
     for (const auto* parameter : {&laser.lambda, &laser.tau, &laser.alpha, &laser.eta}) {
-      names_.push_back(laser.name + "." + parameter->name);
+      fixed.names.push_back(laser.name + "." + parameter->name);
     }
-    add_parameters(laser.name, laser.terms);
+    add_names(fixed.names, laser.name, laser.terms);
 
-    LaserChain& chain = chains_.emplace_back();
+    LaserChain& chain = fixed.chains.emplace_back();
     chain.phases.resize(kPhases);
     for (std::size_t i = 0; i < kBaseParameters; ++i) chain.slots.push_back(next + i);
     add_terms(chain, laser.terms, next + kBaseParameters, Scope::kLaser, terms);
-    add_terms(chain, calibration_.plate_terms, first_plate, Scope::kPlate, terms);
+    add_terms(chain, fixed.calibration.plate_terms, first_plate, Scope::kPlate, terms);
     next += kBaseParameters + count_parameters(laser.terms);
   }
-  add_parameters("plate", calibration_.plate_terms);
-  bare_ = bare_lasers(chains_, values_);
+  add_names(fixed.names, "plate", fixed.calibration.plate_terms);
+  return fixed;
 }
 
-void SensorModel::add_parameters(const std::string& owner, const std::vector<TermParameters>& terms) {
-  for (const auto& term : terms) {
-    for (const auto& parameter : term.parameters)
-      names_.push_back(owner + "." + term.term + "." + parameter.name);
-  }
+SensorModel::SensorModel(Calibration calibration, const TermRegistry& terms)
+    : fixed_(std::make_shared<const Fixed>(resolve(std::move(calibration), terms))) {
+  std::vector<double> values;
+  for_each_parameter(fixed_->calibration,
+                     [&](const Parameter& parameter) { values.push_back(parameter.value); });
+  values_ = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  bare_ = bare_lasers(fixed_->chains, values_);
 }
 
 std::size_t SensorModel::index(const std::string& name) const {
-  const auto found = std::find(names_.begin(), names_.end(), name);
-  if (found == names_.end()) throw Error("the sensor model has no parameter " + name);
-  return static_cast<std::size_t>(found - names_.begin());
+  const auto found = std::find(names().begin(), names().end(), name);
+  if (found == names().end()) throw Error("the sensor model has no parameter " + name);
+  return static_cast<std::size_t>(found - names().begin());
 }
 
 void SensorModel::set_values(const Eigen::VectorXd& values) {
   if (values.size() != values_.size()) throw Error("the sensor model was given a wrong number of values");
   values_ = values;
-  bare_ = bare_lasers(chains_, values_);
+  bare_ = bare_lasers(fixed_->chains, values_);
 }
 
 Calibration SensorModel::calibration() const {
-  Calibration result = calibration_;
+  Calibration result = fixed_->calibration;
   Eigen::Index i = 0;
   for_each_parameter(result, [&](Parameter& parameter) { parameter.value = values_[i++]; });
   return result;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/data/calibration.hpp"
@@ -64,11 +65,11 @@ class SensorModel {
   /// @throws Error for a term that `terms` does not know, or whose parameters are not those it declares
   explicit SensorModel(Calibration calibration, const TermRegistry& terms = {});
 
-  std::size_t lasers() const { return chains_.size(); }
+  std::size_t lasers() const { return fixed_->chains.size(); }
 
   /// All parameters in one list: "laser1.lambda", "laser1.tau", "laser1.alpha", "laser1.eta",
   /// "laser1.mirror.cone.kappa", …, "plate.encoder.eccentricity.a", …
-  const std::vector<std::string>& names() const { return names_; }
+  const std::vector<std::string>& names() const { return fixed_->names; }
   std::size_t index(const std::string& name) const;  ///< @throws Error if there is none
   const Eigen::VectorXd& values() const { return values_; }
   void set_values(const Eigen::VectorXd& values);
@@ -88,15 +89,21 @@ class SensorModel {
   Placed place(const Measurements& beams, const PlateTrajectory& plate, const std::vector<std::size_t>& free,
                PointDerivatives& derivatives) const;
 
-  const LaserChain& chain(std::size_t laser) const { return chains_[laser]; }
+  const LaserChain& chain(std::size_t laser) const { return fixed_->chains[laser]; }
 
  private:
-  void add_parameters(const std::string& owner, const std::vector<TermParameters>& terms);
+  /// What is the same whatever the values: an optimiser makes thousands of models that differ in these alone.
+  struct Fixed {
+    explicit Fixed(Calibration given) : calibration(std::move(given)) {}
 
-  Calibration calibration_;
-  std::vector<std::string> names_;
+    Calibration calibration;
+    std::vector<std::string> names;
+    std::vector<LaserChain> chains;
+  };
+  static Fixed resolve(Calibration calibration, const TermRegistry& terms);
+
+  std::shared_ptr<const Fixed> fixed_;
   Eigen::VectorXd values_;
-  std::vector<LaserChain> chains_;
   std::vector<simd::BareLaser> bare_;  ///< the chains as equation (2) alone takes them, at values_
 };
 

@@ -13,10 +13,8 @@
 namespace crisp {
 namespace {
 
-constexpr int kBits = 21;     // a coordinate's share of a key
-constexpr int kFineBits = 4;  // of these, the ones within a cell
-constexpr int kDigitBits = 11;
-constexpr std::uint64_t kDigitMask = (1U << kDigitBits) - 1;
+constexpr int kBits = 21;              // a coordinate's share of a key
+constexpr int kFineBits = 4;           // of these, the ones within a cell
 constexpr std::size_t kBlock = 65536;  // points
 
 double median_of_a_sample(std::span<const double> values) {
@@ -84,19 +82,20 @@ struct Entry {
 
 /// Sorts by one digit of the key, keeping the order of equal ones: each block of entries counts its digits,
 /// and so knows where to put them.
-void sort_by_digit(const std::vector<Entry>& entries, int shift, std::vector<Entry>& sorted) {
-  const auto digit = [shift](const Entry& entry) { return entry.key >> shift & kDigitMask; };
-  std::vector<std::array<std::size_t, kDigitMask + 1>> first(blocks_of(entries.size(), kBlock));
+void sort_by_digit(const std::vector<Entry>& entries, int shift, int bits, std::vector<Entry>& sorted) {
+  const std::size_t digits = std::size_t{1} << bits;
+  const auto digit = [=](const Entry& entry) { return entry.key >> shift & (digits - 1); };
+  std::vector<std::size_t> first(blocks_of(entries.size(), kBlock) * digits);
   for_blocks(entries.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    first[block].fill(0);
-    for (std::size_t i = begin; i < end; ++i) ++first[block].at(digit(entries[i]));
+    for (std::size_t i = begin; i < end; ++i) ++first[block * digits + digit(entries[i])];
   });
   std::size_t total = 0;
-  for (std::size_t d = 0; d <= kDigitMask; ++d) {
-    for (auto& block : first) total += std::exchange(block.at(d), total);
+  for (std::size_t d = 0; d < digits; ++d) {
+    for (std::size_t k = d; k < first.size(); k += digits) total += std::exchange(first[k], total);
   }
   for_blocks(entries.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) sorted[first[block].at(digit(entries[i]))++] = entries[i];
+    for (std::size_t i = begin; i < end; ++i)
+      sorted[first[block * digits + digit(entries[i])]++] = entries[i];
   });
 }
 
@@ -104,8 +103,9 @@ void radix_sort(std::vector<Entry>& entries) {
   std::uint64_t used = 0;
   for (const Entry& entry : entries) used |= entry.key;
   std::vector<Entry> sorted(entries.size());
-  for (int shift = 0; shift < 64 && used >> shift != 0; shift += kDigitBits) {
-    sort_by_digit(entries, shift, sorted);
+  const int bits = entries.size() < 16384 ? 8 : 11;  // to count few entries by many digits takes longer
+  for (int shift = 0; shift < 64 && used >> shift != 0; shift += bits) {
+    sort_by_digit(entries, shift, bits, sorted);
     entries.swap(sorted);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -14,15 +15,28 @@ namespace {
 
 constexpr double kOfBounds = 0.05;  // share of a term's bounds that its parameters are looked for within
 
-using Motion = Eigen::Matrix<double, 3, 6>;
+/// A shift and a small turn of everything move a point x by MΘ, M = [I, −[x]×]: the sum of all MᵀM.
+class RigidMotions {
+ public:
+  void add(const Eigen::Vector3d& x) {
+    ++points_;
+    sum_ += x;
+    squares_ += x * x.transpose();
+  }
+  Eigen::Matrix<double, 6, 6> gram() const {
+    Eigen::Matrix3d turn;
+    turn << 0, sum_.z(), -sum_.y(), -sum_.z(), 0, sum_.x(), sum_.y(), -sum_.x(), 0;
+    Eigen::Matrix<double, 6, 6> all;
+    all << Eigen::Matrix3d::Identity() * points_, turn, turn.transpose(),
+        Eigen::Matrix3d::Identity() * squares_.trace() - squares_;
+    return all;
+  }
 
-/// What a shift and a small turn of everything do to a point.
-Motion rigid_motion(const Eigen::Vector3d& x) {
-  Motion motion;
-  motion.leftCols<3>().setIdentity();
-  motion.rightCols<3>() << 0, x.z(), -x.y(), -x.z(), 0, x.x(), x.y(), -x.x(), 0;
-  return motion;
-}
+ private:
+  double points_ = 0;
+  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares_ = Eigen::Matrix3d::Zero();
+};
 
 /// Columns that each displace the points by `step`.
 Eigen::MatrixXd whitening(const Eigen::MatrixXd& displacement, const Eigen::VectorXd& range, double step) {
@@ -78,23 +92,25 @@ Eigen::MatrixXd displacement(const SensorModel& model, const Sample& sample,
   const auto n = static_cast<Eigen::Index>(free.size());
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, n);
   Eigen::MatrixXd mixed = Eigen::MatrixXd::Zero(6, n);
-  Eigen::Matrix<double, 6, 6> rigid =
-      Eigen::Matrix<double, 6, 6>::Identity() * 1e-9;  // points may all coincide
+  RigidMotions motions;
   for (std::size_t i = 0; i < placed.index.size(); ++i) {
-    const Motion motion = rigid_motion(placed.points.col(static_cast<Eigen::Index>(i)));
+    const Eigen::Vector3d point = placed.points.col(static_cast<Eigen::Index>(i));
     const auto& columns = derivatives.columns[sample.beams.laser[placed.index[i]]];
     const auto first = static_cast<Eigen::Index>(i * derivatives.stride);
-    rigid += motion.transpose() * motion;
+    motions.add(point);
     for (std::size_t a = 0; a < columns.size(); ++a) {
       const auto column = static_cast<Eigen::Index>(columns[a]);
       const Eigen::Vector3d step = derivatives.values.col(first + static_cast<Eigen::Index>(a));
-      mixed.col(column) += motion.transpose() * step;
+      mixed.col(column).head<3>() += step;
+      mixed.col(column).tail<3>() += point.cross(step);
       for (std::size_t b = 0; b < columns.size(); ++b) {
         own(column, static_cast<Eigen::Index>(columns[b])) +=
             step.dot(derivatives.values.col(first + static_cast<Eigen::Index>(b)));
       }
     }
   }
+  const Eigen::Matrix<double, 6, 6> rigid =
+      motions.gram() + Eigen::Matrix<double, 6, 6>::Identity() * 1e-9;  // points may all coincide
   own -= mixed.transpose() * rigid.ldlt().solve(mixed);
   return own / static_cast<double>(std::max<std::size_t>(1, placed.index.size()));
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <vector>
 
 #include "pipeline/data/error.hpp"
 
@@ -16,10 +17,17 @@ namespace {
 using Ipopt::Index;
 using Ipopt::Number;
 
+using Solver = Ipopt::SmartPtr<Ipopt::IpoptApplication>;
+
 /// MUMPS, the linear solver, crashes when two solves run at once. Objectives may: see Unlocked.
-std::mutex& solver_mutex() {
-  static std::mutex mutex;
-  return mutex;
+struct Solvers {
+  std::mutex mutex;
+  std::vector<Solver> idle;  ///< a new one registers some hundred options: longer than many a solve
+};
+
+Solvers& solvers() {
+  static Solvers all;
+  return all;
 }
 
 /// Lets other solves go on while it lives.
@@ -234,30 +242,54 @@ std::string in_words(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
-Minimum solve(const Objective& objective, const Eigen::VectorXd& start, const Box& box,
-              const MinimiserSettings& settings, Borders borders, std::unique_lock<std::mutex>& lock) {
-  Ipopt::SmartPtr<BoxProblem> problem = new BoxProblem(objective, start, box, settings, borders, lock);
-  if (start.size() == 0) return problem->best();
-  Ipopt::SmartPtr<Ipopt::IpoptApplication> solver = IpoptApplicationFactory();
+/// With all that is the same for every problem.
+Solver make_solver() {
+  Solver solver = IpoptApplicationFactory();
   auto options = solver->Options();
   options->SetIntegerValue("print_level", 0);
   options->SetStringValue("sb", "yes");
   options->SetStringValue("option_file_name", "");  // an ipopt.opt lying about must not change results
-  options->SetIntegerValue("max_iter", settings.max_iterations);
-  // The curvature is below 1: a gradient this small leaves the cost too high by less than the tolerance.
-  options->SetNumericValue("tol", 0.03 * std::sqrt(settings.tolerance));
   options->SetStringValue("jac_c_constant", "yes");
   options->SetStringValue("jac_d_constant", "yes");
   options->SetIntegerValue("min_refinement_steps", 0);  // the systems are small and well conditioned
   // Steps that no longer lower the cost end the search only if there are many: the first ones, before much is
   // known of the curvature, may be small.
   options->SetNumericValue("acceptable_tol", 1e3);
-  options->SetNumericValue("acceptable_obj_change_tol", settings.tolerance);
   options->SetIntegerValue("acceptable_iter", 10);
   options->SetStringValue("mu_strategy",
                           "monotone");        // what adaptive ones gain costs more solves than it saves
   options->SetNumericValue("mu_init", 1e-8);  // the start is believed: the barrier must not push it away
   solver->Initialize();
+  return solver;
+}
+
+/// A solver, for as long as this lives; made and ended under the lock.
+class Borrowed {
+ public:
+  Borrowed() {
+    auto& idle = solvers().idle;
+    if (idle.empty()) idle.push_back(make_solver());
+    solver_ = idle.back();
+    idle.pop_back();
+  }
+  ~Borrowed() { solvers().idle.push_back(solver_); }
+  Borrowed(const Borrowed&) = delete;
+  Borrowed& operator=(const Borrowed&) = delete;
+  Ipopt::IpoptApplication* operator->() const { return GetRawPtr(solver_); }
+
+ private:
+  Solver solver_;
+};
+
+Minimum solve(const Objective& objective, const Eigen::VectorXd& start, const Box& box,
+              const MinimiserSettings& settings, Borders borders, std::unique_lock<std::mutex>& lock) {
+  Ipopt::SmartPtr<BoxProblem> problem = new BoxProblem(objective, start, box, settings, borders, lock);
+  if (start.size() == 0) return problem->best();
+  const Borrowed solver;
+  solver->Options()->SetIntegerValue("max_iter", settings.max_iterations);
+  // The curvature is below 1: a gradient this small leaves the cost too high by less than the tolerance.
+  solver->Options()->SetNumericValue("tol", 0.03 * std::sqrt(settings.tolerance));
+  solver->Options()->SetNumericValue("acceptable_obj_change_tol", settings.tolerance);
   const auto status = solver->OptimizeTNLP(problem);
 
   Minimum minimum = problem->best();
@@ -279,7 +311,7 @@ Minimum minimise(const Objective& objective, const Eigen::VectorXd& start, const
   if (box.lower.size() != n || box.upper.size() != n || box.basis.rows() != n || box.basis.cols() != n) {
     throw Error("a minimisation was given a start and a box of different sizes");
   }
-  std::unique_lock lock(solver_mutex());
+  std::unique_lock lock(solvers().mutex);
   const Eigen::VectorXd within = start.cwiseMax(box.lower).cwiseMin(box.upper);
   Minimum found = solve(objective, within, box, settings, Borders::kIgnored, lock);
   if (is_inside(found.x, box) || (settings.interrupted && settings.interrupted())) return found;
