@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "pipeline/estimate/sample.hpp"
 #include "pipeline/model/sensor_model.hpp"
 #include "pipeline/quality/measure.hpp"
-#include "plugins/calibrate/sample.hpp"
 
 namespace crisp {
 

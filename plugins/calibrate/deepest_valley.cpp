@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "plugins/calibrate/base_slots.hpp"
+#include "pipeline/estimate/base_slots.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/valleys.hpp"
 

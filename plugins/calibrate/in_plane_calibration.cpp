@@ -8,7 +8,7 @@
 #include <set>
 
 #include "pipeline/data/degree.hpp"
-#include "plugins/calibrate/base_slots.hpp"
+#include "pipeline/estimate/base_slots.hpp"
 #include "plugins/calibrate/deepest_valley.hpp"
 
 namespace crisp {

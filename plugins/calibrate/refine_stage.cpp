@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/wanted_terms.hpp"
 #include "pipeline/stage/registry.hpp"
-#include "plugins/calibrate/free_parameters.hpp"
 #include "plugins/calibrate/report.hpp"
-#include "plugins/calibrate/wanted_terms.hpp"
 
 namespace crisp {
 namespace {
@@ -61,7 +61,7 @@ void RefineStage::check(const RunSettings& run) const {
 
 void RefineStage::process(const Inputs& in, Outputs&, Context&) {
   start_ = in.share<Calibration>();
-  collected_.add(in);
+  collected_.add(in.share<Measurements>(), in.share<PlateTrajectory>());
 }
 
 void RefineStage::finish(Outputs& out, Context& context) {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "pipeline/estimate/collected.hpp"
+#include "pipeline/estimate/surfel_refinement.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
-#include "plugins/calibrate/collected.hpp"
-#include "plugins/calibrate/surfel_refinement.hpp"
 
 namespace crisp {
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "pipeline/estimate/free_parameters.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
-#include "plugins/calibrate/free_parameters.hpp"
 
 namespace crisp {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "pipeline/estimate/outcome.hpp"
+#include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/measure.hpp"
 #include "pipeline/stage/context.hpp"
-#include "plugins/calibrate/outcome.hpp"
-#include "plugins/calibrate/sample.hpp"
 
 namespace crisp {
 

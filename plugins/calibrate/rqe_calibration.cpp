@@ -8,8 +8,8 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
-#include "plugins/calibrate/can_be_told.hpp"
-#include "plugins/calibrate/observability.hpp"
+#include "pipeline/estimate/can_be_told.hpp"
+#include "pipeline/estimate/observability.hpp"
 #include "plugins/calibrate/optimum_scatter.hpp"
 
 namespace crisp {

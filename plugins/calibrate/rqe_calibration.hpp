@@ -5,9 +5,9 @@
 #include <functional>
 #include <string_view>
 
-#include "plugins/calibrate/free_parameters.hpp"
+#include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/outcome.hpp"
 #include "plugins/calibrate/in_plane_calibration.hpp"
-#include "plugins/calibrate/outcome.hpp"
 
 namespace crisp {
 

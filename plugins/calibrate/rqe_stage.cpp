@@ -81,7 +81,7 @@ void RqeStage::check(const RunSettings& run) const {
 
 void RqeStage::process(const Inputs& in, Outputs&, Context&) {
   if (!start_) start_ = in.share<Calibration>();
-  collected_.add(in);
+  collected_.add(in.share<Measurements>(), in.share<PlateTrajectory>());
 }
 
 void RqeStage::finish(Outputs& out, Context& context) {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/estimate/collected.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
-#include "plugins/calibrate/collected.hpp"
 #include "plugins/calibrate/rqe_calibration.hpp"
 
 namespace crisp {

@@ -6,8 +6,8 @@
 
 #include "grabbers/simulate/random.hpp"
 #include "pipeline/data/error.hpp"
-#include "plugins/calibrate/base_slots.hpp"
-#include "plugins/calibrate/free_parameters.hpp"
+#include "pipeline/estimate/base_slots.hpp"
+#include "pipeline/estimate/free_parameters.hpp"
 
 namespace crisp {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/paper.hpp"
-#include "plugins/calibrate/base_slots.hpp"
+#include "pipeline/estimate/base_slots.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/crispest.hpp"
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "pipeline/data/error.hpp"
-#include "plugins/calibrate/surfel_refinement.hpp"
+#include "pipeline/estimate/surfel_refinement.hpp"
 
 namespace crisp {
 namespace {

@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "pipeline/data/error.hpp"
-#include "plugins/calibrate/bound.hpp"
-#include "plugins/calibrate/free_parameters.hpp"
-#include "plugins/calibrate/observability.hpp"
-#include "plugins/calibrate/surfel_refinement.hpp"
+#include "pipeline/estimate/bound.hpp"
+#include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/observability.hpp"
+#include "pipeline/estimate/surfel_refinement.hpp"
 
 namespace crisp {
 namespace {

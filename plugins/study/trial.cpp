@@ -7,7 +7,7 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/encoder_smoothing.hpp"
 #include "pipeline/data/error.hpp"
-#include "plugins/calibrate/free_parameters.hpp"
+#include "pipeline/estimate/free_parameters.hpp"
 #include "plugins/study/scene_bound.hpp"
 
 namespace crisp {

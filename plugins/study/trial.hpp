@@ -10,9 +10,9 @@
 
 #include "grabbers/simulate/departures.hpp"
 #include "grabbers/simulate/paper.hpp"
+#include "pipeline/estimate/surfel_refinement.hpp"
 #include "pipeline/quality/measure.hpp"
 #include "plugins/calibrate/rqe_calibration.hpp"
-#include "plugins/calibrate/surfel_refinement.hpp"
 #include "plugins/study/beam_choice.hpp"
 
 namespace crisp {

@@ -17,10 +17,10 @@
 
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
+#include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/quality/rqe.hpp"
 #include "pipeline/quality/search.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
-#include "plugins/calibrate/free_parameters.hpp"
 #include "tests/bench/rivals.hpp"
 #include "tests/pipeline/quality/clouds.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/plugins/calibrate/support.hpp"
+#include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "plugins/calibrate/cloud_objective.hpp"
-#include "tests/plugins/calibrate/support.hpp"
+#include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {
 namespace {

@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <random>
 
-#include "tests/plugins/calibrate/support.hpp"
+#include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "grabbers/simulate/shapes.hpp"
 #include "pipeline/data/error.hpp"
-#include "tests/plugins/calibrate/support.hpp"
+#include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {
 namespace {

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/bound.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/estimate/surfel_rows.hpp"
+#include "pipeline/quality/surfel_equations.hpp"
+
+namespace crisp {
+namespace {
+
+Eigen::Vector3d point(const PointsView& points, std::uint32_t i) {
+  return {points.x[i], points.y[i], points.z[i]};
+}
+
+/// Each true plane as a surfel of all the beams that meet it.
+Surfels surfels_of_truth(const BeamsView& beams, std::span<const std::uint32_t> surface,
+                         std::span<const Eigen::Vector3d> normals) {
+  std::vector<std::vector<std::uint32_t>> members(normals.size());
+  for (std::uint32_t i = 0; i < surface.size(); ++i) {
+    if (surface[i] >= normals.size()) throw Error("a beam meets a surface whose plane is not given");
+    members[surface[i]].push_back(i);
+  }
+  Surfels result;
+  for (std::size_t s = 0; s < normals.size(); ++s) {
+    if (members[s].empty()) continue;
+    Surfel surfel{.middle = Eigen::Vector3d::Zero(), .normal = normals[s]};
+    for (const auto i : members[s]) surfel.middle += point(beams.points, i);
+    surfel.middle /= static_cast<double>(members[s].size());
+    double squares = 0;
+    for (const auto i : members[s]) squares += (point(beams.points, i) - surfel.middle).squaredNorm();
+    constexpr double kSmallest = 1e-3;  // [m] a plane that one beam meets must not divide by nothing
+    surfel.radius = std::max(kSmallest, std::sqrt(squares / static_cast<double>(members[s].size())));
+    surfel.u = surfel.normal.unitOrthogonal();
+    surfel.v = surfel.normal.cross(surfel.u);
+    surfel.begin = static_cast<std::uint32_t>(result.members.size());
+    result.members.insert(result.members.end(), members[s].begin(), members[s].end());
+    surfel.end = static_cast<std::uint32_t>(result.members.size());
+    result.surfels.push_back(surfel);
+  }
+  result.weights.assign(result.members.size(), 1);
+  return result;
+}
+
+}  // namespace
+
+Eigen::MatrixXd calibration_information(const SensorModel& truth, const Sample& beams,
+                                        std::span<const std::uint32_t> surface,
+                                        std::span<const Eigen::Vector3d> normals,
+                                        const std::vector<std::size_t>& free, double noise) {
+  if (surface.size() != beams.beams.size()) throw Error("each beam must have the surface that it meets");
+  if (!(noise > 0)) throw Error("without noise of the ranges there is no bound");
+  const PlacedBeams placed(truth, beams);
+  const Surfels surfels = surfels_of_truth(placed.view(), surface, normals);
+  const SurfelSettings exact{.noise = noise, .floor = 1e-6 * noise};
+  return normal_equations(surfels, placed.view(), free.size(), surfel_rows(truth, beams, free), exact).matrix;
+}
+
+Eigen::VectorXd least_std_errors(const Eigen::MatrixXd& information) {
+  if (information.size() == 0) return {};
+  // To unit diagonal first: parameters come in metres, radians and seconds.
+  const Eigen::VectorXd scale =
+      information.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * information *
+                                                             scale.asDiagonal());
+  constexpr double kNothing = 1e-10;  // of what a parameter alone would be known by
+  Eigen::VectorXd variance = Eigen::VectorXd::Zero(scale.size());
+  for (Eigen::Index k = 0; k < scale.size(); ++k) {
+    const double known = eigen.eigenvalues()[k];
+    for (Eigen::Index i = 0; i < scale.size(); ++i) {
+      const double share = std::pow(eigen.eigenvectors()(i, k), 2);
+      if (known > kNothing) {
+        variance[i] += share / known;
+      } else if (share > kNothing) {
+        variance[i] = std::numeric_limits<double>::infinity();
+      }
+    }
+  }
+  return scale.cwiseProduct(variance.cwiseSqrt());
+}
+
+}  // namespace crisp

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/can_be_told.hpp"
+
+#include "pipeline/estimate/base_slots.hpp"
+#include "pipeline/estimate/displacement.hpp"
+#include "pipeline/estimate/observability.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kLeastMotion = 0.005;  // [m]
+constexpr double kSpacing = 0.05;       // [s]
+constexpr std::size_t kBeams = 20000;   // enough to see how points move
+
+PlateTrajectory thinned(const PlateTrajectory& plate, double spacing) {
+  std::vector<double> times;
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < plate.size(); ++i) {
+    const bool last_before_gap =
+        i + 1 == plate.size() || plate.times()[i + 1] - plate.times()[i] > plate.max_gap();
+    const bool first_after_gap = i == 0 || plate.times()[i] - plate.times()[i - 1] > plate.max_gap();
+    if (!last_before_gap && !first_after_gap && plate.times()[i] - times.back() < spacing) continue;
+    times.push_back(plate.times()[i]);
+    angles.push_back(plate.angles()[i]);
+  }
+  return {plate.epoch_ns(), std::move(times), std::move(angles), spacing + plate.max_gap()};
+}
+
+/// The model with every free τ off by as much as it may be.
+SensorModel farther_out(const SensorModel& model, const std::vector<std::size_t>& free,
+                        const SearchRange& range) {
+  Eigen::VectorXd values = model.values();
+  for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
+    const std::size_t tau = slot(model, laser, kTau);
+    if (is_free(free, tau)) values[static_cast<Eigen::Index>(tau)] += range.tau;
+  }
+  SensorModel moved = model;
+  moved.set_values(values);
+  return moved;
+}
+
+}  // namespace
+
+FreeParameters can_be_told(FreeParameters parameters, const SensorModel& model, const Sample& sample,
+                           const SearchRange& range) {
+  if (parameters.free.empty()) return parameters;
+  const PlateTrajectory plate = thinned(*sample.plate, kSpacing);
+  Sample some = thin_evenly(sample, kBeams, 1);
+  some.plate = &plate;
+  const auto told_at = [&](const SensorModel& place) {
+    const Eigen::MatrixXd motion = displacement(place, some, parameters.free) / (kLeastMotion * kLeastMotion);
+    return observability(motion, parameters.free, model.names(), ranges_of(range, model, parameters.free));
+  };
+  auto told = told_at(model);
+  // A laser on the spin axis turns by α as by λ; but where it sits is still to be found.
+  if (!told.unobservable.empty()) told = told_at(farther_out(model, parameters.free, range));
+  parameters.free = told.known;
+  for (Unobservable lost : told.unobservable) {
+    lost.reason = "the motion of the plate does not tell it";
+    parameters.unobservable.push_back(std::move(lost));
+  }
+  return parameters;
+}
+
+}  // namespace crisp

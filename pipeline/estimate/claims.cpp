@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/claims.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "pipeline/quality/blocks.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+Eigen::Vector3d at(const PointsView& points, std::uint32_t i) {
+  return {points.x[i], points.y[i], points.z[i]};
+}
+
+/// A surfel with its borders: the box around its beams in (u, v) [m], from its middle.
+class Claimant {
+ public:
+  Claimant(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams) : surfel_(surfel) {
+    for (const std::uint32_t i : surfels.beams_of(surfel)) {
+      box_.extend(in_plane(at(beams.points, i) - surfel.middle));
+    }
+  }
+
+  /// By how much a beam's range would have to grow to end on the plane [m], and how far beyond the borders
+  /// that is [m].
+  struct Meeting {
+    double range_change = 0;
+    double beyond = 0;
+  };
+  /// Nothing if the beam does not end near the plane.
+  std::optional<Meeting> meeting(const Eigen::Vector3d& end, const Eigen::Vector3d& direction,
+                                 const SurfelSettings& settings, const ClaimSettings& claims) const {
+    constexpr double kGrazing = 0.05;  // as where surfels are fitted
+    const double incidence = surfel_.normal.dot(direction);
+    const double distance = surfel_.normal.dot(end - surfel_.middle);
+    const double spread = std::max(settings.noise * std::abs(incidence), surfel_.thickness);
+    if (std::abs(incidence) < kGrazing || std::abs(distance) > claims.gate * spread) return std::nullopt;
+    const Eigen::Vector3d foot = end - distance / incidence * direction;
+    return Meeting{-distance / incidence, box_.exteriorDistance(in_plane(foot - surfel_.middle))};
+  }
+
+  /// Whether they are pieces of one plane.
+  bool continues(const Claimant& other) const {
+    constexpr double kParallel = 0.99;  // cosine of 8°
+    return std::abs(surfel_.normal.dot(other.surfel_.normal)) > kParallel;
+  }
+
+  /// Whether the other surface is on the lasers' side of this one: a corner that is looked into.
+  bool is_hollow_with(const Claimant& other) const {
+    return surfel_.normal.dot(other.surfel_.middle - surfel_.middle) > 0;
+  }
+
+ private:
+  Eigen::Vector2d in_plane(const Eigen::Vector3d& offset) const {
+    return {surfel_.u.dot(offset), surfel_.v.dot(offset)};
+  }
+
+  const Surfel& surfel_;
+  Eigen::AlignedBox2d box_;
+};
+
+/// The surface that the beam met. Where it might be either of two it is decided by where the beam meets their
+/// planes, not by where its noise has put its end: that would tilt the planes. A beam into a corner ends on
+/// the plane that it meets first; one onto an edge on the one that it meets last.
+std::uint32_t owner(const std::vector<Claimant>& claimants, const BeamsView& beams, std::uint32_t beam,
+                    const SurfelSettings& settings, const ClaimSettings& claims) {
+  std::uint32_t best = kNone;
+  Claimant::Meeting least;
+  for (std::uint32_t s = 0; s < claimants.size(); ++s) {
+    const auto met =
+        claimants[s].meeting(at(beams.points, beam), at(beams.directions, beam), settings, claims);
+    if (!met || met->beyond > claims.margin) continue;
+    const auto is_better = [&] {
+      if (best == kNone) return true;
+      if (claimants[s].continues(claimants[best])) return met->beyond < least.beyond;
+      return claimants[s].is_hollow_with(claimants[best]) == (met->range_change < least.range_change);
+    };
+    if (!is_better()) continue;
+    best = s;
+    least = *met;
+  }
+  return best;
+}
+
+}  // namespace
+
+Surfels claimed(const Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
+                const ClaimSettings& claims) {
+  std::vector<Claimant> claimants;
+  for (const Surfel& surfel : found.surfels) claimants.emplace_back(surfel, found, beams);
+  constexpr std::size_t kBlock = 4096;  // beams
+  std::vector<std::uint32_t> owners(beams.points.size());
+  for_blocks(owners.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      owners[i] = owner(claimants, beams, static_cast<std::uint32_t>(i), settings, claims);
+    }
+  });
+  std::vector<std::vector<std::uint32_t>> members(claimants.size());
+  for (std::uint32_t i = 0; i < owners.size(); ++i) {
+    if (owners[i] != kNone) members[owners[i]].push_back(i);
+  }
+  Surfels result;
+  for (std::size_t s = 0; s < claimants.size(); ++s) {
+    if (members[s].size() < settings.min_points) continue;
+    Surfel surfel = found.surfels[s];
+    surfel.begin = static_cast<std::uint32_t>(result.members.size());
+    result.members.insert(result.members.end(), members[s].begin(), members[s].end());
+    surfel.end = static_cast<std::uint32_t>(result.members.size());
+    result.surfels.push_back(surfel);
+  }
+  result.weights.assign(result.members.size(), 1);
+  return result;
+}
+
+}  // namespace crisp

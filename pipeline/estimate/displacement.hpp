@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "pipeline/estimate/sample.hpp"
+
+namespace crisp {
+
+/// Mean square displacement [m²] of a sample's points by each pair of the free parameters (m × m), rigid
+/// motions of the whole cloud, which no measure of crispness sees, projected out.
+Eigen::MatrixXd displacement(const SensorModel& model, const Sample& sample,
+                             const std::vector<std::size_t>& free);
+
+}  // namespace crisp

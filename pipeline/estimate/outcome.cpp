@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/outcome.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace crisp {
+namespace {
+
+/// Calls `act` with each parameter and its full name.
+template <class Calibrated, class Act>
+void for_each_parameter(Calibrated& calibration, const Act& act) {
+  const auto with_terms = [&](auto& terms, const std::string& owner) {
+    for (auto& term : terms) {
+      for (auto& parameter : term.parameters) act(owner + "." + term.term + "." + parameter.name, parameter);
+    }
+  };
+  for (auto& laser : calibration.lasers) {
+    for (auto* p : {&laser.lambda, &laser.tau, &laser.alpha, &laser.eta}) act(laser.name + "." + p->name, *p);
+    with_terms(laser.terms, laser.name);
+  }
+  with_terms(calibration.plate_terms, "plate");
+}
+
+struct Shown {
+  double factor;  // from SI
+  const char* unit;
+};
+Shown shown(const std::string& unit) {
+  if (unit == "rad") return {.factor = 180 / std::numbers::pi, .unit = "deg"};
+  if (unit == "m" || unit == "s") return {.factor = 1e3, .unit = unit == "m" ? "mm" : "ms"};
+  return {.factor = 1, .unit = ""};
+}
+
+std::string remark(const Parameter& parameter, const std::string& name, const Calibration& calibration) {
+  const auto& list = calibration.unobservable;
+  const bool unknown =
+      std::any_of(list.begin(), list.end(), [&](const auto& u) { return u.parameter == name; });
+  if (unknown) return "not observable, kept";
+  return parameter.free ? "" : "kept";
+}
+
+}  // namespace
+
+Calibration calibration_of(const Outcome& outcome, const Rig& rig) {
+  Calibration calibration = outcome.model.calibration();
+  const auto m = static_cast<Eigen::Index>(outcome.free.size());
+  calibration.covariance_order.clear();
+  for (const std::size_t slot : outcome.free) {
+    calibration.covariance_order.push_back(outcome.model.names()[slot]);
+  }
+  calibration.covariance.clear();
+  for (Eigen::Index i = 0; i < m; ++i) {
+    for (Eigen::Index j = 0; j < m; ++j) calibration.covariance.push_back(outcome.covariance(i, j));
+  }
+  const auto& order = calibration.covariance_order;
+  for_each_parameter(calibration, [&](const std::string& name, Parameter& parameter) {
+    const auto found = std::find(order.begin(), order.end(), name);
+    parameter.free = found != order.end();
+    const auto at = found - order.begin();
+    parameter.std_error = parameter.free ? std::sqrt(outcome.covariance(at, at)) : 0;
+  });
+  for (std::size_t i = 0; i < std::min(calibration.lasers.size(), rig.lasers.size()); ++i) {
+    double& lambda = calibration.lasers[i].lambda.value;
+    const double nominal = rig.lasers[i].nominal.lambda.value;
+    lambda = nominal + std::remainder(lambda - nominal, 2 * std::numbers::pi);
+  }
+  calibration.unobservable = outcome.unobservable;
+  return calibration;
+}
+
+std::string table_of(const Calibration& calibration, const Rig& rig) {
+  std::map<std::string, double> nominal;
+  const Calibration start = nominal_calibration(rig);
+  for_each_parameter(start, [&](const std::string& name, const Parameter& p) { nominal[name] = p.value; });
+  std::string table =
+      fmt::format("{:<24}{:>12}     {:>9}  {:>10}\n", "parameter", "value", "std error", "change");
+  for_each_parameter(calibration, [&](const std::string& name, const Parameter& p) {
+    const Shown as = shown(p.unit);
+    const double change = p.value - (nominal.contains(name) ? nominal[name] : 0);
+    const std::string error = p.free ? fmt::format("{:.4f}", p.std_error * as.factor) : "";
+    table += fmt::format("{:<24}{:>12.4f} {:<3} {:>9}  {:>+10.4f}  {}\n", name, p.value * as.factor, as.unit,
+                         error, change * as.factor, remark(p, name, calibration));
+  });
+  table.pop_back();
+  return table;
+}
+
+}  // namespace crisp

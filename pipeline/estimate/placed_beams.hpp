@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/estimate/sample.hpp"
+#include "pipeline/quality/surfels.hpp"
+
+namespace crisp {
+
+/// Where a model puts beams, and from which side they came: what surfels are found from.
+class PlacedBeams {
+ public:
+  /// @param sample  n beams, all of which the plate's readings cover
+  PlacedBeams(const SensorModel& model, const Sample& sample);
+
+  /// Valid while this lives.
+  BeamsView view() const {
+    return {.points = points_.view(), .directions = directions_.view(), .views = views_};
+  }
+
+ private:
+  Vectors points_;
+  Vectors directions_;
+  std::vector<std::uint32_t> views_;  // one for each laser and half of its sweep
+};
+
+}  // namespace crisp

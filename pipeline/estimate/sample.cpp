@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace crisp {
+namespace {
+
+/// A number in [0, 1) that depends on nothing but the seed and the index (Steele's SplitMix64).
+double uniform(std::uint64_t seed, std::uint64_t index) {
+  std::uint64_t z = seed * 0x9E3779B97F4A7C15U + (index + 1) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+  z ^= z >> 31U;
+  return static_cast<double>(z >> 11U) * 0x1.0p-53;
+}
+
+/// The factor c for which Σ min(1, c · area) is `count`, which is fewer than there are areas.
+double inclusion_factor(const std::vector<double>& areas, double count) {
+  double factor = 0;
+  for (std::size_t certain = 0, last = areas.size(); certain != last;) {
+    last = certain;
+    certain = 0;
+    double rest = 0;
+    for (const double area : areas) {
+      const bool is_certain = factor * area >= 1;
+      certain += is_certain ? 1 : 0;
+      rest += is_certain ? 0 : area;
+    }
+    // More become certain from round to round, until those that remain share what is left.
+    if (rest > 0) factor = (count - static_cast<double>(certain)) / rest;
+  }
+  return factor;
+}
+
+}  // namespace
+
+Sample select(const Sample& sample, const std::function<bool(std::size_t)>& keep) {
+  Sample kept{.plate = sample.plate};
+  kept.beams.epoch_ns = sample.beams.epoch_ns;
+  for (std::size_t i = 0; i < sample.beams.size(); ++i) {
+    if (keep(i)) kept.beams.append(sample.beams, i);
+  }
+  return kept;
+}
+
+Sample of_laser(const Sample& sample, std::size_t laser) {
+  return select(sample, [&](std::size_t i) { return sample.beams.laser[i] == laser; });
+}
+
+Sample covered(const Sample& sample, double earliest, double latest) {
+  PlateTrajectory::Cursor early(*sample.plate);
+  PlateTrajectory::Cursor middle(*sample.plate);
+  PlateTrajectory::Cursor late(*sample.plate);
+  return select(sample, [&](std::size_t i) {
+    const double t = sample.beams.time[i];
+    return early.at(t + earliest) && middle.at(t) && late.at(t + latest);
+  });
+}
+
+Sample in_plane(const Sample& sample, double half_width, Half half) {
+  constexpr double kRight = std::numbers::pi / 2;
+  return select(sample, [&](std::size_t i) {
+    const double theta = sample.beams.mirror_angle[i];
+    const bool front = std::abs(theta + kRight) <= half_width;
+    const bool back = std::abs(theta - kRight) <= half_width;
+    return (front && half != Half::kBack) || (back && half != Half::kFront);
+  });
+}
+
+Sample thin_by_area(const Sample& sample, const SensorModel& model, std::size_t count, std::uint64_t seed) {
+  const std::size_t n = sample.beams.size();
+  if (n <= count) return sample;
+  const Placed placed = model.place(sample.beams, *sample.plate);
+  std::vector<double> areas(n, 0.0);
+  for (std::size_t k = 0; k < placed.index.size(); ++k) {
+    const auto point = placed.points.col(static_cast<Eigen::Index>(k));
+    areas[placed.index[k]] =
+        sample.beams.range[placed.index[k]] * std::sqrt(point.x() * point.x() + point.y() * point.y());
+  }
+  const double factor = inclusion_factor(areas, static_cast<double>(count));
+  return select(sample, [&](std::size_t i) { return uniform(seed, i) < factor * areas[i]; });
+}
+
+Sample thin_evenly(const Sample& sample, std::size_t count, std::uint64_t seed) {
+  const double share =
+      static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, sample.beams.size()));
+  return select(sample, [&](std::size_t i) { return uniform(seed, i) < share; });
+}
+
+std::size_t beams_for(double sigma, std::size_t most) {
+  constexpr double kWide = 0.1;        // [m]
+  constexpr std::size_t kLeast = 400;  // a few turns of a beam in the plate's plane
+  const auto some = static_cast<std::size_t>(static_cast<double>(most) * std::min(1.0, kWide / sigma));
+  return std::min(most, std::max(some, kLeast));
+}
+
+Sample thin_for(double sigma, const Sample& sample) {
+  const std::size_t n = sample.beams.size();
+  const double share =
+      static_cast<double>(beams_for(sigma, n)) / static_cast<double>(std::max<std::size_t>(1, n));
+  std::map<std::pair<std::uint16_t, bool>, double> due;  // of the front and the back beams of each laser
+  return select(sample, [&](std::size_t i) {
+    double& own = due[{sample.beams.laser[i], sample.beams.mirror_angle[i] < 0}];
+    own += share;
+    if (own < 1) return false;
+    own -= 1;
+    return true;
+  });
+}
+
+PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>& pieces) {
+  if (pieces.empty()) return {};
+  std::vector<double> times;
+  std::vector<double> angles;
+  for (const auto& piece : pieces) {
+    for (std::size_t i = 0; i < piece->size(); ++i) {
+      if (!times.empty() && piece->times()[i] <= times.back()) continue;
+      times.push_back(piece->times()[i]);
+      angles.push_back(piece->angles()[i]);
+    }
+  }
+  return {pieces.front()->epoch_ns(), std::move(times), std::move(angles), pieces.front()->max_gap()};
+}
+
+}  // namespace crisp

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/search_range.hpp"
+
+#include "pipeline/estimate/wanted_terms.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kOfBounds = 0.05;  // share of a term's bounds that its parameters are looked for within
+
+}  // namespace
+
+double range_of(const SearchRange& range, const std::string& name) {
+  if (name.ends_with(".lambda")) return range.lambda;
+  if (name.ends_with(".tau")) return range.tau;
+  if (name.ends_with(".alpha")) return range.alpha;
+  if (name.ends_with(".eta")) return range.eta;
+  return range.other;
+}
+
+Eigen::VectorXd picked(const SensorModel& model, const std::vector<std::size_t>& free) {
+  return model.values()(free);
+}
+
+Eigen::VectorXd ranges_of(const SearchRange& range, const SensorModel& model,
+                          const std::vector<std::size_t>& free) {
+  Eigen::VectorXd ranges(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const EffectParameter* term = declared(model, free[i]);
+    const double width = term ? term->upper - term->lower : 0;
+    ranges[static_cast<Eigen::Index>(i)] =
+        width > 0 ? kOfBounds * width : range_of(range, model.names()[free[i]]);
+  }
+  return ranges;
+}
+
+SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x) {
+  Eigen::VectorXd values = model.values();
+  values(free) = x;
+  SensorModel moved = model;
+  moved.set_values(values);
+  return moved;
+}
+
+}  // namespace crisp

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "pipeline/model/sensor_model.hpp"
+
+namespace crisp {
+
+/// How far from its start each kind of parameter is looked for: also what counts as known beforehand.
+struct SearchRange {
+  double lambda = 0.26;  ///< [rad]
+  double tau = 0.10;     ///< [m]
+  double alpha = 0.35;   ///< [rad]
+  double eta = 0.10;     ///< [s]
+  double other = 0.05;   ///< parameters of terms beyond equation (2) that have no bounds, in their units
+};
+
+/// The range that belongs to a parameter by its name.
+double range_of(const SearchRange& range, const std::string& name);
+
+/// The model with other values of the free parameters.
+SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x);
+
+/// The values of the parameters in `free`, or the ranges in which they are looked for: those of terms are a
+/// share of their bounds.
+Eigen::VectorXd picked(const SensorModel& model, const std::vector<std::size_t>& free);
+Eigen::VectorXd ranges_of(const SearchRange& range, const SensorModel& model,
+                          const std::vector<std::size_t>& free);
+
+}  // namespace crisp

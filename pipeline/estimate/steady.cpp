@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/steady.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crisp {
+namespace {
+
+/// How far apart a surfel's views lie.
+struct Spread {
+  double squares = 0;    // [m²] mean square over its beams
+  double by_chance = 0;  // [σ²] what of that the noise of ranges makes
+};
+Spread spread_of_views(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams,
+                       std::size_t views) {
+  struct View {
+    double weight = 0;
+    double sum = 0;
+  };
+  std::vector<View> parts(views);
+  View all;
+  for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
+    const std::uint32_t beam = surfels.members[k];
+    const Eigen::Vector3d point(beams.points.x[beam], beams.points.y[beam], beams.points.z[beam]);
+    const double weight = surfels.weights[k];
+    const double moment = weight * surfel.normal.dot(point - surfel.middle);
+    View& own = parts[beams.views[beam]];
+    own.weight += weight;
+    own.sum += moment;
+    all.weight += weight;
+    all.sum += moment;
+  }
+  if (!(all.weight > 0)) return {};
+  Spread spread{.squares = 0, .by_chance = -1 / all.weight};
+  for (const View& view : parts) {
+    if (!(view.weight > 0)) continue;
+    spread.squares += view.weight * std::pow(view.sum / view.weight - all.sum / all.weight, 2) / all.weight;
+    spread.by_chance += 1 / all.weight;
+  }
+  return spread;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<bool> steady(const Surfels& surfels, const BeamsView& beams, double noise) {
+  constexpr double kMuchMore = 5;
+  constexpr double kLeast = 0.25;  // [σ]
+  constexpr double kChance = 4;    // of what is expected by chance: χ² of five is beyond once in a thousand
+  if (surfels.surfels.empty() || beams.views.empty()) return std::vector<bool>(surfels.surfels.size(), true);
+  const std::size_t views = *std::ranges::max_element(beams.views) + 1;
+  std::vector<Spread> spreads;
+  std::vector<double> sizes;
+  for (const Surfel& surfel : surfels.surfels) {
+    spreads.push_back(spread_of_views(surfel, surfels, beams, views));
+    sizes.push_back(std::sqrt(spreads.back().squares));
+  }
+  const double most = std::max(kLeast * noise, kMuchMore * median(sizes));
+  std::vector<bool> result;
+  for (const Spread& spread : spreads) {
+    result.push_back(spread.squares <= most * most + kChance * noise * noise * spread.by_chance);
+  }
+  return result;
+}
+
+Surfels kept(const Surfels& surfels, const std::vector<bool>& keep) {
+  Surfels result{.surfels = {}, .members = surfels.members, .weights = surfels.weights};
+  for (std::size_t k = 0; k < surfels.surfels.size(); ++k) {
+    if (keep[k]) result.surfels.push_back(surfels.surfels[k]);
+  }
+  return result;
+}
+
+}  // namespace crisp

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/surfel_refinement.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/estimate/agreement.hpp"
+#include "pipeline/estimate/base_slots.hpp"
+#include "pipeline/estimate/can_be_told.hpp"
+#include "pipeline/estimate/flat_surfaces.hpp"
+#include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/observability.hpp"
+#include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/estimate/steady.hpp"
+#include "pipeline/estimate/surfel_rows.hpp"
+#include "pipeline/estimate/upright.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kSpread = 0.1;  // [rad] by which beams in the plate's plane are taken out of it
+
+/// Pieces of the recording that share no error: what is left of the encoder's steps is gone after a tenth of
+/// a second; many enough to see by how much the pieces' pulls scatter.
+std::vector<std::uint32_t> pieces_of(const Sample& sample) {
+  constexpr double kLong = 0.1;  // [s]
+  constexpr double kFewest = 100;
+  const auto [first, last] = std::ranges::minmax(sample.beams.time);
+  const double piece = std::min(kLong, (last - first) / kFewest);
+  std::vector<std::uint32_t> pieces;
+  pieces.reserve(sample.beams.size());
+  for (const double time : sample.beams.time) {
+    pieces.push_back(static_cast<std::uint32_t>((time - first) / std::max(piece, 1e-9)));
+  }
+  return pieces;
+}
+
+/// Equations at a model, with the start as one more observation.
+class Refiner {
+ public:
+  Refiner(const SensorModel& start, const Sample& sample, std::vector<std::size_t> free,
+          std::unique_ptr<FlatSurfaces> surfaces, const RefinementSettings& settings)
+      : start_(start),
+        model_(start),
+        sample_(sample),
+        free_(std::move(free)),
+        surfaces_(std::move(surfaces)),
+        settings_(settings) {}
+
+  /// @return  whether nothing more is to be expected of the next one
+  bool step() {
+    const PlacedBeams placed(model_, sample_);
+    found_ = steady_ones(surfaces_->update(placed.view(), last_step_), placed.view());
+    if (found_.surfels.empty()) {
+      throw Error(
+          "no flat surface is seen by these data",
+          "leave calibrate.refine out where nothing is flat, or look closer with a smaller `smallest`");
+    }
+    equations_ = normal_equations(found_, placed.view(), free_.size(), surfel_rows(model_, sample_, free_),
+                                  settings_.surfels);
+    information_ = equations_.matrix / equations_.covariance_factor();
+    const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
+    const Eigen::VectorXd from_start = picked(model_, free_) - picked(start_, free_);
+    const Eigen::VectorXd pull =
+        equations_.vector / equations_.covariance_factor() + prior.cwiseProduct(from_start);
+    const auto n = information_.rows();
+    const auto posterior = (information_ + Eigen::MatrixXd(prior.asDiagonal())).eval().ldlt();
+    covariance_ = posterior.solve(Eigen::MatrixXd::Identity(n, n));
+    covariance_ = covariance_.selfadjointView<Eigen::Lower>();  // to the last bit
+    const Eigen::VectorXd change = -posterior.solve(pull);
+    model_ = with(model_, free_, picked(model_, free_) + change);
+    agreement_ = agreement(found_, placed.view(), model_.lasers(), settings_.surfels.noise);
+    last_step_ = (change.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
+    return surfaces_->is_settled() && last_step_ < settings_.tolerance;
+  }
+
+  /// Keeps at their start those that the data do not tell.
+  std::vector<Unobservable> hold_unknown() {
+    auto told = observability(information_, free_, model_.names(), ranges_of(settings_.prior, model_, free_));
+    if (told.unobservable.empty()) return {};
+    const SensorModel found = model_;
+    model_ = with(start_, told.known, picked(found, told.known));
+    free_ = told.known;
+    return told.unobservable;
+  }
+
+  /// Widens the standard errors to what the recording's pieces disagree by, where that is more than the noise
+  /// of single beams makes.
+  void widen_by_shared_errors() {
+    if (found_.surfels.empty()) return;
+    const PlacedBeams placed(model_, sample_);
+    const auto pieces = pieces_of(sample_);
+    const auto rows = surfel_rows(model_, sample_, free_);
+    const Eigen::MatrixXd pull =
+        pull_of_blocks(found_, placed.view(), free_.size(), rows, settings_.surfels, pieces);
+    const double count = 1.0 + std::ranges::max(pieces);
+    const auto spent = static_cast<double>(free_.size());
+    if (count <= 2 * spent) return;
+    const Eigen::MatrixXd inverse =
+        equations_.matrix.ldlt().solve(Eigen::MatrixXd::Identity(pull.rows(), pull.cols()));
+    const double stiffer = equations_.weight / equations_.stiffness;
+    const Eigen::VectorXd shared =
+        (inverse * pull * inverse).diagonal() * stiffer * stiffer * count / (count - spent);
+    const Eigen::VectorXd alone = inverse.diagonal() * equations_.covariance_factor();
+    const Eigen::VectorXd wider = (shared.array() / alone.array()).max(1.0).sqrt();
+    covariance_ = wider.asDiagonal() * covariance_ * wider.asDiagonal();
+  }
+
+  const SensorModel& model() const { return model_; }
+  const std::vector<std::size_t>& free() const { return free_; }
+
+  Refinement result() const {
+    return {.outcome = {.model = model_,
+                        .free = free_,
+                        .covariance = covariance_,
+                        .unobservable = {},
+                        .doubts = doubts()},
+            .surfels = found_.surfels.size(),
+            .beams = equations_.beams,
+            .chi2 = equations_.chi2 / std::max(1.0, equations_.freedom)};
+  }
+
+ private:
+  /// Chosen anew while the parameters move, and kept in the end, so that the steps come to one.
+  Surfels steady_ones(const Surfels& found, const BeamsView& beams) {
+    constexpr double kSmallStep = 0.5;  // [standard errors]
+    if (last_step_ > kSmallStep || steady_.size() != found.surfels.size()) {
+      steady_ = steady(found, beams, settings_.surfels.noise);
+    }
+    return kept(found, steady_);
+  }
+
+  std::vector<std::string> doubts() const {
+    std::vector<std::string> lasers;
+    for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
+      const std::string& lambda = model_.names()[slot(model_, laser, kLambda)];
+      lasers.push_back(lambda.substr(0, lambda.rfind('.')));
+    }
+    std::vector<std::string> found = disagreements(agreement_, lasers);
+    const Eigen::VectorXd priors = ranges_of(settings_.prior, model_, free_);
+    const Eigen::VectorXd moved = (picked(model_, free_) - picked(start_, free_)).cwiseQuotient(priors);
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      constexpr double kFar = 2;  // of what the start was trusted to
+      if (std::abs(moved[static_cast<Eigen::Index>(k)]) < kFar) continue;
+      found.push_back(fmt::format("{} was refined to far from where it started: one of both is wrong",
+                                  model_.names()[free_[k]]));
+    }
+    return found;
+  }
+
+  SensorModel start_;
+  SensorModel model_;
+  const Sample& sample_;
+  std::vector<std::size_t> free_;
+  std::vector<bool> steady_;  // of the surfels
+  Agreement agreement_;
+  std::unique_ptr<FlatSurfaces> surfaces_;
+  const RefinementSettings& settings_;
+  Surfels found_;  // that count, in the last round
+  NormalEquations equations_;
+  Eigen::MatrixXd information_;
+  Eigen::MatrixXd covariance_;
+  double last_step_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
+                             const RefinementSettings& settings, const RoundReporter& report) {
+  const LagRange lag = lag_range(start, settings.prior.eta);
+  Sample inside = covered(sample, lag.earliest, lag.latest);
+  FreeParameters parameters = can_be_told(
+      free_parameters(start, inside.beams, settings.fixed, settings.terms), start, inside, SearchRange{});
+  const bool upright = is_in_plane(inside);
+  if (upright) inside = spread_upright(inside, kSpread);
+  Refiner refiner(start, inside, parameters.free,
+                  upright ? upright_walls(settings.surfels) : patches(settings.surfels), settings);
+  int round = 0;
+  bool converged = false;
+  while (!converged && round < settings.max_rounds && !refiner.free().empty()) {
+    if (report && !report(round)) break;
+    converged = refiner.step();
+    ++round;
+    for (auto& lost : refiner.hold_unknown()) {
+      parameters.unobservable.push_back(std::move(lost));
+      converged = false;  // the others take one more step without it
+    }
+  }
+  if (refiner.free().empty()) throw Error("these data determine none of the parameters");
+  refiner.widen_by_shared_errors();
+  Refinement result = refiner.result();
+  result.outcome.unobservable = std::move(parameters.unobservable);
+  result.rounds = round;
+  result.converged = converged;
+  if (!converged && round == settings.max_rounds) {
+    result.outcome.doubts.push_back(
+        fmt::format("the refinement still moved after {} rounds: its standard errors are too small", round));
+  }
+  return result;
+}
+
+}  // namespace crisp

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/pipeline/estimate/support.hpp"
+
+namespace crisp {
+namespace {
+
+const SimulatedMeasurements& recording() {
+  static const auto kRecording = simulate_measurements(misplaced_scanner(1, 1.0), office());
+  return kRecording;
+}
+
+TEST(Sample, InPlaneKeepsTheTwoBeamsAtNinetyDegrees) {
+  const auto both = in_plane(sample_of(recording()), 0.0044, Half::kBoth);
+  std::set<int> beams(both.beams.beam.begin(), both.beams.beam.end());
+  EXPECT_EQ(beams, (std::set<int>{0, 360}));  // reported −45° and 135° at 0.5° a step
+  const auto front = in_plane(sample_of(recording()), 0.0044, Half::kFront);
+  EXPECT_EQ(std::set<int>(front.beams.beam.begin(), front.beams.beam.end()), std::set<int>{0});
+}
+
+TEST(Sample, CoveredLeavesOutWhatAnEtaInTheRangeWouldPushOffThePlatesReadings) {
+  const auto& plate = recording().plate;
+  const auto sample = covered(sample_of(recording()), -0.4, 0.3);
+  ASSERT_GT(sample.beams.size(), 0U);
+  EXPECT_GE(sample.beams.time.front() - 0.4, plate.begin());
+  EXPECT_LE(sample.beams.time.back() + 0.3, plate.end());
+  EXPECT_LT(sample.beams.size(), recording().beams.size());
+}
+
+TEST(Sample, ThinningByAreaIsRepeatableAndEvensOutTheDensityAtTheSpinAxis) {
+  const SensorModel model(recording().truth);
+  const auto all = sample_of(recording());
+  const auto thin = thin_by_area(all, model, 5000, 7);
+  // A sum of independent draws: within five standard deviations of the count asked for.
+  EXPECT_NEAR(static_cast<double>(thin.beams.size()), 5000, 5 * std::sqrt(5000.0));
+  EXPECT_EQ(thin.beams.time, thin_by_area(all, model, 5000, 7).beams.time);
+  EXPECT_NE(thin.beams.time, thin_by_area(all, model, 5000, 8).beams.time);
+  const auto near_axis = [&](const Sample& sample) {
+    const auto points = model.place(sample.beams, *sample.plate).points;
+    double n = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) n += points.col(i).head<2>().norm() < 0.5;
+    return n / static_cast<double>(points.cols());
+  };
+  // Floor and ceiling within half a metre of the axis are 1.6 m² of some 250 m².
+  EXPECT_GT(near_axis(all), 0.05);
+  EXPECT_LT(near_axis(thin), 0.02);
+}
+
+TEST(Sample, JoinedTrajectoriesAreOne) {
+  const auto piece = [](double from, double to) {
+    std::vector<double> times, angles;
+    for (double t = from; t < to; t += 0.01) {
+      times.push_back(t);
+      angles.push_back(3 * t);
+    }
+    return std::make_shared<const PlateTrajectory>(5, times, angles, 0.05);
+  };
+  const auto whole = joined({piece(0, 1), piece(0.5, 2)});
+  EXPECT_EQ(whole.epoch_ns(), 5);
+  EXPECT_LT(whole.begin(), 1e-9);
+  EXPECT_GT(whole.end(), 1.98);
+  EXPECT_NEAR(whole.at(1.005)->angle, 3.015, 1e-9);
+}
+
+}  // namespace
+}  // namespace crisp
