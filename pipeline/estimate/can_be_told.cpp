@@ -4,6 +4,7 @@
 #include "pipeline/estimate/base_slots.hpp"
 #include "pipeline/estimate/displacement.hpp"
 #include "pipeline/estimate/observability.hpp"
+#include "pipeline/estimate/wanted_terms.hpp"
 
 namespace crisp {
 namespace {
@@ -43,18 +44,23 @@ SensorModel farther_out(const SensorModel& model, const std::vector<std::size_t>
 
 FreeParameters can_be_told(FreeParameters parameters, const SensorModel& model, const Sample& sample,
                            const SearchRange& range) {
-  if (parameters.free.empty()) return parameters;
+  std::vector<std::size_t> base = parameters.free;
+  std::erase_if(base, [&](std::size_t parameter) { return declared(model, parameter) != nullptr; });
+  if (base.empty()) return parameters;
   const PlateTrajectory plate = thinned(*sample.plate, kSpacing);
   Sample some = thin_evenly(sample, kBeams, 1);
   some.plate = &plate;
   const auto told_at = [&](const SensorModel& place) {
-    const Eigen::MatrixXd motion = displacement(place, some, parameters.free) / (kLeastMotion * kLeastMotion);
-    return observability(motion, parameters.free, model.names(), ranges_of(range, model, parameters.free));
+    const Eigen::MatrixXd motion = displacement(place, some, base) / (kLeastMotion * kLeastMotion);
+    return observability(motion, base, model.names(), ranges_of(range, model, base));
   };
   auto told = told_at(model);
   // A laser on the spin axis turns by α as by λ; but where it sits is still to be found.
-  if (!told.unobservable.empty()) told = told_at(farther_out(model, parameters.free, range));
-  parameters.free = told.known;
+  if (!told.unobservable.empty()) told = told_at(farther_out(model, base, range));
+  std::erase_if(parameters.free, [&](std::size_t parameter) {
+    return std::ranges::find(base, parameter) != base.end() &&
+           std::ranges::find(told.known, parameter) == told.known.end();
+  });
   for (Unobservable lost : told.unobservable) {
     lost.reason = "the motion of the plate does not tell it";
     parameters.unobservable.push_back(std::move(lost));

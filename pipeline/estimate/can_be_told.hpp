@@ -13,6 +13,8 @@ namespace crisp {
 ///
 /// The motion is seen through readings 50 ms apart: between closer ones the encoder's rounding looks like
 /// changes of speed, which a million beams would take for information.
+///
+/// Parameters of terms stay: whether the beams tell them is another question, as what they do is small.
 FreeParameters can_be_told(FreeParameters parameters, const SensorModel& model, const Sample& sample,
                            const SearchRange& range);
 

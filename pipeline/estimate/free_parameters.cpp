@@ -38,7 +38,8 @@ bool feels(const SensorModel& model, const std::vector<bool>& measured, std::siz
 }  // namespace
 
 FreeParameters free_parameters(const SensorModel& model, const Measurements& beams,
-                               const std::vector<std::string>& fixed, const std::vector<std::string>& terms) {
+                               const std::vector<std::string>& fixed, const std::vector<std::string>& terms,
+                               bool forms) {
   const std::vector<bool> measured = lasers_in(beams, model.lasers());
   FreeParameters result;
   bool gauge = false;
@@ -56,7 +57,7 @@ FreeParameters free_parameters(const SensorModel& model, const Measurements& bea
       }
     }
   }
-  for (const std::size_t parameter : parameters_of(model, terms)) {
+  for (const std::size_t parameter : parameters_of(model, terms, forms)) {
     if (feels(model, measured, parameter)) {
       result.free.push_back(parameter);
     } else {

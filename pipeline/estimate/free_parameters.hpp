@@ -20,9 +20,10 @@ struct FreeParameters {
 ///
 /// @param fixed  those to be left alone: "laser1.eta", or "eta" for that of all lasers
 /// @param terms  to be found as well: "encoder.eccentricity", "laser2.mirror.cone"
+/// @param forms  whether what says their form is, too: see parameters_of()
 FreeParameters free_parameters(const SensorModel& model, const Measurements& beams,
                                const std::vector<std::string>& fixed,
-                               const std::vector<std::string>& terms = {});
+                               const std::vector<std::string>& terms = {}, bool forms = false);
 
 /// @throws Error  if an entry of `fixed` names no parameter of these lasers
 void check_fixed(const std::vector<std::string>& fixed, const Calibration& calibration);

@@ -14,6 +14,7 @@
 #include "pipeline/estimate/can_be_told.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/incidence.hpp"
 #include "pipeline/estimate/observability.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/estimate/steady.hpp"
@@ -43,11 +44,11 @@ std::vector<std::uint32_t> pieces_of(const Sample& sample) {
 /// Equations at a model, with the start as one more observation.
 class Refiner {
  public:
-  Refiner(const SensorModel& start, const Sample& sample, std::vector<std::size_t> free,
+  Refiner(const SensorModel& start, Sample sample, std::vector<std::size_t> free,
           std::unique_ptr<FlatSurfaces> surfaces, const RefinementSettings& settings)
       : start_(start),
         model_(start),
-        sample_(sample),
+        sample_(std::move(sample)),
         free_(std::move(free)),
         surfaces_(std::move(surfaces)),
         settings_(settings) {}
@@ -61,6 +62,8 @@ class Refiner {
           "no flat surface is seen by these data",
           "leave calibrate.refine out where nothing is flat, or look closer with a smaller `smallest`");
     }
+    // For terms that depend on it.
+    sample_.beams.cos_incidence = incidences(found_, placed.view());
     equations_ = normal_equations(found_, placed.view(), free_.size(), surfel_rows(model_, sample_, free_),
                                   settings_.surfels);
     information_ = equations_.matrix / equations_.covariance_factor();
@@ -96,17 +99,16 @@ class Refiner {
     const PlacedBeams placed(model_, sample_);
     const auto pieces = pieces_of(sample_);
     const auto rows = surfel_rows(model_, sample_, free_);
-    const Eigen::MatrixXd pull =
-        pull_of_blocks(found_, placed.view(), free_.size(), rows, settings_.surfels, pieces);
     const double count = 1.0 + std::ranges::max(pieces);
     const auto spent = static_cast<double>(free_.size());
     if (count <= 2 * spent) return;
-    const Eigen::MatrixXd inverse =
-        equations_.matrix.ldlt().solve(Eigen::MatrixXd::Identity(pull.rows(), pull.cols()));
-    const double stiffer = equations_.weight / equations_.stiffness;
+    const auto equations =
+        normal_equations(found_, placed.view(), free_.size(), rows, settings_.surfels, pieces);
+    const auto m = static_cast<Eigen::Index>(free_.size());
+    const Eigen::MatrixXd inverse = equations.matrix.ldlt().solve(Eigen::MatrixXd::Identity(m, m));
     const Eigen::VectorXd shared =
-        (inverse * pull * inverse).diagonal() * stiffer * stiffer * count / (count - spent);
-    const Eigen::VectorXd alone = inverse.diagonal() * equations_.covariance_factor();
+        (inverse * equations.scatter_of_blocks() * inverse).diagonal() * count / (count - spent);
+    const Eigen::VectorXd alone = inverse.diagonal() * equations.covariance_factor();
     const Eigen::VectorXd wider = (shared.array() / alone.array()).max(1.0).sqrt();
     covariance_ = wider.asDiagonal() * covariance_ * wider.asDiagonal();
   }
@@ -155,7 +157,7 @@ class Refiner {
 
   SensorModel start_;
   SensorModel model_;
-  const Sample& sample_;
+  Sample sample_;
   std::vector<std::size_t> free_;
   std::vector<bool> steady_;  // of the surfels
   Agreement agreement_;
@@ -174,11 +176,12 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
                              const RefinementSettings& settings, const RoundReporter& report) {
   const LagRange lag = lag_range(start, settings.prior.eta);
   Sample inside = covered(sample, lag.earliest, lag.latest);
-  FreeParameters parameters = can_be_told(
-      free_parameters(start, inside.beams, settings.fixed, settings.terms), start, inside, SearchRange{});
+  FreeParameters parameters =
+      can_be_told(free_parameters(start, inside.beams, settings.fixed, settings.terms, settings.forms), start,
+                  inside, SearchRange{});
   const bool upright = is_in_plane(inside);
   if (upright) inside = spread_upright(inside, kSpread);
-  Refiner refiner(start, inside, parameters.free,
+  Refiner refiner(start, std::move(inside), parameters.free,
                   upright ? upright_walls(settings.surfels) : patches(settings.surfels), settings);
   int round = 0;
   bool converged = false;

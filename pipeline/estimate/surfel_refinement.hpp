@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/estimate/outcome.hpp"
+#include "pipeline/estimate/sample.hpp"
 #include "pipeline/estimate/search_range.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
 
@@ -14,6 +15,7 @@ namespace crisp {
 struct RefinementSettings {
   std::vector<std::string> fixed;  ///< parameters to be left alone: see free_parameters()
   std::vector<std::string> terms;  ///< of the model, to be found as well: see wanted_terms.hpp
+  bool forms = false;  ///< whether the terms' forms are to be found as well, from about the right ones
   SurfelSettings surfels;
   SearchRange prior{.lambda = 0.05, .tau = 0.03, .alpha = 0.05, .eta = 0.01, .other = 0.05};  ///< see below
   int max_rounds = 15;

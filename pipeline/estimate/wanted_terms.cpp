@@ -56,12 +56,15 @@ const EffectParameter* declared(const SensorModel& model, std::size_t parameter)
   return nullptr;
 }
 
-std::vector<std::size_t> parameters_of(const SensorModel& model, const std::vector<std::string>& wanted) {
+std::vector<std::size_t> parameters_of(const SensorModel& model, const std::vector<std::string>& wanted,
+                                       bool forms) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < model.names().size(); ++i) {
     const EffectParameter* parameter = declared(model, i);
     const auto named = [&](const std::string& term) { return is_of(model.names()[i], term); };
-    if (parameter && !parameter->shape && std::ranges::any_of(wanted, named)) found.push_back(i);
+    if (!parameter || std::ranges::none_of(wanted, named)) continue;
+    const bool is_instant = parameter->tries.spacing == Tries::Spacing::kInstants;
+    if (!parameter->shape || (forms && parameter->tries.count > 0 && !is_instant)) found.push_back(i);
   }
   return found;
 }

@@ -18,7 +18,11 @@ void add_wanted_terms(Calibration& calibration, const std::vector<std::string>& 
 /// What a term says of its parameter; nullptr for λ, τ, α and η.
 const EffectParameter* declared(const SensorModel& model, std::size_t parameter);
 
-/// The parameters of such terms that say how large an effect is: forms are left as they are.
-std::vector<std::size_t> parameters_of(const SensorModel& model, const std::vector<std::string>& wanted);
+/// The parameters of such terms that say how large an effect is.
+///
+/// @param forms  whether those that say its form are wanted as well, but for instants, which have no
+///               derivative
+std::vector<std::size_t> parameters_of(const SensorModel& model, const std::vector<std::string>& wanted,
+                                       bool forms = false);
 
 }  // namespace crisp

@@ -10,6 +10,20 @@ namespace crisp {
 /// has a clock and a link), or the scene.
 enum class Scope { kLaser, kPlate, kDevice, kScene };
 
+/// Between which values a search for the form of a departure steps, and how.
+struct Tries {
+  enum class Spacing {
+    kLinear,
+    kLogarithmic,
+    kReciprocal,  ///< evenly in 1/x: periods
+    kInstants,    ///< evenly over the recording, `from` and `to` being shares of it
+  };
+  Spacing spacing = Spacing::kLinear;
+  double from = 0;
+  double to = 1;
+  int count = 0;
+};
+
 struct EffectParameter {
   std::string name;
   std::string unit;  ///< of the value: "m", "rad", "s", "1", "m s^2" …
@@ -20,6 +34,7 @@ struct EffectParameter {
   /// It says what form the departure has, not how large it is: while the others are neutral it changes
   /// nothing at all, so that a search has to step through it.
   bool shape = false;
+  Tries tries = {};  ///< for a form; count 0: it is left at its neutral value
 };
 
 /// One departure of a real scanner from equation (2), its clocks, its noise or its scene from the plain ones.

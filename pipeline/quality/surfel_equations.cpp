@@ -55,56 +55,79 @@ Rows weighted_rows(const Surfel& surfel, std::span<const std::uint32_t> members,
   return all;
 }
 
-/// Sums matrices over a surfel's beams.
-/// @param add  is given some of the beams, their rows, and the matrix to add to
-template <class Add>
-Eigen::MatrixXd sum_of_rows(const Surfel& surfel, std::span<const std::uint32_t> members,
-                            std::span<const SurfelResidual> residuals, std::size_t parameters,
-                            const DerivativeRows& derivatives, const Eigen::MatrixXd& zero, const Add& add) {
-  constexpr std::size_t kBlock = 8192;  // beams that are summed in a row
-  std::vector<Eigen::MatrixXd> blocks(blocks_of(members.size(), kBlock));
-  for_blocks(members.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    blocks[block] = zero;
-    for (std::size_t k = begin; k < end; k += kChunk) {
-      const auto some = members.subspan(k, std::min(kChunk, end - k));
-      add(some, weighted_rows(surfel, some, residuals.subspan(k, some.size()), parameters, derivatives),
-          blocks[block]);
+/// Sums over a surfel's beams.
+struct SurfelSums {
+  Eigen::MatrixXd gram;   // (m + 4)²: Σ rowᵀ row, its upper half
+  Eigen::MatrixXd pulls;  // (m + 4) × blocks: Σ rowᵀ distance
+};
+
+class SurfelRows {
+ public:
+  SurfelRows(const Surfel& surfel, std::size_t parameters, const DerivativeRows& derivatives,
+             std::span<const std::uint32_t> block_of, std::size_t blocks)
+      : surfel_(surfel),
+        parameters_(parameters),
+        derivatives_(derivatives),
+        block_of_(block_of),
+        blocks_(static_cast<Eigen::Index>(blocks)) {}
+
+  SurfelSums sums(std::span<const std::uint32_t> members, std::span<const SurfelResidual> residuals) const {
+    constexpr std::size_t kBlock = 8192;  // beams that are summed in a row
+    std::vector<SurfelSums> parts(blocks_of(members.size(), kBlock));
+    for_blocks(members.size(), kBlock, [&](std::size_t part, std::size_t begin, std::size_t end) {
+      parts[part] = none();
+      for (std::size_t k = begin; k < end; k += kChunk) {
+        const auto some = members.subspan(k, std::min(kChunk, end - k));
+        add(some, weighted_rows(surfel_, some, residuals.subspan(k, some.size()), parameters_, derivatives_),
+            parts[part]);
+      }
+    });
+    SurfelSums sum = none();
+    for (const SurfelSums& part : parts) {
+      sum.gram += part.gram;
+      sum.pulls += part.pulls;
     }
-  });
-  Eigen::MatrixXd sum = zero;
-  for (const auto& block : blocks) sum += block;
-  return sum;
-}
+    sum.gram = Eigen::MatrixXd(sum.gram.selfadjointView<Eigen::Upper>());
+    return sum;
+  }
 
-/// Σ rowᵀ row over a surfel's beams.
-Eigen::MatrixXd gram(const Surfel& surfel, std::span<const std::uint32_t> members,
-                     std::span<const SurfelResidual> residuals, std::size_t parameters,
-                     const DerivativeRows& derivatives) {
-  const auto columns = static_cast<Eigen::Index>(parameters + 4);
-  const Eigen::MatrixXd sum = sum_of_rows(
-      surfel, members, residuals, parameters, derivatives, Eigen::MatrixXd::Zero(columns, columns),
-      [](auto, const Rows& rows, Eigen::MatrixXd& block) {
-        block.selfadjointView<Eigen::Upper>().rankUpdate(rows.transpose());
-      });
-  return sum.selfadjointView<Eigen::Upper>();
-}
+ private:
+  SurfelSums none() const {
+    const auto columns = static_cast<Eigen::Index>(parameters_ + 4);
+    return {.gram = Eigen::MatrixXd::Zero(columns, columns),
+            .pulls = Eigen::MatrixXd::Zero(columns, blocks_)};
+  }
+  void add(std::span<const std::uint32_t> members, const Rows& rows, SurfelSums& sums) const {
+    sums.gram.selfadjointView<Eigen::Upper>().rankUpdate(rows.transpose());
+    if (blocks_ == 0) return;
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+      const auto block = block_of_[members[static_cast<std::size_t>(i)]];
+      sums.pulls.col(static_cast<Eigen::Index>(block)) += rows(i, 3) * rows.row(i).transpose();
+    }
+  }
 
-/// What each of its own parameters of the plane does in the parameters' stead: 3 × m.
-Eigen::MatrixXd planes_share(const Eigen::MatrixXd& gram) {
-  const Eigen::Index m = gram.cols() - 4;
-  return solve_semidefinite(gram.topLeftCorner(3, 3), gram.topRightCorner(3, m));
-}
+  const Surfel& surfel_;
+  std::size_t parameters_;
+  const DerivativeRows& derivatives_;
+  std::span<const std::uint32_t> block_of_;
+  Eigen::Index blocks_;
+};
 
-NormalEquations without_plane(const Eigen::MatrixXd& gram, std::span<const SurfelResidual> residuals) {
-  const Eigen::Index rest = gram.cols() - 3;
-  // Of a wall that is met in one line alone the slope across that line is left open, not told by rounding.
-  const Eigen::MatrixXd left = gram.bottomRightCorner(rest, rest) -
-                               gram.bottomLeftCorner(rest, 3) *
-                                   solve_semidefinite(gram.topLeftCorner(3, 3), gram.topRightCorner(3, rest));
-  NormalEquations result(static_cast<std::size_t>(rest - 1));
+NormalEquations without_plane(const SurfelSums& sums, std::span<const SurfelResidual> residuals) {
+  const Eigen::Index rest = sums.gram.cols() - 3;
+  const Eigen::Index m = rest - 1;
+  // What each parameter of the plane does in the others' stead. Of a wall that is met in one line alone the
+  // slope across that line is left open, not told by rounding.
+  const Eigen::MatrixXd share =
+      solve_semidefinite(sums.gram.topLeftCorner(3, 3), sums.gram.topRightCorner(3, rest));
+  const Eigen::MatrixXd left =
+      sums.gram.bottomRightCorner(rest, rest) - sums.gram.bottomLeftCorner(rest, 3) * share;
+  NormalEquations result;
   result.chi2 = left(0, 0);
-  result.vector = left.col(0).tail(rest - 1);
-  result.matrix = left.bottomRightCorner(rest - 1, rest - 1);
+  result.vector = left.col(0).tail(m);
+  result.matrix = left.bottomRightCorner(m, m);
+  result.squares = sums.gram.diagonal().tail(m);
+  result.pulls = sums.pulls.bottomRows(m) - share.rightCols(m).transpose() * sums.pulls.topRows<3>();
   for (const SurfelResidual& r : residuals) {
     if (r.weight == 0) continue;
     ++result.beams;
@@ -132,10 +155,13 @@ std::vector<std::size_t> batches(const Surfels& surfels) {
 
 }  // namespace
 
-NormalEquations::NormalEquations(std::size_t parameters)
-    : matrix(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(parameters),
-                                   static_cast<Eigen::Index>(parameters))),
-      vector(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters))) {}
+NormalEquations::NormalEquations(std::size_t parameters, std::size_t blocks) {
+  const auto m = static_cast<Eigen::Index>(parameters);
+  matrix.setZero(m, m);
+  vector.setZero(m);
+  squares.setZero(m);
+  pulls.setZero(m, static_cast<Eigen::Index>(blocks));
+}
 
 NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   matrix += other.matrix;
@@ -146,12 +172,19 @@ NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   weight += other.weight;
   influence += other.influence;
   stiffness += other.stiffness;
+  squares += other.squares;
+  pulls += other.pulls;
   return *this;
 }
 
 double NormalEquations::covariance_factor() const {
   const double spent = static_cast<double>(beams) / freedom;  // what the planes took of the residuals
   return weight * influence * spent / (stiffness * stiffness);
+}
+
+Eigen::MatrixXd NormalEquations::scatter_of_blocks() const {
+  const double stiffer = weight / stiffness;
+  return pulls * pulls.transpose() * stiffer * stiffer;
 }
 
 NormalEquations NormalEquations::reduced(const std::vector<std::size_t>& kept,
@@ -165,53 +198,29 @@ NormalEquations NormalEquations::reduced(const std::vector<std::size_t>& kept,
   result.vector = vector(kept) - by_cross.transpose() * gone;
   result.chi2 = chi2 - gone.dot(solve_in_any_units(inner, gone).col(0));
   result.freedom = freedom - static_cast<double>(eliminated.size());
+  result.squares = squares(kept);
+  result.pulls =
+      pulls(kept, Eigen::all) - by_cross.transpose() * Eigen::MatrixXd(pulls(eliminated, Eigen::all));
   return result;
 }
 
 NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
-                                 const DerivativeRows& derivatives, const SurfelSettings& settings) {
+                                 const DerivativeRows& derivatives, const SurfelSettings& settings,
+                                 std::span<const std::uint32_t> blocks) {
+  const std::size_t count = blocks.empty() ? 0 : std::ranges::max(blocks) + std::size_t{1};
   const auto first = batches(surfels);
-  std::vector<NormalEquations> sums(first.size() - 1, NormalEquations(parameters));
+  std::vector<NormalEquations> sums(first.size() - 1, NormalEquations(parameters, count));
   for_each_index(sums.size(), [&](std::size_t b) {
     for (std::size_t s = first[b]; s < first[b + 1]; ++s) {
       const Surfel& surfel = surfels.surfels[s];
       const auto residuals = residuals_of(surfel, surfels, beams, settings);
-      sums[b] += without_plane(gram(surfel, surfels.beams_of(surfel), residuals, parameters, derivatives),
-                               residuals);
+      const SurfelRows rows(surfel, parameters, derivatives, blocks, count);
+      sums[b] += without_plane(rows.sums(surfels.beams_of(surfel), residuals), residuals);
     }
   });
-  NormalEquations total(parameters);
+  NormalEquations total(parameters, count);
   for (const NormalEquations& sum : sums) total += sum;
   return total;
-}
-
-Eigen::MatrixXd pull_of_blocks(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
-                               const DerivativeRows& derivatives, const SurfelSettings& settings,
-                               std::span<const std::uint32_t> blocks) {
-  const auto m = static_cast<Eigen::Index>(parameters);
-  const Eigen::Index count = blocks.empty() ? 0 : std::ranges::max(blocks) + 1;
-  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(m, count);
-  const auto first = batches(surfels);
-  std::vector<Eigen::MatrixXd> sums(first.size() - 1, zero);
-  for_each_index(sums.size(), [&](std::size_t b) {
-    for (std::size_t s = first[b]; s < first[b + 1]; ++s) {
-      const Surfel& surfel = surfels.surfels[s];
-      const auto members = surfels.beams_of(surfel);
-      const auto residuals = residuals_of(surfel, surfels, beams, settings);
-      const Eigen::MatrixXd share = planes_share(gram(surfel, members, residuals, parameters, derivatives));
-      sums[b] += sum_of_rows(surfel, members, residuals, parameters, derivatives, zero,
-                             [&](auto some, const Rows& rows, Eigen::MatrixXd& pulls) {
-                               const Eigen::MatrixXd own = rows.rightCols(m) - rows.leftCols<3>() * share;
-                               for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-                                 const auto block = blocks[some[static_cast<std::size_t>(i)]];
-                                 pulls.col(block) += rows(i, 3) * own.row(i).transpose();
-                               }
-                             });
-    }
-  });
-  Eigen::MatrixXd pulls = zero;
-  for (const auto& sum : sums) pulls += sum;
-  return pulls * pulls.transpose();
 }
 
 }  // namespace crisp

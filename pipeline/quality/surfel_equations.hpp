@@ -24,13 +24,24 @@ struct NormalEquations {
   double weight = 0;       ///< Σ of the beams' weights w = ψ(z)/z, of residuals z in units of their spread
   double influence = 0;    ///< Σ ψ(z)²
   double stiffness = 0;    ///< Σ ψ′(z)
+  /// m: Σ of the squares of each parameter's derivatives, weighted as in `matrix`, but before the planes were
+  /// projected out.
+  Eigen::VectorXd squares;
+  /// m × blocks: what the beams of each block contribute to `vector`. Beams of one block may share an error,
+  /// those of different blocks do not; so the blocks tell by how much `vector` really scatters. Its columns
+  /// are none if no blocks were named.
+  Eigen::MatrixXd pulls;
 
-  explicit NormalEquations(std::size_t parameters = 0);
+  explicit NormalEquations(std::size_t parameters = 0, std::size_t blocks = 0);
   NormalEquations& operator+=(const NormalEquations& other);
 
   /// By what the inverse of `matrix` is to be multiplied to be the covariance of θ (Huber): it holds for
   /// whatever noise the residuals show, and for the beams that count less.
   double covariance_factor() const;
+
+  /// m × m: the covariance of `vector` as the blocks show it (Σ of their pulls times its transpose), in units
+  /// in which it has the expectation covariance_factor() · matrix if all errors are independent.
+  Eigen::MatrixXd scatter_of_blocks() const;
 
   /// The equations of the parameters `kept`, in this order, after those in `eliminated` have been projected
   /// out in turn, so that what they could explain no longer counts. The others are held as they are. What
@@ -52,18 +63,10 @@ using DerivativeRows = std::function<void(const Surfel& surfel, std::span<const 
                                           std::span<const double> range_change, std::span<double> rows)>;
 
 /// Adds up the equations of all surfels. Deterministic, on any number of threads.
-NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
-                                 const DerivativeRows& derivatives, const SurfelSettings& settings);
-
-/// How errors that beams share show in the equations: the sums of the beams' pulls on the parameters, after
-/// the planes have been projected out, scatter by more than independent noise explains.
 ///
-/// @param blocks  n numbers from 0: beams of one block may share an error, those of different blocks do not
-/// @return        m × m: Σ over the blocks of their pull times its transpose, which has the expectation
-///                covariance_factor() · matrix · (stiffness / weight)² if all errors are independent
-/// Deterministic, on any number of threads.
-Eigen::MatrixXd pull_of_blocks(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
-                               const DerivativeRows& derivatives, const SurfelSettings& settings,
-                               std::span<const std::uint32_t> blocks);
+/// @param blocks  for each beam, its block (n numbers from 0); or none: see NormalEquations::pulls
+NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
+                                 const DerivativeRows& derivatives, const SurfelSettings& settings,
+                                 std::span<const std::uint32_t> blocks = {});
 
 }  // namespace crisp

@@ -30,7 +30,8 @@ struct BaseMotion final : DifferentiableTerm<BaseMotion> {
               .upper = 20,
               .neutral = 1,
               .summary = "frequency of the sway",
-              .shape = true}},
+              .shape = true,
+              .tries = {.spacing = Tries::Spacing::kLinear, .from = 0.1, .to = 2, .count = 20}}},
         .details =
             "`origin += (vx t + ax cos 2πft + bx sin 2πft, vy t + ay cos 2πft + by sin 2πft, vz t)` in the "
             "base's frame, t on the plate's clock since the run's epoch. A sway at the plate's own rate "

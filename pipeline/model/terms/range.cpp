@@ -56,15 +56,16 @@ struct RangeIncidence final : DifferentiableTerm<RangeIncidence> {
         .summary = "a laser reads off as the incidence grows",
         .phase = Phase::kRange,
         .scope = Scope::kLaser,
-        .parameters = {{.name = "c", .unit = "m", .lower = -1, .upper = 1, .summary = "how strong"},
-                       {.name = "spread",
-                        .unit = "1/m",
-                        .lower = 0.01,
-                        .upper = 1,
-                        .neutral = 0.06,
-                        .summary =
-                            "spread of the spot in depth at 45°, in lengths of the echo a metre of range",
-                        .shape = true}},
+        .parameters =
+            {{.name = "c", .unit = "m", .lower = -1, .upper = 1, .summary = "how strong"},
+             {.name = "spread",
+              .unit = "1/m",
+              .lower = 0.01,
+              .upper = 1,
+              .neutral = 0.06,
+              .summary = "spread of the spot in depth at 45°, in lengths of the echo a metre of range",
+              .shape = true,
+              .tries = {.spacing = Tries::Spacing::kLogarithmic, .from = 0.03, .to = 0.3, .count = 3}}},
         .details =
             "`r + c (√(1 + (spread r tan β)²) − 1)`. With a c of 47 mm and a spread of 0.06/m it is 6 mm at "
             "60°, 14 mm at 70° and 46 mm at 80°, 5 m away, which is what Laconte et al. (Lidar measurement "
@@ -117,15 +118,17 @@ struct RangeCyclic final : DifferentiableTerm<RangeCyclic> {
         .summary = "a laser's ranges err with a period in range",
         .phase = Phase::kRange,
         .scope = Scope::kLaser,
-        .parameters = {{.name = "a", .unit = "m", .lower = -0.1, .upper = 0.1, .summary = "of sin 2πr/P"},
-                       {.name = "b", .unit = "m", .lower = -0.1, .upper = 0.1, .summary = "of cos 2πr/P"},
-                       {.name = "P",
-                        .unit = "m",
-                        .lower = 0.05,
-                        .upper = 50,
-                        .neutral = 1,
-                        .summary = "period",
-                        .shape = true}},
+        .parameters =
+            {{.name = "a", .unit = "m", .lower = -0.1, .upper = 0.1, .summary = "of sin 2πr/P"},
+             {.name = "b", .unit = "m", .lower = -0.1, .upper = 0.1, .summary = "of cos 2πr/P"},
+             {.name = "P",
+              .unit = "m",
+              .lower = 0.05,
+              .upper = 50,
+              .neutral = 1,
+              .summary = "period",
+              .shape = true,
+              .tries = {.spacing = Tries::Spacing::kReciprocal, .from = 0.5, .to = 16, .count = 32}}},
         .details =
             "`r + a sin 2πr/P + b cos 2πr/P`, which is `A sin(2πr/P + p)` with `A² = a² + b²` and "
             "`tan p = b/a`, but linear in what is to be found. Typically millimetres: crosstalk and the "

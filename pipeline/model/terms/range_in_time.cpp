@@ -14,14 +14,16 @@ struct RangeWarmup final : DifferentiableTerm<RangeWarmup> {
         .summary = "a laser's ranges creep as it warms up",
         .phase = Phase::kRange,
         .scope = Scope::kLaser,
-        .parameters = {{.name = "c", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "in the end"},
-                       {.name = "T",
-                        .unit = "s",
-                        .lower = 0.5,
-                        .upper = 1e5,
-                        .neutral = 60,
-                        .summary = "time constant",
-                        .shape = true}},
+        .parameters =
+            {{.name = "c", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "in the end"},
+             {.name = "T",
+              .unit = "s",
+              .lower = 0.5,
+              .upper = 1e5,
+              .neutral = 60,
+              .summary = "time constant",
+              .shape = true,
+              .tries = {.spacing = Tries::Spacing::kLogarithmic, .from = 1, .to = 100, .count = 4}}},
         .details =
             "`r + c (1 − exp(−t/T))`, t since the run's epoch. Millimetres to centimetres over minutes to "
             "hours. In a short run it is a range.offset and a constant growth."};
@@ -50,7 +52,8 @@ struct RangeStep final : DifferentiableTerm<RangeStep> {
               .upper = 1e5,
               .neutral = 0,
               .summary = "when, since the run's epoch",
-              .shape = true}},
+              .shape = true,
+              .tries = {.spacing = Tries::Spacing::kInstants, .from = 0.05, .to = 0.95, .count = 19}}},
         .details =
             "`r + h (1 + tanh((t − at) / 5 ms)) / 2`: a jump. A real LMS111 reported 2.05 mm more from "
             "2.4 s after its start on: h is −2.05 mm then."};

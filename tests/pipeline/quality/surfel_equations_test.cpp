@@ -162,23 +162,24 @@ std::vector<std::uint32_t> pieces_of(const test::RoomScan& scan) {
   return pieces;
 }
 
-TEST(PullOfBlocks, IsThatOfTheirBeamsWhereErrorsAreTheirOwn) {
+TEST(ScatterOfBlocks, IsThatOfTheirBeamsWhereErrorsAreTheirOwn) {
   const auto scan = test::scan_room(10000, {{0, 0}, {0, 0}, {0, 0}}, 0.012, 11);
   const SurfelSettings settings{.floor = 1e-4};
   const auto surfels = find_surfels(scan.beams(), settings);
   const auto rows = derivatives_of(scan);
-  const auto equations = normal_equations(surfels, scan.beams(), kParameters, rows, settings);
-  const auto pull = pull_of_blocks(surfels, scan.beams(), kParameters, rows, settings, pieces_of(scan));
-  const Eigen::MatrixXd expected =
-      equations.covariance_factor() * equations.matrix * std::pow(equations.stiffness / equations.weight, 2);
+  const auto equations =
+      normal_equations(surfels, scan.beams(), kParameters, rows, settings, pieces_of(scan));
+  EXPECT_NEAR((equations.pulls.rowwise().sum() - equations.vector).norm(), 0, 1e-9 * equations.vector.norm());
+  const Eigen::MatrixXd scatter = equations.scatter_of_blocks();
+  const Eigen::MatrixXd expected = equations.covariance_factor() * equations.matrix;
   // Of k independent pulls the sum of squares has a relative standard deviation of √(2/k); each of the
   // lasers' own parameters has 50, the common one 150.
   for (Eigen::Index k = 0; k < 5; ++k) {
-    EXPECT_NEAR(pull(k, k) / expected(k, k), 1, 4 * std::sqrt(2.0 / (k < 4 ? 50 : 150))) << k;
+    EXPECT_NEAR(scatter(k, k) / expected(k, k), 1, 4 * std::sqrt(2.0 / (k < 4 ? 50 : 150))) << k;
   }
 }
 
-TEST(PullOfBlocks, KnowsOfErrorsThatBeamsShare) {
+TEST(ScatterOfBlocks, KnowsOfErrorsThatBeamsShare) {
   // Each piece of a laser's beams is off along the laser's motion by an error of its own. Thirty estimates of
   // two parameters: the sum of their squared errors in units of the variances is 60 ± 11.
   double by_pieces = 0;
@@ -197,11 +198,9 @@ TEST(PullOfBlocks, KnowsOfErrorsThatBeamsShare) {
     const SurfelSettings settings{.floor = 1e-4};
     const auto surfels = find_surfels(scan.beams(), settings);
     const auto rows = derivatives_of(scan);
-    const auto equations = normal_equations(surfels, scan.beams(), kParameters, rows, settings);
-    const Eigen::MatrixXd pull = pull_of_blocks(surfels, scan.beams(), kParameters, rows, settings, pieces);
+    const auto equations = normal_equations(surfels, scan.beams(), kParameters, rows, settings, pieces);
     const Eigen::MatrixXd inverse = equations.matrix.inverse();
-    const double stiffer = equations.weight / equations.stiffness;
-    const Eigen::VectorXd variance = stiffer * stiffer * (inverse * pull * inverse).diagonal();
+    const Eigen::VectorXd variance = (inverse * equations.scatter_of_blocks() * inverse).diagonal();
     const auto found = estimate(equations);
     for (const Eigen::Index k : {1, 3}) {
       by_pieces += found.value[k] * found.value[k] / variance[k];
