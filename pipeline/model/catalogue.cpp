@@ -16,6 +16,7 @@ void register_built_in(TermRegistry& terms) {
   register_timing_terms(terms);
   register_range_terms(terms);
   register_range_in_time_terms(terms);
+  register_empirical_terms(terms);
 }
 
 TermParameters neutral_parameters(const TermInfo& term) {

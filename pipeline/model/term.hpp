@@ -21,6 +21,9 @@ struct TermInfo {
   Scope scope = Scope::kLaser;  ///< the laser's or the plate's
   std::vector<EffectParameter> parameters;
   std::string details;  ///< see EffectInfo
+  /// Of a term that describes a departure by its shape instead of naming a cause: over what the shape is told
+  /// ("mirror angle"). Empty for the others.
+  std::string covariate = {};
 };
 
 /// One departure of a real scanner from equation (2): parameters, and how they change a beam. Immutable.

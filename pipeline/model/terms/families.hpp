@@ -15,4 +15,7 @@ void register_timing_terms(TermRegistry& terms);
 void register_range_terms(TermRegistry& terms);
 void register_range_in_time_terms(TermRegistry& terms);
 
+// What a departure looks like, where nothing tells its cause.
+void register_empirical_terms(TermRegistry& terms);
+
 }  // namespace crisp

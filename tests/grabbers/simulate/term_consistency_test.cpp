@@ -10,18 +10,10 @@
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/model/sensor_model.hpp"
+#include "tests/support/built_in_terms.hpp"
 
 namespace crisp {
 namespace {
-
-const TermRegistry& built_in_terms() {
-  static const TermRegistry kTerms = [] {
-    TermRegistry terms;
-    register_built_in(terms);
-    return terms;
-  }();
-  return kTerms;
-}
 
 /// A twentieth of the way to the upper bound for sizes, the neutral value for forms.
 Effect moderate(const TermInfo& info) {

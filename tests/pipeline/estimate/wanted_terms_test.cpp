@@ -7,22 +7,13 @@
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
-#include "pipeline/estimate/surfel_refinement.hpp"
-#include "pipeline/model/catalogue.hpp"
 #include "pipeline/estimate/search_range.hpp"
+#include "pipeline/estimate/surfel_refinement.hpp"
 #include "tests/pipeline/estimate/support.hpp"
+#include "tests/support/built_in_terms.hpp"
 
 namespace crisp {
 namespace {
-
-const TermRegistry& built_in_terms() {
-  static const TermRegistry kTerms = [] {
-    TermRegistry terms;
-    register_built_in(terms);
-    return terms;
-  }();
-  return kTerms;
-}
 
 SensorModel with_terms(Calibration calibration, const std::vector<std::string>& wanted) {
   add_wanted_terms(calibration, wanted, built_in_terms());

@@ -5,17 +5,9 @@
 
 #include "pipeline/model/catalogue.hpp"
 #include "tests/pipeline/model/support.hpp"
+#include "tests/support/built_in_terms.hpp"
 
 namespace crisp {
-
-inline const TermRegistry& built_in_terms() {
-  static const TermRegistry kTerms = [] {
-    TermRegistry terms;
-    register_built_in(terms);
-    return terms;
-  }();
-  return kTerms;
-}
 
 /// The term's parameters: those that are given, and the others neutral.
 inline TermParameters with_values(const TermInfo& info, const std::map<std::string, double>& given = {}) {

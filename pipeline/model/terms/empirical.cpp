@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/model/terms/empirical.hpp"
+
+#include <numbers>
+
+#include "pipeline/data/degree.hpp"
+#include "pipeline/model/terms/families.hpp"
+
+namespace crisp {
+namespace {
+
+using On = EmpiricalTerm::On;
+using Over = EmpiricalTerm::Over;
+
+struct OnName {
+  std::string name;
+  std::string unit;
+  double bound;
+  Phase phase;
+  Scope scope;
+};
+
+OnName describe(On on) {
+  switch (on) {
+    case On::kRange:
+      return {"range", "m", 0.5, Phase::kRange, Scope::kLaser};
+    case On::kMirrorAngle:
+      return {"mirror angle", "rad", 0.1, Phase::kMirror, Scope::kLaser};
+    case On::kElevation:
+      return {"elevation", "rad", 0.1, Phase::kBeam, Scope::kLaser};
+    case On::kPlateAngle:
+      return {"plate angle", "rad", 0.1, Phase::kPlate, Scope::kPlate};
+    case On::kLag:
+      return {"lag", "s", 0.01, Phase::kTime, Scope::kLaser};
+    case On::kBase:
+      return {"base", "m", 0.5, Phase::kBase, Scope::kPlate};
+  }
+  return {};
+}
+
+std::string name_of(Over over) {
+  switch (over) {
+    case Over::kMirrorAngle:
+      return "mirror angle";
+    case Over::kPlateAngle:
+      return "plate angle";
+    case Over::kRange:
+      return "range";
+    case Over::kIncidence:
+      return "incidence";
+    case Over::kRemission:
+      return "remission";
+    case Over::kTime:
+      return "time";
+    case Over::kPlateRate:
+      return "plate rate";
+  }
+  return {};
+}
+
+std::string underscored(std::string words) {
+  std::ranges::replace(words, ' ', '_');
+  return words;
+}
+
+EffectParameter span_of_time() {
+  return {.name = "span",
+          .unit = "s",
+          .lower = 1e-3,
+          .upper = 1e7,
+          .neutral = 10,
+          .summary = "over which the shape goes",
+          .shape = true,
+          .tries = {.spacing = Tries::Spacing::kInstants, .from = 1, .to = 1, .count = 1}};
+}
+
+std::vector<EffectParameter> parameters(On on, Over over, const Shape& shape) {
+  const OnName what = describe(on);
+  const std::vector<std::string> axes =
+      on == On::kBase ? std::vector<std::string>{"x_", "y_", "z_"} : std::vector<std::string>{""};
+  std::vector<EffectParameter> all;
+  for (const std::string& axis : axes) {
+    for (std::size_t k = 0; k < shape.coefficients(); ++k) {
+      all.push_back({.name = axis + shape.name(k),
+                     .unit = what.unit,
+                     .lower = -what.bound,
+                     .upper = what.bound,
+                     .summary = shape.summary(k)});
+    }
+  }
+  if (over == Over::kTime) all.push_back(span_of_time());
+  return all;
+}
+
+std::vector<double> evenly(double from, double to, int count) {
+  std::vector<double> knots;
+  for (int k = 0; k < count; ++k) knots.push_back(std::lerp(from, to, static_cast<double>(k) / (count - 1)));
+  return knots;
+}
+
+}  // namespace
+
+Shape Shape::fourier(int first, int last) { return {Kind::kFourier, first, last, {}}; }
+Shape Shape::hats(std::vector<double> knots) { return {Kind::kHats, 0, 0, std::move(knots)}; }
+Shape Shape::powers() { return {Kind::kPowers, 0, 0, {}}; }
+
+std::size_t Shape::coefficients() const {
+  switch (kind_) {
+    case Kind::kFourier:
+      return 2 * static_cast<std::size_t>(last_ - first_ + 1);
+    case Kind::kHats:
+      return knots_.size();
+    case Kind::kPowers:
+      return 3;
+  }
+  return 0;
+}
+
+std::string Shape::name(std::size_t coefficient) const {
+  const std::string order = std::to_string(first_ + static_cast<int>(coefficient / 2));
+  switch (kind_) {
+    case Kind::kFourier:
+      return (coefficient % 2 == 0 ? "cos" : "sin") + order;
+    case Kind::kHats:
+      return "at" + std::to_string(coefficient);
+    case Kind::kPowers:
+      return std::string(1, static_cast<char>('a' + coefficient));
+  }
+  return {};
+}
+
+std::string Shape::summary(std::size_t coefficient) const {
+  switch (kind_) {
+    case Kind::kFourier:
+      return (coefficient % 2 == 0 ? "of cos " : "of sin ") +
+             std::to_string(first_ + static_cast<int>(coefficient / 2)) + "x";
+    case Kind::kHats: {
+      std::string knot = std::to_string(knots_[coefficient]);
+      return "at x = " + knot.erase(knot.find('.') + 3);
+    }
+    case Kind::kPowers:
+      return std::vector<std::string>{"of x²", "of x |x|", "of x³"}.at(coefficient);
+  }
+  return {};
+}
+
+EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape) : on_(on), over_(over), shape_(std::move(shape)) {
+  const OnName what = describe(on);
+  const std::string of = name_of(over);
+  info_ = {.name = "empirical." + underscored(what.name) + "_by_" + underscored(of),
+           .summary = what.name + " is off by a function of " + of + " that no cause explains",
+           .phase = what.phase,
+           .scope = what.scope,
+           .parameters = parameters(on, over, shape_),
+           .details =
+               "No cause, but the shape of a departure, for what nothing else in the catalogue "
+               "describes; x is the " +
+               of +
+               (over == Over::kTime        ? " as a share of `span`"
+                : over == Over::kRemission ? "'s logarithm"
+                : over == Over::kRange     ? " [m]"
+                : over == Over::kPlateRate ? " [rad/s]"
+                                           : " [rad]") +
+               ".",
+           .covariate = of};
+}
+
+void register_empirical_terms(TermRegistry& terms) {
+  const auto add = [&](On on, Over over, Shape shape) {
+    terms.add(std::make_shared<EmpiricalTerm>(on, over, std::move(shape)));
+  };
+  constexpr int kKnots = 7;
+  const Shape in_time = Shape::hats(evenly(0, 1, kKnots));
+  add(On::kRange, Over::kMirrorAngle, Shape::fourier(1, 4));
+  add(On::kRange, Over::kPlateAngle, Shape::fourier(1, 4));
+  add(On::kRange, Over::kRange, Shape::hats({1, 2, 3, 4, 6, 8, 12, 20}));
+  add(On::kRange, Over::kIncidence, Shape::hats(evenly(0, 80 * kDegree, 6)));
+  add(On::kRange, Over::kRemission, Shape::hats(evenly(std::log(10.0), std::log(250.0), 5)));
+  add(On::kRange, Over::kTime, in_time);
+  add(On::kRange, Over::kPlateRate, Shape::powers());
+  add(On::kMirrorAngle, Over::kMirrorAngle, Shape::fourier(1, 4));
+  add(On::kElevation, Over::kMirrorAngle, Shape::fourier(1, 4));
+  add(On::kLag, Over::kTime, in_time);
+  add(On::kPlateAngle, Over::kPlateAngle, Shape::fourier(1, 6));
+  add(On::kPlateAngle, Over::kTime, in_time);
+  add(On::kPlateAngle, Over::kPlateRate, Shape::powers());
+  add(On::kBase, Over::kPlateAngle, Shape::fourier(1, 2));
+  add(On::kBase, Over::kTime, in_time);
+}
+
+}  // namespace crisp
