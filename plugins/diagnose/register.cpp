@@ -2,9 +2,13 @@
 #include "plugins/diagnose/register.hpp"
 
 #include "plugins/diagnose/crispness_stage.hpp"
+#include "plugins/diagnose/model_stage.hpp"
 
 namespace crisp {
 
-void register_diagnose(Registrar& registrar) { registrar.stage<CrispnessStage>(); }
+void register_diagnose(Registrar& registrar) {
+  registrar.stage<CrispnessStage>();
+  registrar.stage<DiagnoseModelStage>();
+}
 
 }  // namespace crisp

@@ -3,6 +3,7 @@
 
 #include "plugins/write/calibration_stage.hpp"
 #include "plugins/write/clouds_stage.hpp"
+#include "plugins/write/findings_stage.hpp"
 #include "plugins/write/measurements_stage.hpp"
 #include "plugins/write/pcd_stage.hpp"
 #include "plugins/write/picture_stage.hpp"
@@ -12,6 +13,7 @@ namespace crisp {
 void register_write(Registrar& registrar) {
   registrar.stage<WriteCalibrationStage>();
   registrar.stage<WriteCloudsStage>();
+  registrar.stage<WriteFindingsStage>();
   registrar.stage<WriteMeasurementsStage>();
   registrar.stage<WritePcdStage>();
   registrar.stage<WritePictureStage>();

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "pipeline/data/calibration.hpp"
+
+namespace crisp {
+
+/// What an extension of the model brought on data that it was not fitted to.
+struct Gain {
+  std::string metric;  ///< "cloud thickness"
+  std::string unit;    ///< "m", "nat"
+  double before = 0;
+  double after = 0;
+  std::array<double, 2> ci95{};  ///< of after − before
+};
+
+/// A departure of the measured data from the model, with its physical cause.
+struct Finding {
+  std::string cause;                  ///< "mirror.cone": see docs/effects.md
+  std::string scope;                  ///< "plate", "laser3"
+  std::vector<Parameter> parameters;  ///< in SI, with standard errors
+  double explained_fraction = 0;      ///< share of all that was found (in squared residuals)
+  double log10_odds = 0;              ///< against the likeliest other cause
+  double p_value = 1;                 ///< that noise alone makes as much, corrected for the number of looks
+  std::vector<std::string> confounded_with;  ///< causes that these data cannot tell from it
+  std::vector<Gain> gain;
+  bool accepted = false;  ///< whether it is part of the model from now on: it paid on held-out data
+};
+
+/// A departure that no cause in the catalogue explains.
+struct UnnamedFinding {
+  std::string covariate;  ///< over which it shows: "mirror angle"
+  std::string quantity;   ///< what is off: "range"
+  std::string scope;
+  double amplitude = 0;  ///< RMS over the beams
+  std::string unit;
+  double p_value = 1;
+  std::vector<Gain> gain;
+  bool accepted = false;
+};
+
+/// What a diagnosis says.
+struct Findings {
+  std::vector<Finding> findings;  ///< in the order in which they were taken into the model
+  std::vector<UnnamedFinding> unnamed;
+  std::vector<Unobservable> unobservable;  ///< causes that these data could not show
+  double before_p = 1;  ///< that what is left of the residuals is noise: with the model that came …
+  double after_p = 1;   ///< … and with the extended one
+};
+
+}  // namespace crisp

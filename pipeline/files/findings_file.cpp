@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/files/findings_file.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace crisp {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const std::vector<Gain>& gains) {
+  Json all = Json::array();
+  for (const Gain& gain : gains) {
+    all.push_back({{"metric", gain.metric},
+                   {"unit", gain.unit},
+                   {"before", gain.before},
+                   {"after", gain.after},
+                   {"ci95", gain.ci95}});
+  }
+  return all;
+}
+
+Json json_of(const Finding& finding) {
+  Json parameters = Json::array();
+  for (const Parameter& p : finding.parameters) {
+    parameters.push_back(
+        {{"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"std_error", p.std_error}});
+  }
+  return {{"cause", finding.cause},
+          {"scope", finding.scope},
+          {"parameters", parameters},
+          {"explained_fraction", finding.explained_fraction},
+          {"log10_odds", finding.log10_odds},
+          {"p_value", finding.p_value},
+          {"confounded_with", finding.confounded_with},
+          {"gain", json_of(finding.gain)},
+          {"accepted", finding.accepted}};
+}
+
+Json json_of(const UnnamedFinding& finding) {
+  return {{"covariate", finding.covariate}, {"quantity", finding.quantity}, {"scope", finding.scope},
+          {"amplitude", finding.amplitude}, {"unit", finding.unit},         {"p_value", finding.p_value},
+          {"gain", json_of(finding.gain)},  {"accepted", finding.accepted}};
+}
+
+Json json_of(const Unobservable& unobservable) {
+  return {{"cause", unobservable.parameter},
+          {"reason", unobservable.reason},
+          {"combination", unobservable.combination}};
+}
+
+template <class Things>
+Json list_of(const Things& things) {
+  Json all = Json::array();
+  for (const auto& thing : things) all.push_back(json_of(thing));
+  return all;
+}
+
+}  // namespace
+
+std::string findings_json(const Findings& findings) {
+  const Json all = {{"crisp", 1},
+                    {"findings", list_of(findings.findings)},
+                    {"unnamed", list_of(findings.unnamed)},
+                    {"unobservable", list_of(findings.unobservable)},
+                    {"indistinguishable", {{"before_p", findings.before_p}, {"after_p", findings.after_p}}}};
+  return all.dump(2) + "\n";
+}
+
+}  // namespace crisp

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/model/catalogue.hpp"
+
+namespace crisp {
+namespace {
+
+double tried(const Tries& tries, double step, const Lasting& lasting) {
+  const double share = tries.count > 1 ? std::clamp(step / (tries.count - 1), 0.0, 1.0) : 0.5;
+  switch (tries.spacing) {
+    case Tries::Spacing::kLinear:
+      return std::lerp(tries.from, tries.to, share);
+    case Tries::Spacing::kLogarithmic:
+      return tries.from * std::pow(tries.to / tries.from, share);
+    case Tries::Spacing::kReciprocal:
+      return 1 / std::lerp(1 / tries.from, 1 / tries.to, share);
+    case Tries::Spacing::kInstants:
+      return std::lerp(lasting.first, lasting.last, std::lerp(tries.from, tries.to, share));
+  }
+  return 0;
+}
+
+/// Which parameter is tried in several forms; the number of parameters if none is.
+std::size_t form_of(const TermInfo& info) {
+  const auto form = std::ranges::find_if(info.parameters, [](const auto& p) { return p.tries.count > 0; });
+  return static_cast<std::size_t>(form - info.parameters.begin());
+}
+
+const TermParameters* find(const std::vector<TermParameters>& terms, const std::string& name) {
+  const auto found = std::ranges::find(terms, name, &TermParameters::term);
+  return found == terms.end() ? nullptr : &*found;
+}
+
+/// Appends a term of one owner: as it is in the calibration, or in all of its forms.
+void append(std::vector<Candidate>& all, Candidate as, const std::vector<TermParameters>& present,
+            const ModelTerm& term, const Lasting& lasting) {
+  const TermInfo& info = term.info();
+  const std::size_t form = form_of(info);
+  const bool has_forms = form < info.parameters.size();
+  as.covariate = info.covariate;
+  as.forms = has_forms ? static_cast<std::size_t>(info.parameters[form].tries.count) : 1;
+  if (const TermParameters* here = find(present, info.name)) {
+    as.term = *here;
+    as.in_model = true;
+    all.push_back(as);
+    return;
+  }
+  as.term = neutral_parameters(info);
+  for (std::size_t step = 0; step < as.forms; ++step) {
+    as.form = static_cast<double>(step);
+    if (has_forms) as.term.parameters[form].value = tried(info.parameters[form].tries, as.form, lasting);
+    all.push_back(as);
+  }
+}
+
+}  // namespace
+
+std::vector<Candidate> candidates(const TermRegistry& terms, const Calibration& calibration,
+                                  const Lasting& lasting) {
+  std::vector<Candidate> all;
+  for (const std::string& name : terms.names()) {
+    const auto term = terms.get(name);
+    if (term->info().scope == Scope::kPlate) {
+      append(all, {.owner = calibration.lasers.size(), .name = name}, calibration.plate_terms, *term,
+             lasting);
+      continue;
+    }
+    for (std::size_t laser = 0; laser < calibration.lasers.size(); ++laser) {
+      const LaserCalibration& own = calibration.lasers[laser];
+      append(all, {.owner = laser, .name = own.name + "." + name}, own.terms, *term, lasting);
+    }
+  }
+  return all;
+}
+
+Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, const Lasting& lasting) {
+  const auto term = terms.get(candidate.term.term);
+  const std::size_t form = form_of(term->info());
+  candidate.form = step;
+  candidate.term.parameters.at(form).value = tried(term->info().parameters[form].tries, step, lasting);
+  return candidate;
+}
+
+void add_to(Calibration& calibration, const Candidate& candidate) {
+  auto& terms = candidate.owner < calibration.lasers.size() ? calibration.lasers[candidate.owner].terms
+                                                            : calibration.plate_terms;
+  terms.push_back(candidate.term);
+}
+
+}  // namespace crisp

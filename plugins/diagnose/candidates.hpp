@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/model/sensor_model.hpp"
+
+namespace crisp {
+
+/// One way to extend the sensor model: a term of the plate or of one laser, in one of its forms.
+struct Candidate {
+  std::size_t owner = 0;  ///< index of the laser; for the plate, the number of lasers
+  TermParameters term;    ///< neutral, but for the form that is tried
+  std::size_t forms = 1;  ///< how many are tried
+  double form = 0;        ///< which of them this is: see in_form()
+  std::string name;       ///< "laser2.mirror.cone", "encoder.eccentricity"
+  std::string covariate;  ///< see TermInfo: empty for a term that names a cause
+
+  bool in_model = false;  ///< whether the calibration has it
+
+  bool is_cause() const { return covariate.empty(); }
+
+  /// Whether the other is the same in another form.
+  bool is_form_of(const Candidate& other) const { return name == other.name; }
+};
+
+/// When a recording's first and last beams were fired [s since the run's epoch].
+struct Lasting {
+  double first = 0;
+  double last = 0;
+};
+
+/// Every term for each owner and in each form that its parameters ask to be tried (one parameter of form a
+/// term; further ones are left at their neutral values). Those that the calibration has come in the form that
+/// they have there, and with their values.
+std::vector<Candidate> candidates(const TermRegistry& terms, const Calibration& calibration,
+                                  const Lasting& lasting);
+
+/// The same with another form.
+///
+/// @param step  on the scale of the forms that are tried: 0 is the first, forms − 1 the last, fractions lie
+///              between
+Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, const Lasting& lasting);
+
+/// The calibration with the candidate's term.
+void add_to(Calibration& calibration, const Candidate& candidate);
+
+}  // namespace crisp

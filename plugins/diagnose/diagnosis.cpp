@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/wanted_terms.hpp"
+#include "plugins/diagnose/evidence.hpp"
+#include "plugins/diagnose/forms.hpp"
+#include "plugins/diagnose/held_out.hpp"
+
+namespace crisp {
+namespace {
+
+Calibration with_terms(Calibration calibration, const std::vector<Candidate>& chosen) {
+  for (auto& laser : calibration.lasers) laser.terms.clear();
+  calibration.plate_terms.clear();
+  for (const Candidate& candidate : chosen) add_to(calibration, candidate);
+  return calibration;
+}
+
+std::vector<std::string> terms_of(const Calibration& calibration) {
+  std::vector<std::string> names;
+  for (const auto& term : calibration.plate_terms) names.push_back(term.term);
+  for (const auto& laser : calibration.lasers) {
+    for (const auto& term : laser.terms) names.push_back(laser.name + "." + term.term);
+  }
+  return names;
+}
+
+std::set<std::string> names_of(const std::vector<Candidate>& candidates) {
+  std::set<std::string> names;
+  for (const auto& candidate : candidates) names.insert(candidate.name);
+  return names;
+}
+
+/// λ, τ, α, η as far as the refinement left them free.
+std::vector<std::size_t> base_of(const Refinement& refinement) {
+  std::vector<std::size_t> base;
+  for (const std::size_t parameter : refinement.outcome.free) {
+    if (!declared(refinement.outcome.model, parameter)) base.push_back(parameter);
+  }
+  return base;
+}
+
+/// The candidate with the values that a look found.
+Candidate valued(Candidate candidate, const Look& look, const TermRegistry& terms) {
+  const auto term = terms.get(candidate.term.term);
+  const auto& parameters = term->info().parameters;
+  Eigen::Index k = 0;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].shape) continue;
+    candidate.term.parameters[i].value =
+        std::clamp(parameters[i].neutral + look.value[k++], parameters[i].lower, parameters[i].upper);
+  }
+  return candidate;
+}
+
+/// The same with the values that a calibration has for them.
+std::vector<Candidate> with_values_of(const Calibration& calibration, std::vector<Candidate> chosen) {
+  for (Candidate& candidate : chosen) {
+    const auto& terms = candidate.owner < calibration.lasers.size()
+                            ? calibration.lasers[candidate.owner].terms
+                            : calibration.plate_terms;
+    const auto found = std::ranges::find(terms, candidate.term.term, &TermParameters::term);
+    if (found != terms.end()) candidate.term = *found;
+  }
+  return chosen;
+}
+
+std::vector<Departure::Rival> rivals(const Choice& choice, const Dictionary& dictionary) {
+  constexpr std::size_t kMost = 5;
+  std::vector<Departure::Rival> result;
+  for (const Alternative& other : choice.alternatives) {
+    if (result.size() == kMost) break;
+    result.push_back({.name = dictionary.candidates()[other.candidate].name, .behind = other.behind});
+  }
+  return result;
+}
+
+/// Candidates that could be as large as the noise of ranges without showing.
+std::vector<std::string> hidden(const std::vector<std::optional<Look>>& looks, const Dictionary& dictionary) {
+  constexpr double kAsNoise = 1;
+  std::map<std::string, bool> all;
+  for (std::size_t c = 0; c < looks.size(); ++c) {
+    const Candidate& candidate = dictionary.candidates()[c];
+    if (!looks[c] || !candidate.is_cause()) continue;
+    const bool is_hidden = !(looks[c]->whole_error < kAsNoise);
+    const auto [known, is_new] = all.try_emplace(candidate.name, is_hidden);
+    known->second = known->second && is_hidden;
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, is_hidden] : all) {
+    if (is_hidden) names.push_back(name);
+  }
+  return names;
+}
+
+/// One look at a model: what it needs, as candidates with values.
+void look(const Evidence& evidence, const TermRegistry& terms, const SelectionSettings& settings,
+          const std::set<std::string>& refused, Diagnosis& result) {
+  const SensorModel& model = result.after.outcome.model;
+  const Dictionary dictionary(model, base_of(result.after),
+                              candidates(terms, model.calibration(), evidence.lasting()), terms);
+  const NormalEquations equations = from_neutral(dictionary, evidence.equations(dictionary));
+  result.departures.clear();
+  std::vector<std::size_t> taken;
+  for (const Choice& choice : choose(dictionary, equations, settings, refused)) {
+    taken.push_back(choice.candidate);
+    result.departures.push_back(
+        {.candidate = valued(dictionary.candidates()[choice.candidate], choice.look, terms),
+         .look = choice.look,
+         .rivals = rivals(choice, dictionary),
+         .gains = {}});
+  }
+  result.unobservable = hidden(looks_beside(taken, dictionary, equations), dictionary);
+  result.looks = names_of(dictionary.candidates()).size();
+}
+
+class Diagnoser {
+ public:
+  Diagnoser(const SensorModel& start, const Sample& sample, const TermRegistry& terms,
+            const DiagnosisSettings& settings, const DiagnosisReporter& report)
+      : sample_(sample), terms_(terms), settings_(settings), report_(report), start_(start.calibration()) {
+    const LagRange lag = lag_range(start, settings.refinement.prior.eta);
+    inside_ = covered(sample, lag.earliest, lag.latest);
+  }
+
+  Diagnosis run() {
+    const Refinement plain = refined(with_terms(start_, {}), sample_);
+    Diagnosis result{.before = plain, .after = plain};
+    extend(result);
+    if (goes_on(1, "judging by held-out turns")) judge(result);
+    if (goes_on(1, "simulating the scanner again")) compare(result);
+    return result;
+  }
+
+ private:
+  Refinement refined(const Calibration& calibration, const Sample& sample) const {
+    RefinementSettings settings = settings_.refinement;
+    settings.terms = terms_of(calibration);
+    settings.forms = true;
+    return refine_by_surfels(SensorModel(calibration, terms_), sample, settings);
+  }
+  bool goes_on(double share, const std::string& what) const { return !report_ || report_(share, what); }
+
+  /// Adds what is needed, until nothing is missing.
+  void extend(Diagnosis& result) const {
+    std::vector<Candidate> chosen;
+    std::set<std::string> refused;
+    for (int round = 0; round < settings_.rounds; ++round) {
+      const double share = round / (settings_.rounds + 2.0);
+      if (!goes_on(share, fmt::format("round {}: looking at all candidates", round + 1))) return;
+      const Evidence evidence(result.after.outcome.model, inside_, settings_.refinement.surfels,
+                              settings_.beams);
+      look(evidence, terms_, settings_.selection, refused, result);
+      std::vector<Candidate> next;
+      for (const Departure& departure : result.departures) next.push_back(departure.candidate);
+      // What was found needless once the model had it would be taken again for ever.
+      for (const std::string& name : names_of(chosen)) {
+        if (!names_of(next).contains(name)) refused.insert(name);
+      }
+      result.settled = names_of(next) == names_of(chosen);
+      if (result.settled) return;
+      if (!goes_on(share, fmt::format("round {}: refining with what was found", round + 1))) return;
+      chosen = with_sharper_forms(next, result.after.outcome.model, base_of(result.after), evidence, terms_);
+      result.after = refined(with_terms(result.after.outcome.model.calibration(), chosen), sample_);
+    }
+  }
+
+  /// Fits models with one departure more each to half of the turns, and asks the other half.
+  void judge(Diagnosis& result) const {
+    if (result.departures.empty()) return;
+    const HeldOut held_out(halves_of(inside_), result.before.outcome.model, settings_.refinement.surfels);
+    const Calibration found = result.after.outcome.model.calibration();
+    std::vector<Candidate> accepted;
+    auto score = held_out.score(
+        refined(with_terms(result.before.outcome.model.calibration(), {}), held_out.fitted()).outcome.model);
+    for (Departure& departure : result.departures) {
+      auto tried = accepted;
+      tried.push_back(departure.candidate);
+      tried = with_values_of(found, tried);
+      const auto with_it = held_out.score(refined(with_terms(found, tried), held_out.fitted()).outcome.model);
+      departure.gains = HeldOut::gains(score, with_it);
+      departure.accepted = pays(departure.gains);
+      if (!departure.accepted) continue;
+      accepted = tried;
+      score = with_it;
+    }
+    if (accepted.size() < result.departures.size()) {
+      result.after = refined(with_terms(found, accepted), sample_);
+    }
+  }
+
+  static bool pays(const std::vector<Gain>& gains) {
+    const auto likelihood = std::ranges::find(gains, HeldOut::kLikelihood, &Gain::metric);
+    return likelihood != gains.end() && likelihood->ci95[0] > 0;
+  }
+
+  void compare(Diagnosis& result) const {
+    const auto left = [&](const Refinement& refinement) {
+      const Evidence evidence(refinement.outcome.model, inside_, settings_.refinement.surfels,
+                              settings_.beams);
+      return side_by_side(evidence, settings_.refinement.surfels, 1);
+    };
+    result.left_before = left(result.before);
+    result.left_after = result.departures.empty() ? result.left_before : left(result.after);
+  }
+
+  const Sample& sample_;
+  const TermRegistry& terms_;
+  const DiagnosisSettings& settings_;
+  const DiagnosisReporter& report_;
+  Calibration start_;
+  Sample inside_;
+};
+
+}  // namespace
+
+Diagnosis diagnose(const SensorModel& start, const Sample& sample, const TermRegistry& terms,
+                   const DiagnosisSettings& settings, const DiagnosisReporter& report) {
+  return Diagnoser(start, sample, terms, settings, report).run();
+}
+
+}  // namespace crisp

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/evidence.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/estimate/flat_surfaces.hpp"
+#include "pipeline/estimate/incidence.hpp"
+#include "pipeline/estimate/steady.hpp"
+
+namespace crisp {
+namespace {
+
+Surfels surfaces(const BeamsView& beams, const SurfelSettings& settings) {
+  const Surfels found = patches(settings)->update(beams, std::numeric_limits<double>::infinity());
+  if (found.surfels.empty()) {
+    throw Error("no flat surface is seen by these data, and nothing else tells where a model is wrong",
+                "look closer with a smaller `smallest`, or record where there are walls");
+  }
+  return kept(found, steady(found, beams, settings.noise));
+}
+
+/// Every so-manieth beam of each surface, so that at most about `most` are left.
+Surfels thinned(const Surfels& surfels, std::size_t most) {
+  std::size_t all = 0;
+  for (const Surfel& surfel : surfels.surfels) all += surfel.end - surfel.begin;
+  const std::size_t stride = std::max<std::size_t>(1, (all + most - 1) / most);
+  Surfels some;
+  for (Surfel surfel : surfels.surfels) {
+    const auto begin = static_cast<std::uint32_t>(some.members.size());
+    for (std::size_t k = surfel.begin; k < surfel.end; k += stride) {
+      some.members.push_back(surfels.members[k]);
+      some.weights.push_back(surfels.weights[k]);
+    }
+    surfel.begin = begin;
+    surfel.end = static_cast<std::uint32_t>(some.members.size());
+    some.surfels.push_back(surfel);
+  }
+  return some;
+}
+
+std::vector<std::uint32_t> blocks_in(const Measurements& beams, const Lasting& lasting) {
+  constexpr double kLong = 0.1;  // [s] after which what is left of the encoder's steps is forgotten
+  constexpr double kFewest = 100;
+  const double block = std::max(1e-9, std::min(kLong, (lasting.last - lasting.first) / kFewest));
+  std::vector<std::uint32_t> blocks;
+  blocks.reserve(beams.size());
+  for (const double time : beams.time) {
+    blocks.push_back(static_cast<std::uint32_t>((time - lasting.first) / block));
+  }
+  return blocks;
+}
+
+}  // namespace
+
+Evidence::Evidence(const SensorModel& model, const Sample& sample, const SurfelSettings& settings,
+                   std::size_t most)
+    : sample_(sample), placed_(model, sample_), settings_(settings) {
+  const Surfels all = surfaces(placed_.view(), settings_);
+  sample_.beams.cos_incidence = incidences(all, placed_.view());
+  placed_ = PlacedBeams(model, sample_);  // by terms that ask for it, too
+  surfels_ = thinned(all, most);
+  const auto [first, last] = std::ranges::minmax(sample_.beams.time);
+  lasting_ = {.first = first, .last = last};
+  blocks_ = blocks_in(sample_.beams, lasting_);
+}
+
+NormalEquations Evidence::equations(const Dictionary& dictionary) const {
+  return normal_equations(surfels_, placed_.view(), dictionary.parameters(), dictionary.rows(sample_),
+                          settings_, blocks_);
+}
+
+}  // namespace crisp

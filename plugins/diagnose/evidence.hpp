@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pipeline/estimate/placed_beams.hpp"
+#include "plugins/diagnose/dictionary.hpp"
+
+namespace crisp {
+
+/// What a model is judged by: the flat surfaces that its beams show, found without asking how well the views
+/// of them agree.
+class Evidence {
+ public:
+  /// @param sample  all beams, which the plate's readings cover; how they met their surfaces is filled in
+  /// @param most    so many beams are looked at, evenly chosen; more cost time and tell little
+  Evidence(const SensorModel& model, const Sample& sample, const SurfelSettings& settings, std::size_t most);
+
+  const Sample& sample() const { return sample_; }
+  const Surfels& surfels() const { return surfels_; }  ///< with the beams that are looked at
+  BeamsView beams() const { return placed_.view(); }
+  Lasting lasting() const { return lasting_; }
+
+  /// Near the model, in the dictionary's parameters; with the recording in a hundred blocks, or in blocks of
+  /// a tenth of a second where that makes more.
+  NormalEquations equations(const Dictionary& dictionary) const;
+
+ private:
+  Sample sample_;
+  PlacedBeams placed_;
+  SurfelSettings settings_;
+  Surfels surfels_;
+  Lasting lasting_;
+  std::vector<std::uint32_t> blocks_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "pipeline/estimate/surfel_refinement.hpp"
+#include "plugins/diagnose/evidence.hpp"
+
+namespace crisp {
+
+/// The candidates with their forms (a period, an instant) as finely told as the data allow: between those
+/// that were tried, each beside all the others. Those of candidates that the model already has stay.
+///
+/// @param base  indices of λ, τ, α, η that are estimated with them
+std::vector<Candidate> with_sharper_forms(std::vector<Candidate> chosen, const SensorModel& model,
+                                          const std::vector<std::size_t>& base, const Evidence& evidence,
+                                          const TermRegistry& terms);
+
+}  // namespace crisp

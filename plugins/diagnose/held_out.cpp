@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/held_out.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/quality/rqe.hpp"
+#include "pipeline/quality/surfel_residuals.hpp"
+#include "plugins/diagnose/evidence.hpp"
+
+namespace crisp {
+namespace {
+
+using Turn = HeldOut::Score::Turn;
+
+constexpr std::size_t kLeastTurns = 4;
+
+/// A number for each beam that grows with the plate's turns, from 0.
+std::vector<std::uint32_t> turns_of(const Sample& sample) {
+  std::vector<double> turned;
+  PlateTrajectory::Cursor plate(*sample.plate);
+  double way = 0;
+  double last = 0;
+  for (std::size_t i = 0; i < sample.beams.size(); ++i) {
+    const auto state = plate.at(sample.beams.time[i]);
+    const double angle = state ? state->angle : last;
+    if (i > 0) way += std::abs(angle - last);
+    last = angle;
+    turned.push_back(way);
+  }
+  double piece = 2 * std::numbers::pi;
+  if (way < static_cast<double>(kLeastTurns) * piece) piece = way / (2 * kLeastTurns) * (1 + 1e-9);
+  std::vector<std::uint32_t> turns;
+  for (const double angle : turned) {
+    turns.push_back(piece > 0 ? static_cast<std::uint32_t>(angle / piece) : 0);
+  }
+  return turns;
+}
+
+/// Means of some beams about a mean.
+struct Mean {
+  double weight = 0;
+  double sum = 0;
+  void add(double value, double w) {
+    weight += w;
+    sum += w * value;
+  }
+  double value() const { return weight > 0 ? sum / weight : 0; }
+};
+
+double ratio(const std::vector<Turn>& turns, const std::vector<std::size_t>& drawn, double Turn::*part) {
+  double sum = 0;
+  double weight = 0;
+  for (const std::size_t t : drawn) {
+    sum += turns[t].*part;
+    weight += turns[t].weight;
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+struct Metric {
+  const char* name;
+  const char* unit;
+  double Turn::*part;
+  bool is_square;
+};
+constexpr std::array kMetrics = {
+    Metric{"cloud thickness", "m", &Turn::squares, true},
+    Metric{"disagreement of lasers", "m", &Turn::lasers, true},
+    Metric{"disagreement of front and back", "m", &Turn::sides, true},
+    Metric{HeldOut::kLikelihood, "nat", &Turn::likelihood, false},
+    Metric{"RQE", "nat", &Turn::entropy, false},
+};
+
+double value_of(const Metric& metric, const std::vector<Turn>& turns, const std::vector<std::size_t>& drawn) {
+  const double mean = ratio(turns, drawn, metric.part);
+  return metric.is_square ? std::sqrt(std::max(0.0, mean)) : mean;
+}
+
+}  // namespace
+
+Halves halves_of(const Sample& sample) {
+  const auto turns = turns_of(sample);
+  Halves halves;
+  halves.fitted = select(sample, [&](std::size_t i) { return turns[i] % 2 == 0; });
+  halves.held_out = select(sample, [&](std::size_t i) { return turns[i] % 2 == 1; });
+  for (const std::uint32_t turn : turns) {
+    if (turn % 2 == 1) halves.turn.push_back(turn / 2);
+  }
+  return halves;
+}
+
+HeldOut::HeldOut(Halves halves, const SensorModel& chooser, const SurfelSettings& settings)
+    : halves_(std::move(halves)), settings_(settings) {
+  constexpr std::size_t kBeams = 200'000;
+  const Evidence evidence(chooser, halves_.held_out, settings, kBeams);
+  surfels_ = evidence.surfels();
+  halves_.held_out.beams.cos_incidence = evidence.sample().beams.cos_incidence;
+  double squares = 0;
+  double weight = 0;
+  for (const Surfel& surfel : surfels_.surfels) {
+    for (const SurfelResidual& r : residuals_of(surfel, surfels_, evidence.beams(), settings_)) {
+      squares += r.weight * std::pow(r.distance / r.spread, 2);
+      weight += r.weight;
+    }
+  }
+  noise_ = std::sqrt(squares / std::max(1.0, weight));
+}
+
+HeldOut::Score HeldOut::score(const SensorModel& model) const {
+  const PlacedBeams placed(model, halves_.held_out);
+  const BeamsView beams = placed.view();
+  Score score;
+  score.turns.resize(halves_.turn.empty() ? 0 : std::ranges::max(halves_.turn) + std::size_t{1});
+  std::vector<Vectors> clouds(score.turns.size());
+  for (const Surfel& surfel : surfels_.surfels) {
+    const auto members = surfels_.beams_of(surfel);
+    const auto residuals = residuals_of(surfel, surfels_, beams, settings_);
+    std::map<std::uint32_t, Mean> lasers;
+    std::map<std::uint32_t, Mean> views;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const std::uint32_t view = beams.views[members[k]];
+      const double weight = residuals[k].weight / std::pow(residuals[k].spread, 2);
+      lasers[view / 2].add(residuals[k].distance, weight);
+      views[view].add(residuals[k].distance, weight);
+    }
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const SurfelResidual& r = residuals[k];
+      if (r.weight == 0) continue;
+      const std::size_t i = members[k];
+      const std::uint32_t view = beams.views[i];
+      Turn& turn = score.turns[halves_.turn[i]];
+      const double z = r.distance / (r.spread * noise_);
+      turn.weight += r.weight;
+      turn.squares += r.weight * r.distance * r.distance;
+      turn.likelihood -=
+          r.weight * (z * z / 2 + std::log(r.spread * noise_ * std::sqrt(2 * std::numbers::pi)));
+      turn.lasers += r.weight * std::pow(lasers[view / 2].value(), 2);
+      turn.sides += r.weight * std::pow(views[view].value() - lasers[view / 2].value(), 2);
+      Vectors& cloud = clouds[halves_.turn[i]];
+      cloud.x.push_back(beams.points.x[i]);
+      cloud.y.push_back(beams.points.y[i]);
+      cloud.z.push_back(beams.points.z[i]);
+    }
+  }
+  for (std::size_t t = 0; t < clouds.size(); ++t) {
+    if (clouds[t].x.empty()) continue;
+    const Rqe entropy = rqe(clouds[t].view(), {}, {.sigma = 0.02, .cutoff = 5, .gradient = false});
+    score.turns[t].entropy = score.turns[t].weight * entropy.value;
+  }
+  return score;
+}
+
+std::vector<Gain> HeldOut::gains(const Score& before, const Score& after) {
+  constexpr std::size_t kDraws = 1000;
+  const std::size_t n = before.turns.size();
+  std::vector<std::size_t> all;
+  for (std::size_t t = 0; t < n; ++t) {
+    if (before.turns[t].weight > 0) all.push_back(t);
+  }
+  std::vector<Gain> gains;
+  if (all.size() < 2) return gains;
+  // The same draws for every metric, from nothing but their number.
+  std::mt19937_64 random(all.size());
+  std::vector<std::vector<std::size_t>> draws(kDraws, std::vector<std::size_t>(all.size()));
+  for (auto& drawn : draws) {
+    for (auto& turn : drawn) turn = all[random() % all.size()];
+  }
+  const auto count = static_cast<double>(all.size());
+  const double wider = quantile(boost::math::students_t(count - 1), 0.975) * std::sqrt(count / (count - 1));
+  for (const Metric& metric : kMetrics) {
+    const double first = value_of(metric, before.turns, all);
+    const double second = value_of(metric, after.turns, all);
+    double squares = 0;
+    for (const auto& drawn : draws) {
+      const double change = value_of(metric, after.turns, drawn) - value_of(metric, before.turns, drawn);
+      squares += std::pow(change - (second - first), 2);
+    }
+    const double half = wider * std::sqrt(squares / kDraws);
+    gains.push_back({.metric = metric.name,
+                     .unit = metric.unit,
+                     .before = first,
+                     .after = second,
+                     .ci95 = {second - first - half, second - first + half}});
+  }
+  return gains;
+}
+
+}  // namespace crisp

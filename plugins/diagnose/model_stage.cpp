@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/model_stage.hpp"
+
+#include "pipeline/stage/registry.hpp"
+#include "plugins/diagnose/report.hpp"
+
+namespace crisp {
+
+void DiagnoseModelStage::describe(StageDescription<DiagnoseModelStage>& d) {
+  d.name("diagnose.model").summary("names what the model of the sensor lacks, and extends it by that");
+  d.details(
+      "Looks for every effect of the catalogue in the distances of all beams to the flat surfaces that they "
+      "meet, takes into the model what is needed, and says what that brings on turns of the plate that it "
+      "was not fitted to. It needs a calibration that is right to some centimetres: calibrate.refine.");
+  d.takes<Measurements>()
+      .holds<PlateTrajectory>()
+      .holds<Calibration>()
+      .gives<Findings>()
+      .gives<Calibration>();
+  d.option("noise", &DiagnoseModelStage::noise_, "standard deviation of a range").unit("m").range(1e-6, 1);
+  d.option("beams", &DiagnoseModelStage::settings_, &DiagnosisSettings::beams,
+           "that candidates are looked at with; more cost time and tell little")
+      .range(1000, 1e8);
+  d.option("rounds", &DiagnoseModelStage::settings_, &DiagnosisSettings::rounds,
+           "most times that the model is extended and looked at again")
+      .range(1, 100);
+}
+
+void DiagnoseModelStage::process(const Inputs& in, Outputs&, Context&) {
+  start_ = in.share<Calibration>();
+  collected_.add(in.share<Measurements>(), in.share<PlateTrajectory>());
+}
+
+void DiagnoseModelStage::finish(Outputs& out, Context& context) {
+  const Sample sample = collected_.sample();
+  context.count("beams left out of the diagnosis of a long recording", collected_.left_out());
+  settings_.refinement.surfels.noise = noise_;
+  const auto& terms = context.run().registrar->get<TermRegistry>();
+  const Diagnosis diagnosis = diagnose(SensorModel(*start_, terms), sample, terms, settings_,
+                                       [&](double fraction, const std::string& what) {
+                                         context.progress(fraction, what);
+                                         return !context.interrupted();
+                                       });
+  if (context.interrupted()) return;
+  if (!diagnosis.settled) {
+    context.distrust("the extended model still asked for something else after the last round");
+  }
+  for (const auto& doubt : diagnosis.after.outcome.doubts) context.distrust(doubt);
+  Calibration calibration = calibration_of(diagnosis.after.outcome, context.rig());
+  calibration.provenance = start_->provenance;
+  calibration.provenance["diagnosis"] = "diagnose.model";
+  calibration.quality = start_->quality;
+  calibration.quality["chi2"] = diagnosis.after.chi2;
+  Findings findings = findings_of(diagnosis, calibration, settings_.selection, noise_);
+  context.say(in_words(diagnosis, findings));
+  context.report({{"findings", findings.findings.size()},
+                  {"unnamed", findings.unnamed.size()},
+                  {"before_p", findings.before_p},
+                  {"after_p", findings.after_p}});
+  out.give(std::move(findings));
+  out.give(std::move(calibration));
+}
+
+}  // namespace crisp

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plugins/diagnose/evidence.hpp"
+
+namespace crisp {
+
+/// Residuals of one laser against one quantity, in bins of equally many beams.
+struct Profile {
+  std::string covariate;
+  std::size_t laser = 0;
+  struct Bin {
+    double at = 0;         ///< mean of the covariate, in SI
+    double measured = 0;   ///< [m] mean residual, along the beam
+    double simulated = 0;  ///< [m] of the scanner simulated in the scene that the data show
+    double error = 0;      ///< [m] standard error of the mean
+  };
+  std::vector<Bin> bins;
+  double rms = 0;      ///< [m] of the measured means, less what noise makes
+  double p_value = 1;  ///< that noise makes as much in any of the profiles that were looked at
+};
+
+/// The measured data beside what the model expects of them.
+struct SideBySide {
+  std::vector<Profile> profiles;
+  double noise = 0;    ///< [m] standard deviation of ranges that the residuals show
+  double p_value = 1;  ///< that nothing but noise is in the residuals: the least of the profiles'
+};
+
+/// Lays the residuals of the measured data beside those of the scanner simulated again, measurement by
+/// measurement, in the scene that the data show: each beam where it meets its surface, with noise of the size
+/// that the residuals have. The simulation is repeated to see how far from nothing noise takes a profile.
+SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings, std::uint64_t seed);
+
+}  // namespace crisp

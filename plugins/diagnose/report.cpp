@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace crisp {
+namespace {
+
+const TermParameters* term_in(const Calibration& calibration, const Candidate& candidate) {
+  const auto& terms = candidate.owner < calibration.lasers.size() ? calibration.lasers[candidate.owner].terms
+                                                                  : calibration.plate_terms;
+  const auto found = std::ranges::find(terms, candidate.term.term, &TermParameters::term);
+  return found == terms.end() ? nullptr : &*found;
+}
+
+/// The candidate's parameters as they were estimated, or as far as they were.
+std::vector<Parameter> parameters_of(const Departure& departure, const Calibration& calibration) {
+  const TermParameters* found = term_in(calibration, departure.candidate);
+  return found ? found->parameters : departure.candidate.term.parameters;
+}
+
+std::string scope_of(const Candidate& candidate, const Calibration& calibration) {
+  return candidate.owner < calibration.lasers.size() ? calibration.lasers[candidate.owner].name : "plate";
+}
+
+Finding finding_of(const Departure& departure, const Calibration& calibration, const Diagnosis& diagnosis,
+                   double odds) {
+  double all = 0;
+  for (const Departure& other : diagnosis.departures) all += other.look.gain;
+  Finding finding{.cause = departure.candidate.term.term,
+                  .scope = scope_of(departure.candidate, calibration),
+                  .parameters = parameters_of(departure, calibration),
+                  .explained_fraction = all > 0 ? departure.look.gain / all : 0,
+                  .p_value = std::min(1.0, departure.look.p_value * static_cast<double>(diagnosis.looks)),
+                  .confounded_with = {},
+                  .gain = departure.gains,
+                  .accepted = departure.accepted};
+  const double behind = departure.rivals.empty() ? departure.look.bic : departure.rivals.front().behind;
+  finding.log10_odds = behind / 2 / std::numbers::ln10;
+  for (const auto& rival : departure.rivals) {
+    if (rival.behind < odds) finding.confounded_with.push_back(rival.name);
+  }
+  return finding;
+}
+
+UnnamedFinding unnamed_of(const Departure& departure, const Calibration& calibration,
+                          const Diagnosis& diagnosis, double noise) {
+  const std::string& term = departure.candidate.term.term;  // "empirical.range_by_mirror_angle"
+  const auto dot = term.find('.') + 1;
+  std::string quantity = term.substr(dot, term.find("_by_") - dot);
+  std::ranges::replace(quantity, '_', ' ');
+  return {.covariate = departure.candidate.covariate,
+          .quantity = quantity,
+          .scope = scope_of(departure.candidate, calibration),
+          .amplitude = departure.look.visible * noise,
+          .unit = "m",
+          .p_value = std::min(1.0, departure.look.p_value * static_cast<double>(diagnosis.looks)),
+          .gain = departure.gains,
+          .accepted = departure.accepted};
+}
+
+std::string with_unit(const Parameter& parameter) {
+  const auto shown = [&](double factor, const char* unit) {
+    return fmt::format("{} = {:.4g} ± {:.2g} {}", parameter.name, parameter.value * factor,
+                       parameter.std_error * factor, unit);
+  };
+  if (parameter.unit == "rad") return shown(180 / std::numbers::pi, "deg");
+  if (parameter.unit == "m") return shown(1e3, "mm");
+  if (parameter.unit == "s") return shown(1e3, "ms");
+  return shown(1, parameter.unit.c_str());
+}
+
+std::string gain_in_words(const std::vector<Gain>& gains) {
+  if (gains.empty()) return "  too little was held out to say what that brings\n";
+  std::string words;
+  for (const Gain& gain : gains) {
+    const double factor = gain.unit == "m" ? 1e3 : 1;
+    words += fmt::format("  {:<32}{:>10.4f} -> {:>8.4f} {:<3}  change {:+.4f} to {:+.4f}\n", gain.metric,
+                         gain.before * factor, gain.after * factor, gain.unit == "m" ? "mm" : gain.unit,
+                         gain.ci95[0] * factor, gain.ci95[1] * factor);
+  }
+  return words;
+}
+
+std::string finding_in_words(const Finding& finding) {
+  std::string words =
+      fmt::format("{} of {}{}: ", finding.cause, finding.scope, finding.accepted ? "" : " (refused)");
+  for (std::size_t k = 0; k < finding.parameters.size(); ++k) {
+    words += (k > 0 ? ", " : "") + with_unit(finding.parameters[k]);
+  }
+  words += fmt::format("\n  explains {:.0f} % of what was found; odds against the next cause 10^{:.0f}",
+                       100 * finding.explained_fraction, finding.log10_odds);
+  if (!finding.confounded_with.empty()) {
+    words += fmt::format("; these data cannot tell it from {}", fmt::join(finding.confounded_with, ", "));
+  }
+  if (!finding.accepted) words += "; it does not pay on turns that it was not fitted to";
+  return words + "\n" + gain_in_words(finding.gain);
+}
+
+/// The profiles that depart most from the simulation.
+std::string profiles_in_words(const SideBySide& left) {
+  constexpr double kSignificant = 0.05;
+  std::string words;
+  for (const Profile& profile : left.profiles) {
+    if (profile.p_value > kSignificant) continue;
+    words += fmt::format("  laser {} against {:<14}{:>8.3f} mm   p = {:.3f}\n", profile.laser + 1,
+                         profile.covariate, profile.rms * 1e3, profile.p_value);
+  }
+  return words;
+}
+
+}  // namespace
+
+Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
+                     const SelectionSettings& settings, double noise) {
+  Findings all{.findings = {},
+               .unnamed = {},
+               .unobservable = {},
+               .before_p = diagnosis.left_before.p_value,
+               .after_p = diagnosis.left_after.p_value};
+  for (const Departure& departure : diagnosis.departures) {
+    if (departure.candidate.is_cause()) {
+      all.findings.push_back(finding_of(departure, calibration, diagnosis, settings.odds));
+    } else {
+      all.unnamed.push_back(unnamed_of(departure, calibration, diagnosis, noise));
+    }
+  }
+  for (const std::string& name : diagnosis.unobservable) {
+    all.unobservable.push_back(
+        {.parameter = name,
+         .reason = "as large as the noise of ranges it would not show beside the other parameters",
+         .combination = {}});
+  }
+  return all;
+}
+
+std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
+  std::string words =
+      fmt::format("what is wrong: residuals against what the scanner simulated again shows\n");
+  const std::string departing = profiles_in_words(diagnosis.left_before);
+  words += departing.empty() ? "  nothing departs from the simulation\n" : departing;
+  if (findings.findings.empty() && findings.unnamed.empty()) words += "no cause is found\n";
+  for (const Finding& finding : findings.findings) words += finding_in_words(finding);
+  for (const UnnamedFinding& finding : findings.unnamed) {
+    words +=
+        fmt::format("unnamed: {} of {} depends on the {}, by {:.3f} mm{}\n", finding.quantity, finding.scope,
+                    finding.covariate, finding.amplitude * 1e3, finding.accepted ? "" : " (refused)");
+    words += gain_in_words(finding.gain);
+  }
+  words += fmt::format("measured and simulated residuals: p = {:.3f} before, {:.3f} after", findings.before_p,
+                       findings.after_p);
+  if (!findings.unobservable.empty()) {
+    std::vector<std::string> names;
+    for (const auto& one : findings.unobservable) names.push_back(one.parameter);
+    words += fmt::format("\nnot to be told by these data: {}", fmt::join(names, ", "));
+  }
+  return words;
+}
+
+}  // namespace crisp

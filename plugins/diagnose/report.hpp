@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "pipeline/data/rig.hpp"
+#include "plugins/diagnose/diagnosis.hpp"
+
+namespace crisp {
+
+/// A diagnosis for programs: findings in the order in which they were taken into the model.
+Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
+                     const SelectionSettings& settings, double noise);
+
+/// And for people.
+std::string in_words(const Diagnosis& diagnosis, const Findings& findings);
+
+}  // namespace crisp

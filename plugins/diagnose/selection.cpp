@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/selection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <set>
+
+namespace crisp {
+namespace {
+
+/// A set of candidates, and what the data say of each other one beside it.
+class Chooser {
+ public:
+  Chooser(const Dictionary& dictionary, const NormalEquations& equations, const SelectionSettings& settings,
+          const std::set<std::string>& refused)
+      : dictionary_(dictionary), equations_(equations), settings_(settings), refused_(refused) {
+    std::set<std::string> names;
+    for (const auto& candidate : dictionary.candidates()) names.insert(candidate.name);
+    looks_ = std::max<std::size_t>(1, names.size());
+  }
+
+  std::vector<std::optional<Look>> beside(const std::vector<std::size_t>& taken) const {
+    return looks_beside(taken, dictionary_, equations_);
+  }
+
+  bool is_needed(std::size_t candidate, const Look& look) const {
+    const Candidate& which = dictionary_.candidates()[candidate];
+    return !refused_.contains(which.name) && look.bic > settings_.bic && look.visible > settings_.visible &&
+           (!which.in_model || look.p_value * static_cast<double>(looks_) < settings_.p_value);
+  }
+
+  /// The best of those that are needed, causes before mere descriptions.
+  std::optional<std::size_t> best(const std::vector<std::optional<Look>>& looks) const {
+    std::optional<std::size_t> best[2];
+    for (std::size_t c = 0; c < looks.size(); ++c) {
+      if (!looks[c] || !is_needed(c, *looks[c])) continue;
+      auto& of_kind = best[dictionary_.candidates()[c].is_cause() ? 0 : 1];
+      if (!of_kind || looks[c]->bic > looks[*of_kind]->bic) of_kind = c;
+    }
+    return best[0] ? best[0] : best[1];
+  }
+
+  std::vector<std::size_t> without(const std::vector<std::size_t>& taken, std::size_t one) const {
+    auto others = taken;
+    std::erase(others, one);
+    return others;
+  }
+
+  /// Leaves out, one after another, what is not needed beside the rest.
+  void leave_out_needless(std::vector<std::size_t>& taken) const {
+    while (true) {
+      std::optional<std::size_t> least;
+      double least_bic = 0;
+      for (const std::size_t t : taken) {
+        const Look look = *beside(without(taken, t))[t];
+        if (!is_needed(t, look) && (!least || look.bic < least_bic)) {
+          least = t;
+          least_bic = look.bic;
+        }
+      }
+      if (!least) return;
+      std::erase(taken, *least);
+    }
+  }
+
+  Choice described(const std::vector<std::size_t>& taken, std::size_t one) const {
+    const auto looks = beside(without(taken, one));
+    const auto& candidates = dictionary_.candidates();
+    Choice choice{.candidate = one, .look = *looks[one], .alternatives = {}};
+    for (std::size_t c = 0; c < looks.size(); ++c) {
+      if (!looks[c] || candidates[c].is_form_of(candidates[one]) || !candidates[c].is_cause()) continue;
+      const double behind = choice.look.bic - looks[c]->bic;
+      const auto other = std::ranges::find_if(choice.alternatives, [&](const Alternative& a) {
+        return candidates[a.candidate].is_form_of(candidates[c]);
+      });
+      if (other == choice.alternatives.end()) {
+        choice.alternatives.push_back({.candidate = c, .behind = behind});
+      } else if (behind < other->behind) {
+        *other = {.candidate = c, .behind = behind};
+      }
+    }
+    std::ranges::sort(choice.alternatives, {}, &Alternative::behind);
+    return choice;
+  }
+
+ private:
+  const Dictionary& dictionary_;
+  const NormalEquations& equations_;
+  const SelectionSettings& settings_;
+  const std::set<std::string>& refused_;
+  std::size_t looks_ = 1;
+};
+
+}  // namespace
+
+NormalEquations from_neutral(const Dictionary& dictionary, NormalEquations equations) {
+  Eigen::VectorXd back = Eigen::VectorXd::Zero(equations.vector.size());
+  for (std::size_t c = 0; c < dictionary.candidates().size(); ++c) {
+    if (dictionary.candidates()[c].in_model) back(dictionary.of(c)) = -dictionary.sizes_of(c);
+  }
+  equations.chi2 += 2 * equations.vector.dot(back) + back.dot(equations.matrix * back);
+  equations.vector += equations.matrix * back;
+  return equations;
+}
+
+std::vector<std::optional<Look>> looks_beside(const std::vector<std::size_t>& taken,
+                                              const Dictionary& dictionary,
+                                              const NormalEquations& equations) {
+  std::vector<std::size_t> eliminated(dictionary.base());
+  std::iota(eliminated.begin(), eliminated.end(), std::size_t{0});
+  for (const std::size_t t : taken) {
+    eliminated.insert(eliminated.end(), dictionary.of(t).begin(), dictionary.of(t).end());
+  }
+  std::vector<std::size_t> all(dictionary.parameters());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const NormalEquations left = equations.reduced(all, eliminated);
+  const auto& candidates = dictionary.candidates();
+  std::vector<std::optional<Look>> looks(candidates.size());
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const bool there =
+        std::ranges::any_of(taken, [&](std::size_t t) { return candidates[t].is_form_of(candidates[c]); });
+    if (there) continue;
+    Look look = look_at(left, dictionary.of(c));
+    // A form that was chosen among several is a parameter, too.
+    if (candidates[c].forms > 1) look.bic -= std::log(static_cast<double>(equations.beams));
+    looks[c] = std::move(look);
+  }
+  return looks;
+}
+
+std::vector<Choice> choose(const Dictionary& dictionary, const NormalEquations& equations,
+                           const SelectionSettings& settings, const std::set<std::string>& refused) {
+  const Chooser chooser(dictionary, equations, settings, refused);
+  std::vector<std::size_t> taken;
+  std::set<std::vector<std::size_t>> seen;
+  while (taken.size() < settings.most && seen.insert(taken).second) {
+    const auto next = chooser.best(chooser.beside(taken));
+    if (!next) break;
+    taken.push_back(*next);
+    chooser.leave_out_needless(taken);
+  }
+  std::vector<Choice> choices;
+  for (const std::size_t t : taken) choices.push_back(chooser.described(taken, t));
+  return choices;
+}
+
+}  // namespace crisp

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/write/findings_stage.hpp"
+
+#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/findings_file.hpp"
+
+namespace crisp {
+
+void WriteFindingsStage::describe(StageDescription<WriteFindingsStage>& d) {
+  d.name("write.findings").summary("writes what a diagnosis says as JSON");
+  d.takes<Findings>();
+  d.option("file", &WriteFindingsStage::file_, "where to write it").required();
+}
+
+void WriteFindingsStage::process(const Inputs& in, Outputs&, Context&) { last_ = in.share<Findings>(); }
+
+void WriteFindingsStage::finish(Outputs&, Context& context) {
+  if (!last_) throw Error("no findings came, so none were written");
+  write_file(file_, findings_json(*last_));
+  context.wrote(file_);
+}
+
+}  // namespace crisp

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "pipeline/data/findings.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// Writes what a diagnosis says, for programs.
+class WriteFindingsStage final : public Stage {
+ public:
+  static void describe(StageDescription<WriteFindingsStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  std::filesystem::path file_;
+  std::shared_ptr<const Findings> last_;
+};
+
+}  // namespace crisp

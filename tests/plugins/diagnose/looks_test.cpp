@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/looks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace crisp {
+namespace {
+
+/// Least squares of `truth` in n residuals of unit noise with random derivatives; a block for each ten, whose
+/// pulls are those of the noise, as where the model has what is true.
+NormalEquations random_problem(const Eigen::VectorXd& truth, Eigen::Index n, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const Eigen::Index m = truth.size();
+  NormalEquations equations(static_cast<std::size_t>(m), static_cast<std::size_t>(n / 10));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Eigen::VectorXd row(m);
+    for (double& value : row) value = normal(random);
+    const double noise = normal(random);
+    const double residual = noise - row.dot(truth);
+    equations.matrix += row * row.transpose();
+    equations.vector += row * residual;
+    equations.squares += row.cwiseAbs2();
+    equations.pulls.col(i / 10) += row * noise;
+    equations.influence += noise * noise;
+  }
+  equations.beams = static_cast<std::size_t>(n);
+  equations.freedom = equations.weight = equations.stiffness = static_cast<double>(n);
+  return equations;
+}
+
+TEST(Look, FindsWhatIsThereWithItsErrors) {
+  const Eigen::Vector3d truth(0.2, -0.1, 0.3);
+  const auto equations = random_problem(truth, 5000, 1).reduced({0, 1, 2}, {});
+  const Look look = look_at(equations, {0, 2});
+  const auto own = look_at(equations.reduced({0, 2}, {1}), {0, 1});
+  for (const Eigen::Index k : {0, 1}) {
+    EXPECT_NEAR(own.value[k], truth[2 * k], 4 / std::sqrt(5000.0));
+    EXPECT_NEAR(std::sqrt(own.covariance(k, k)), 1 / std::sqrt(5000.0), 0.15 / std::sqrt(5000.0));
+  }
+  EXPECT_NEAR(own.gain, 5000 * (0.04 + 0.09), 4 * std::sqrt(4 * 650.0));
+  EXPECT_NEAR(look.identifiability(), 1, 0.1);
+}
+
+TEST(Look, HasAnEvenPValueWhereNothingIs) {
+  int small = 0;
+  for (unsigned seed = 1; seed <= 400; ++seed) {
+    const auto equations = random_problem(Eigen::Vector2d::Zero(), 2000, seed);
+    small += look_at(equations, {0, 1}).p_value < 0.1 ? 1 : 0;
+  }
+  EXPECT_NEAR(small, 40, 4 * 6);  // binomial: √(400 · 0.1 · 0.9) = 6
+}
+
+TEST(Look, HoldsHiddenDirectionsAtZero) {
+  auto equations = random_problem(Eigen::Vector2d(1, 1), 1000, 3);
+  // The second does nothing that is left.
+  equations.matrix.col(1).setConstant(1e-9);
+  equations.matrix.row(1).setConstant(1e-9);
+  const Look look = look_at(equations, {1});
+  EXPECT_EQ(look.value[0], 0);
+  EXPECT_EQ(look.p_value, 1);
+  EXPECT_TRUE(std::isinf(look.whole_error));
+}
+
+}  // namespace
+}  // namespace crisp

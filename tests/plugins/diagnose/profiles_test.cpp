@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/profiles.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/plugins/diagnose/hidden.hpp"
+
+namespace crisp {
+namespace {
+
+SideBySide beside(const test::Recording& recording) {
+  const SurfelSettings settings;
+  const Evidence evidence(SensorModel(recording.scanner.truth, built_in_terms()), recording.sample(),
+                          settings, 60000);
+  return side_by_side(evidence, settings, 1);
+}
+
+TEST(SideBySide, TellsNothingApartWhereTheModelIsTheTruth) {
+  // Sorted by what was measured, noise would bend the profile over range by millimetres.
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const SideBySide left = beside(test::hidden(seed, 3, office(), {}));
+    EXPECT_GT(left.p_value, 0.01) << seed;
+    EXPECT_NEAR(left.noise, 0.012, 0.0015);
+  }
+}
+
+TEST(SideBySide, ShowsADepartureOverItsCovariate) {
+  test::Recording recording = test::hidden(4, 3, office(), {});
+  for (std::size_t i = 0; i < recording.made.beams.size(); ++i) {
+    if (recording.made.beams.laser[i] != 2) continue;
+    recording.made.beams.range[i] += 0.004F * std::sin(2 * recording.made.beams.mirror_angle[i]);
+  }
+  const SideBySide left = beside(recording);
+  EXPECT_LT(left.p_value, 0.01);
+  const auto largest = std::ranges::max_element(left.profiles, {}, &Profile::rms);
+  EXPECT_EQ(largest->laser, 2U);
+  EXPECT_EQ(largest->covariate, "mirror angle");
+  EXPECT_NEAR(largest->rms, 0.004 / std::sqrt(2), 0.002) << "less what planes take of it";
+}
+
+}  // namespace
+}  // namespace crisp
