@@ -54,6 +54,36 @@ struct Mean {
   double value() const { return weight > 0 ? sum / weight : 0; }
 };
 
+/// Where the lasers, and each one's front and back, see a surface.
+class ViewMeans {
+ public:
+  ViewMeans(std::span<const std::uint32_t> members, const std::vector<SurfelResidual>& residuals,
+            const BeamsView& beams) {
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const std::uint32_t view = beams.views[members[k]];
+      const double weight = residuals[k].weight / std::pow(residuals[k].spread, 2);
+      lasers_[view / 2].add(residuals[k].distance, weight);
+      sides_[view].add(residuals[k].distance, weight);
+    }
+  }
+
+  /// Adds what one beam contributes to its turn.
+  void add(const SurfelResidual& r, std::uint32_t view, double noise, Turn& turn) const {
+    const double laser = lasers_.at(view / 2).value();
+    const double spread = r.spread * noise;
+    turn.weight += r.weight;
+    turn.squares += r.weight * r.distance * r.distance;
+    turn.likelihood -= r.weight * (std::pow(r.distance / spread, 2) / 2 +
+                                   std::log(spread * std::sqrt(2 * std::numbers::pi)));
+    turn.lasers += r.weight * laser * laser;
+    turn.sides += r.weight * std::pow(sides_.at(view).value() - laser, 2);
+  }
+
+ private:
+  std::map<std::uint32_t, Mean> lasers_;
+  std::map<std::uint32_t, Mean> sides_;
+};
+
 double ratio(const std::vector<Turn>& turns, const std::vector<std::size_t>& drawn, double Turn::*part) {
   double sum = 0;
   double weight = 0;
@@ -122,27 +152,11 @@ HeldOut::Score HeldOut::score(const SensorModel& model) const {
   for (const Surfel& surfel : surfels_.surfels) {
     const auto members = surfels_.beams_of(surfel);
     const auto residuals = residuals_of(surfel, surfels_, beams, settings_);
-    std::map<std::uint32_t, Mean> lasers;
-    std::map<std::uint32_t, Mean> views;
+    const ViewMeans views(members, residuals, beams);
     for (std::size_t k = 0; k < members.size(); ++k) {
-      const std::uint32_t view = beams.views[members[k]];
-      const double weight = residuals[k].weight / std::pow(residuals[k].spread, 2);
-      lasers[view / 2].add(residuals[k].distance, weight);
-      views[view].add(residuals[k].distance, weight);
-    }
-    for (std::size_t k = 0; k < members.size(); ++k) {
-      const SurfelResidual& r = residuals[k];
-      if (r.weight == 0) continue;
       const std::size_t i = members[k];
-      const std::uint32_t view = beams.views[i];
-      Turn& turn = score.turns[halves_.turn[i]];
-      const double z = r.distance / (r.spread * noise_);
-      turn.weight += r.weight;
-      turn.squares += r.weight * r.distance * r.distance;
-      turn.likelihood -=
-          r.weight * (z * z / 2 + std::log(r.spread * noise_ * std::sqrt(2 * std::numbers::pi)));
-      turn.lasers += r.weight * std::pow(lasers[view / 2].value(), 2);
-      turn.sides += r.weight * std::pow(views[view].value() - lasers[view / 2].value(), 2);
+      if (residuals[k].weight == 0) continue;
+      views.add(residuals[k], beams.views[i], noise_, score.turns[halves_.turn[i]]);
       Vectors& cloud = clouds[halves_.turn[i]];
       cloud.x.push_back(beams.points.x[i]);
       cloud.y.push_back(beams.points.y[i]);

@@ -2,6 +2,7 @@
 #include "plugins/diagnose/selection.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -9,6 +10,11 @@
 
 namespace crisp {
 namespace {
+
+std::vector<std::size_t> without(std::vector<std::size_t> taken, std::size_t one) {
+  std::erase(taken, one);
+  return taken;
+}
 
 /// A set of candidates, and what the data say of each other one beside it.
 class Chooser {
@@ -33,19 +39,13 @@ class Chooser {
 
   /// The best of those that are needed, causes before mere descriptions.
   std::optional<std::size_t> best(const std::vector<std::optional<Look>>& looks) const {
-    std::optional<std::size_t> best[2];
+    std::array<std::optional<std::size_t>, 2> best;
     for (std::size_t c = 0; c < looks.size(); ++c) {
       if (!looks[c] || !is_needed(c, *looks[c])) continue;
       auto& of_kind = best[dictionary_.candidates()[c].is_cause() ? 0 : 1];
       if (!of_kind || looks[c]->bic > looks[*of_kind]->bic) of_kind = c;
     }
     return best[0] ? best[0] : best[1];
-  }
-
-  std::vector<std::size_t> without(const std::vector<std::size_t>& taken, std::size_t one) const {
-    auto others = taken;
-    std::erase(others, one);
-    return others;
   }
 
   /// Leaves out, one after another, what is not needed beside the rest.

@@ -10,7 +10,7 @@ namespace {
 
 using testing::ElementsAre;
 
-constexpr double kNoise = 0.01;
+constexpr double kRangeNoise = 0.01;
 
 TEST(Steady, LeavesOutWhatViewsMetAtAnotherPlaceThanElsewhere) {
   test::ViewedSurfels walls;
@@ -19,7 +19,7 @@ TEST(Steady, LeavesOutWhatViewsMetAtAnotherPlaceThanElsewhere) {
       {{.view = 0, .height = -0.06, .beams = 50}, {.view = 1, .height = 0.06, .beams = 50}});  // walked by
   walls.add({{.view = 2, .height = 0.001, .beams = 100}, {.view = 3, .height = 0, .beams = 60}});
   walls.add({{.view = 4, .height = 0.2, .beams = 60}});  // one view does not disagree with itself
-  const auto keep = steady(walls.surfels, walls.view(), kNoise);
+  const auto keep = steady(walls.surfels, walls.view(), kRangeNoise);
   EXPECT_THAT(keep, ElementsAre(true, false, true, true));
   const Surfels rest = kept(walls.surfels, keep);
   ASSERT_EQ(rest.surfels.size(), 3U);
@@ -31,7 +31,7 @@ TEST(Steady, BlamesACalibrationThatIsStillOffOnNoSurface) {
   for (const double off : {0.05, 0.03, 0.06, 0.04}) {
     walls.add({{.view = 0, .height = -off, .beams = 100}, {.view = 2, .height = off, .beams = 100}});
   }
-  EXPECT_THAT(steady(walls.surfels, walls.view(), kNoise), ElementsAre(true, true, true, true));
+  EXPECT_THAT(steady(walls.surfels, walls.view(), kRangeNoise), ElementsAre(true, true, true, true));
 }
 
 TEST(Steady, CountsBeamsAsTheyWeigh) {
@@ -40,7 +40,7 @@ TEST(Steady, CountsBeamsAsTheyWeigh) {
     walls.add({{.view = 0, .height = 0, .beams = 10}, {.view = 1, .height = 0, .beams = 10}});
   walls.add({{.view = 0, .height = 0, .beams = 90}, {.view = 1, .height = 0.5, .beams = 10}});
   for (std::size_t k = 150; k < 160; ++k) walls.surfels.weights[k] = 0;
-  EXPECT_THAT(steady(walls.surfels, walls.view(), kNoise), ElementsAre(true, true, true, true));
+  EXPECT_THAT(steady(walls.surfels, walls.view(), kRangeNoise), ElementsAre(true, true, true, true));
 }
 
 }  // namespace

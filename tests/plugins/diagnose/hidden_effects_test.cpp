@@ -22,16 +22,19 @@ void expect_within_errors(const Diagnosis& diagnosis, const test::Recording& rec
   for (const double error : errors) EXPECT_LT(std::abs(error), 3.5) << name;
 }
 
-TEST(HiddenEffects, NothingIsFoundWhereNothingHides) {
-  for (const std::uint64_t seed : {1, 2}) {
-    for (const Scene& scene : {office(), hall(), street()}) {
-      const Diagnosis diagnosis = test::diagnosed(test::hidden(seed, 10, scene, {}));
-      EXPECT_THAT(test::names_in(diagnosis), IsEmpty()) << scene.name << ' ' << seed;
-      EXPECT_TRUE(diagnosis.settled);
-      EXPECT_GT(diagnosis.left_before.p_value, 0.01) << scene.name << ' ' << seed;
-    }
-  }
+class CleanRecordings : public testing::TestWithParam<const char*> {};
+
+TEST_P(CleanRecordings, AreGivenNoCause) {
+  const std::string name = GetParam();
+  const Scene scene = name == "office" ? office() : name == "hall" ? hall() : street();
+  const Diagnosis diagnosis = test::diagnosed(test::hidden(1, 10, scene, {}));
+  EXPECT_THAT(test::names_in(diagnosis), IsEmpty());
+  EXPECT_TRUE(diagnosis.settled);
+  EXPECT_GT(diagnosis.left_before.p_value, 0.01);
 }
+
+INSTANTIATE_TEST_SUITE_P(HiddenEffects, CleanRecordings, testing::Values("office", "hall", "street"),
+                         testing::PrintToStringParamName());
 
 TEST(HiddenEffects, AnEccentricEncoderIsNamed) {
   const auto recording = test::hidden(2, 10, office(), {{"encoder.eccentricity", {0.002, -0.0015}}});

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/files/calibration_file.hpp"
+#include "tests/end_to_end/workshop.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(Configs, DiagnoseNamesTheCauseAndExtendsTheCalibration) {
+  const test::Workshop workshop;
+  workshop.simulate("made", {"duration=4s", "effects={laser2.range.offset: {c: 2cm}}"});
+  const auto outcome = workshop.run("diagnose.yaml", workshop / "made/hub.pcap", "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  EXPECT_THAT(outcome.files, ElementsAre("calibration.yaml", "calibration.yaml.provenance.json", "cloud.pcd",
+                                         "cloud.pcd.provenance.json", "diagnosis.json",
+                                         "diagnosis.json.provenance.json", "summary.json"));
+  const auto diagnosis = nlohmann::json::parse(test::bytes_of(workshop / "out/diagnosis.json"));
+  ASSERT_EQ(diagnosis["findings"].size(), 1U);
+  EXPECT_EQ(diagnosis["findings"][0]["cause"], "range.offset");
+  EXPECT_EQ(diagnosis["findings"][0]["scope"], "laser2");
+  EXPECT_TRUE(diagnosis["findings"][0]["accepted"]);
+  const Calibration calibration = read_calibration(workshop / "out/calibration.yaml");
+  ASSERT_EQ(calibration.lasers.at(1).terms.size(), 1U);
+  EXPECT_NEAR(calibration.lasers[1].terms[0].parameters.at(0).value, 0.02, 0.001);
+}
+
+}  // namespace
+}  // namespace crisp
