@@ -21,7 +21,7 @@ struct Slots {
 Slots fill_slots(const Tiles& tiles, std::span<const double> weights, double scale) {
   const std::size_t padded = tiles.points() + simd::kPadding;
   Slots slots;
-  const std::array<std::vector<float>*, 4> all{&slots.offset[0], &slots.offset[1], &slots.offset[2],
+  const std::array<std::vector<float>*, 4> all{slots.offset.data(), &slots.offset[1], &slots.offset[2],
                                                &slots.weight};
   for_each_index(all.size(), [&](std::size_t i) { all[i]->resize(padded); });
   for_blocks(tiles.size(), 1024, [&](std::size_t, std::size_t begin, std::size_t end) {
