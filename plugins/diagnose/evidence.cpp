@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
@@ -54,9 +55,8 @@ std::vector<std::uint32_t> blocks_in(const Measurements& beams, const Lasting& l
 
 }  // namespace
 
-Evidence::Evidence(const SensorModel& model, const Sample& sample, const SurfelSettings& settings,
-                   std::size_t most)
-    : sample_(sample), placed_(model, sample_), settings_(settings) {
+Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings& settings, std::size_t most)
+    : sample_(std::move(sample)), placed_(model, sample_), settings_(settings) {
   const Surfels all = surfaces(placed_.view(), settings_);
   sample_.beams.cos_incidence = incidences(all, placed_.view());
   placed_ = PlacedBeams(model, sample_);  // by terms that ask for it, too

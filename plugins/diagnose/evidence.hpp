@@ -16,7 +16,7 @@ class Evidence {
  public:
   /// @param sample  all beams, which the plate's readings cover; how they met their surfaces is filled in
   /// @param most    so many beams are looked at, evenly chosen; more cost time and tell little
-  Evidence(const SensorModel& model, const Sample& sample, const SurfelSettings& settings, std::size_t most);
+  Evidence(const SensorModel& model, Sample sample, const SurfelSettings& settings, std::size_t most);
 
   const Sample& sample() const { return sample_; }
   const Surfels& surfels() const { return surfels_; }  ///< with the beams that are looked at

@@ -247,7 +247,7 @@ pipeline:
 )";
 
 std::vector<NodeResult> run(std::string_view text, const char* name, const fs::path& folder, const Rig& rig,
-                            RunHooks hooks) {
+                            const RunHooks& hooks) {
   Builtin builtin;
   RunSettings settings;
   settings.registrar = &builtin.registrar();
