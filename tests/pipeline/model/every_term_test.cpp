@@ -171,8 +171,7 @@ TEST(AllTermsTogether, HaveDerivativesThatAgreeWithFiniteDifferences) {
   }
   calibration.lasers[1].terms.resize(5);  // the lasers' chains differ, and so do their Jets' passes
   const SensorModel model(calibration, built_in_terms());
-  EXPECT_GT(model.chain(0).slots.size(), 40U);
-  EXPECT_LT(model.chain(1).slots.size(), 36U);
+  EXPECT_GT(model.chain(0).slots.size(), model.chain(1).slots.size() + 40U);
   expect_right_derivatives(model);
 }
 
