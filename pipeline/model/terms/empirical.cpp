@@ -83,8 +83,8 @@ std::vector<EffectParameter> parameters(On on, Over over, const Shape& shape) {
     for (std::size_t k = 0; k < shape.coefficients(); ++k) {
       all.push_back({.name = axis + shape.name(k),
                      .unit = what.unit,
-                     .lower = -what.bound,
-                     .upper = what.bound,
+                     .lower = -what.bound * shape.scale(),
+                     .upper = what.bound * shape.scale(),
                      .summary = shape.summary(k)});
     }
   }
@@ -114,6 +114,11 @@ std::size_t Shape::coefficients() const {
       return 3;
   }
   return 0;
+}
+
+double Shape::scale() const {
+  constexpr double kOfPowers = 1e-3;  // a plate turns at ten radians a second
+  return kind_ == Kind::kPowers ? kOfPowers : 1;
 }
 
 std::string Shape::name(std::size_t coefficient) const {

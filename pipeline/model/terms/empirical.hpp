@@ -24,6 +24,7 @@ class Shape {
   static Shape powers();
 
   std::size_t coefficients() const;
+  double scale() const;  ///< by how much smaller coefficients are than what they make
   std::string name(std::size_t coefficient) const;     ///< "cos2"
   std::string summary(std::size_t coefficient) const;  ///< "of cos 2x"
 
