@@ -115,7 +115,7 @@ class Soak {
   std::map<std::uint16_t, std::vector<Fate>> fates;
 
  private:
-  Rig rig() {
+  Rig rig() const {
     Rig rig = test::loopback_rig();
     rig.plate.address.port = plate_port_;
     return rig;
