@@ -144,7 +144,7 @@ std::string Shape::summary(std::size_t coefficient) const {
       return "at x = " + knot.erase(knot.find('.') + 3);
     }
     case Kind::kPowers:
-      return std::vector<std::string>{"of x²", "of x |x|", "of x³"}.at(coefficient);
+      return std::vector<std::string>{"of x²", "of x abs(x)", "of x³"}.at(coefficient);
   }
   return {};
 }

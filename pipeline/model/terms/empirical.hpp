@@ -20,7 +20,7 @@ class Shape {
   static Shape fourier(int first, int last);
   /// Straight between knots (ascending), where it is as high as the coefficients say; level beyond them.
   static Shape hats(std::vector<double> knots);
-  /// a x² + b x |x| + c x³
+  /// a x² + b x abs(x) + c x³
   static Shape powers();
 
   std::size_t coefficients() const;

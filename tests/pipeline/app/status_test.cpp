@@ -78,7 +78,7 @@ TEST(ProgressPrinter, RefreshesAStatusOnATerminalAndLogsItElsewhere) {
     }
     const std::string shown = out.str();
     if (terminal) {
-      EXPECT_EQ(shown.find("7"), std::string::npos) << "cut at the width";
+      EXPECT_EQ(shown.find('7'), std::string::npos) << "cut at the width";
       EXPECT_THAT(shown, StartsWith("\r\x1b[K0123456"));
       EXPECT_GT(shown.size(), 40 * 10U);
     } else {
