@@ -42,7 +42,8 @@ Cloud scan(std::uint16_t laser, double begin) {
 std::vector<std::shared_ptr<const Cloud>> gather(const RevolutionSettings& settings,
                                                  const PlateTrajectory& plate, double seconds) {
   std::vector<std::shared_ptr<const Cloud>> clouds;
-  Revolutions revolutions(settings, [&](std::shared_ptr<const Cloud> cloud) { clouds.push_back(std::move(cloud)); });
+  Revolutions revolutions(settings,
+                          [&](std::shared_ptr<const Cloud> cloud) { clouds.push_back(std::move(cloud)); });
   const int scans = static_cast<int>(std::lround(seconds / kScan));
   for (int i = 0; i < scans; ++i) {
     for (std::uint16_t laser = 0; laser < 3; ++laser) {
