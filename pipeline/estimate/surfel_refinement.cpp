@@ -17,6 +17,7 @@
 #include "pipeline/estimate/incidence.hpp"
 #include "pipeline/estimate/observability.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/estimate/recording_blocks.hpp"
 #include "pipeline/estimate/steady.hpp"
 #include "pipeline/estimate/surfel_rows.hpp"
 #include "pipeline/estimate/upright.hpp"
@@ -25,21 +26,6 @@ namespace crisp {
 namespace {
 
 constexpr double kSpread = 0.1;  // [rad] by which beams in the plate's plane are taken out of it
-
-/// Pieces of the recording that share no error: what is left of the encoder's steps is gone after a tenth of
-/// a second; many enough to see by how much the pieces' pulls scatter.
-std::vector<std::uint32_t> pieces_of(const Sample& sample) {
-  constexpr double kLong = 0.1;  // [s]
-  constexpr double kFewest = 100;
-  const auto [first, last] = std::ranges::minmax(sample.beams.time);
-  const double piece = std::min(kLong, (last - first) / kFewest);
-  std::vector<std::uint32_t> pieces;
-  pieces.reserve(sample.beams.size());
-  for (const double time : sample.beams.time) {
-    pieces.push_back(static_cast<std::uint32_t>((time - first) / std::max(piece, 1e-9)));
-  }
-  return pieces;
-}
 
 /// Equations at a model, with the start as one more observation.
 class Refiner {
@@ -97,7 +83,7 @@ class Refiner {
   void widen_by_shared_errors() {
     if (found_.surfels.empty()) return;
     const PlacedBeams placed(model_, sample_);
-    const auto pieces = pieces_of(sample_);
+    const auto pieces = recording_blocks(sample_.beams);
     const auto rows = surfel_rows(model_, sample_, free_);
     const double count = 1.0 + std::ranges::max(pieces);
     const auto spent = static_cast<double>(free_.size());

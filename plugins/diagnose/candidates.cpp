@@ -30,11 +30,6 @@ std::size_t form_of(const TermInfo& info) {
   return static_cast<std::size_t>(form - info.parameters.begin());
 }
 
-const TermParameters* find(const std::vector<TermParameters>& terms, const std::string& name) {
-  const auto found = std::ranges::find(terms, name, &TermParameters::term);
-  return found == terms.end() ? nullptr : &*found;
-}
-
 /// Appends a term of one owner: as it is in the calibration, or in all of its forms.
 void append(std::vector<Candidate>& all, Candidate as, const std::vector<TermParameters>& present,
             const ModelTerm& term, const Lasting& lasting) {
@@ -43,7 +38,7 @@ void append(std::vector<Candidate>& all, Candidate as, const std::vector<TermPar
   const bool has_forms = form < info.parameters.size();
   as.covariate = info.covariate;
   as.forms = has_forms ? static_cast<std::size_t>(info.parameters[form].tries.count) : 1;
-  if (const TermParameters* here = find(present, info.name)) {
+  if (const TermParameters* here = find_term(present, info.name)) {
     as.term = *here;
     as.in_model = true;
     all.push_back(as);
@@ -58,6 +53,18 @@ void append(std::vector<Candidate>& all, Candidate as, const std::vector<TermPar
 }
 
 }  // namespace
+
+std::vector<TermParameters>& terms_of(Calibration& calibration, std::size_t owner) {
+  return owner < calibration.lasers.size() ? calibration.lasers[owner].terms : calibration.plate_terms;
+}
+const std::vector<TermParameters>& terms_of(const Calibration& calibration, std::size_t owner) {
+  return owner < calibration.lasers.size() ? calibration.lasers[owner].terms : calibration.plate_terms;
+}
+
+const TermParameters* find_term(const std::vector<TermParameters>& terms, const std::string& name) {
+  const auto found = std::ranges::find(terms, name, &TermParameters::term);
+  return found == terms.end() ? nullptr : &*found;
+}
 
 std::vector<Candidate> candidates(const TermRegistry& terms, const Calibration& calibration,
                                   const Lasting& lasting) {
@@ -86,9 +93,7 @@ Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, c
 }
 
 void add_to(Calibration& calibration, const Candidate& candidate) {
-  auto& terms = candidate.owner < calibration.lasers.size() ? calibration.lasers[candidate.owner].terms
-                                                            : calibration.plate_terms;
-  terms.push_back(candidate.term);
+  terms_of(calibration, candidate.owner).push_back(candidate.term);
 }
 
 }  // namespace crisp

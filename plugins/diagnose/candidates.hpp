@@ -43,6 +43,13 @@ std::vector<Candidate> candidates(const TermRegistry& terms, const Calibration& 
 ///              between
 Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, const Lasting& lasting);
 
+/// The terms of one owner: of a laser, or of the plate where the index is the number of lasers.
+std::vector<TermParameters>& terms_of(Calibration& calibration, std::size_t owner);
+const std::vector<TermParameters>& terms_of(const Calibration& calibration, std::size_t owner);
+
+/// A term by its name; nullptr if there is none.
+const TermParameters* find_term(const std::vector<TermParameters>& terms, const std::string& name);
+
 /// The calibration with the candidate's term.
 void add_to(Calibration& calibration, const Candidate& candidate);
 

@@ -24,7 +24,7 @@ Calibration with_terms(Calibration calibration, const std::vector<Candidate>& ch
   return calibration;
 }
 
-std::vector<std::string> terms_of(const Calibration& calibration) {
+std::vector<std::string> names_of_terms(const Calibration& calibration) {
   std::vector<std::string> names;
   for (const auto& term : calibration.plate_terms) names.push_back(term.term);
   for (const auto& laser : calibration.lasers) {
@@ -64,11 +64,8 @@ Candidate valued(Candidate candidate, const Look& look, const TermRegistry& term
 /// The same with the values that a calibration has for them.
 std::vector<Candidate> with_values_of(const Calibration& calibration, std::vector<Candidate> chosen) {
   for (Candidate& candidate : chosen) {
-    const auto& terms = candidate.owner < calibration.lasers.size()
-                            ? calibration.lasers[candidate.owner].terms
-                            : calibration.plate_terms;
-    const auto found = std::ranges::find(terms, candidate.term.term, &TermParameters::term);
-    if (found != terms.end()) candidate.term = *found;
+    const TermParameters* found = find_term(terms_of(calibration, candidate.owner), candidate.term.term);
+    if (found) candidate.term = *found;
   }
   return chosen;
 }
@@ -143,7 +140,7 @@ class Diagnoser {
  private:
   Refinement refined(const Calibration& calibration, const Sample& sample) const {
     RefinementSettings settings = settings_.refinement;
-    settings.terms = terms_of(calibration);
+    settings.terms = names_of_terms(calibration);
     settings.forms = true;
     return refine_by_surfels(SensorModel(calibration, terms_), sample, settings);
   }

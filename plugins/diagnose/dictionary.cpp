@@ -33,16 +33,6 @@ std::size_t first_slot(const Calibration& calibration, std::size_t owner, std::s
   return slot;
 }
 
-const std::vector<TermParameters>& terms_of(const Calibration& calibration, std::size_t owner) {
-  return owner == calibration.lasers.size() ? calibration.plate_terms : calibration.lasers[owner].terms;
-}
-
-std::size_t place_in(const Calibration& calibration, const Candidate& candidate) {
-  const auto& terms = terms_of(calibration, candidate.owner);
-  const auto found = std::ranges::find(terms, candidate.term.term, &TermParameters::term);
-  return static_cast<std::size_t>(found - terms.begin());
-}
-
 }  // namespace
 
 Dictionary::Dictionary(const SensorModel& model, std::vector<std::size_t> base,
@@ -93,7 +83,8 @@ void Dictionary::add_page(const SensorModel& model, const std::vector<std::size_
   for (const std::size_t c : some) {
     const Candidate& candidate = candidates_[c];
     if (candidate.in_model) {
-      place.push_back(place_in(before, candidate));
+      const auto& own = terms_of(before, candidate.owner);
+      place.push_back(static_cast<std::size_t>(find_term(own, candidate.term.term) - own.data()));
       continue;
     }
     place.push_back(terms_of(before, candidate.owner).size() + added[candidate.owner]++);

@@ -8,6 +8,7 @@
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/incidence.hpp"
+#include "pipeline/estimate/recording_blocks.hpp"
 #include "pipeline/estimate/steady.hpp"
 
 namespace crisp {
@@ -41,18 +42,6 @@ Surfels thinned(const Surfels& surfels, std::size_t most) {
   return some;
 }
 
-std::vector<std::uint32_t> blocks_in(const Measurements& beams, const Lasting& lasting) {
-  constexpr double kLong = 0.1;  // [s] after which what is left of the encoder's steps is forgotten
-  constexpr double kFewest = 100;
-  const double block = std::max(1e-9, std::min(kLong, (lasting.last - lasting.first) / kFewest));
-  std::vector<std::uint32_t> blocks;
-  blocks.reserve(beams.size());
-  for (const double time : beams.time) {
-    blocks.push_back(static_cast<std::uint32_t>((time - lasting.first) / block));
-  }
-  return blocks;
-}
-
 }  // namespace
 
 Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings& settings, std::size_t most)
@@ -63,7 +52,7 @@ Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings
   surfels_ = thinned(all, most);
   const auto [first, last] = std::ranges::minmax(sample_.beams.time);
   lasting_ = {.first = first, .last = last};
-  blocks_ = blocks_in(sample_.beams, lasting_);
+  blocks_ = recording_blocks(sample_.beams);
 }
 
 NormalEquations Evidence::equations(const Dictionary& dictionary) const {

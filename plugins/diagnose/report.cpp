@@ -10,17 +10,11 @@
 namespace crisp {
 namespace {
 
-const TermParameters* term_in(const Calibration& calibration, const Candidate& candidate) {
-  const auto& terms = candidate.owner < calibration.lasers.size() ? calibration.lasers[candidate.owner].terms
-                                                                  : calibration.plate_terms;
-  const auto found = std::ranges::find(terms, candidate.term.term, &TermParameters::term);
-  return found == terms.end() ? nullptr : &*found;
-}
-
 /// The candidate's parameters as they were estimated, or as far as they were.
 std::vector<Parameter> parameters_of(const Departure& departure, const Calibration& calibration) {
-  const TermParameters* found = term_in(calibration, departure.candidate);
-  return found ? found->parameters : departure.candidate.term.parameters;
+  const Candidate& candidate = departure.candidate;
+  const TermParameters* found = find_term(terms_of(calibration, candidate.owner), candidate.term.term);
+  return found ? found->parameters : candidate.term.parameters;
 }
 
 std::string scope_of(const Candidate& candidate, const Calibration& calibration) {
