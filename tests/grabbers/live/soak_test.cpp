@@ -9,32 +9,15 @@
 #include <map>
 
 #include "grabbers/emulate/emulator.hpp"
-#include "grabbers/simulate/recording.hpp"
-#include "grabbers/simulate/scenes.hpp"
-#include "grabbers/wire/scan_encoding.hpp"
 #include "plugins/clock/clock_aligner.hpp"
 #include "plugins/clock/online_aligner.hpp"
 #include "tests/grabbers/live/live_support.hpp"
+#include "tests/support/simulated_items.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr double kSeconds = 12;
-
-std::vector<HubItem> simulated_items() {
-  RecordingSettings settings;
-  settings.scanner.duration = kSeconds;
-  RecordingSimulator simulator(settings, office());
-  std::vector<HubItem> items;
-  while (const auto event = simulator.next()) {
-    if (const auto* telegram = std::get_if<LaserTelegram>(&*event)) {
-      items.emplace_back(std::make_shared<const Scan>(to_scan(*telegram)));
-    } else {
-      items.emplace_back(std::get<PlateReading>(*event));
-    }
-  }
-  return items;
-}
 
 /// By laser and ranges' hash: the hub times of a scan's first and last measurement.
 using ScanTimes = std::map<std::pair<std::uint16_t, std::size_t>, std::pair<double, double>>;
@@ -172,7 +155,7 @@ std::uint64_t countable_losses(const std::vector<Fate>& fates) {
 }
 
 TEST(Soak, CountsEachLossFindsClocksAnewAndKeepsTheCloudTrue) {
-  const auto items = simulated_items();
+  const auto items = test::simulated_items(kSeconds);
   Soak soak({.dropped = 0.01,
              .stalled = 0.01,
              .stall = 0.005,

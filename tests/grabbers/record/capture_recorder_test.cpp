@@ -12,10 +12,9 @@
 
 #include "grabbers/capture/capture_reader.hpp"
 #include "grabbers/record/record_stage.hpp"
-#include "grabbers/simulate/recording.hpp"
-#include "grabbers/simulate/scenes.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 #include "pipeline/data/error.hpp"
+#include "tests/support/simulated_items.hpp"
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -23,21 +22,6 @@ namespace crisp {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<HubItem> simulated_items() {
-  RecordingSettings settings;
-  settings.scanner.duration = 0.5;
-  RecordingSimulator simulator(settings, office());
-  std::vector<HubItem> items;
-  while (const auto event = simulator.next()) {
-    if (const auto* telegram = std::get_if<LaserTelegram>(&*event)) {
-      items.emplace_back(std::make_shared<const Scan>(to_scan(*telegram)));
-    } else {
-      items.emplace_back(std::get<PlateReading>(*event));
-    }
-  }
-  return items;
-}
 
 class CaptureRecorderTest : public testing::Test {
  protected:
@@ -76,7 +60,7 @@ class CaptureRecorderTest : public testing::Test {
 };
 
 TEST_F(CaptureRecorderTest, IsReadBackItemForItemWithItsTimes) {
-  const auto items = simulated_items();
+  const auto items = test::simulated_items(0.5);
   CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {});
   for (const HubItem& item : items) recorder.write(item);
   recorder.close();
@@ -84,7 +68,7 @@ TEST_F(CaptureRecorderTest, IsReadBackItemForItemWithItsTimes) {
 }
 
 TEST_F(CaptureRecorderTest, HoldsWhatWasWrittenASecondBeforeAPowerCut) {
-  const auto items = simulated_items();
+  const auto items = test::simulated_items(0.5);
   CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {.safe_after = 0});
   for (const HubItem& item : items) recorder.write(item);
   // Nothing is closed: what another process sees now is what a power cut would leave.
@@ -95,7 +79,7 @@ TEST_F(CaptureRecorderTest, HoldsWhatWasWrittenASecondBeforeAPowerCut) {
 }
 
 TEST_F(CaptureRecorderTest, PutsOnTheDiskWhatCameAlsoWhenNothingMoreComes) {
-  const auto items = simulated_items();
+  const auto items = test::simulated_items(0.5);
   CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {.safe_after = 0.05});
   for (const HubItem& item : items) recorder.write(item);
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
@@ -125,7 +109,7 @@ class FullDisk {
 };
 
 TEST_F(CaptureRecorderTest, LeavesWholeRecordsOnAFullDisk) {
-  const auto items = simulated_items();
+  const auto items = test::simulated_items(0.5);
   {
     const FullDisk full(50'000);
     CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {});
@@ -143,7 +127,7 @@ TEST_F(CaptureRecorderTest, LeavesWholeRecordsOnAFullDisk) {
 }
 
 TEST_F(CaptureRecorderTest, EndsOnAFullDiskWithoutThePipeline) {
-  const auto items = simulated_items();
+  const auto items = test::simulated_items(0.5);
   auto stage = test::StageDriver::of<RecordStage>(
       {{"file", OptionValue(OptionScalar((folder_ / "hub.pcap").string()))}});
   std::uint64_t fed = 0;
@@ -170,7 +154,7 @@ TEST_F(CaptureRecorderTest, EndsOnAFullDiskWithoutThePipeline) {
 }
 
 TEST_F(CaptureRecorderTest, BeginsANewFileAfterATimeOrASize) {
-  const auto items = simulated_items();
+  const auto items = test::simulated_items(0.5);
   for (const RecorderSettings& settings :
        {RecorderSettings{.most_seconds = 0.2}, RecorderSettings{.most_bytes = 60'000}}) {
     CaptureRecorder recorder(folder_ / "part.pcap", default_rig(), settings);
