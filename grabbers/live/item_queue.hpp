@@ -31,17 +31,17 @@ class ItemQueue {
     changed_.notify_one();
   }
 
-  /// The oldest item; nothing if none came in time, or the queue is closed.
+  /// The oldest item; nothing if none came in time, or the queue is closed and empty.
   std::optional<HubItem> pop(std::chrono::milliseconds patience) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [this] { return closed_ || !items_.empty(); });
-    if (closed_ || items_.empty()) return {};
+    if (items_.empty()) return {};
     HubItem item = std::move(items_.front());
     items_.pop_front();
     return item;
   }
 
-  /// Nothing goes in or comes out any more.
+  /// Nothing goes in any more.
   void close() {
     {
       const std::lock_guard lock(mutex_);

@@ -49,8 +49,10 @@ std::optional<HubItem> LiveSource::next() {
 }
 
 void LiveSource::interrupt() {
-  queue_.close();
-  boost::asio::post(context_, [this] { stop_devices(); });
+  boost::asio::post(context_, [this] {
+    stop_devices();
+    queue_.close();
+  });
 }
 
 void LiveSource::stop_devices() {

@@ -39,7 +39,7 @@ class LiveSource final : public ItemSource {
   ~LiveSource() override;
 
   std::optional<HubItem> next() override;
-  /// The next item; nothing if none came in time, or after interrupt().
+  /// The next item; nothing if none came in time. After interrupt(), what came before.
   std::optional<HubItem> next_within(std::chrono::milliseconds patience) { return queue_.pop(patience); }
 
   /// Items that wait to be taken.

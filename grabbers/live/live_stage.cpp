@@ -163,7 +163,9 @@ void LiveStage<devices>::process(const Inputs&, Outputs& out, Context& context) 
     give(*item, out);
     if (context.is_watched()) status.passed(1e-9 * static_cast<double>(now_ns() - receipt_ns(*item)));
   }
-  report(source.close(), context);
+  const CaptureStatistics statistics = source.close();
+  while (const auto item = source.next_within({})) give(*item, out);  // what came is not lost
+  report(statistics, context);
 }
 
 template <LiveDevices devices>

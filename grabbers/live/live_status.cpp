@@ -30,6 +30,19 @@ std::uint64_t lost_items(const CaptureStatistics& statistics) {
   return lost;
 }
 
+void LiveStatus::note(const std::string& device, const Counts& counts, double now,
+                      std::vector<std::string>& events) {
+  constexpr double kNotAgainFor = 10;  // [s]
+  for (const auto& [what, n] : counts.all()) {
+    const std::string name = device.empty() ? what : device + ": " + what;
+    const auto [known, fresh] = events_.try_emplace(name);
+    Event& event = known->second;
+    if (n == event.told || (!fresh && now < event.again)) continue;
+    events.push_back(fmt::format("{} ({})", name, n - event.told));
+    event = {.told = n, .again = now + kNotAgainFor};
+  }
+}
+
 StageStatus LiveStatus::tell(const CaptureStatistics& statistics, double now, std::size_t waiting,
                              const std::string& running) {
   StageStatus status{.line = running};
@@ -41,7 +54,10 @@ StageStatus LiveStatus::tell(const CaptureStatistics& statistics, double now, st
     status.gauges.push_back({"items_total", static_cast<double>(device.items), device.name});
     status.gauges.push_back({"items_lost_total", static_cast<double>(never_came(device)), device.name});
     status.gauges.push_back({"rate_hertz", rate, device.name});
+    note(device.name, device.losses, now, status.events);
+    note(device.name, device.notes, now, status.events);
   }
+  note("", statistics.losses, now, status.events);
   asked_ = now;
   const double latency = quantile_of(latencies_, 0.99);
   latencies_.clear();

@@ -19,6 +19,7 @@ class LiveStatus {
   /// @param latency  [s] since it was received
   void passed(double latency) { latencies_.push_back(latency); }
 
+  /// Its events are the losses and notes that became more, each kind of them at most every ten seconds.
   /// @param now      [s] of any steady clock
   /// @param waiting  items that the pipeline has not taken yet
   /// @param running  what a person is told of the time: "12 s of 60 s"
@@ -26,7 +27,15 @@ class LiveStatus {
                    const std::string& running);
 
  private:
+  /// Adds what of these became more.
+  void note(const std::string& device, const Counts& counts, double now, std::vector<std::string>& events);
+
+  struct Event {
+    std::uint64_t told = 0;  ///< how often it had happened
+    double again = 0;        ///< [s] when it may be told again
+  };
   std::vector<double> latencies_;
+  std::map<std::string, Event> events_;
   std::map<std::string, std::uint64_t> items_;  ///< of each device when it was asked last
   std::optional<double> asked_;
 };

@@ -96,7 +96,7 @@ void SickClient::take(std::size_t bytes) {
 }
 
 void SickClient::take(const ColaFrame& frame) {
-  const bool came = take_scan(frame);
+  const bool came = !stopping_ && take_scan(frame);
   const auto telegram = parse_cola(frame.payload, frame.language);
   if (!telegram || over_) return;
   if (stopping_) {
@@ -112,7 +112,7 @@ bool SickClient::take_scan(const ColaFrame& frame) {
   auto scan = log_.take(frame, settings_.encoder_widths);
   if (!scan) return false;
   if (!compared_ && dialogue_ && dialogue_->step() == SickStep::Scans) note_difference(*scan);
-  if (!stopping_) give_(std::move(scan));
+  give_(std::move(scan));
   return true;
 }
 
@@ -149,7 +149,9 @@ void SickClient::fail(const std::string& reason) {
 }
 
 void SickClient::close() {
-  framer_.gap([this](const ColaFrame& frame) { take_scan(frame); });
+  framer_.gap([this](const ColaFrame& frame) {
+    if (!stopping_) take_scan(frame);
+  });
   note_framing(framer_.counts(), log_);
   framer_ = {};
   dialogue_.reset();

@@ -36,6 +36,11 @@ void ProgressPrinter::show_status(const std::string& line) {
   print(terminal_ && width_ > 1 && line.size() >= width_ ? line.substr(0, width_ - 1) : line);
 }
 
+void ProgressPrinter::log(const std::string& line) {
+  clear();
+  out_ << line << std::endl;
+}
+
 void ProgressPrinter::show(const std::string& tag, const Progress& progress) {
   const double now = clock_();
   const bool begins = tag != tag_;

@@ -70,7 +70,9 @@ std::vector<NodeResult> run_with_progress(Pipeline& pipeline, const RunSettings&
   if (!request.quiet || metrics) {
     hooks.status = [&](const std::string& tag, const StageStatus& status) {
       board.tell(tag, status);
-      if (!request.quiet) printer.show_status(board.line());
+      if (request.quiet) return;
+      for (const auto& event : status.events) printer.log(fmt::format("{} {}: {}", utc_now(), tag, event));
+      printer.show_status(board.line());
     };
   }
   if (!request.quiet) {

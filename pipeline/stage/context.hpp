@@ -37,6 +37,7 @@ struct Gauge {
 struct StageStatus {
   std::string line;  ///< for people: "laser1 50.0 Hz, laser2 50.1 Hz, plate 500 Hz"
   std::vector<Gauge> gauges = {};
+  std::vector<std::string> events = {};  ///< what happened since it was told last: each a line of the log
 };
 using StatusSink = std::function<void(const StageStatus&)>;
 

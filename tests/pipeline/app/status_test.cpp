@@ -87,5 +87,19 @@ TEST(ProgressPrinter, RefreshesAStatusOnATerminalAndLogsItElsewhere) {
   }
 }
 
+TEST(ProgressPrinter, KeepsEventsOnATerminalWhereTheStatusIsRefreshed) {
+  std::ostringstream out;
+  double now = 0;
+  {
+    ProgressPrinter printer(
+        out, true, [&] { return now; }, 80);
+    printer.show_status("all is well");
+    printer.log("laser1 fell silent");
+    now = 1;
+    printer.show_status("all is well");
+  }
+  EXPECT_EQ(out.str(), "\r\x1b[Kall is well\r\x1b[Klaser1 fell silent\n\r\x1b[Kall is well\r\x1b[K");
+}
+
 }  // namespace
 }  // namespace crisp
