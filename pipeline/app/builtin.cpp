@@ -14,6 +14,7 @@
 #include "plugins/diagnose/register.hpp"
 #include "plugins/filter/register.hpp"
 #include "plugins/study/register.hpp"
+#include "plugins/watch/register.hpp"
 #include "plugins/write/register.hpp"
 
 namespace crisp {
@@ -37,6 +38,7 @@ Builtin::Builtin() {
   register_diagnose(registrar_);
   register_filter(registrar_);
   register_study(registrar_);
+  register_watch(registrar_);
   register_write(registrar_);
 }
 

@@ -140,6 +140,11 @@ void OnlineStage::describe(StageDescription<OnlineStage>& d) {
            "already")
       .unit("s")
       .range(0, 1);
+  d.option("lag_margin", &OnlineStage::online_, &OnlineSettings::lag_margin,
+           "by which lags may become greater than the calibration from above says, where calibrate.watch "
+           "below finds them anew")
+      .unit("s")
+      .range(0, 0.1);
   d.option("patience", &OnlineStage::online_, &OnlineSettings::patience,
            "for the plate's readings, after which a scan is handed on without them")
       .unit("s")

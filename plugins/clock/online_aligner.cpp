@@ -23,7 +23,7 @@ OnlineSettings with_lags(OnlineSettings settings, const Calibration& calibration
   if (calibration.lasers.empty()) return settings;
   const auto lag = [](const LaserCalibration& laser) { return laser.eta.value; };
   settings.least_lag = lag(*std::ranges::min_element(calibration.lasers, {}, lag));
-  settings.greatest_lag = lag(*std::ranges::max_element(calibration.lasers, {}, lag));
+  settings.greatest_lag = lag(*std::ranges::max_element(calibration.lasers, {}, lag)) + settings.lag_margin;
   return settings;
 }
 

@@ -16,13 +16,14 @@ struct OnlineSettings {
   double patience = 0.2;  ///< [s] for the plate's readings, after which a scan goes without them
   double least_lag = 0;   ///< [s] of any laser behind the plate: the least η, and
   double greatest_lag =
-      0;  ///< [s] the greatest, so that the readings that a scan is placed by are waited for
+      0;                  ///< [s] the greatest, so that the readings that a scan is placed by are waited for
+  double lag_margin = 0;  ///< [s] by which lags may turn out to be greater than a calibration says
 };
 
 /// Stamps on either side that smooth the mirror's motion, unless told otherwise: of those so far.
 inline constexpr unsigned kOnlineMirror = 5;
 
-/// The settings with the lags of a calibration's lasers.
+/// The settings with the lags of a calibration's lasers, and the margin.
 OnlineSettings with_lags(OnlineSettings settings, const Calibration& calibration);
 
 /// From scans and readings in the order of receipt to measurements, each scan as soon as the plate's readings

@@ -7,6 +7,7 @@
 //
 // SECONDS of the emulated scanner's time (60), SPEED times real time (1), FAULTS: share of the scans that
 // each kind of fault befalls (0).
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -198,9 +199,16 @@ class Watch {
     return latencies_[static_cast<std::size_t>(share * static_cast<double>(latencies_.size() - 1))];
   }
   double elapsed() const { return last_ - begun; }
-  double most_memory(std::size_t half) const {
-    const auto middle = memory.begin() + static_cast<std::ptrdiff_t>(memory.size() / 2);
-    return half == 0 ? *std::max_element(memory.begin(), middle) : *std::max_element(middle, memory.end());
+  /// The most in each minute.
+  std::string memory_by_minute() const {
+    constexpr std::size_t kMinute = 60;
+    std::string text;
+    for (std::size_t begin = 0; begin < memory.size(); begin += kMinute) {
+      const auto first = memory.begin() + static_cast<std::ptrdiff_t>(begin);
+      const auto end = memory.begin() + static_cast<std::ptrdiff_t>(std::min(begin + kMinute, memory.size()));
+      text += fmt::format("{}{:.1f}", begin == 0 ? "" : ", ", *std::max_element(first, end));
+    }
+    return text + " MiB, the most in each minute";
   }
 
   std::uint64_t scans = 0, readings = 0, points = 0;
@@ -233,6 +241,9 @@ pipeline:
   - stage: write.capture
     with: {file: "${output}/hub.pcap"}
   - stage: clock.online
+    with: {lag_margin: 2ms}
+  - stage: calibrate.watch
+    with: {recalibrate: at_start}
   - stage: assemble.deskew
   - stage: assemble.revolutions
 )";
@@ -243,6 +254,7 @@ pipeline:
   - stage: grabber.capture
     with: {file: "${output}/hub.pcap"}
   - stage: clock.online
+    with: {lag_margin: 2ms}
   - stage: assemble.deskew
 )";
 
@@ -319,8 +331,7 @@ int attempt(const Trial& trial, const fs::path& folder) {
             << "latency from a telegram's arrival to its points: median " << 1e3 * watch.quantile(0.5)
             << " ms, 99 % " << 1e3 * watch.quantile(0.99) << " ms, most " << 1e3 * watch.quantile(1)
             << " ms\n"
-            << "resident memory: at most " << watch.most_memory(0) << " MiB in the first half, "
-            << watch.most_memory(1) << " MiB in the second\n"
+            << "resident memory: " << watch.memory_by_minute() << "\n"
             << "stopped within " << 1e3 * stopping << " ms\n"
             << "measurements from the recording: " << offline.fingerprint.scans << " scans, "
             << (same ? "byte for byte the same" : "NOT THE SAME") << "\n"

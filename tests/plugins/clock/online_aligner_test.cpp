@@ -102,6 +102,14 @@ TEST(OnlineAligner, WaitsForTheReadingsThatALagNeeds) {
   }
 }
 
+TEST(OnlineAligner, LeavesAMarginToLagsThatMayBecomeGreater) {
+  Calibration calibration;
+  for (const double eta : {1e-3, -2e-3, 4e-3}) calibration.lasers.push_back({.eta = {.value = eta}});
+  const OnlineSettings settings = with_lags({.lag_margin = 2e-3}, calibration);
+  EXPECT_EQ(settings.least_lag, -2e-3);
+  EXPECT_EQ(settings.greatest_lag, 4e-3 + 2e-3);
+}
+
 TEST(OnlineAligner, WaitsNoLongerThanItsPatienceForAPlateThatFellSilent) {
   AlignmentReport report;
   const auto found = waits(

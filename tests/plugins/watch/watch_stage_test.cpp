@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/watch/watch_stage.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "pipeline/stage/registry.hpp"
+#include "tests/plugins/watch/support.hpp"
+#include "tests/support/stage_driver.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace crisp {
+namespace {
+
+using Options = std::map<std::string, OptionValue>;
+
+/// The stage with an office of four seconds and a calibration from above.
+class WatchStageTest : public testing::Test {
+ protected:
+  WatchStageTest() { registrar_.attach(terms_); }
+
+  test::StageDriver run(const Calibration& calibration, Options options) {
+    options.emplace("seconds", OptionScalar(3.0));
+    auto stage = test::StageDriver::of<WatchStage>(options);
+    stage.run().registrar = &registrar_;
+    const auto above = std::make_shared<const Calibration>(calibration);
+    for (const auto& batch : test::batches_of(simulated_)) stage.feed(batch.beams, batch.plate, above);
+    stage.finish();
+    return stage;
+  }
+
+  static OptionValue text(const std::string& value) { return OptionScalar(value); }
+
+  TermRegistry terms_;
+  Registrar registrar_;
+  const SimulatedMeasurements simulated_ = test::recorded(4);
+};
+
+TEST_F(WatchStageTest, PassesAGoodCalibrationOnAndIsContent) {
+  const auto stage = run(simulated_.truth, {});
+  EXPECT_EQ(stage.given<Calibration>().size(), 1U);
+  EXPECT_EQ(stage.report().section["checks"], 1);
+  EXPECT_EQ(stage.report().section["stale"], 0);
+  EXPECT_THAT(stage.report().doubts, testing::IsEmpty());
+}
+
+TEST_F(WatchStageTest, SaysThatACalibrationHasGoneStale) {
+  const auto stage = run(test::pushed(simulated_.truth), {});
+  EXPECT_EQ(stage.given<Calibration>().size(), 1U) << "it is not to be replaced";
+  EXPECT_THAT(stage.report().warnings,
+              testing::ElementsAre(testing::StartsWith("the calibration is stale: laser2.alpha by -0.")));
+  EXPECT_THAT(stage.report().doubts, testing::SizeIs(1));
+}
+
+TEST_F(WatchStageTest, ReplacesAStaleOneWhereItMay) {
+  const auto stage =
+      run(test::pushed(simulated_.truth), {{"recalibrate", text("when_stale")}, {"renew", text("all")}});
+  const auto given = stage.given<Calibration>();
+  ASSERT_EQ(given.size(), 2U);
+  EXPECT_NEAR(given[1]->lasers[1].alpha.value, simulated_.truth.lasers[1].alpha.value,
+              5 * given[1]->lasers[1].alpha.std_error);
+  EXPECT_THAT(stage.report().doubts, testing::IsEmpty());
+}
+
+TEST_F(WatchStageTest, FindsTheLagsOfAStartAndNothingElse) {
+  Calibration before = simulated_.truth;
+  before.lasers[1].eta.value = 0;
+  const auto stage = run(before, {{"recalibrate", text("at_start")}});
+  const auto given = stage.given<Calibration>();
+  ASSERT_EQ(given.size(), 2U);
+  EXPECT_NEAR(given[1]->lasers[1].eta.value, 2e-3, 0.1e-3);
+  EXPECT_EQ(given[1]->lasers[1].tau.value, before.lasers[1].tau.value);
+  EXPECT_THAT(stage.report().doubts, testing::IsEmpty()) << "it is good again";
+}
+
+TEST_F(WatchStageTest, SaysThatTheGeometryIsStaleWhereLagsAloneAreRenewed) {
+  const auto stage = run(test::pushed(simulated_.truth, 1.5 * kDegree), {{"recalibrate", text("at_start")}});
+  EXPECT_EQ(stage.given<Calibration>().size(), 2U);
+  EXPECT_THAT(stage.report().doubts, testing::SizeIs(1));
+}
+
+TEST_F(WatchStageTest, RecalibratesWhenAPersonAsksForIt) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "recalibrate") << "please";
+  const auto stage = run(simulated_.truth, {{"request", text((folder / "recalibrate").string())}});
+  EXPECT_FALSE(std::filesystem::exists(folder / "recalibrate"));
+  EXPECT_EQ(stage.given<Calibration>().size(), 2U);
+}
+
+}  // namespace
+}  // namespace crisp
