@@ -34,7 +34,7 @@ TEST_P(CleanRecordings, AreGivenNoCause) {
 }
 
 INSTANTIATE_TEST_SUITE_P(HiddenEffects, CleanRecordings, testing::Values("office", "hall", "street"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& scene) { return std::string(scene.param); });
 
 TEST(HiddenEffects, AnEccentricEncoderIsNamed) {
   const auto recording = test::hidden(2, 10, office(), {{"encoder.eccentricity", {0.002, -0.0015}}});
