@@ -19,6 +19,9 @@ Devices::Devices(const Rig& rig) {
 }
 
 void Devices::add(DeviceKind kind, const std::string& name, const Address& address, std::uint16_t index) {
+  if (address.ip.empty()) {
+    throw Error(name + " has no address in the rig", "give the address that its packets come from");
+  }
   const auto ip = parse_ip(address.ip);
   if (!ip) {
     throw Error(fmt::format("the address \"{}\" of {} in the rig is no IP address", address.ip, name),

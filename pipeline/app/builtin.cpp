@@ -7,6 +7,7 @@
 #include "grabbers/pcd/register.hpp"
 #include "grabbers/record/record_stage.hpp"
 #include "grabbers/simulate/simulate_stage.hpp"
+#include "grabbers/table/register.hpp"
 #include "pipeline/model/catalogue.hpp"
 #include "plugins/assemble/register.hpp"
 #include "plugins/calibrate/register.hpp"
@@ -31,6 +32,7 @@ Builtin::Builtin() {
   register_emulate(registrar_);
   register_record(registrar_);
   register_pcd(registrar_);
+  register_table(registrar_);
   register_simulate(registrar_);
   register_clock(registrar_);
   register_assemble(registrar_);

@@ -94,7 +94,7 @@ class RigReader {
 
   static Address read_address(YamlMap& map, int default_port) {
     Address address;
-    const YamlNode* ip = map.require("address");
+    const YamlNode* ip = map.find("address");  // what is read from a table has none
     address.ip = map.text("address", "");
     if (ip && ip->kind == YamlNode::Kind::scalar && !is_ip(address.ip)) {
       map.fail(ip->place, "'" + address.ip + "' is not an IP address", "write it as 192.168.0.1");
@@ -122,7 +122,8 @@ class RigReader {
       for (std::size_t j = 0; j < i; ++j) {
         const auto& [name, address] = devices[i];
         const auto& [other, used] = devices[j];
-        const bool overlap = address.port == used.port || address.port == 0 || used.port == 0;
+        const bool overlap =
+            !address.ip.empty() && (address.port == used.port || address.port == 0 || used.port == 0);
         if (name == other) {
           errors_.emplace_back("rig: two devices are named '" + name + "'", "", places_[i]);
         } else if (address.ip == used.ip && overlap) {

@@ -114,6 +114,9 @@ TEST_F(CaptureStageTest, GivesAPartOfTheCapture) {
 TEST_F(CaptureStageTest, SaysWhatItFoundInsteadOfTheRigsDevices) {
   for (auto& laser : rig_.lasers) laser.address.ip.insert(0, "1");  // 1192.168…
   EXPECT_THAT(complaint(file()), HasSubstr("no IP address"));
+  rig_.lasers[1].address.ip.clear();
+  rig_.lasers[0].address.ip = "10.0.0.1";
+  EXPECT_THAT(complaint(file()), HasSubstr("laser2 has no address in the rig"));
   for (std::size_t i = 0; i < 3; ++i) rig_.lasers[i].address.ip = "10.0.0." + std::to_string(i + 1);
   rig_.plate.address.ip = "10.0.0.10";
   EXPECT_THAT(complaint(file()),

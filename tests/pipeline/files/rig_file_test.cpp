@@ -77,7 +77,6 @@ plate: {counts_per_revolution: 0}
                   HasSubstr("rig.yaml:7:33: error: laser 'laser 1', nominal: 'tau': 200 m cannot be meant"),
                   HasSubstr("rig.yaml:6:5: error: laser 'laser 1': there is no key 'muont'; did you mean "
                             "'mount'?"),
-                  HasSubstr("plate: 'address' is missing"),
                   HasSubstr("rig.yaml:8:32: error: plate: 'counts_per_revolution' is not at least 1")));
 }
 
@@ -88,6 +87,16 @@ TEST(RigFile, RefusesDevicesThatCouldNotBeToldApart) {
               ElementsAre(HasSubstr("rig.yaml:4:3: error: rig: 'a' and 'b' have the same address 10.0.0.1")));
   EXPECT_THAT(errors_of_rig("crisp: 1\nlasers:\n  plate: " + laser + "\nplate: {address: 10.0.0.2}\n"),
               ElementsAre(HasSubstr("two devices are named 'plate'")));
+}
+
+TEST(RigFile, NeedsNoAddressesForWhatIsReadFromATable) {
+  const Rig rig =
+      parse_rig(parse_yaml("crisp: 1\nlasers: {a: {nominal: {lambda: 0, tau: 0}}, b: {nominal: {lambda: 0, "
+                           "tau: 0}}}\nplate: {name: tilt}\n",
+                           "rig.yaml"));
+  EXPECT_EQ(rig.lasers.size(), 2u);
+  EXPECT_EQ(rig.lasers[0].address.ip, "");
+  EXPECT_EQ(rig.plate.address.ip, "");
 }
 
 TEST(RigFile, RefusesARigWithoutLasersAndOtherVersions) {

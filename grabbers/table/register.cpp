@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/table/register.hpp"
+
+#include "grabbers/table/table_stage.hpp"
+
+namespace crisp {
+
+void register_table(Registrar& registrar) { registrar.stage<TableStage>(); }
+
+}  // namespace crisp

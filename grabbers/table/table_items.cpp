@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/table/table_items.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kMicro = 1e6, kNano = 1e9;
+constexpr std::int64_t kMicrosecond = 1000;      // [ns]
+constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
+
+/// The device's 32 bits of microseconds.
+std::uint32_t wrapped_us(std::int64_t us) { return static_cast<std::uint32_t>(us); }
+
+std::int64_t microseconds(double s) { return std::llround(s * kMicro); }
+
+}  // namespace
+
+TableItems::TableItems(const TableFormat& format, const TableScanSettings& settings, Rig rig)
+    : format_(format), settings_(settings), rig_(std::move(rig)) {}
+
+/// False for a row whose counter says that it came before.
+bool TableItems::count_turns(const TableRow& row) {
+  if (!row.counter) {
+    turn_ = static_cast<std::int64_t>(rows_);
+    return true;
+  }
+  const std::int64_t modulus = format_.counter_modulus;
+  if (last_counter_) {
+    const std::int64_t on = (((*row.counter - *last_counter_) % modulus) + modulus) % modulus;
+    if (on == 0) return false;
+    turn_ += on;
+  }
+  last_counter_ = row.counter;
+  return true;
+}
+
+std::int64_t TableItems::time_of(const TableRow& row) const {
+  if (row.time_ns) return *row.time_ns;
+  if (row.receipt_ns) return *row.receipt_ns;
+  return std::llround(static_cast<double>(turn_) * format_.period * kNano);
+}
+
+double TableItems::seconds(std::int64_t ns) const { return static_cast<double>(ns - epoch_ns_) / kNano; }
+
+double TableItems::unwrapped(double angle) const {
+  const double step = kTurn / rig_.plate.counts_per_revolution;
+  const double rounded = std::round(angle / step) * step;
+  if (!last_angle_) return rounded;
+  return rounded + kTurn * std::round((*last_angle_ - rounded) / kTurn);
+}
+
+void TableItems::note_angle(double time, double angle) {
+  if (!times_.empty() && time <= times_.back()) return;
+  times_.push_back(time);
+  angles_.push_back(angle);
+}
+
+std::shared_ptr<const Scan> TableItems::scan_of(const TableRow& row, std::int64_t time_ns) const {
+  auto scan = std::make_shared<Scan>();
+  scan->laser = row.laser;
+  scan->serial_number = row.laser;
+  scan->telegram_counter = scan->scan_counter = static_cast<std::uint16_t>(turn_);
+  const std::int64_t stamp_us = row.counter ? microseconds(static_cast<double>(turn_) * format_.period)
+                                            : (time_ns - epoch_ns_) / kMicrosecond;
+  scan->scan_time_us = wrapped_us(stamp_us);
+  scan->transmission_time_us = wrapped_us(stamp_us + microseconds(format_.period));
+  scan->receipt_ns = row.receipt_ns.value_or(time_ns);
+  scan->scan_frequency = format_.period > 0 ? 1 / format_.period : 0;
+  scan->start_angle = settings_.start_angle;
+  scan->angle_step = settings_.angle_step;
+  scan->echoes.push_back({.ranges = row.ranges, .remissions = row.remissions});
+  return scan;
+}
+
+void TableItems::add_beams(const TableRow& row, double time) {
+  const bool single = format_.mirror_column.has_value();
+  constexpr std::size_t kTogether = 4096;  // single beams in one item
+  if (!single || beams_.empty() || beams_.back()->size() >= kTogether) {
+    beams_.push_back(std::make_shared<Measurements>());
+    beams_.back()->epoch_ns = epoch_ns_;
+  }
+  Measurements& beams = *beams_.back();
+  const double first = (single ? row.mirror : settings_.start_angle) - rig_.lasers[row.laser].mount;
+  for (std::size_t k = 0; k < row.ranges.size(); ++k) {
+    if (!(row.ranges[k] > 0)) continue;
+    const auto n = static_cast<double>(k);
+    beams.range.push_back(row.ranges[k]);
+    beams.mirror_angle.push_back(static_cast<float>(first + n * settings_.angle_step));
+    beams.time.push_back(time + n * settings_.beam_interval);
+    beams.laser.push_back(row.laser);
+    beams.remission.push_back(row.remissions.empty() ? 0.0F : row.remissions[k]);
+    beams.beam.push_back(static_cast<std::uint16_t>(k));
+  }
+}
+
+std::optional<TableScan> TableItems::add(const TableRow& row) {
+  if (row.laser >= rig_.lasers.size()) {
+    ++losses_["rows of a laser that the rig does not have"];
+    return {};
+  }
+  if (!count_turns(row)) {
+    ++losses_["rows with the counter of the row before"];
+    return {};
+  }
+  const std::int64_t time_ns = time_of(row);
+  if (last_ns_ && time_ns < *last_ns_) {
+    ++losses_["rows that are earlier than the row before"];
+    return {};
+  }
+  if (!last_ns_) epoch_ns_ = time_ns - time_ns % kSecond;
+  last_ns_ = time_ns;
+  const double time = seconds(time_ns);
+  const double angle = unwrapped(row.angle);
+  last_angle_ = angle;
+  const bool stands = settings_.actuator == ActuatorMotion::stands;
+  const double lasts = static_cast<double>(row.ranges.size()) * settings_.beam_interval;
+  note_angle(time, angle);
+  if (stands) note_angle(time + lasts, angle);
+  add_beams(row, time);
+
+  TableScan item;
+  if (!last_reading_us_ || time_ns / kMicrosecond > *last_reading_us_) {
+    last_reading_us_ = time_ns / kMicrosecond;
+    const double counts = std::round(angle / kTurn * rig_.plate.counts_per_revolution);
+    item.reading = PlateReading{.sequence = readings_++,
+                                .device_us = wrapped_us((time_ns - epoch_ns_) / kMicrosecond),
+                                .count = static_cast<std::uint32_t>(static_cast<std::int64_t>(counts)),
+                                .receipt_ns = time_ns};
+  }
+  if (!format_.mirror_column) item.scan = scan_of(row, time_ns);
+  ++rows_;
+  return item;
+}
+
+PlateTrajectory TableItems::trajectory() const {
+  if (times_.size() < 2) {
+    throw Error("the table has fewer than two angles at different times",
+                "is its time in time_column, and in the right unit? Without one, give the period");
+  }
+  return {epoch_ns_, times_, angles_, settings_.max_gap};
+}
+
+std::vector<std::shared_ptr<const Measurements>> TableItems::take_measurements() {
+  std::vector<std::shared_ptr<const Measurements>> all;
+  for (auto& beams : std::exchange(beams_, {})) {
+    if (beams->size() > 0) all.push_back(std::move(beams));
+  }
+  return all;
+}
+
+}  // namespace crisp

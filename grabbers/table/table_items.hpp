@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grabbers/table/table_format.hpp"
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/data/rig.hpp"
+#include "pipeline/data/scan.hpp"
+
+namespace crisp {
+
+/// What the actuator does while a scan is taken.
+enum class ActuatorMotion {
+  moves,   ///< the row's angle is that at its time
+  stands,  ///< it has the row's angle from the first beam to the last, and steps in between
+};
+
+/// What a table's rows leave unsaid.
+struct TableScanSettings {
+  double start_angle = 0;    ///< [rad] reported angle of the first beam
+  double angle_step = 0;     ///< [rad]
+  double beam_interval = 0;  ///< [s] between two beams of a row
+  ActuatorMotion actuator = ActuatorMotion::moves;
+  double max_gap = 1;  ///< [s] longest silence of the angles to interpolate across
+};
+
+/// A scan with the reading of the actuator that stood in its row.
+struct TableScan {
+  std::shared_ptr<const Scan> scan;     ///< null for a row of one beam
+  std::optional<PlateReading> reading;  ///< nothing where the row before has one of the same instant
+};
+
+/// Makes of rows what other grabbers give: scans and readings as they were received, for a clock stage, and
+/// measurements with the actuator's angle on the table's own time, where laser and actuator share one clock.
+class TableItems {
+ public:
+  /// @param rig  its plate is the actuator: angles are rounded to its encoder's steps
+  TableItems(const TableFormat& format, const TableScanSettings& settings, Rig rig);
+
+  /// Takes the next row. Nothing comes of one that is out of order, repeated, or of a laser that the rig does
+  /// not have, which is counted.
+  std::optional<TableScan> add(const TableRow& row);
+
+  /// Of all rows so far. @throws Error if there are fewer than two angles at different times
+  PlateTrajectory trajectory() const;
+  /// Of the rows so far, a scan each (or all beams of a laser that follow one another); forgets them.
+  std::vector<std::shared_ptr<const Measurements>> take_measurements();
+
+  const std::map<std::string, std::uint64_t>& losses() const { return losses_; }
+
+ private:
+  bool count_turns(const TableRow& row);
+  std::int64_t time_of(const TableRow& row) const;
+  double unwrapped(double angle) const;
+  void note_angle(double time, double angle);
+  std::shared_ptr<const Scan> scan_of(const TableRow& row, std::int64_t time_ns) const;
+  void add_beams(const TableRow& row, double time);
+  double seconds(std::int64_t ns) const;
+
+  TableFormat format_;
+  TableScanSettings settings_;
+  Rig rig_;
+  std::uint64_t rows_ = 0;
+  std::uint16_t readings_ = 0;  ///< wraps, as a device's counter does
+  std::optional<std::int64_t> last_counter_;
+  std::int64_t turn_ = 0;  ///< the device's count, unwrapped
+  std::optional<std::int64_t> last_ns_;
+  std::int64_t epoch_ns_ = 0;
+  std::optional<double> last_angle_;
+  std::optional<std::int64_t> last_reading_us_;
+  std::vector<double> times_;
+  std::vector<double> angles_;
+  std::vector<std::shared_ptr<Measurements>> beams_;
+  std::map<std::string, std::uint64_t> losses_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/table/table_reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "grabbers/table/decimal.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::size_t kLongestLine = 1 << 20;
+constexpr std::size_t kMostRanges = 65536;  // as many beams as a measurement's index can tell
+constexpr double kLargestAngle = 1e6;       // [rad]
+constexpr double kLargestRange = 1e5;       // [m]
+
+bool separates(char c) { return c == ',' || c == ';' || c == '\t' || c == ' ' || c == '\r'; }
+
+/// What is wrong with a row, and at which character of it.
+struct Fault {
+  const char* what;
+  std::size_t at;
+};
+
+/// The fields of a line. Spaces beside a comma belong to no field.
+class Fields {
+ public:
+  explicit Fields(std::string_view text) {
+    std::size_t at = 0;
+    while (at < text.size()) {
+      while (at < text.size() && (text[at] == ' ' || text[at] == '\r')) ++at;
+      if (at == text.size()) break;
+      const std::size_t begin = at;
+      while (at < text.size() && !separates(text[at])) ++at;
+      fields_.push_back(text.substr(begin, at - begin));
+      starts_.push_back(begin);
+      while (at < text.size() && (text[at] == ' ' || text[at] == '\r')) ++at;
+      if (at < text.size() && separates(text[at])) ++at;
+    }
+    end_ = text.size();
+  }
+
+  std::size_t size() const { return fields_.size(); }
+  std::size_t start(std::size_t i) const { return i < starts_.size() ? starts_[i] : end_; }
+
+  /// Field of a column, which counts from 1. @throws Fault
+  std::string_view text(std::size_t column) const {
+    if (column < 1 || column > fields_.size()) throw Fault{"rows with too few columns", end_};
+    return fields_[column - 1];
+  }
+  double number(std::size_t column) const {
+    const auto field = text(column);
+    double value = 0;
+    const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
+    if (failure != std::errc() || end != field.data() + field.size()) {
+      throw Fault{"rows with something that is no number", start(column - 1)};
+    }
+    return value;
+  }
+  std::int64_t decimal(std::size_t column, int exponent) const {
+    const auto value = shifted_decimal(text(column), exponent);
+    if (!value) throw Fault{"rows with a time or count that cannot be", start(column - 1)};
+    return *value;
+  }
+
+ private:
+  std::vector<std::string_view> fields_;
+  std::vector<std::size_t> starts_;
+  std::size_t end_ = 0;
+};
+
+int exponent_of(TimeUnit unit) {
+  switch (unit) {
+    case TimeUnit::s:
+      return 9;
+    case TimeUnit::ms:
+      return 6;
+    case TimeUnit::us:
+      return 3;
+    case TimeUnit::ns:
+      break;
+  }
+  return 0;
+}
+
+double metres(LengthUnit unit) {
+  constexpr double kCentimetre = 0.01, kMillimetre = 0.001;
+  if (unit == LengthUnit::m) return 1;
+  return unit == LengthUnit::cm ? kCentimetre : kMillimetre;
+}
+
+double angle_of(const Fields& fields, int column, AngleUnit unit) {
+  constexpr double kHalfTurn = 180;  // [deg]
+  const double value = fields.number(static_cast<std::size_t>(column)) *
+                       (unit == AngleUnit::deg ? std::numbers::pi / kHalfTurn : 1.0);
+  if (!(std::abs(value) <= kLargestAngle)) {
+    throw Fault{"rows with an angle that cannot be", fields.start(static_cast<std::size_t>(column) - 1)};
+  }
+  return value;
+}
+
+std::size_t count_of(const Fields& fields, const TableFormat& format) {
+  if (format.mirror_column) return 1;
+  const auto first = static_cast<std::size_t>(format.range_column);
+  if (first > fields.size()) throw Fault{"rows with too few columns", fields.start(fields.size())};
+  std::size_t left = fields.size() - first + 1;
+  if (format.remission_column && *format.remission_column > format.range_column) {
+    left = std::min(left, static_cast<std::size_t>(*format.remission_column - format.range_column));
+  }
+  if (format.count_column) {
+    const auto counted = fields.decimal(static_cast<std::size_t>(*format.count_column), 0);
+    if (counted < 0 || static_cast<std::size_t>(counted) > left) {
+      throw Fault{"rows with fewer ranges than they say", fields.start(fields.size())};
+    }
+    left = static_cast<std::size_t>(counted);
+  }
+  if (left > kMostRanges) throw Fault{"rows with more than 65536 ranges", fields.start(first - 1)};
+  return left;
+}
+
+void read_ranges(const Fields& fields, const TableFormat& format, TableRow& row) {
+  const std::size_t count = count_of(fields, format);
+  const double unit = metres(format.range_unit);
+  row.ranges.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double raw = fields.number(static_cast<std::size_t>(format.range_column) + k);
+    const bool code = !(raw > 0) || (format.invalid_from && raw >= *format.invalid_from);
+    row.ranges.push_back(code || raw * unit > kLargestRange ? 0.0F : static_cast<float>(raw * unit));
+    if (!format.remission_column) continue;
+    const double remission = fields.number(static_cast<std::size_t>(*format.remission_column) + k);
+    row.remissions.push_back(std::isfinite(remission) ? static_cast<float>(remission) : 0.0F);
+  }
+}
+
+}  // namespace
+
+std::optional<TableRow> TableReader::parse(std::string_view text) {
+  try {
+    if (text.size() > kLongestLine) throw Fault{"rows of more than 1 MiB", kLongestLine};
+    const Fields fields(text);
+    const auto column = [](int number) { return static_cast<std::size_t>(number); };
+    TableRow row;
+    row.line = line_;
+    const int exponent = exponent_of(format_.time_unit);
+    if (format_.time_column) row.time_ns = fields.decimal(column(*format_.time_column), exponent);
+    if (format_.receipt_column) row.receipt_ns = fields.decimal(column(*format_.receipt_column), exponent);
+    if (format_.counter_column) row.counter = fields.decimal(column(*format_.counter_column), 0);
+    if (format_.laser_column) {
+      const auto laser = fields.decimal(column(*format_.laser_column), 0);
+      if (laser < 0 || laser >= static_cast<std::int64_t>(kMostRanges)) {
+        throw Fault{"rows of a laser that cannot be", fields.start(column(*format_.laser_column) - 1)};
+      }
+      row.laser = static_cast<std::uint16_t>(laser);
+    }
+    row.angle = angle_of(fields, format_.angle_column, format_.angle_unit);
+    if (format_.mirror_column) row.mirror = angle_of(fields, *format_.mirror_column, format_.angle_unit);
+    read_ranges(fields, format_, row);
+    return row;
+  } catch (const Fault& fault) {
+    ++losses_[fault.what];
+    if (!first_fault_) {
+      constexpr std::size_t kFarthest = 1'000'000'000;
+      first_fault_.emplace(fault.what, "",
+                           Place{name_, line_, static_cast<int>(std::min(fault.at, kFarthest)) + 1});
+    }
+    return std::nullopt;
+  }
+}
+
+std::optional<TableRow> TableReader::next() {
+  std::string text;
+  while (std::getline(in_, text)) {
+    ++line_;
+    const auto begin = text.find_first_not_of(" \t\r");
+    if (begin == std::string::npos || text[begin] == '#') continue;
+    // names of columns: the first line, and it begins with a letter or a quote
+    if (line_ == 1 && (std::isalpha(static_cast<unsigned char>(text[begin])) || text[begin] == '"')) continue;
+    if (auto row = parse(text)) {
+      ++rows_;
+      return row;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace crisp

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <istream>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "grabbers/table/table_format.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+/// Reads a table of scans, or of single beams, row by row: numbers apart by commas, semicolons, tabs or
+/// spaces. Lines that are empty or begin with # are no rows, nor is a first line of names. A row that cannot
+/// be read is left out and counted; memory does not depend on the length of the table.
+class TableReader {
+ public:
+  /// @param name  of the table, for places
+  TableReader(std::istream& in, std::string name, const TableFormat& format)
+      : in_(in), name_(std::move(name)), format_(format) {}
+
+  /// The next row that can be read, or nothing at the end.
+  std::optional<TableRow> next();
+
+  /// How many rows were left out, by what is wrong with them.
+  const std::map<std::string, std::uint64_t>& losses() const { return losses_; }
+  /// What was wrong first, and where; nothing if all rows could be read.
+  const std::optional<Error>& first_fault() const { return first_fault_; }
+  std::uint64_t rows() const { return rows_; }  ///< that could be read so far
+
+ private:
+  std::optional<TableRow> parse(std::string_view text);
+
+  std::istream& in_;
+  std::string name_;
+  TableFormat format_;
+  int line_ = 0;
+  std::uint64_t rows_ = 0;
+  std::map<std::string, std::uint64_t> losses_;
+  std::optional<Error> first_fault_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/table/table_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr int kMostColumns = 1'000'000;
+
+void describe_columns(StageDescription<TableStage>& d, TableFormat TableStage::*format) {
+  const auto column = [&](const char* name, auto member, const char* help) {
+    d.option(name, format, member, help).range(1, kMostColumns);
+  };
+  column("time_column", &TableFormat::time_column, "when the row's first beam was fired; auto: not there");
+  column("receipt_column", &TableFormat::receipt_column, "when the row was received; auto: not there");
+  d.option("time_unit", format, &TableFormat::time_unit, "of both")
+      .choices({{"s", TimeUnit::s}, {"ms", TimeUnit::ms}, {"us", TimeUnit::us}, {"ns", TimeUnit::ns}});
+  column("counter_column", &TableFormat::counter_column,
+         "the device's count of its scans, which times them where there is a clock stage; auto: not there");
+  d.option("counter_modulus", format, &TableFormat::counter_modulus, "where that begins anew").at_least(2);
+  d.option("period", format, &TableFormat::period, "nominal time between two scans; 0: not known")
+      .unit("s")
+      .range(0, 1000);
+  d.option("angle_column", format, &TableFormat::angle_column, "the actuator's angle")
+      .range(1, kMostColumns)
+      .required();
+  d.option("angle_unit", format, &TableFormat::angle_unit, "of all angles in the table")
+      .choices({{"rad", AngleUnit::rad}, {"deg", AngleUnit::deg}});
+  d.option("range_column", format, &TableFormat::range_column, "the first range")
+      .range(1, kMostColumns)
+      .required();
+  column("count_column", &TableFormat::count_column, "how many ranges there are; auto: up to the row's end");
+  d.option("range_unit", format, &TableFormat::range_unit, "of ranges")
+      .choices({{"m", LengthUnit::m}, {"cm", LengthUnit::cm}, {"mm", LengthUnit::mm}});
+  d.option("invalid_from", format, &TableFormat::invalid_from,
+           "ranges from there on, in their unit, mean that there is no echo, as 0 and less always do");
+  column("remission_column", &TableFormat::remission_column, "the first remission; auto: there are none");
+  column("mirror_column", &TableFormat::mirror_column,
+         "the reported angle of the row's only beam, where a row is one beam; auto: a row is a scan");
+  column("laser_column", &TableFormat::laser_column,
+         "number of the laser in the rig, from 0; auto: it has one");
+}
+
+}  // namespace
+
+void TableStage::describe(StageDescription<TableStage>& d) {
+  d.name("grabber.table").summary("reads scans with the actuator's angles from text in columns (CSV)");
+  d.details(
+      "For any laser on an actuator whose recording is a table: a scan a row, or a beam a row, numbers apart "
+      "by "
+      "commas, semicolons, tabs or spaces. Lines that begin with # and a first line of names are passed "
+      "over. A "
+      "row that cannot be read is left out and counted; the first is named with its line and column.\n\n"
+      "Where laser and actuator share a clock, the measurements that it gives can be placed at once. "
+      "Otherwise a "
+      "clock stage below takes the scans and readings: by the device's count of its scans where there is "
+      "one, "
+      "else by its time.\n\n"
+      "The rig's plate is the actuator, whatever it turns; angles are rounded to its "
+      "`counts_per_revolution`. "
+      "docs/reality-gap.md says how a tilting unit is described.");
+  d.gives<Scan>().gives<PlateReading>().gives<PlateTrajectory>().gives<Measurements>();
+  d.option("file", &TableStage::file_, "the table").required();
+  describe_columns(d, &TableStage::format_);
+  const auto settings = &TableStage::settings_;
+  d.option("start_angle", settings, &TableScanSettings::start_angle, "reported angle of a scan's first beam")
+      .unit("rad")
+      .range(-100, 100);
+  d.option("angle_step", settings, &TableScanSettings::angle_step, "from beam to beam")
+      .unit("rad")
+      .range(-1, 1);
+  d.option("beam_interval", settings, &TableScanSettings::beam_interval, "time from beam to beam")
+      .unit("s")
+      .range(0, 10);
+  d.option("actuator", settings, &TableScanSettings::actuator,
+           "what it does while a row is measured: it moves, or it stands at the row's angle")
+      .choices({{"moves", ActuatorMotion::moves}, {"stands", ActuatorMotion::stands}});
+  d.option("max_gap", settings, &TableScanSettings::max_gap,
+           "longest silence of the angles to interpolate across")
+      .unit("s")
+      .range(1e-6, 1e6);
+  d.option("begin", &TableStage::begin_, "what is earlier than this after the first row is left out")
+      .unit("s")
+      .at_least(0);
+  d.option("duration", &TableStage::duration_, "how much is given from there on; auto: all of it")
+      .unit("s")
+      .at_least(0);
+}
+
+void TableStage::check(const RunSettings& run) const {
+  const bool timed = format_.time_column || format_.receipt_column;
+  if (!timed && format_.period == 0) {
+    throw Error("nothing says when the rows were measured", "give time_column, receipt_column or the period");
+  }
+  if (format_.counter_column && format_.period == 0) {
+    throw Error("a count of scans is no time without the time between two of them", "give the period");
+  }
+  if (!format_.mirror_column && settings_.angle_step == 0) {
+    throw Error("all beams of a scan would have the same angle", "give angle_step, or mirror_column");
+  }
+  if (run.rig.lasers.size() > 1 && !format_.laser_column) {
+    throw Error(fmt::format("the rig has {} lasers, and nothing says whose a row is", run.rig.lasers.size()),
+                "give laser_column, or a rig of one laser");
+  }
+}
+
+void TableStage::read(TableReader& reader, TableItems& items, Outputs& out, Context& context) const {
+  std::optional<std::int64_t> first_ns;
+  std::uint64_t rows = 0;
+  while (auto row = reader.next()) {
+    const auto time_ns = row->time_ns ? row->time_ns : row->receipt_ns;
+    if (time_ns) {
+      if (!first_ns) first_ns = time_ns;
+      const double since = 1e-9 * static_cast<double>(*time_ns - *first_ns) - begin_;
+      if (since < 0 || (duration_ && since >= *duration_)) {
+        context.count("rows left out because of begin and duration");
+        continue;
+      }
+    }
+    if (const auto item = items.add(*row)) {
+      if (item->reading) out.give(*item->reading);
+      if (item->scan) out.give(item->scan);
+    }
+    constexpr std::uint64_t kTellEvery = 1000;
+    if (++rows % kTellEvery == 0) {
+      if (context.interrupted()) return;
+      context.progress(Progress{static_cast<double>(rows), 0, "rows", "reading the table"});
+    }
+  }
+}
+
+void TableStage::process(const Inputs&, Outputs& out, Context& context) {
+  std::ifstream in(file_);
+  if (!in) throw Error("cannot read " + file_.string(), "is it there, and may it be read?");
+  context.reads(file_);
+  TableReader reader(in, file_.string(), format_);
+  TableItems items(format_, settings_, context.rig());
+  read(reader, items, out, context);
+  if (context.interrupted()) return;
+  const auto measurements = items.take_measurements();
+  std::uint64_t beams = 0;
+  for (const auto& piece : measurements) beams += piece->size();
+  report(reader, items, beams, context);
+  out.give(items.trajectory());
+  for (const auto& piece : measurements) out.give(piece);
+}
+
+void TableStage::report(const TableReader& reader, const TableItems& items, std::uint64_t beams,
+                        Context& context) const {
+  for (const auto* losses : {&reader.losses(), &items.losses()}) {
+    for (const auto& [what, n] : *losses) context.count(what, n);
+  }
+  const auto& fault = reader.first_fault();
+  if (beams == 0) {
+    if (fault) throw Error("no row can be read: " + fault->message(), "correct the columns", fault->place());
+    throw Error(file_.string() + " holds no range", "is it the right table, and are its columns right?");
+  }
+  if (fault) context.warn(to_string(fault->place()) + ": here is the first of the " + fault->message());
+  context.report({{"rows", reader.rows()}, {"beams", beams}});
+  context.say(fmt::format("{} rows with {} ranges", reader.rows(), beams));
+}
+
+}  // namespace crisp

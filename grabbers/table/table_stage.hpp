@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "grabbers/table/table_items.hpp"
+#include "grabbers/table/table_reader.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// `grabber.table`: scans of any actuated laser, with the actuator's angles, from text in columns.
+class TableStage final : public Stage {
+ public:
+  static void describe(StageDescription<TableStage>& d);
+
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+
+ private:
+  void read(TableReader& reader, TableItems& items, Outputs& out, Context& context) const;
+  void report(const TableReader& reader, const TableItems& items, std::uint64_t beams,
+              Context& context) const;
+
+  std::filesystem::path file_;
+  TableFormat format_;
+  TableScanSettings settings_;
+  double begin_ = 0;
+  std::optional<double> duration_;
+};
+
+}  // namespace crisp

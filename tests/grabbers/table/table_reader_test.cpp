@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/table/table_reader.hpp"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "grabbers/table/decimal.hpp"
+#include "pipeline/data/degree.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::ElementsAre;
+using testing::FloatEq;
+using testing::IsEmpty;
+using testing::Pair;
+
+struct Read {
+  std::vector<TableRow> rows;
+  std::map<std::string, std::uint64_t> losses;
+  std::string fault;
+};
+
+Read read(const std::string& text, const TableFormat& format) {
+  std::istringstream in(text);
+  TableReader reader(in, "t.csv", format);
+  Read all;
+  while (auto row = reader.next()) all.rows.push_back(*row);
+  all.losses = reader.losses();
+  if (reader.first_fault()) all.fault = reader.first_fault()->what();
+  return all;
+}
+
+constexpr TableFormat kPlain{.time_column = 1, .angle_column = 2, .range_column = 3};
+
+TEST(TableReader, ReadsAScanARow) {
+  const auto all = read("0.5,1.5,2.25,0,-1,4\n", kPlain);
+  ASSERT_EQ(all.rows.size(), 1U);
+  EXPECT_EQ(all.rows[0].time_ns, 500'000'000);
+  EXPECT_EQ(all.rows[0].angle, 1.5);
+  EXPECT_THAT(all.rows[0].ranges, ElementsAre(2.25F, 0.0F, 0.0F, 4.0F));
+  EXPECT_THAT(all.losses, IsEmpty());
+}
+
+TEST(TableReader, ConvertsUnitsAndLeavesCodesOut) {
+  const TableFormat format{.receipt_column = 1,
+                           .time_unit = TimeUnit::ns,
+                           .counter_column = 2,
+                           .angle_column = 3,
+                           .angle_unit = AngleUnit::deg,
+                           .range_column = 5,
+                           .count_column = 4,
+                           .range_unit = LengthUnit::cm,
+                           .invalid_from = 8183};
+  const auto all = read("1102823344562033212,254,90,3,150,8191,8182,77\n", format);
+  ASSERT_EQ(all.rows.size(), 1U);
+  EXPECT_EQ(all.rows[0].receipt_ns, 1102823344562033212);
+  EXPECT_EQ(all.rows[0].counter, 254);
+  EXPECT_DOUBLE_EQ(all.rows[0].angle, 90 * kDegree);
+  EXPECT_THAT(all.rows[0].ranges, ElementsAre(FloatEq(1.5F), 0.0F, FloatEq(81.82F)));
+}
+
+TEST(TableReader, ReadsABeamARowWithItsLaserAndRemission) {
+  const TableFormat format{.time_column = 1,
+                           .angle_column = 2,
+                           .range_column = 5,
+                           .remission_column = 6,
+                           .mirror_column = 4,
+                           .laser_column = 3};
+  const auto all = read("1 0.25 7 1.5 12.5 33\n", format);
+  ASSERT_EQ(all.rows.size(), 1U);
+  EXPECT_EQ(all.rows[0].laser, 7);
+  EXPECT_EQ(all.rows[0].mirror, 1.5);
+  EXPECT_THAT(all.rows[0].ranges, ElementsAre(12.5F));
+  EXPECT_THAT(all.rows[0].remissions, ElementsAre(33.0F));
+}
+
+TEST(TableReader, PassesOverCommentsEmptyLinesAndNames) {
+  EXPECT_EQ(
+      read("time;angle;range\r\n# a remark\r\n\r\n0;0;1\r\n1\t0\t1\r\n2 , 0 , 1\r\n", kPlain).rows.size(),
+      3U);
+}
+
+TEST(TableReader, CountsRowsThatCannotBeReadAndNamesTheFirst) {
+  const auto all = read("0,0,1\n1,zero,1\n2,0\n3,0,x\n1e3,0,1\n4,1e300,1\n5,0,1\n", kPlain);
+  EXPECT_EQ(all.rows.size(), 2U);
+  EXPECT_THAT(all.losses, ElementsAre(Pair("rows with a time or count that cannot be", 1),
+                                      Pair("rows with an angle that cannot be", 1),
+                                      Pair("rows with something that is no number", 2),
+                                      Pair("rows with too few columns", 1)));
+  EXPECT_THAT(all.fault, testing::HasSubstr("t.csv:2:3"));
+}
+
+TEST(TableReader, RefusesRowsWithFewerRangesThanTheySay) {
+  const TableFormat format{.angle_column = 1, .range_column = 3, .count_column = 2};
+  EXPECT_THAT(read("0,3,1,1\n0,2,1,1\n0,-1,1\n", format).losses,
+              ElementsAre(Pair("rows with fewer ranges than they say", 2)));
+}
+
+TEST(ShiftedDecimal, IsExactWhereADoubleIsNot) {
+  EXPECT_EQ(shifted_decimal("1436216345.302587750", 9), 1436216345302587750);
+  EXPECT_EQ(shifted_decimal("-0.0000000015", 9), -2);
+  EXPECT_EQ(shifted_decimal(".5", 3), 500);
+  EXPECT_EQ(shifted_decimal("7", 0), 7);
+  for (const char* no : {"", ".", "1e3", "0x1", "1.2.3", "--1", "99999999999999999999", "nan"}) {
+    EXPECT_EQ(shifted_decimal(no, 9), std::nullopt) << no;
+  }
+}
+
+}  // namespace
+}  // namespace crisp

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "grabbers/table/register.hpp"
+#include "pipeline/stage/pipeline_file.hpp"
+#include "pipeline/stage/runner.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pair;
+
+class TableStageTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    register_table(registrar_);
+    run_.registrar = &registrar_;
+  }
+
+  NodeResult run(const std::string& table, const std::string& options) {
+    std::ofstream(folder_ / "t.csv") << table;
+    std::ofstream(folder_ / "pipeline.yaml")
+        << "crisp: 1\nrig: " << rig_
+        << "\npipeline:\n  - stage: grabber.table\n    with: {file: " << (folder_ / "t.csv").string() << ", "
+        << options << "}\n";
+    auto loaded = load_pipeline(folder_ / "pipeline.yaml", {}, run_);
+    return run_pipeline(loaded.pipeline, run_, {}).at(0);
+  }
+  std::string complaint(const std::string& table, const std::string& options) {
+    try {
+      run(table, options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing";
+  }
+
+  test::TemporaryFolder folder_;
+  Registrar registrar_;
+  RunSettings run_;
+  std::string rig_ = "{crisp: 1, lasers: {a: {nominal: {lambda: 0, tau: 0}}}, plate: {}}";
+};
+
+constexpr const char* kColumns = "time_column: 1, angle_column: 2, range_column: 3, angle_step: 1deg";
+
+TEST_F(TableStageTest, ReportsWhatItReadAndWhatItLeftOut) {
+  const auto result = run("0,0,1,2\n1,0,x\n2,0,1,0\n", kColumns);
+  EXPECT_EQ(result.report.section["rows"], 2);
+  EXPECT_EQ(result.report.section["beams"], 3);
+  EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows with something that is no number", 1)));
+  EXPECT_THAT(result.report.warnings,
+              ElementsAre(HasSubstr("t.csv:2:5: here is the first of the rows with")));
+}
+
+TEST_F(TableStageTest, ReadsAPartOfTheTable) {
+  const auto result =
+      run("0,0,1\n1,0,1\n2,0,1\n3,0,1\n", std::string(kColumns) + ", begin: 1s, duration: 2s");
+  EXPECT_EQ(result.report.section["beams"], 2);
+  EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows left out because of begin and duration", 2)));
+}
+
+TEST_F(TableStageTest, RefusesWhatHoldsNothingWithThePlaceOfTheFirstFault) {
+  EXPECT_THAT(complaint("# nothing\n", kColumns), HasSubstr("holds no range"));
+  EXPECT_THAT(complaint("\n0,0\n", kColumns), HasSubstr("t.csv:2:4"));
+  EXPECT_THAT(complaint("0,0,1\n", kColumns), HasSubstr("fewer than two angles"));
+}
+
+TEST_F(TableStageTest, RefusesOptionsThatLeaveATimeOrAnAngleUnknown) {
+  EXPECT_THAT(complaint("", "angle_column: 1, range_column: 2, angle_step: 1deg"),
+              HasSubstr("give time_column"));
+  EXPECT_THAT(complaint("", "time_column: 1, angle_column: 1, range_column: 2"),
+              HasSubstr("give angle_step"));
+  EXPECT_THAT(
+      complaint("", "time_column: 3, counter_column: 4, angle_column: 1, range_column: 2, angle_step: 1deg"),
+      HasSubstr("give the period"));
+  rig_ = CRISP_SOURCE_DIR "/configs/rig.yaml";
+  EXPECT_THAT(complaint("", kColumns), HasSubstr("give laser_column"));
+}
+
+}  // namespace
+}  // namespace crisp
