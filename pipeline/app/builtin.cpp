@@ -14,6 +14,7 @@
 #include "plugins/clock/register.hpp"
 #include "plugins/diagnose/register.hpp"
 #include "plugins/filter/register.hpp"
+#include "plugins/scans/register.hpp"
 #include "plugins/study/register.hpp"
 #include "plugins/watch/register.hpp"
 #include "plugins/write/register.hpp"
@@ -39,6 +40,7 @@ Builtin::Builtin() {
   register_calibrate(registrar_);
   register_diagnose(registrar_);
   register_filter(registrar_);
+  register_scans(registrar_);
   register_study(registrar_);
   register_watch(registrar_);
   register_write(registrar_);

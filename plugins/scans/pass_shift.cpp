@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Dense>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "plugins/scans/passes.hpp"
+#include "plugins/scans/resampling.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr int kAroundLeast = 4;  // [steps] that the cubic is laid through, to either side
+constexpr std::size_t kDrawsOfBlocks = 300;
+
+using Curve = std::vector<std::pair<double, double>>;  // [rad] difference in angle, [m²] variance
+
+std::vector<PassBlock::Bin> sum_of(const PassComparison& comparison, std::span<const std::size_t> blocks) {
+  std::vector<PassBlock::Bin> sums(2 * kReach + 1);
+  for (const auto b : blocks) {
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const auto& bin = comparison.blocks[b].bins[i];
+      sums[i].n += bin.n;
+      sums[i].by += bin.by;
+      sums[i].error += bin.error;
+      sums[i].squares += bin.squares;
+    }
+  }
+  return sums;
+}
+
+Curve variances(const PassComparison& comparison, std::span<const std::size_t> blocks) {
+  constexpr double kFewest = 200;  // beams
+  Curve curve;
+  for (const auto& bin : sum_of(comparison, blocks)) {
+    if (bin.n < kFewest) continue;
+    const double mean = bin.error / bin.n;
+    curve.emplace_back(bin.by / bin.n, bin.squares / bin.n - mean * mean);
+  }
+  return curve;
+}
+
+std::vector<std::size_t> every(const PassComparison& comparison, const auto& wanted) {
+  std::vector<std::size_t> some;
+  for (std::size_t b = 0; b < comparison.blocks.size(); ++b) {
+    if (wanted(comparison.blocks[b])) some.push_back(b);
+  }
+  return some;
+}
+
+double error_of_shift(const PassComparison& comparison, const std::vector<std::size_t>& blocks,
+                      std::uint64_t seed) {
+  return bootstrap(blocks.size(), 1, seed, kDrawsOfBlocks,
+                   [&](const std::vector<std::size_t>& picked) {
+                     std::vector<std::size_t> drawn;
+                     for (const auto i : picked) drawn.push_back(blocks[i]);
+                     return shift_between(comparison, drawn);
+                   })
+      .std_error;
+}
+
+/// Shifts in quarters of the angles, or of the beams.
+std::vector<std::pair<double, double>> in_quarters(const PassComparison& comparison, bool of_angles,
+                                                   std::uint64_t seed) {
+  constexpr std::size_t kQuarters = 4;
+  std::vector<std::pair<double, double>> all;
+  for (std::size_t q = 0; q < kQuarters; ++q) {
+    const auto blocks = every(comparison, [&](const PassBlock& block) {
+      return of_angles ? block.angle_part * kQuarters / kAngleParts == q
+                       : block.beam_part * kQuarters / kBeamParts == q;
+    });
+    all.emplace_back(shift_between(comparison, blocks), error_of_shift(comparison, blocks, seed));
+  }
+  return all;
+}
+
+/// That values differ by their errors alone: χ² about their weighted mean.
+double constancy(const std::vector<std::pair<double, double>>& values) {
+  double weights = 0;
+  double sum = 0;
+  std::size_t n = 0;
+  for (const auto& [value, error] : values) {
+    if (!std::isfinite(value) || !(error > 0)) continue;
+    weights += 1 / (error * error);
+    sum += value / (error * error);
+    ++n;
+  }
+  if (n < 2) return 1;
+  double chi2 = 0;
+  for (const auto& [value, error] : values) {
+    if (std::isfinite(value) && error > 0) chi2 += std::pow((value - sum / weights) / error, 2);
+  }
+  const boost::math::chi_squared distribution(static_cast<double>(n - 1));
+  return boost::math::cdf(boost::math::complement(distribution, chi2));
+}
+
+Gain gain_of(const PassComparison& comparison, std::uint64_t seed) {
+  const auto fitted = every(comparison, [](const PassBlock& b) { return b.angle_part % 2 == 0; });
+  const auto held_out = every(comparison, [](const PassBlock& b) { return b.angle_part % 2 == 1; });
+  const double shift = shift_between(comparison, fitted);
+  const auto change = [&](const std::vector<std::size_t>& blocks) {
+    return std::sqrt(variance_at(comparison, blocks, shift)) - std::sqrt(variance_at(comparison, blocks, 0));
+  };
+  Gain gain{.metric = "difference between passes: standard deviation",
+            .unit = "m",
+            .before = std::sqrt(variance_at(comparison, held_out, 0)),
+            .after = std::sqrt(variance_at(comparison, held_out, shift))};
+  gain.ci95 =
+      bootstrap(held_out.size(), 1, seed, kDrawsOfBlocks, [&](const std::vector<std::size_t>& picked) {
+        std::vector<std::size_t> drawn;
+        for (const auto i : picked) drawn.push_back(held_out[i]);
+        return change(drawn);
+      }).ci95;
+  return gain;
+}
+
+}  // namespace
+
+double shift_between(const PassComparison& comparison, std::span<const std::size_t> blocks) {
+  const Curve curve = variances(comparison, blocks);
+  if (curve.size() < 2 * kAroundLeast + 1) return std::nan("");
+  std::size_t least = 0;
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    if (curve[i].second < curve[least].second) least = i;
+  }
+  if (least < kAroundLeast || least + kAroundLeast >= curve.size()) return std::nan("");
+  constexpr Eigen::Index kPoints = 2 * kAroundLeast + 1;
+  Eigen::MatrixXd powers(kPoints, 4);
+  Eigen::VectorXd values(kPoints);
+  for (Eigen::Index i = 0; i < kPoints; ++i) {
+    const auto& [by, variance] = curve[least - kAroundLeast + static_cast<std::size_t>(i)];
+    const double x = (by - curve[least].first) / comparison.step;
+    powers.row(i) << 1, x, x * x, x * x * x;
+    values(i) = variance;
+  }
+  const Eigen::Vector4d cubic = powers.colPivHouseholderQr().solve(values);
+  const double root = cubic(2) * cubic(2) - 3 * cubic(1) * cubic(3);
+  if (!(cubic(2) > 0) || !(root >= 0)) return std::nan("");
+  return curve[least].first - cubic(1) / (cubic(2) + std::sqrt(root)) * comparison.step;
+}
+
+double variance_at(const PassComparison& comparison, std::span<const std::size_t> blocks, double shift) {
+  const Curve curve = variances(comparison, blocks);
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    if (shift > curve[i].first || shift < curve[i - 1].first) continue;
+    const double on = (shift - curve[i - 1].first) / (curve[i].first - curve[i - 1].first);
+    return (1 - on) * curve[i - 1].second + on * curve[i].second;
+  }
+  return std::nan("");
+}
+
+PassShift find_shift(const Pass& up, const Pass& down, std::uint64_t seed) {
+  const auto comparison = compare_passes(up, down);
+  const auto all = every(comparison, [](const PassBlock&) { return true; });
+  PassShift found{.shift = shift_between(comparison, all)};
+  found.std_error = error_of_shift(comparison, all, seed);
+  found.by_angle = in_quarters(comparison, true, seed);
+  found.by_beam = in_quarters(comparison, false, seed);
+  found.constant_p = std::min(1.0, 2 * std::min(constancy(found.by_angle), constancy(found.by_beam)));
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& bin : sum_of(comparison, all)) {
+    if (!(bin.n > 0) || std::abs(bin.by / bin.n - found.shift) > nearest) continue;
+    nearest = std::abs(bin.by / bin.n - found.shift);
+    found.offset = bin.error / bin.n;
+  }
+  found.gain = gain_of(comparison, seed);
+  double products = 0;
+  double squares = 0;
+  for (const double steps : {-2.0, -1.0, -0.5, 0.5, 1.0, 2.0}) {
+    const double put_in = steps * comparison.step;
+    const auto moved = compare_passes(up, down, put_in);
+    const double answer = found.shift - shift_between(moved, all);
+    found.answers.emplace_back(put_in, answer);
+    products += put_in * answer;
+    squares += put_in * put_in;
+  }
+  found.answer_ratio = products / squares;
+  return found;
+}
+
+}  // namespace crisp

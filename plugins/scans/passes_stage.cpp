@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/scans/passes_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/data/degree.hpp"
+#include "pipeline/files/atomic_file.hpp"
+#include "plugins/scans/plot.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kStandsOut = 3;       // standard errors
+constexpr double kSureOfParts = 0.01;  // p below which the parts of a pass contradict each other
+
+/// The two longest passes in opposite directions, up first; nothing where there are none.
+std::optional<std::pair<Pass, Pass>> opposite(const std::vector<Pass>& passes) {
+  const auto longest = [&](bool up) -> const Pass* {
+    const Pass* best = nullptr;
+    for (const auto& pass : passes) {
+      if (pass.up == up && (best == nullptr || pass.scans.size() > best->scans.size())) best = &pass;
+    }
+    return best;
+  };
+  const Pass* up = longest(true);
+  const Pass* down = longest(false);
+  if (up == nullptr || down == nullptr) return {};
+  return std::pair(*up, *down);
+}
+
+std::string in_degrees(const std::vector<std::pair<double, double>>& values) {
+  std::string text;
+  for (const auto& [value, error] : values)
+    text += fmt::format("{}{:+.3f} ± {:.3f}", text.empty() ? "" : ", ", value / kDegree, error / kDegree);
+  return text;
+}
+
+void tell(const std::string& laser, const PassShift& found, double step, std::size_t beams,
+          Context& context) {
+  std::string answers;
+  for (const auto& [put_in, answer] : found.answers)
+    answers +=
+        fmt::format("{}{:+.4f}: {:+.4f}", answers.empty() ? "" : ", ", put_in / kDegree, answer / kDegree);
+  context.say(fmt::format(
+      "{}: down = up shifted by {:+.4f} ± {:.4f} deg ({:.2f} steps), ranges off by {:+.1f} mm, over {} "
+      "beams\n"
+      "  quarters of the angles: {} deg; of the beams: {} deg; p {:.3g} that it is the same everywhere\n"
+      "  on other angles the passes differ by {:.2f} -> {:.2f} mm (change {:.2f} .. {:.2f})\n"
+      "  put in by hand: what it answered [deg]: {}; in all {:.3f} times",
+      laser, found.shift / kDegree, found.std_error / kDegree, found.shift / step, 1e3 * found.offset, beams,
+      in_degrees(found.by_angle), in_degrees(found.by_beam), found.constant_p, 1e3 * found.gain.before,
+      1e3 * found.gain.after, 1e3 * found.gain.ci95[0], 1e3 * found.gain.ci95[1], answers,
+      found.answer_ratio));
+  context.report({{laser,
+                   {{"shift", found.shift},
+                    {"std_error", found.std_error},
+                    {"steps", found.shift / step},
+                    {"offset", found.offset},
+                    {"constant_p", found.constant_p},
+                    {"by_angle", found.by_angle},
+                    {"by_beam", found.by_beam},
+                    {"answers", found.answers},
+                    {"answer_ratio", found.answer_ratio}}}});
+}
+
+/// A measure that does not answer to what is put in by hand says nothing.
+bool is_believed(const PassShift& found) {
+  constexpr double kWithin = 0.1;
+  return std::isfinite(found.shift) && found.std_error > 0 && std::abs(found.answer_ratio - 1) <= kWithin;
+}
+
+/// A shift between the passes has no name of its own: what it may be called.
+void add_findings(const std::string& laser, const PassShift& found, Findings& findings) {
+  if (!is_believed(found)) {
+    findings.unobservable.push_back(
+        {"shift between passes (" + laser + ")",
+         fmt::format(
+             "shifts put in by hand do not come back; {:+.3f} deg was read, with an error of {:.3f} deg",
+             found.shift / kDegree, found.std_error / kDegree),
+         ""});
+    return;
+  }
+  if (std::abs(found.shift) < kStandsOut * found.std_error) return;
+  const double p = std::erfc(std::abs(found.shift) / found.std_error / std::sqrt(2.0));
+  const bool pays = found.gain.ci95[1] < 0;
+  if (found.constant_p < kSureOfParts) {
+    findings.unnamed.push_back({.covariate = "direction of the actuator, not the same at all its angles",
+                                .quantity = "plate angle",
+                                .scope = "plate",
+                                .amplitude = std::abs(found.shift) / 2,
+                                .unit = "rad",
+                                .p_value = p,
+                                .gain = {found.gain},
+                                .accepted = pays});
+    return;
+  }
+  Finding finding{.cause = "encoder.backlash", .scope = "plate"};
+  finding.parameters = {{"delta", "rad", -found.shift / 2, found.std_error / 2, true}};
+  finding.explained_fraction = 1 - std::pow(found.gain.after / found.gain.before, 2);
+  finding.p_value = p;
+  finding.confounded_with = {laser + ".eta"};
+  finding.gain = {found.gain};
+  finding.accepted = pays;
+  findings.findings.push_back(std::move(finding));
+}
+
+/// Angles of the way up less half of the shift, and of the way down with half of it.
+PlateTrajectory mended(const PlateTrajectory& plate, double shift) {
+  const auto angles = plate.angles();
+  std::vector<double> moved(angles.begin(), angles.end());
+  double direction = 0;
+  for (std::size_t i = angles.size();
+       i-- > 0;) {  // backwards: where it goes next is what it was placed for …
+    if (i + 1 < angles.size() && angles[i + 1] != angles[i]) direction = angles[i + 1] > angles[i] ? 1 : -1;
+    moved[i] -= direction * shift / 2;
+  }
+  for (std::size_t i = 1; i < angles.size() && angles[i] != angles[i - 1]; ++i) {
+    // … but a reading that stands alone came from the one before
+    moved[i] = angles[i] - (angles[i] > angles[i - 1] ? 1 : -1) * shift / 2;
+  }
+  return {plate.epoch_ns(), {plate.times().begin(), plate.times().end()}, std::move(moved), plate.max_gap()};
+}
+
+void draw(const std::filesystem::path& folder, const std::string& laser, const PassComparison& comparison,
+          Context& context) {
+  Plot plot{.title = laser + ": pass down against pass up",
+            .x_label = "shift between them [deg]",
+            .y_label = "standard deviation of the differences [mm]"};
+  std::vector<std::size_t> all;
+  for (std::size_t b = 0; b < comparison.blocks.size(); ++b) all.push_back(b);
+  constexpr std::size_t kQuarters = 4;
+  for (std::size_t q = 0; q <= kQuarters; ++q) {
+    std::vector<std::size_t> some;
+    for (const auto b : all) {
+      if (q == kQuarters || comparison.blocks[b].angle_part * kQuarters / kAngleParts == q) some.push_back(b);
+    }
+    PlotSeries series{.name = q == kQuarters ? "all" : fmt::format("quarter {} of the angles", q + 1)};
+    for (int k = -kReach; k <= kReach; ++k) {
+      series.x.push_back(k * comparison.step / kDegree);
+      series.y.push_back(1e3 * std::sqrt(variance_at(comparison, some, k * comparison.step)));
+    }
+    plot.series.push_back(std::move(series));
+  }
+  const auto file = folder / (laser + "_passes.svg");
+  write_file(file, as_svg(plot));
+  context.wrote(file);
+}
+
+}  // namespace
+
+void DiagnosePassesStage::describe(StageDescription<DiagnosePassesStage>& d) {
+  d.name("diagnose.passes").summary("asks whether an actuator that turns back is where it says on both ways");
+  d.details(
+      "For a laser on an actuator that goes up and down again. Each beam of the way down is laid over those "
+      "of the way "
+      "up at angles around it; where the variance of their differences is least, the two ways agree. Unlike "
+      "a "
+      "regression on measured slopes that does not come out short by their noise; shifts that are put in by "
+      "hand are "
+      "shown beside it.\n\n"
+      "Play (`encoder.backlash`) and a lag between the clocks shift the ways alike as long as both are gone "
+      "at one "
+      "speed; so the two are named together. A shift that is not the same at all angles is `unnamed`. The "
+      "measurements "
+      "are given on with half of the shift on either way: which way is right cannot be seen.");
+  d.takes<Scan>().takes<PlateReading>().takes<Measurements>().holds<PlateTrajectory>();
+  d.holds<Findings>(Need::optional).gives<Findings>().gives<PlateTrajectory>().gives<Measurements>();
+  d.option("shortest", &DiagnosePassesStage::shortest_, "way that counts as a pass")
+      .unit("rad")
+      .range(1e-4, 1e4);
+  d.option("mend", &DiagnosePassesStage::mend_,
+           "whether the trajectory that it gives has the angles that were found");
+  d.option("folder", &DiagnosePassesStage::folder_, "where plots go; auto: nowhere");
+}
+
+void DiagnosePassesStage::process(const Inputs& in, Outputs&, Context&) {
+  if (auto findings = in.share<Findings>()) before_ = std::move(findings);
+  if (auto plate = in.share<PlateTrajectory>()) plate_ = std::move(plate);
+  if (const auto* reading = in.find<PlateReading>()) series_.add(*reading);
+  if (auto scan = in.share<Scan>(); scan && scan->laser == 0) series_.add(std::move(scan));
+  if (auto beams = in.share<Measurements>()) beams_.push_back(std::move(beams));
+}
+
+double DiagnosePassesStage::diagnose(Findings& findings, Context& context) const {
+  const std::string& name = context.rig().lasers.front().name;
+  const auto actuator = series_.actuator(context.rig().plate.counts_per_revolution);
+  const auto both = opposite(find_passes(series_, actuator, shortest_));
+  if (!both) {
+    findings.unobservable.push_back({"shift between passes (" + name + ")",
+                                     "the actuator goes only one way: each surface is seen once", ""});
+    context.say(name + ": the actuator goes only one way, so its angles cannot be checked by passes");
+    return 0;
+  }
+  const auto& [up, down] = *both;
+  const auto comparison = compare_passes(up, down);
+  const PassShift found = find_shift(up, down, context.seed());
+  tell(name, found, comparison.step, comparison.beams, context);
+  add_findings(name, found, findings);
+  findings.unobservable.push_back(
+      {name + ".tau",
+       "both ways see the same surfaces from the same angles: that says nothing of the mounting", ""});
+  if (folder_) draw(*folder_, name, comparison, context);
+  const bool pays =
+      is_believed(found) && std::abs(found.shift) > kStandsOut * found.std_error && found.gain.ci95[1] < 0;
+  return pays && mend_ ? found.shift : 0;
+}
+
+void DiagnosePassesStage::finish(Outputs& out, Context& context) {
+  if (!plate_ || series_.scans().empty()) throw Error("no scans with readings of an actuator came");
+  Findings findings = before_ ? *before_ : Findings{};
+  const double shift = diagnose(findings, context);
+  out.give(std::move(findings));
+  out.give(mended(*plate_, shift));
+  for (const auto& beams : beams_) out.give(beams);
+}
+
+}  // namespace crisp

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/scans/passes.hpp"
+
+namespace crisp {
+
+/// `diagnose.passes`: whether the actuator is where it says on its way up and on its way down.
+class DiagnosePassesStage final : public Stage {
+ public:
+  static void describe(StageDescription<DiagnosePassesStage>& d);
+
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  double diagnose(Findings& findings, Context& context) const;
+
+  std::optional<std::filesystem::path> folder_;
+  double shortest_ = 0.05;
+  bool mend_ = true;
+  ScanSeries series_;
+  std::shared_ptr<const Findings> before_;
+  std::shared_ptr<const PlateTrajectory> plate_;
+  std::vector<std::shared_ptr<const Measurements>> beams_;
+};
+
+}  // namespace crisp

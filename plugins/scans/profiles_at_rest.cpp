@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/scans/profiles_at_rest.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "plugins/scans/resampling.hpp"
+
+namespace crisp {
+
+std::vector<double> mean_profile(const std::vector<SeriesScan>& scans) {
+  constexpr double kNear = 0.1;  // [m]
+  std::size_t beams = 0;
+  for (const auto& scan : scans) beams = std::max(beams, scan.ranges().size());
+  std::vector<double> profile(beams, std::nan(""));
+  std::vector<double> values;
+  for (std::size_t k = 0; k < beams; ++k) {
+    values.clear();
+    for (const auto& scan : scans) {
+      const auto& ranges = scan.ranges();
+      if (k < ranges.size() && ranges[k] > 0) values.push_back(static_cast<double>(ranges[k]));
+    }
+    if (values.empty() || 2 * values.size() < scans.size()) continue;
+    const double middle = middle_of(values);
+    double sum = 0;
+    double n = 0;
+    for (const double value : values) {
+      if (std::abs(value - middle) > kNear) continue;
+      sum += value;
+      n += 1;
+    }
+    profile[k] = sum / n;
+  }
+  return profile;
+}
+
+double at_beam(const std::vector<double>& profile, double beam) {
+  constexpr double kRounding = 1e-9;
+  const double floor = std::floor(beam + kRounding);
+  const double on = std::max(0.0, beam - floor);
+  if (floor < 0 || floor >= static_cast<double>(profile.size())) return std::nan("");
+  const auto k = static_cast<std::size_t>(floor);
+  if (on < kRounding) return profile[k];
+  if (k + 1 >= profile.size()) return std::nan("");
+  return (1 - on) * profile[k] + on * profile[k + 1];
+}
+
+}  // namespace crisp

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+/// diagnose.rest, diagnose.sweep and diagnose.passes.
+void register_scans(Registrar& registrar);
+
+}  // namespace crisp

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/scans/sweep_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pipeline/files/atomic_file.hpp"
+#include "plugins/scans/bursts.hpp"
+#include "plugins/scans/plot.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kSure = 0.01;  // p
+
+/// What the measure makes of scans that are timed otherwise by hand.
+struct Answers {
+  std::vector<double> by;        ///< [s]
+  std::vector<double> common;    ///< [m] median error with all scans later by that
+  std::vector<double> by_turns;  ///< [m] with every other scan later, and the rest earlier
+};
+
+/// One laser's series, its angles and the actuator, and what the measure says of any times.
+class Sweep {
+ public:
+  Sweep(const ScanSeries& series, PlateTrajectory plate) : series_(series), plate_(std::move(plate)) {
+    for (const auto& scan : series.scans()) {
+      angles_.push_back(scan.scan->start_angle);
+      receipts_.push_back(scan.receipt);
+    }
+  }
+  const std::vector<double>& receipts() const { return receipts_; }
+  NeighbourErrors errors(const std::vector<double>& times) const {
+    return neighbour_errors(series_.scans(), times, angles_, plate_);
+  }
+  Answers answers(const std::vector<double>& times) const {
+    constexpr double kStep = 0.004;  // [s]
+    constexpr int kSteps = 5;
+    Answers all;
+    for (int i = -kSteps; i <= kSteps; ++i) {
+      const double by = i * kStep;
+      all.by.push_back(by);
+      all.common.push_back(errors(moved(times, by, by)).median());
+      all.by_turns.push_back(errors(moved(times, by, -by)).median());
+    }
+    return all;
+  }
+  static std::vector<double> moved(std::vector<double> times, double even, double odd) {
+    for (std::size_t i = 0; i < times.size(); ++i) times[i] += i % 2 == 0 ? even : odd;
+    return times;
+  }
+
+ private:
+  const ScanSeries& series_;
+  PlateTrajectory plate_;
+  std::vector<double> angles_, receipts_;
+};
+
+Finding burst_finding(const std::string& laser, const Bursts& bursts, const Gain& gain) {
+  Finding finding{.cause = "latency.bursts", .scope = laser};
+  finding.parameters = {{"together", "1", bursts.together, bursts.together_error, true},
+                        {"interval", "s", bursts.interval},
+                        {"wait", "s", bursts.wait}};
+  finding.p_value = bursts.p_value;
+  finding.explained_fraction = 1 - std::pow(gain.after / std::max(gain.before, 1e-12), 2);
+  finding.gain = {gain};
+  finding.accepted = gain.ci95[1] < 0;
+  return finding;
+}
+
+/// A lag common to all scans, if the measure cannot see it.
+void judge_common_lag(const Sweep& sweep, const std::vector<double>& times, const std::string& laser,
+                      std::uint64_t seed, Findings& findings, Context& context) {
+  constexpr double kMuch = 0.02;  // [s]
+  const auto here = sweep.errors(times);
+  std::string text;
+  bool seen = true;
+  for (const double by : {-kMuch, kMuch}) {
+    const Gain change = neighbour_gain(here, sweep.errors(Sweep::moved(times, by, by)), seed);
+    text += fmt::format("{}{:+.0f} ms changes {:.1f} mm by {:.1f} .. {:.1f} mm", text.empty() ? "" : ", ",
+                        1e3 * by, 1e3 * change.before, 1e3 * change.ci95[0], 1e3 * change.ci95[1]);
+    seen = seen && change.ci95[0] > 0;
+  }
+  context.say("  a lag put in by hand that is common to all scans: " + text);
+  if (seen) return;
+  findings.unobservable.push_back(
+      {laser + ".eta", "scans foretold by their neighbours do not answer to a lag common to all: " + text,
+       "only lags that differ from scan to scan are seen"});
+  for (const char* parameter : {".tau", ".alpha"}) {
+    findings.unobservable.push_back(
+        {laser + parameter, "the measure does not hold it, and in a single sweep each surface is seen once",
+         ""});
+  }
+}
+
+void draw(const std::filesystem::path& folder, const std::string& laser, const Answers& answers,
+          Context& context) {
+  const auto scaled = [](std::vector<double> values) {
+    for (double& value : values) value *= 1e3;
+    return values;
+  };
+  Plot plot{.title = laser + ": scans foretold by their neighbours, timed otherwise by hand",
+            .x_label = "by how much [ms]",
+            .y_label = "median error [mm]"};
+  plot.series = {{.name = "all scans later", .x = scaled(answers.by), .y = scaled(answers.common)},
+                 {.name = "every other scan later, the rest earlier",
+                  .x = scaled(answers.by),
+                  .y = scaled(answers.by_turns)}};
+  const auto file = folder / (laser + "_sweep.svg");
+  write_file(file, as_svg(plot));
+  context.wrote(file);
+}
+
+}  // namespace
+
+void DiagnoseSweepStage::describe(StageDescription<DiagnoseSweepStage>& d) {
+  d.name("diagnose.sweep").summary("asks whether scans of a sweep are timed rightly by their receipt");
+  d.details(
+      "Each scan of a sweep is foretold from the one before and the one after, by the actuator's angles at "
+      "the times "
+      "of the three. Times of receipt stand against the device's own stamps, as a clock stage above maps "
+      "them to the "
+      "hub's clock. No plane is fitted, no parameter of the mounting enters, and the stamps have seen no "
+      "range: all "
+      "scans are held out.\n\n"
+      "Scans that come in bursts though they were taken evenly are `latency.bursts`; the clock stage's map "
+      "is then the "
+      "model of their times. A lag common to all scans is put in by hand, and where the measure does not "
+      "answer, it is "
+      "called unobservable, as are the mounting's offsets.");
+  d.takes<Scan>().takes<PlateReading>().takes<ClockMap>();
+  d.holds<Findings>(Need::optional).gives<Findings>();
+  d.option("folder", &DiagnoseSweepStage::folder_, "where plots go; auto: nowhere");
+}
+
+void DiagnoseSweepStage::process(const Inputs& in, Outputs&, Context& context) {
+  lasers_.resize(context.rig().lasers.size());
+  before_ = in.share<Findings>();
+  if (const auto* reading = in.find<PlateReading>()) {
+    for (auto& laser : lasers_) laser.add(*reading);
+  }
+  if (auto scan = in.share<Scan>()) lasers_.at(scan->laser).add(std::move(scan));
+  if (const auto* clock = in.find<ClockMap>()) clocks_[clock->device] = *clock;
+}
+
+void DiagnoseSweepStage::diagnose(std::size_t index, Findings& findings, Context& context) const {
+  const std::string& name = context.rig().lasers[index].name;
+  const auto clock = clocks_.find(name);
+  if (clock == clocks_.end() || clock->second.pieces.empty()) return;
+  const ScanSeries& series = lasers_[index];
+  const Sweep sweep(series, series.actuator(context.rig().plate.counts_per_revolution));
+  const auto stamps = series.stamped(clock->second);
+  const auto bursts = find_bursts(sweep.receipts(), stamps, context.seed());
+  const auto by_receipt = sweep.errors(sweep.receipts());
+  const auto by_stamp = sweep.errors(stamps);
+  const Gain gain = neighbour_gain(by_receipt, by_stamp, context.seed());
+  context.say(
+      fmt::format("{}: a scan every {:.3f} ms; {:.0f} % come together with the one before (p {:.3g}), up to "
+                  "{:.0f} ms late",
+                  name, 1e3 * bursts.interval, 100 * bursts.together, bursts.p_value, 1e3 * bursts.longest));
+  context.report({{name,
+                   {{"interval", bursts.interval},
+                    {"together", bursts.together},
+                    {"correlation", bursts.correlation},
+                    {"longest", bursts.longest}}}});
+  if (!std::isfinite(gain.before)) {
+    findings.unobservable.push_back(
+        {"latency.bursts (" + name + ")", "no sweep of the actuator was seen", ""});
+    return;
+  }
+  context.say(
+      fmt::format("  foretold by their neighbours, timed by receipt {:.1f} mm, by stamp {:.1f} mm (change "
+                  "{:.1f} .. {:.1f})",
+                  1e3 * gain.before, 1e3 * gain.after, 1e3 * gain.ci95[0], 1e3 * gain.ci95[1]));
+  if (bursts.p_value < kSure) findings.findings.push_back(burst_finding(name, bursts, gain));
+  judge_common_lag(sweep, stamps, name, context.seed(), findings, context);
+  const Answers answers = sweep.answers(stamps);
+  context.report({{name + "_answers",
+                   {{"by", answers.by}, {"common", answers.common}, {"by_turns", answers.by_turns}}}});
+  if (folder_) draw(*folder_, name, answers, context);
+}
+
+void DiagnoseSweepStage::finish(Outputs& out, Context& context) {
+  Findings findings = before_ ? *before_ : Findings{};
+  for (std::size_t i = 0; i < lasers_.size(); ++i) {
+    if (!lasers_[i].scans().empty()) diagnose(i, findings, context);
+    if (context.interrupted()) return;
+  }
+  out.give(std::move(findings));
+}
+
+}  // namespace crisp

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/scans/alternation.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/plugins/scans/tilting_scene.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kNoise = 0.01;
+constexpr std::uint16_t kScans = 120;
+
+struct Odd {
+  double shift = 0;   ///< [beams] every other scan points so much further
+  double offset = 0;  ///< [m] and its ranges are so much longer
+};
+
+std::vector<SeriesScan> at_rest(const Odd& odd) {
+  test::TiltingScene scene(kNoise);
+  ScanSeries series;
+  for (std::uint16_t i = 0; i < kScans; ++i) {
+    const bool other = i % 2 == 1;
+    // the kind that others are compared with is the one with more beams
+    auto scan =
+        scene.scan(70 * kDegree, (20 + (other ? odd.shift : 0)) * kDegree, other ? 140 : 141, i, 0.0133 * i);
+    for (float& r : scan->echoes[0].ranges) r += other ? static_cast<float>(odd.offset) : 0.0F;
+    series.add(std::move(scan));
+  }
+  return series.scans();
+}
+
+TEST(Alternation, ScansThatAreAlikeDoNotTakeTurns) {
+  const auto found = find_alternation(at_rest({}), 1);
+  EXPECT_EQ(found.period, 1U);
+  ASSERT_EQ(found.difference.size(), 8U);
+  // the mean size of the difference of two normal values
+  for (const double d : found.difference) EXPECT_NEAR(d, 2 * kNoise / std::sqrt(std::numbers::pi), 3e-4);
+}
+
+TEST(Alternation, FindsByHowMuchOneKindOfScanPointsElsewhere) {
+  const auto scans = at_rest({.shift = 0.5});
+  const auto found = find_alternation(scans, 1);
+  EXPECT_EQ(found.period, 2U);
+  EXPECT_LE(found.p_value, 0.01);
+  const auto kinds = compare_kinds(scans, 2, 1);
+  ASSERT_EQ(kinds.size(), 1U);
+  EXPECT_EQ(kinds[0].kind, 1U);
+  EXPECT_NEAR(kinds[0].shift, 0.5, 3 * kinds[0].shift_error + 0.005);
+  EXPECT_LT(kinds[0].shift_error, 0.05);
+  EXPECT_GT(kinds[0].log10_odds, 5);
+  EXPECT_LT(kinds[0].gain.ci95[1], 0) << "it pays on scans that it was not found in";
+  EXPECT_NEAR(kinds[0].answer, kinds[0].put_in, 0.1 * kinds[0].put_in);
+}
+
+TEST(Alternation, TakesAnOffsetOfTheRangesForNoShift) {
+  const auto scans = at_rest({.offset = 0.02});
+  EXPECT_EQ(find_alternation(scans, 1).period, 2U);
+  const auto kinds = compare_kinds(scans, 2, 1);
+  ASSERT_EQ(kinds.size(), 1U);
+  EXPECT_STREQ(kinds[0].next_likely, "range.offset");
+  EXPECT_LT(kinds[0].log10_odds, 0);
+}
+
+TEST(Alternation, AScanThatIsMissingDoesNotPutKindsOutOfStep) {
+  auto scans = at_rest({.shift = 0.5});
+  scans.erase(scans.begin() + 31);
+  scans.erase(scans.begin() + 50);
+  EXPECT_EQ(find_alternation(scans, 1).period, 2U);
+  EXPECT_NEAR(compare_kinds(scans, 2, 1).at(0).shift, 0.5, 0.1);
+}
+
+}  // namespace
+}  // namespace crisp

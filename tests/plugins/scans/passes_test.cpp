@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/scans/passes.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/plugins/scans/tilting_scene.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kStep = 0.1 * kDegree;
+constexpr double kNoise = 0.01;
+
+/// Up from 30° to 80° and down again, a step a scan. On the way down the tilt is `behind` less than it reads
+/// at its lowest reading, and `more` less than that at its highest.
+std::vector<Pass> up_and_down(double behind, double more = 0, double offset = 0) {
+  static ScanSeries series;
+  series = {};
+  test::TiltingScene scene(kNoise);
+  constexpr int kSteps = 500;
+  for (int i = 0; i < 2 * kSteps; ++i) {
+    const bool up = i <= kSteps;
+    const int at = up ? i : 2 * kSteps - i;
+    const double read = 30 * kDegree + at * kStep;
+    const double tilt = read - (up ? 0 : behind + more * at / kSteps);
+    const double time = 0.1 * i;
+    series.add(test::reading_at(read, time));
+    auto scan = scene.scan(tilt, 20 * kDegree, 140, static_cast<std::uint16_t>(i), time);
+    for (float& r : scan->echoes[0].ranges) r += up ? 0.0F : static_cast<float>(offset);
+    series.add(std::move(scan));
+  }
+  return find_passes(series, series.actuator(360000), 5 * kDegree);
+}
+
+TEST(Passes, AreCutWhereTheActuatorTurnsBack) {
+  const auto passes = up_and_down(0);
+  ASSERT_EQ(passes.size(), 2U);
+  EXPECT_TRUE(passes[0].up);
+  EXPECT_FALSE(passes[1].up);
+  EXPECT_EQ(passes[0].scans.size(), 501U);
+  EXPECT_LT(passes[1].scans.front().angle, passes[1].scans.back().angle) << "in the order of angles";
+}
+
+TEST(PassShift, IsFoundBetweenStepsInNoiseLargerThanWhatAStepChanges) {
+  const auto passes = up_and_down(0.6 * kStep);
+  const auto found = find_shift(passes[0], passes[1], 1);
+  EXPECT_NEAR(found.shift, -0.6 * kStep, 3 * found.std_error);
+  EXPECT_LT(found.std_error, 0.1 * kStep);
+  EXPECT_NEAR(found.answer_ratio, 1, 0.1) << "what is put in by hand comes back";
+  EXPECT_GT(found.constant_p, 0.01);
+}
+
+TEST(PassShift, PaysOnAnglesThatItWasNotFoundIn) {
+  const auto passes = up_and_down(2 * kStep);
+  const auto found = find_shift(passes[0], passes[1], 1);
+  EXPECT_NEAR(found.shift, -2 * kStep, 3 * found.std_error);
+  EXPECT_GT(found.constant_p, 0.01);
+  EXPECT_LT(found.gain.ci95[1], 0);
+  EXPECT_NEAR(found.gain.after, std::sqrt(2.0) * kNoise, 0.1 * kNoise) << "the noise of both passes is left";
+}
+
+TEST(PassShift, IsNoneWhereThereIsNone) {
+  const auto passes = up_and_down(0);
+  const auto found = find_shift(passes[0], passes[1], 1);
+  EXPECT_NEAR(found.shift, 0, 3 * found.std_error);
+}
+
+TEST(PassShift, AnOffsetOfTheRangesBetweenThePassesIsNoShift) {
+  const auto passes = up_and_down(0, 0, 0.01);
+  const auto found = find_shift(passes[0], passes[1], 1);
+  EXPECT_NEAR(found.shift, 0, 3 * found.std_error);
+  EXPECT_NEAR(found.offset, 0.01, 0.002);
+}
+
+TEST(PassShift, SaysWhenItIsNotTheSameEverywhere) {
+  const auto passes = up_and_down(0, 2.5 * kStep);
+  EXPECT_LT(find_shift(passes[0], passes[1], 1).constant_p, 1e-3);
+}
+
+}  // namespace
+}  // namespace crisp

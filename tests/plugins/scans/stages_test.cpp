@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "plugins/scans/passes_stage.hpp"
+#include "plugins/scans/rest_stage.hpp"
+#include "plugins/scans/sweep_stage.hpp"
+#include "tests/plugins/scans/tilting_scene.hpp"
+#include "tests/support/stage_driver.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+constexpr double kPeriod = test::TiltingScene::kPeriod;
+
+template <class S>
+test::StageDriver driver(const std::map<std::string, OptionValue>& options = {}) {
+  auto made = test::StageDriver::of<S>(options);
+  made.run().rig.lasers.resize(1);
+  made.run().rig.plate.counts_per_revolution = 360000;
+  return made;
+}
+
+/// A sweep of 60°/s and then a rest. Every other scan points half a beam further than it says, and scans come
+/// two by two.
+void feed_sweep_and_rest(test::StageDriver& stage, double shift, bool two_by_two) {
+  test::TiltingScene scene(0.005);
+  for (std::uint16_t i = 0; i < 250; ++i) {
+    const double taken = kPeriod * i;
+    const double tilt = 20 * kDegree + 60 * kDegree * std::min(taken, 1.2);
+    const bool other = i % 2 == 1;
+    const double receipt = two_by_two && !other ? taken + kPeriod - 0.001 : taken;
+    const double read = 20 * kDegree + 60 * kDegree * std::min(receipt, 1.2);
+    stage.feed(test::reading_at(read, receipt));
+    stage.feed(std::shared_ptr<const Scan>(
+        scene.scan(tilt, (20 + (other ? shift : 0)) * kDegree, other ? 140 : 141, i, receipt)));
+  }
+}
+
+TEST(DiagnoseRestStage, NamesInterleavedBeamsAndGivesScansWithTheirTrueAngles) {
+  const test::TemporaryFolder folder;
+  auto stage = driver<DiagnoseRestStage>({{"folder", folder.path().string()}});
+  feed_sweep_and_rest(stage, 0.5, false);
+  stage.finish();
+  const auto findings = stage.given<Findings>();
+  ASSERT_THAT(findings, SizeIs(1));
+  ASSERT_THAT(findings[0]->findings, SizeIs(1));
+  const Finding& found = findings[0]->findings[0];
+  EXPECT_EQ(found.cause, "mirror.interleave");
+  EXPECT_NEAR(found.parameters[0].value, 0.5 * kDegree, 3 * found.parameters[0].std_error + 0.005 * kDegree);
+  ASSERT_THAT(found.gain, SizeIs(2)) << "at rest and in the sweep";
+  EXPECT_LT(found.gain[1].ci95[1], 0);
+  const auto scans = stage.given<Scan>();
+  ASSERT_THAT(scans, SizeIs(250));
+  EXPECT_DOUBLE_EQ(scans[0]->start_angle, 20 * kDegree);
+  EXPECT_NEAR(scans[1]->start_angle, 20.5 * kDegree, 0.05 * kDegree);
+  EXPECT_THAT(stage.given<PlateReading>(), SizeIs(250));
+  EXPECT_THAT(stage.report().written, ElementsAre(folder.path() / "laser1_rest.svg"));
+}
+
+TEST(DiagnoseRestStage, LeavesScansThatAreAlikeAsTheyAre) {
+  auto stage = driver<DiagnoseRestStage>();
+  feed_sweep_and_rest(stage, 0, false);
+  stage.finish();
+  EXPECT_THAT(stage.given<Findings>().at(0)->findings, IsEmpty());
+  EXPECT_THAT(stage.given<Findings>().at(0)->unnamed, IsEmpty());
+  for (const auto& scan : stage.given<Scan>()) EXPECT_DOUBLE_EQ(scan->start_angle, 20 * kDegree);
+}
+
+ClockMap even_clock() {
+  return {.device = "laser1", .pieces = {{.device_begin = 0, .hub_begin = 17, .rate = 1}}, .stamps = 2};
+}
+
+TEST(DiagnoseSweepStage, NamesBurstsAndCallsACommonLagUnobservable) {
+  auto stage = driver<DiagnoseSweepStage>();
+  feed_sweep_and_rest(stage, 0, true);
+  stage.feed(even_clock());
+  stage.finish();
+  const auto& findings = *stage.given<Findings>().at(0);
+  ASSERT_THAT(findings.findings, SizeIs(1));
+  EXPECT_EQ(findings.findings[0].cause, "latency.bursts");
+  EXPECT_TRUE(findings.findings[0].accepted);
+  EXPECT_GT(findings.findings[0].gain.at(0).before, 2 * findings.findings[0].gain.at(0).after);
+  EXPECT_THAT(findings.unobservable, ElementsAre(Field(&Unobservable::parameter, "laser1.eta"),
+                                                 Field(&Unobservable::parameter, "laser1.tau"),
+                                                 Field(&Unobservable::parameter, "laser1.alpha")));
+}
+
+TEST(DiagnoseSweepStage, FindsNothingInScansThatComeEvenly) {
+  auto stage = driver<DiagnoseSweepStage>();
+  feed_sweep_and_rest(stage, 0, false);
+  stage.feed(even_clock());
+  stage.finish();
+  EXPECT_THAT(stage.given<Findings>().at(0)->findings, IsEmpty());
+}
+
+TEST(DiagnosePassesStage, SaysThatASingleSweepTellsNothing) {
+  auto stage = driver<DiagnosePassesStage>();
+  feed_sweep_and_rest(stage, 0, false);
+  stage.feed(PlateTrajectory(0, {0, 1}, {0, 1}, 2));
+  stage.finish();
+  EXPECT_THAT(stage.given<Findings>().at(0)->unobservable,
+              ElementsAre(Field(&Unobservable::reason, HasSubstr("goes only one way"))));
+  EXPECT_THAT(stage.given<PlateTrajectory>(), SizeIs(1));
+}
+
+TEST(DiagnosePassesStage, NamesPlayTogetherWithALagAndMendsHalfOfItOnEitherWay) {
+  constexpr double kStep = 0.1 * kDegree;
+  test::TiltingScene scene(0.01);
+  auto stage = driver<DiagnosePassesStage>();
+  std::vector<double> times, angles;
+  for (int i = 0; i < 1000; ++i) {
+    const bool up = i <= 500;
+    const double read = 30 * kDegree + (up ? i : 1000 - i) * kStep;
+    times.push_back(0.1 * i);
+    angles.push_back(read);
+    stage.feed(test::reading_at(read, times.back()));
+    stage.feed(std::shared_ptr<const Scan>(scene.scan(read - (up ? 0 : 2 * kStep), 20 * kDegree, 140,
+                                                      static_cast<std::uint16_t>(i), times.back())));
+  }
+  stage.feed(PlateTrajectory(0, times, angles, 1));
+  stage.finish();
+  const auto& findings = *stage.given<Findings>().at(0);
+  ASSERT_THAT(findings.findings, SizeIs(1)) << stage.report().lines.at(0);
+  const Finding& found = findings.findings[0];
+  EXPECT_EQ(found.cause, "encoder.backlash");
+  EXPECT_THAT(found.confounded_with, ElementsAre("laser1.eta"));
+  EXPECT_NEAR(found.parameters[0].value, kStep, 3 * found.parameters[0].std_error + 0.02 * kStep);
+  const auto mended = stage.given<PlateTrajectory>().at(0);
+  EXPECT_NEAR(mended->angles()[200] - angles[200], kStep, 0.2 * kStep);
+  EXPECT_NEAR(mended->angles()[700] - angles[700], -kStep, 0.2 * kStep);
+}
+
+}  // namespace
+}  // namespace crisp
