@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Recordings of other actuated lasers, as configs/real/ reads them. Where they are not at hand, the tests are
+// skipped.
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+
+#include "pipeline/data/degree.hpp"
+#include "tests/end_to_end/workshop.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RealData : public testing::Test {
+ protected:
+  /// A file of the data that are shared but not in the repository; the test is skipped where it is missing.
+  fs::path data(const std::string& name) const {
+    const char* place = std::getenv("CRISP_SHARED_DATA");
+    const fs::path folder =
+        place != nullptr ? fs::path(place) : fs::path(CRISP_SOURCE_DIR) / "../shared/data";
+    return folder / "actuated" / name;
+  }
+  const test::Workshop workshop_;
+};
+
+std::string missing(const fs::path& file) {
+  return file.string() + " is missing; CRISP_SHARED_DATA names the folder of the data";
+}
+
+/// The one finding of a cause, or null.
+nlohmann::json finding(const nlohmann::json& findings, const std::string& cause) {
+  for (const auto& each : findings["findings"]) {
+    if (each["cause"] == cause) return each;
+  }
+  return {};
+}
+
+nlohmann::json diagnosis_in(const fs::path& folder) {
+  return nlohmann::json::parse(test::bytes_of(folder / "diagnosis.json"));
+}
+
+std::vector<std::string> unobservable_in(const nlohmann::json& diagnosis) {
+  std::vector<std::string> names;
+  for (const auto& each : diagnosis["unobservable"]) names.push_back(each["cause"]);
+  return names;
+}
+
+TEST_F(RealData, OverbotsBeamsAreInterleavedAndItsScansComeInBursts) {
+  const auto table = data("overbot_sick_lms_tilt/lidarscans20041211_194820.csv");
+  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
+  const auto outcome = workshop_.run("real/overbot.yaml", table, "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  EXPECT_EQ(outcome.stage("table")["report"]["rows"], 300);
+  EXPECT_EQ(outcome.losses("table"), 0U);
+  ASSERT_NE(outcome.cloud, nullptr);
+  EXPECT_GT(outcome.cloud->size(), 40'000U);
+
+  const auto diagnosis = diagnosis_in(workshop_ / "out");
+  const auto interleave = finding(diagnosis, "mirror.interleave");
+  ASSERT_TRUE(interleave.is_object());
+  const double shift = interleave["parameters"][0]["value"];
+  const double error = interleave["parameters"][0]["std_error"];
+  EXPECT_NEAR(shift, 0.5 * kDegree, 3 * error + 0.005 * kDegree) << "the LMS takes every other degree's half";
+  EXPECT_LT(interleave["gain"][0]["ci95"][1], 0) << "at rest";
+  EXPECT_LT(interleave["gain"][1]["ci95"][1], 0) << "in the sweep";
+
+  const auto bursts = finding(diagnosis, "latency.bursts");
+  ASSERT_TRUE(bursts.is_object());
+  EXPECT_LT(bursts["p_value"], 0.01);
+  EXPECT_LT(bursts["gain"][0]["ci95"][1], 0);
+  EXPECT_LT(bursts["gain"][0]["after"], 0.02) << "as an independent look found: 1.5 cm instead of 6.1 cm";
+  EXPECT_THAT(unobservable_in(diagnosis), testing::ElementsAre("lms.eta", "lms.tau", "lms.alpha"));
+}
+
+TEST_F(RealData, OverbotsOtherRecordingHasTheSameInterleave) {
+  const auto table = data("overbot_sick_lms_tilt/lidarscans20041210_172937.csv");
+  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
+  const auto outcome = workshop_.run("real/overbot.yaml", table, "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const auto interleave = finding(diagnosis_in(workshop_ / "out"), "mirror.interleave");
+  ASSERT_TRUE(interleave.is_object());
+  const double error = interleave["parameters"][0]["std_error"];
+  EXPECT_NEAR(interleave["parameters"][0]["value"].get<double>(), 0.5 * kDegree, 3 * error + 0.005 * kDegree);
+}
+
+TEST_F(RealData, UrgsWaysUpAndDownDifferByAboutAStepAndWhatIsPutInComesBack) {
+  const auto table = data("urg04lx_tilt_stand/Jeremy.csv");
+  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
+  const auto outcome = workshop_.run("real/urg.yaml", table, "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const auto& report = outcome.stage("diagnose.passes")["report"]["urg"];
+  EXPECT_NEAR(report["steps"], 1, 0.2) << "of the order of one step, by an independent look";
+  EXPECT_NEAR(report["answer_ratio"], 1, 0.1);
+  const auto play = finding(diagnosis_in(workshop_ / "out"), "encoder.backlash");
+  ASSERT_TRUE(play.is_object());
+  EXPECT_THAT(play["confounded_with"], testing::ElementsAre("urg.eta"));
+  EXPECT_LT(play["gain"][0]["ci95"][1], 0);
+}
+
+TEST_F(RealData, UrgsShiftOverNinetyDegreesIsNotTheSameEverywhereAndHasNoName) {
+  const auto table = data("urg04lx_tilt_stand/0_to_pos90_degree.csv");
+  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
+  const auto outcome = workshop_.run("real/urg.yaml", table, "out", {"first=0deg"});
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const auto& report = outcome.stage("diagnose.passes")["report"]["urg"];
+  EXPECT_NEAR(report["answer_ratio"], 1, 0.1);
+  const auto diagnosis = diagnosis_in(workshop_ / "out");
+  EXPECT_THAT(diagnosis["findings"], testing::IsEmpty());
+  ASSERT_THAT(diagnosis["unnamed"], testing::SizeIs(1));
+  EXPECT_EQ(diagnosis["unnamed"][0]["quantity"], "plate angle");
+}
+
+TEST_F(RealData, UrgsShortWayBackDoesNotTellTheShift) {
+  const auto table = data("urg04lx_tilt_stand/room_240.csv");
+  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
+  const auto outcome = workshop_.run("real/urg.yaml", table, "out", {"first=-2.086213827rad"});
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const auto diagnosis = diagnosis_in(workshop_ / "out");
+  EXPECT_THAT(diagnosis["findings"], testing::IsEmpty());
+  EXPECT_THAT(diagnosis["unnamed"], testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace crisp
