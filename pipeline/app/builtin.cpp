@@ -8,6 +8,7 @@
 #include "grabbers/record/record_stage.hpp"
 #include "grabbers/simulate/simulate_stage.hpp"
 #include "grabbers/table/register.hpp"
+#include "grabbers/velodyne/register.hpp"
 #include "pipeline/model/catalogue.hpp"
 #include "plugins/assemble/register.hpp"
 #include "plugins/calibrate/register.hpp"
@@ -34,6 +35,7 @@ Builtin::Builtin() {
   register_record(registrar_);
   register_pcd(registrar_);
   register_table(registrar_);
+  register_velodyne(registrar_);
   register_simulate(registrar_);
   register_clock(registrar_);
   register_assemble(registrar_);

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/velodyne/register.hpp"
+
+#include "grabbers/velodyne/velodyne_stage.hpp"
+
+namespace crisp {
+
+void register_velodyne(Registrar& registrar) { registrar.stage<VelodyneStage>(); }
+
+}  // namespace crisp

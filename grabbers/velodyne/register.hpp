@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+/// grabber.velodyne.
+void register_velodyne(Registrar& registrar);
+
+}  // namespace crisp

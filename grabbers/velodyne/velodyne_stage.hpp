@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "grabbers/velodyne/velodyne_packet.hpp"
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// `grabber.velodyne`: a VLP-16 as sixteen lasers with a fixed beam each on one turning plate.
+class VelodyneStage final : public Stage {
+ public:
+  static void describe(StageDescription<VelodyneStage>& d);
+
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+
+ private:
+  void take(const VelodynePacket& packet, std::int64_t receipt_ns, const Rig& rig);
+
+  std::filesystem::path file_;
+  std::optional<std::int64_t> epoch_ns_;
+  std::uint32_t last_us_ = 0;
+  double packet_time_ = 0;  ///< [s since the epoch] of the last packet, by the device's clock
+  std::vector<double> times_, angles_;
+  std::vector<Measurements> beams_;  ///< a packet each
+};
+
+}  // namespace crisp
