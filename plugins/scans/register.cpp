@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/scans/register.hpp"
 
+#include "plugins/scans/mounting_stage.hpp"
 #include "plugins/scans/passes_stage.hpp"
 #include "plugins/scans/rest_stage.hpp"
 #include "plugins/scans/sweep_stage.hpp"
@@ -11,6 +12,7 @@ void register_scans(Registrar& registrar) {
   registrar.stage<DiagnoseRestStage>();
   registrar.stage<DiagnoseSweepStage>();
   registrar.stage<DiagnosePassesStage>();
+  registrar.stage<DiagnoseMountingStage>();
 }
 
 }  // namespace crisp

@@ -5,7 +5,7 @@
 
 namespace crisp {
 
-/// diagnose.rest, diagnose.sweep and diagnose.passes.
+/// diagnose.rest, diagnose.sweep, diagnose.passes and diagnose.mounting.
 void register_scans(Registrar& registrar);
 
 }  // namespace crisp

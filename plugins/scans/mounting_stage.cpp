@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/scans/mounting_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/data/degree.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kShortestSweep = 5 * kDegree;
+constexpr double kPutInMounting = 0.03;  // [m]
+
+/// One choice of windows and of what is free beside the centre.
+struct MountingTry {
+  double side = 0;
+  bool with_offset = false;
+  MountingFit fit;
+  double answer = 0;  ///< times that a change of the centre along the beam, put in by hand, comes back
+};
+
+/// What all tries say of a parameter.
+struct Agreed {
+  double low = 0, high = 0;  ///< [m] of the values
+  double error = 0;          ///< [m] the largest standard error
+  bool determined() const {
+    constexpr double kApart = 3;     // standard errors
+    constexpr double kOfUse = 0.02;  // [m] an error beyond that tells nothing of a mounting of centimetres
+    return std::isfinite(error) && error < kOfUse && high - low < kApart * error;
+  }
+};
+
+Agreed agreed(const std::vector<MountingTry>& tries, MountingParameter parameter) {
+  Agreed all{.low = tries.front().fit.values[parameter], .high = all.low};
+  for (const auto& each : tries) {
+    all.low = std::min(all.low, each.fit.values[parameter]);
+    all.high = std::max(all.high, each.fit.values[parameter]);
+    all.error = std::max(all.error, each.fit.std_errors[parameter]);
+  }
+  return all;
+}
+
+/// How much of a change put in by hand comes back.
+double answer_of(const std::vector<FlatWindow>& windows, MountingParameter parameter,
+                 const MountingFit& before, const std::vector<MountingParameter>& free) {
+  const auto after = fit_mounting(with_put_in(windows, parameter, kPutInMounting), {}, free, 1);
+  return (after.values[parameter] - before.values[parameter]) / kPutInMounting;
+}
+
+const Pass* longest(const std::vector<Pass>& passes) {
+  const auto most = std::max_element(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) {
+    return a.scans.size() < b.scans.size();
+  });
+  return most == passes.end() ? nullptr : &*most;
+}
+
+std::string line_of(const MountingTry& each, double answer) {
+  const auto& fit = each.fit;
+  std::string text = fmt::format(
+      "  windows of {:.0f} deg: {:3} flat, {:6} beams, rms {:5.1f} mm: along the beam {:+7.1f} ± {:5.1f} mm, "
+      "along the "
+      "normal {:+7.1f} ± {:5.1f} mm",
+      each.side / kDegree, fit.windows, fit.beams, 1e3 * fit.rms, 1e3 * fit.values[kAlongBeam],
+      1e3 * fit.std_errors[kAlongBeam], 1e3 * fit.values[kAlongNormal], 1e3 * fit.std_errors[kAlongNormal]);
+  if (each.with_offset) {
+    text += fmt::format(", ranges {:+.1f} ± {:.1f} mm", 1e3 * fit.values[kRangeOffset],
+                        1e3 * fit.std_errors[kRangeOffset]);
+  }
+  return text + fmt::format("; 30 mm put in: {:.2f} times", answer);
+}
+
+}  // namespace
+
+void DiagnoseMountingStage::describe(StageDescription<DiagnoseMountingStage>& d) {
+  d.name("diagnose.mounting")
+      .summary("asks whether a sweep tells where the optical centre lies off the axis");
+  d.details(
+      "For one laser whose scan plane holds the actuator's axis (alpha = -90deg). The sweep is cut into "
+      "windows of "
+      "neighbouring scans and beams; those that are flat count, each with a plane of its own, and with an "
+      "offset of its "
+      "own while it is chosen, so that the choice prefers no answer. The optical centre's two coordinates in "
+      "the fan's "
+      "plane and along its normal are then found by least squares in the ranges of all windows, once alone "
+      "and once with "
+      "an offset of all ranges, for several sizes of windows.\n\n"
+      "A coordinate is determined only if all of these agree within their errors (a bootstrap over windows). "
+      "If not, it "
+      "is called unobservable, with the values that it took: real surfaces and real ranges bend by more than "
+      "the noise, "
+      "and a formal error does not know that.");
+  d.takes<Scan>().takes<PlateReading>();
+  d.holds<Findings>(Need::optional).gives<Findings>();
+  d.option("sides", &DiagnoseMountingStage::sides_, "sizes of the windows; none: 8, 12, 16 and 24 degrees")
+      .unit("rad")
+      .range(0.01, 2);
+}
+
+void DiagnoseMountingStage::process(const Inputs& in, Outputs&, Context&) {
+  if (auto findings = in.share<Findings>()) before_ = std::move(findings);
+  if (const auto* reading = in.find<PlateReading>()) series_.add(*reading);
+  if (auto scan = in.share<Scan>(); scan && scan->laser == 0) series_.add(std::move(scan));
+}
+
+void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const {
+  const auto& laser = context.rig().lasers.front();
+  const auto passes =
+      find_passes(series_, series_.actuator(context.rig().plate.counts_per_revolution), kShortestSweep);
+  const Pass* sweep = longest(passes);
+  const auto nothing = [&](const std::string& why) {
+    findings.unobservable.push_back({laser.name + ".tau", why, ""});
+    context.say(laser.name + ": " + why);
+  };
+  if (sweep == nullptr) return nothing("there is no sweep");
+  const Scan& first = *series_.scans().front().scan;
+  const FanGeometry fan{.first = first.start_angle - laser.mount, .step = first.angle_step};
+  const std::vector<double> usual = {8 * kDegree, 12 * kDegree, 16 * kDegree, 24 * kDegree};
+  std::vector<MountingTry> tries;
+  std::string lines;
+  auto report = nlohmann::json::array();
+  for (const double side : sides_.empty() ? usual : sides_) {
+    const auto windows = flat_windows(*sweep, fan, side);
+    constexpr std::size_t kFewestWindows = 6;
+    if (windows.size() < kFewestWindows || context.interrupted()) continue;
+    for (const bool with_offset : {false, true}) {
+      std::vector<MountingParameter> free = {kAlongBeam, kAlongNormal};
+      if (with_offset) free.push_back(kRangeOffset);
+      MountingTry each{
+          .side = side, .with_offset = with_offset, .fit = fit_mounting(windows, {}, free, context.seed())};
+      const double answer = answer_of(windows, kAlongBeam, each.fit, free);
+      lines += "\n" + line_of(each, answer);
+      report.push_back({{"side", side},
+                        {"with_offset", with_offset},
+                        {"windows", each.fit.windows},
+                        {"values", each.fit.values},
+                        {"std_errors", each.fit.std_errors},
+                        {"answer", answer}});
+      tries.push_back(std::move(each));
+    }
+  }
+  if (tries.empty())
+    return nothing("too few windows of the sweep are flat to tell where the optical centre lies");
+  context.say(laser.name + ": the optical centre off the axis" + lines);
+  context.report({{laser.name, report}});
+  for (const auto& [parameter, name] :
+       {std::pair(kAlongBeam, "along the middle beam"), std::pair(kAlongNormal, "along the fan's normal")}) {
+    const Agreed all = agreed(tries, parameter);
+    const std::string range = fmt::format("{:+.0f} to {:+.0f} mm with errors up to {:.0f} mm", 1e3 * all.low,
+                                          1e3 * all.high, 1e3 * all.error);
+    context.say(fmt::format("  {}: {}, {}", name, all.determined() ? "determined" : "not determined", range));
+    if (all.determined()) continue;
+    findings.unobservable.push_back(
+        {fmt::format("{}: offset from the axis {}", laser.name, name),
+         "it depends on which windows count and on whether ranges may be off: " + range, ""});
+  }
+}
+
+void DiagnoseMountingStage::finish(Outputs& out, Context& context) {
+  if (series_.scans().empty()) throw Error("no scans with readings of an actuator came");
+  Findings findings = before_ ? *before_ : Findings{};
+  diagnose(findings, context);
+  if (!context.interrupted()) out.give(std::move(findings));
+}
+
+}  // namespace crisp
