@@ -3,9 +3,11 @@
 // skipped.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <cstdlib>
 
 #include "pipeline/data/degree.hpp"
+#include "pipeline/files/calibration_file.hpp"
 #include "tests/end_to_end/workshop.hpp"
 
 namespace crisp {
@@ -120,6 +122,54 @@ TEST_F(RealData, UrgsShortWayBackDoesNotTellTheShift) {
   const auto diagnosis = diagnosis_in(workshop_ / "out");
   EXPECT_THAT(diagnosis["findings"], testing::IsEmpty());
   EXPECT_THAT(diagnosis["unnamed"], testing::IsEmpty());
+}
+
+TEST_F(RealData, HrlsSingleSweepTellsNeitherItsAnglesNorItsMounting) {
+  const auto table = data("hrl_utm30lx_tilt/ROStest_laserscans.csv");
+  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
+  const auto outcome = workshop_.run("real/hrl.yaml", table, "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const auto diagnosis = diagnosis_in(workshop_ / "out");
+  EXPECT_THAT(diagnosis["findings"], testing::IsEmpty());
+  EXPECT_THAT(diagnosis["unnamed"], testing::IsEmpty());
+  EXPECT_THAT(
+      unobservable_in(diagnosis),
+      testing::ElementsAre("shift between passes (utm)", "utm: offset from the axis along the middle beam",
+                           "utm: offset from the axis along the fan's normal"));
+  ASSERT_NE(outcome.cloud, nullptr);
+  EXPECT_EQ(outcome.cloud->size(), 56073U);
+}
+
+/// The VLP-16's azimuths, with those of every other laser turned by hand before the calibration.
+struct TurnedHead {
+  TurnedHead(const test::Workshop& workshop, const fs::path& capture, double by) {
+    Calibration start = read_calibration(CRISP_SOURCE_DIR "/configs/real/vlp16_start.yaml");
+    for (std::size_t i = 1; i < start.lasers.size(); i += 2) start.lasers[i].lambda.value += by;
+    write_calibration(workshop / "start.yaml", start);
+    outcome =
+        workshop.run("real/vlp16.yaml", capture, "out", {"start=" + (workshop / "start.yaml").string()});
+    const auto found = read_calibration(workshop / "out/calibration.yaml");
+    double even = 0, odd = 0;
+    for (std::size_t i = 3; i < found.lasers.size(); ++i) {
+      (i % 2 == 1 ? even : odd) += found.lasers[i].lambda.value / (i % 2 == 1 ? 7 : 6);
+    }
+    apart = even - odd;
+  }
+  test::Outcome outcome;
+  double apart = 0;  ///< [rad] mean azimuth of the even lasers less that of the odd ones
+};
+
+TEST_F(RealData, VelodynesLasersComeBackToOneAnotherFromAnAngleThatIsPutInByHand) {
+  const auto capture = data("velodyne_vlp16_static/sample_velodyne_vlp16_gps.pcap");
+  if (!fs::exists(capture)) GTEST_SKIP() << missing(capture);
+  const TurnedHead as_made(workshop_, capture, 0);
+  EXPECT_EQ(as_made.outcome.status, ExitStatus::done) << as_made.outcome.told;
+  EXPECT_NEAR(as_made.apart, 0, 0.2 * kDegree) << "as the maker has them";
+  for (const double degrees : {-1.0, 1.0, 3.0}) {
+    const TurnedHead turned(workshop_, capture, degrees * kDegree);
+    EXPECT_NEAR(turned.apart - as_made.apart, 0, 0.1 * std::abs(degrees) * kDegree + 0.05 * kDegree)
+        << degrees;
+  }
 }
 
 }  // namespace
