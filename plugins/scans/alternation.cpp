@@ -13,8 +13,8 @@ namespace crisp {
 namespace {
 
 constexpr std::size_t kMostLags = 8;
-constexpr double kClip = 0.3;  // [m]
-constexpr double kLeft = 0.2;  // of the contrast, by scans that are alike
+constexpr double kClip = 0.3;          // [m]
+constexpr double kStillDiffers = 0.2;  // of the contrast, by scans that are alike
 constexpr std::size_t kShuffles = 199;
 
 double mean_difference(const SeriesScan& a, const SeriesScan& b) {
@@ -67,7 +67,7 @@ Extremes extremes(const std::vector<double>& difference) {
 std::size_t period_of(const std::vector<double>& difference) {
   const Extremes range = extremes(difference);
   for (std::size_t l = 0; l < difference.size(); ++l) {
-    if (difference[l] - range.least <= kLeft * range.contrast()) return l + 1;
+    if (difference[l] - range.least <= kStillDiffers * range.contrast()) return l + 1;
   }
   return 1;
 }

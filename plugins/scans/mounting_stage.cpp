@@ -138,7 +138,7 @@ void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const
                         {"values", each.fit.values},
                         {"std_errors", each.fit.std_errors},
                         {"answer", answer}});
-      tries.push_back(std::move(each));
+      tries.push_back(each);
     }
   }
   if (tries.empty())

@@ -98,13 +98,14 @@ void DiagnoseRestStage::process(const Inputs& in, Outputs&, Context& context) {
       context.count("scans without ranges");
       return;
     }
-    items_.emplace_back(std::size_t{scan->laser});
-    lasers_.at(scan->laser).series.add(std::move(scan));
+    const std::size_t laser = scan->laser;
+    items_.emplace_back(laser);
+    lasers_.at(laser).series.add(std::move(scan));
   }
 }
 
 void DiagnoseRestStage::report(const std::string& name, const Alternation& alternation,
-                               const std::vector<KindDeparture>& departures, Context& context) const {
+                               const std::vector<KindDeparture>& departures, Context& context) {
   std::string lags;
   for (const double d : alternation.difference) lags += fmt::format(" {:.1f}", 1e3 * d);
   context.say(fmt::format("{}: scans 1, 2 … apart differ at rest by{} mm: they repeat every {} (p {:.3g})",

@@ -21,9 +21,9 @@ class DiagnoseRestStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
-  void diagnose(std::size_t laser, Findings& findings, Context& context);
-  void report(const std::string& name, const Alternation& alternation,
-              const std::vector<KindDeparture>& departures, Context& context) const;
+  void diagnose(std::size_t index, Findings& findings, Context& context);
+  static void report(const std::string& name, const Alternation& alternation,
+                     const std::vector<KindDeparture>& departures, Context& context);
   void draw(const std::string& name, const std::vector<KindDeparture>& departures, Context& context) const;
   std::shared_ptr<const Scan> mended(const std::shared_ptr<const Scan>& scan);
 

@@ -140,7 +140,10 @@ void DiagnoseSweepStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const auto* reading = in.find<PlateReading>()) {
     for (auto& laser : lasers_) laser.add(*reading);
   }
-  if (auto scan = in.share<Scan>()) lasers_.at(scan->laser).add(std::move(scan));
+  if (auto scan = in.share<Scan>()) {
+    ScanSeries& laser = lasers_.at(scan->laser);
+    laser.add(std::move(scan));
+  }
   if (const auto* clock = in.find<ClockMap>()) clocks_[clock->device] = *clock;
 }
 

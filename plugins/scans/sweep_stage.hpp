@@ -22,7 +22,7 @@ class DiagnoseSweepStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
-  void diagnose(std::size_t laser, Findings& findings, Context& context) const;
+  void diagnose(std::size_t index, Findings& findings, Context& context) const;
 
   std::optional<std::filesystem::path> folder_;
   std::vector<ScanSeries> lasers_;

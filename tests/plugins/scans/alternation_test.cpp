@@ -8,7 +8,7 @@
 namespace crisp {
 namespace {
 
-constexpr double kNoise = 0.01;
+constexpr double kNoiseAtRest = 0.01;
 constexpr std::uint16_t kScans = 120;
 
 struct Odd {
@@ -17,7 +17,7 @@ struct Odd {
 };
 
 std::vector<SeriesScan> at_rest(const Odd& odd) {
-  test::TiltingScene scene(kNoise);
+  test::TiltingScene scene(kNoiseAtRest);
   ScanSeries series;
   for (std::uint16_t i = 0; i < kScans; ++i) {
     const bool other = i % 2 == 1;
@@ -35,7 +35,8 @@ TEST(Alternation, ScansThatAreAlikeDoNotTakeTurns) {
   EXPECT_EQ(found.period, 1U);
   ASSERT_EQ(found.difference.size(), 8U);
   // the mean size of the difference of two normal values
-  for (const double d : found.difference) EXPECT_NEAR(d, 2 * kNoise / std::sqrt(std::numbers::pi), 3e-4);
+  for (const double d : found.difference)
+    EXPECT_NEAR(d, 2 * kNoiseAtRest / std::sqrt(std::numbers::pi), 3e-4);
 }
 
 TEST(Alternation, FindsByHowMuchOneKindOfScanPointsElsewhere) {

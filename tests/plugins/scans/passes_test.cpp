@@ -9,14 +9,14 @@ namespace crisp {
 namespace {
 
 constexpr double kStep = 0.1 * kDegree;
-constexpr double kNoise = 0.01;
+constexpr double kNoiseOfPasses = 0.01;
 
 /// Up from 30° to 80° and down again, a step a scan. On the way down the tilt is `behind` less than it reads
 /// at its lowest reading, and `more` less than that at its highest.
 std::vector<Pass> up_and_down(double behind, double more = 0, double offset = 0) {
   static ScanSeries series;
   series = {};
-  test::TiltingScene scene(kNoise);
+  test::TiltingScene scene(kNoiseOfPasses);
   constexpr int kSteps = 500;
   for (int i = 0; i < 2 * kSteps; ++i) {
     const bool up = i <= kSteps;
@@ -56,7 +56,8 @@ TEST(PassShift, PaysOnAnglesThatItWasNotFoundIn) {
   EXPECT_NEAR(found.shift, -2 * kStep, 3 * found.std_error);
   EXPECT_GT(found.constant_p, 0.01);
   EXPECT_LT(found.gain.ci95[1], 0);
-  EXPECT_NEAR(found.gain.after, std::sqrt(2.0) * kNoise, 0.1 * kNoise) << "the noise of both passes is left";
+  EXPECT_NEAR(found.gain.after, std::sqrt(2.0) * kNoiseOfPasses, 0.1 * kNoiseOfPasses)
+      << "the noise of both passes is left";
 }
 
 TEST(PassShift, IsNoneWhereThereIsNone) {

@@ -18,7 +18,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-constexpr double kPeriod = test::TiltingScene::kPeriod;
+constexpr double kScanPeriod = test::TiltingScene::kPeriod;
 
 template <class S>
 test::StageDriver driver(const std::map<std::string, OptionValue>& options = {}) {
@@ -33,10 +33,10 @@ test::StageDriver driver(const std::map<std::string, OptionValue>& options = {})
 void feed_sweep_and_rest(test::StageDriver& stage, double shift, bool two_by_two) {
   test::TiltingScene scene(0.005);
   for (std::uint16_t i = 0; i < 250; ++i) {
-    const double taken = kPeriod * i;
+    const double taken = kScanPeriod * i;
     const double tilt = 20 * kDegree + 60 * kDegree * std::min(taken, 1.2);
     const bool other = i % 2 == 1;
-    const double receipt = two_by_two && !other ? taken + kPeriod - 0.001 : taken;
+    const double receipt = two_by_two && !other ? taken + kScanPeriod - 0.001 : taken;
     const double read = 20 * kDegree + 60 * kDegree * std::min(receipt, 1.2);
     stage.feed(test::reading_at(read, receipt));
     stage.feed(std::shared_ptr<const Scan>(
