@@ -126,7 +126,7 @@ void LiveStage<devices>::describe_plate(StageDescription<LiveStage>& d) {
   option("serial", &PlateSettings::serial, "the serial line");
   option("baud", &PlateSettings::baud, "bits a second on it").range(50, 4e6);
   option("plate_silence", &PlateSettings::silence,
-         "without a byte for so long, a connection or serial line is opened anew")
+         "without a reading for so long, a connection or serial line is opened anew")
       .unit("s")
       .range(0.05, 600);
 }

@@ -51,7 +51,6 @@ void PlateDatagrams::take(std::size_t bytes) {
 
 void PlateDatagrams::stop() {
   if (!socket_.is_open()) return;
-  readings_.tell_damage();
   boost::system::error_code ignored;
   socket_.close(ignored);
 }

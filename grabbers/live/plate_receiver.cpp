@@ -7,13 +7,20 @@
 
 namespace crisp {
 
-void PlateReadings::take(ByteView bytes) {
-  framer_.feed(bytes, clock_(), [this](const PlateReading& reading) {
+bool PlateReadings::take(ByteView bytes) {
+  bool any = false;
+  framer_.feed(bytes, clock_(), [&](const PlateReading& reading) {
+    any = true;
     if (const auto fresh = log_.take(reading)) give_(*fresh);
   });
+  return any;
 }
 
-void PlateReadings::tell_damage() { note_framing(framer_.counts(), log_); }
+void PlateReadings::gap() {
+  framer_.gap();
+  const PlateFramer::Counts counts = framer_.take_counts();
+  if (counts.any_damage()) note_framing(counts, log_);
+}
 
 std::unique_ptr<PlateReceiver> make_plate_receiver(boost::asio::io_context& context, PlateReadings readings,
                                                    const Address& plate, const PlateSettings& settings) {

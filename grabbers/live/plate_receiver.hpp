@@ -26,7 +26,7 @@ struct PlateSettings {
   std::optional<std::uint16_t> port;  ///< of the hub; 0: any that is free; nothing: the rig's, or 4000
   std::string serial = "/dev/ttyUSB0";
   unsigned baud = 115200;    ///< [bit/s] of the serial line
-  double silence = 2;        ///< [s] without a byte after which a connection or line is opened anew
+  double silence = 2;        ///< [s] without a reading after which a connection or line is opened anew
   double longest_pause = 5;  ///< [s] between two tries; the first are quicker
 };
 
@@ -36,13 +36,11 @@ class PlateReadings {
   PlateReadings(DeviceLog& log, GiveItem give, HubClock clock)
       : log_(log), give_(std::move(give)), clock_(std::move(clock)) {}
 
-  /// Bytes that came just now.
-  void take(ByteView bytes);
-  /// The datagram or connection is over: what is incomplete stays so.
-  void gap() { framer_.gap(); }
+  /// Bytes that came just now. @return whether there was a reading in them
+  bool take(ByteView bytes);
+  /// The datagram or connection is over: what is incomplete stays so, and what was damaged is told.
+  void gap();
   void note(const std::string& what) { log_.note(what); }
-  /// Tells the log what was damaged; once, at the end.
-  void tell_damage();
 
  private:
   DeviceLog& log_;

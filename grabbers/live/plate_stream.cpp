@@ -39,7 +39,7 @@ class PlateStream final : public PlateReceiver {
   void start() override {
     ++link_number_;
     link_ = Link(context_);
-    await_bytes();
+    await_reading();
     open_(link_, [this, mine = link_number_](const error_code& failure) {
       if (mine != link_number_) return;
       if (failure) return fail(failure.message());
@@ -50,7 +50,6 @@ class PlateStream final : public PlateReceiver {
   void stop() override {
     if (std::exchange(stopped_, true)) return;
     close();
-    readings_.tell_damage();
   }
 
  private:
@@ -59,15 +58,16 @@ class PlateStream final : public PlateReceiver {
                           [this, mine = link_number_](const error_code& failure, std::size_t bytes) {
                             if (mine != link_number_) return;
                             if (failure) return fail(failure.message());
-                            readings_.take(ByteView(buffer_).first(bytes));
-                            back_off_.reset();
-                            await_bytes();
+                            if (readings_.take(ByteView(buffer_).first(bytes))) {
+                              back_off_.reset();
+                              await_reading();
+                            }
                             read();
                           });
   }
 
-  void await_bytes() {
-    alarm_.set(silence_, [this] { fail("nothing came"); });
+  void await_reading() {
+    alarm_.set(silence_, [this] { fail("no reading came"); });
   }
 
   void fail(const std::string& reason) {

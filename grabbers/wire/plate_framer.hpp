@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "grabbers/wire/bytes.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
@@ -21,6 +22,10 @@ class PlateFramer {
     std::uint64_t readings = 0;
     std::array<std::uint64_t, 5> failures{};  ///< lines that are no reading, by PlateFailure
     std::uint64_t skipped_bytes = 0;          ///< bytes outside of any sentence
+    /// Whether anything came that was no reading.
+    bool any_damage() const {
+      return skipped_bytes > 0 || std::ranges::any_of(failures, [](auto n) { return n > 0; });
+    }
     std::uint64_t of(PlateFailure failure) const { return failures[static_cast<std::size_t>(failure)]; }
   };
 
@@ -43,6 +48,8 @@ class PlateFramer {
   void gap();
 
   const Counts& counts() const { return counts_; }
+  /// Counts begin at zero again.
+  Counts take_counts() { return std::exchange(counts_, {}); }
 
   /// Whether the begin of a sentence waits for its end.
   bool waiting() const { return !line_.empty(); }

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <boost/asio/write.hpp>
 #include <filesystem>
 #include <future>
 #include <map>
@@ -28,7 +27,6 @@ using namespace std::chrono_literals;
 
 using test::loopback_rig;
 using test::of;
-using test::rig_of_one;
 
 std::vector<HubItem> recorded_items(double seconds = 0.5) {
   const test::TemporaryFolder folder;
@@ -194,71 +192,6 @@ TEST(LiveSource, GoesOnWhenALaserComesBack) {
   EXPECT_GE(test::count_beginning(of(statistics, "laser1").notes, "connections that failed"), 1U);
 }
 
-/// A server that accepts one client after the other, and sends each the same bytes without end or answer.
-class Babbler {
- public:
-  explicit Babbler(Bytes bytes)
-      : bytes_(std::move(bytes)), acceptor_(context_, {boost::asio::ip::make_address("127.0.0.1"), 0}) {
-    accept();
-    thread_ = std::thread([this] { context_.run(); });
-  }
-  ~Babbler() {
-    context_.stop();
-    thread_.join();
-  }
-  std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
-
- private:
-  using Socket = boost::asio::ip::tcp::socket;
-  void accept() {
-    acceptor_.async_accept([this](const boost::system::error_code& failure, Socket socket) {
-      if (failure) return;
-      clients_.push_back(std::make_unique<Socket>(std::move(socket)));
-      babble(*clients_.back());
-      accept();
-    });
-  }
-  void babble(Socket& socket) {
-    if (bytes_.empty()) return;
-    boost::asio::async_write(socket, boost::asio::buffer(bytes_),
-                             [this, &socket](const boost::system::error_code& failure, std::size_t) {
-                               if (!failure) babble(socket);
-                             });
-  }
-
-  Bytes bytes_;
-  boost::asio::io_context context_;
-  boost::asio::ip::tcp::acceptor acceptor_;
-  std::vector<std::unique_ptr<Socket>> clients_;
-  std::thread thread_;
-};
-
-TEST(LiveSource, CountsGarbageOfAnyLength) {
-  // What claims to be a telegram of 4 GB, and then what is none.
-  Bytes garbage{2, 2, 2, 2, 0xff, 0xff, 0xff, 0xff, 's', 'S', 'N', ' '};
-  garbage.resize(100'000, 0xab);
-  const Babbler babbler(garbage);
-  LiveSource source(rig_of_one(babbler.port()), {.plate = false, .sick = {.reply_timeout = 0.05}});
-  EXPECT_TRUE(test::comes_true(source, "laser1", [](const DeviceStatistics& laser) {
-    return laser.losses.of("bytes that belong to no whole telegram") > 1'000'000 &&
-           laser.notes.of("connections that failed: a request was not answered") >= 2;
-  }));
-  const auto statistics = source.close();
-  EXPECT_EQ(of(statistics, "laser1").items, 0U);
-}
-
-TEST(LiveSource, CountsTelegramsWithoutEnd) {
-  // One in CoLa-A that never ends, and within it the beginnings of many in CoLa-B that are too long.
-  std::string endless = "\x02sSN LMDscandata 1 1 ";
-  for (int i = 0; i < 1000; ++i) endless += "7 \x02\x02\x02\x02\x7f\xff\xff\xff" + std::string(100, 'F');
-  const Babbler babbler(Bytes(endless.begin(), endless.end()));
-  LiveSource source(rig_of_one(babbler.port()), {.plate = false, .sick = {.reply_timeout = 0.05}});
-  EXPECT_TRUE(test::comes_true(source, "laser1", [](const DeviceStatistics& laser) {
-    return laser.losses.of("bytes that belong to no whole telegram") > 1'000'000;
-  }));
-  EXPECT_EQ(of(source.close(), "laser1").items, 0U);
-}
-
 TEST(LiveSource, SurvivesAllFaultsOfTheEmulatorAndCountsWhatNeverCame) {
   const auto recorded = recorded_items(3);
   Emulator emulator(
@@ -299,22 +232,6 @@ TEST(LiveSource, SurvivesAllFaultsOfTheEmulatorAndCountsWhatNeverCame) {
     EXPECT_GT(device.losses.of(kTelegramsNeverCame), 0U);
   }
   EXPECT_GT(damaged, 0U);
-}
-
-TEST(LiveSource, EndsSoonWhateverTheNetworkDoes) {
-  const Babbler silent({});
-  for (const auto port :
-       {silent.port(), std::uint16_t{1}}) {  // one that never answers, one that nobody serves
-    LiveSource source(rig_of_one(port), {.plate = false, .sick = {.reply_timeout = 3600}});
-    auto end = std::async(std::launch::async, [&] { return source.next().has_value(); });
-    const auto begin = std::chrono::steady_clock::now();
-    source.interrupt();
-    EXPECT_FALSE(end.get());
-    source.close();
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    RecordProperty("seconds", std::to_string(took.count()));
-    EXPECT_LT(took.count(), 30) << "0.1 s on a machine that does nothing else";
-  }
 }
 
 TEST(LiveSource, RefusesAddressesThatItCannotUse) {

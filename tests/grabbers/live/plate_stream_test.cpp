@@ -135,7 +135,7 @@ TEST_F(PlateStreams, OverTcpGoOnAfterAConnectionBreaks) {
   EXPECT_GE(test::count_beginning(plate.notes, "connections that failed"), 2U);
 }
 
-TEST_F(PlateStreams, AreOpenedAnewWhenNothingComes) {
+TEST_F(PlateStreams, AreOpenedAnewWhenNoReadingComes) {
   boost::asio::io_context context;
   tcp::acceptor acceptor(context, {boost::asio::ip::make_address("127.0.0.1"), 0});
   Rig rig = test::loopback_rig();
@@ -144,7 +144,7 @@ TEST_F(PlateStreams, AreOpenedAnewWhenNothingComes) {
   live.plate_at.silence = 0.05;
   LiveSource source(rig, live);
   EXPECT_TRUE(test::comes_true(source, "plate", [](const DeviceStatistics& plate) {
-    return plate.notes.of("connections that failed: nothing came") >= 2;
+    return plate.notes.of("connections that failed: no reading came") >= 2;
   }));
 }
 
