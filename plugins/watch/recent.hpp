@@ -34,12 +34,12 @@ class Recent {
   std::deque<Batch> batches_;
 };
 
-/// All beams of the batches, over one trajectory.
+/// About `most` of the batches' beams, each as likely to be taken as any other, over one trajectory.
 ///
 /// Where pieces overlap the later one counts only behind the earlier: live clocks are known better each time,
 /// so that the same reading has times in them which differ by microseconds, and two of it would be a jerk.
 ///
 /// @param plate  receives the trajectory, which the sample refers to
-Sample sample_of(const std::vector<Recent::Batch>& batches, PlateTrajectory& plate);
+Sample sample_of(const std::vector<Recent::Batch>& batches, std::size_t most, PlateTrajectory& plate);
 
 }  // namespace crisp

@@ -15,6 +15,8 @@
 namespace crisp {
 namespace {
 
+constexpr std::size_t kToChooseFrom = 2;  // times the beams that are looked at, by the areas they stand for
+
 /// Where nothing that has to keep up with the devices has to wait for it.
 template <class Work>
 auto in_background(const Work& work) {
@@ -125,7 +127,7 @@ void WatchStage::begin_check(Context& context) {
   const auto check = [this, batches = recent_->batches(), calibration = calibration_, rig = context.rig(),
                       terms = context.run().registrar->get<TermRegistry>(), renewing = renewing()] {
     PlateTrajectory plate;
-    const Sample sample = sample_of(batches, plate);
+    const Sample sample = sample_of(batches, kToChooseFrom * settings_.beams, plate);
     return check_calibration(*calibration, sample, rig, terms, settings_, renewing,
                              [this] { return !stop_; });
   };

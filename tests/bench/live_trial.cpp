@@ -287,10 +287,26 @@ void print_losses(const std::vector<NodeResult>& results) {
   }
 }
 
+/// What was found of the clocks by the times at which this process took the data.
+void print_clocks(const std::vector<NodeResult>& results, const RecordingTruth& truth) {
+  std::vector<DeviceTruth> devices = truth.lasers;
+  devices.push_back(truth.plate);
+  const auto clocks = std::ranges::find(results, "clock.online", &NodeResult::tag);
+  std::size_t k = 0;
+  for (const auto& device : clocks->report.section.at("devices")) {
+    std::cout << fmt::format(
+        "clock of {}: skew {:+.2f} ppm, in truth {:+.2f} ppm; delays {:.0f} us in the median, "
+        "{:.0f} us at 95 %\n",
+        device.at("device").get<std::string>(), device.at("skew_ppm").get<double>(),
+        1e6 * devices.at(k++).clock.skew, 1e6 * device.at("delay_median").get<double>(),
+        1e6 * device.at("delay_95").get<double>());
+  }
+}
+
 int attempt(const Trial& trial, const fs::path& folder) {
   const Rig rig = rig_with_free_ports();
-  write_calibration(folder / "truth.yaml",
-                    RecordingSimulator(recording_of(trial), office()).truth().calibration);
+  const RecordingTruth truth = RecordingSimulator(recording_of(trial), office()).truth();
+  write_calibration(folder / "truth.yaml", truth.calibration);
   std::array<int, 2> pipe_ends{};
   if (pipe(pipe_ends.data()) != 0) return EXIT_FAILURE;
   const pid_t scanner = fork();
@@ -337,6 +353,7 @@ int attempt(const Trial& trial, const fs::path& folder) {
             << (same ? "byte for byte the same" : "NOT THE SAME") << "\n"
             << "counted:\n";
   print_losses(results);
+  if (trial.speed == 1) print_clocks(results, truth);
   return same ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -18,7 +18,7 @@ CalibrationCheck check(const Calibration& calibration, const SimulatedMeasuremen
 }
 
 TEST(CalibrationCheck, FindsTheTruthGood) {
-  const auto simulated = test::recorded(4);
+  const auto simulated = test::recorded(3);
   const CalibrationCheck found = check(simulated.truth, simulated);
   EXPECT_FALSE(found.stale) << found.moved;
   EXPECT_NEAR(found.rqe, found.best_rqe, 1e-3);
@@ -26,7 +26,7 @@ TEST(CalibrationCheck, FindsTheTruthGood) {
 }
 
 TEST(CalibrationCheck, NamesTheParameterThatMovedAndFindsItAnew) {
-  const auto simulated = test::recorded(4);
+  const auto simulated = test::recorded(3);
   const CalibrationCheck found = check(test::pushed(simulated.truth), simulated, Renewing::IfStale);
   EXPECT_TRUE(found.stale);
   EXPECT_THAT(found.moved, testing::StartsWith("laser2.alpha by -0.5"));
@@ -38,7 +38,7 @@ TEST(CalibrationCheck, NamesTheParameterThatMovedAndFindsItAnew) {
 }
 
 TEST(CalibrationCheck, FindsLagsAnewAndLeavesWhatIsKnownOfTheGeometry) {
-  const auto simulated = test::recorded(4);
+  const auto simulated = test::recorded(3);
   Calibration before = simulated.truth;
   before.lasers[1].tau.std_error = 1e-3;
   before.lasers[1].eta.value = 0;

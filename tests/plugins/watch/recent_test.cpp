@@ -17,6 +17,17 @@ TEST(Recent, KeepsTheLastSecondsAndNoMore) {
   EXPECT_LT(recent.duration(), 0.6);
 }
 
+TEST(Recent, TakesAShareOfAllBatches) {
+  const auto batches = test::batches_of(test::recorded(0.5));
+  constexpr std::size_t kMost = 5000;
+  PlateTrajectory plate;
+  const Sample sample = sample_of(batches, kMost, plate);
+  // What is taken of each batch is drawn: sqrt(5000) = 71 is one standard deviation at most.
+  EXPECT_NEAR(static_cast<double>(sample.beams.size()), kMost, 5 * 71);
+  EXPECT_LT(sample.beams.time.front(), batches.front().beams->time.back());
+  EXPECT_GT(sample.beams.time.back(), batches.back().beams->time.front());
+}
+
 TEST(Recent, JoinsPiecesOfAClockThatIsBetterKnownEachTimeWithoutAJerk) {
   // A plate at 1 Hz, read 500 times a second; each piece overlaps the one before, and is 20 us off it.
   const double turn = 2 * M_PI;
@@ -39,7 +50,7 @@ TEST(Recent, JoinsPiecesOfAClockThatIsBetterKnownEachTimeWithoutAJerk) {
                        std::make_shared<const PlateTrajectory>(0, times, angles, 0.1)});
   }
   PlateTrajectory plate;
-  const Sample sample = sample_of(batches, plate);
+  const Sample sample = sample_of(batches, 1000, plate);
   EXPECT_EQ(sample.beams.size(), 20U);
   for (double t = 0.01; t < 0.45; t += 1e-4) {
     const auto state = plate.at(t);

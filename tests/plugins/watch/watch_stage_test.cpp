@@ -15,17 +15,17 @@ namespace {
 
 using Options = std::map<std::string, OptionValue>;
 
-/// The stage with an office of four seconds and a calibration from above.
+/// The stage with an office of three seconds and a calibration from above.
 class WatchStageTest : public testing::Test {
  protected:
   WatchStageTest() { registrar_.attach(terms_); }
 
   test::StageDriver run(const Calibration& calibration, Options options) {
-    options.emplace("seconds", OptionScalar(3.0));
+    options.emplace("seconds", OptionScalar(2.5));
     auto stage = test::StageDriver::of<WatchStage>(options);
     stage.run().registrar = &registrar_;
     const auto above = std::make_shared<const Calibration>(calibration);
-    for (const auto& batch : test::batches_of(simulated_)) stage.feed(batch.beams, batch.plate, above);
+    for (const auto& batch : test::batches_of(simulated())) stage.feed(batch.beams, batch.plate, above);
     stage.finish();
     return stage;
   }
@@ -34,11 +34,14 @@ class WatchStageTest : public testing::Test {
 
   TermRegistry terms_;
   Registrar registrar_;
-  const SimulatedMeasurements simulated_ = test::recorded(4);
+  static const SimulatedMeasurements& simulated() {
+    static const SimulatedMeasurements three_seconds = test::recorded(3);
+    return three_seconds;
+  }
 };
 
 TEST_F(WatchStageTest, PassesAGoodCalibrationOnAndIsContent) {
-  const auto stage = run(simulated_.truth, {});
+  const auto stage = run(simulated().truth, {});
   EXPECT_EQ(stage.given<Calibration>().size(), 1U);
   EXPECT_EQ(stage.report().section["checks"], 1);
   EXPECT_EQ(stage.report().section["stale"], 0);
@@ -46,7 +49,7 @@ TEST_F(WatchStageTest, PassesAGoodCalibrationOnAndIsContent) {
 }
 
 TEST_F(WatchStageTest, SaysThatACalibrationHasGoneStale) {
-  const auto stage = run(test::pushed(simulated_.truth), {});
+  const auto stage = run(test::pushed(simulated().truth), {});
   EXPECT_EQ(stage.given<Calibration>().size(), 1U) << "it is not to be replaced";
   EXPECT_THAT(stage.report().warnings,
               testing::ElementsAre(testing::StartsWith("the calibration is stale: laser2.alpha by -0.")));
@@ -55,16 +58,16 @@ TEST_F(WatchStageTest, SaysThatACalibrationHasGoneStale) {
 
 TEST_F(WatchStageTest, ReplacesAStaleOneWhereItMay) {
   const auto stage =
-      run(test::pushed(simulated_.truth), {{"recalibrate", text("when_stale")}, {"renew", text("all")}});
+      run(test::pushed(simulated().truth), {{"recalibrate", text("when_stale")}, {"renew", text("all")}});
   const auto given = stage.given<Calibration>();
   ASSERT_EQ(given.size(), 2U);
-  EXPECT_NEAR(given[1]->lasers[1].alpha.value, simulated_.truth.lasers[1].alpha.value,
+  EXPECT_NEAR(given[1]->lasers[1].alpha.value, simulated().truth.lasers[1].alpha.value,
               5 * given[1]->lasers[1].alpha.std_error);
   EXPECT_THAT(stage.report().doubts, testing::IsEmpty());
 }
 
 TEST_F(WatchStageTest, FindsTheLagsOfAStartAndNothingElse) {
-  Calibration before = simulated_.truth;
+  Calibration before = simulated().truth;
   before.lasers[1].eta.value = 0;
   const auto stage = run(before, {{"recalibrate", text("at_start")}});
   const auto given = stage.given<Calibration>();
@@ -75,7 +78,7 @@ TEST_F(WatchStageTest, FindsTheLagsOfAStartAndNothingElse) {
 }
 
 TEST_F(WatchStageTest, SaysThatTheGeometryIsStaleWhereLagsAloneAreRenewed) {
-  const auto stage = run(test::pushed(simulated_.truth, 1.5 * kDegree), {{"recalibrate", text("at_start")}});
+  const auto stage = run(test::pushed(simulated().truth, 1.5 * kDegree), {{"recalibrate", text("at_start")}});
   EXPECT_EQ(stage.given<Calibration>().size(), 2U);
   EXPECT_THAT(stage.report().doubts, testing::SizeIs(1));
 }
@@ -83,7 +86,7 @@ TEST_F(WatchStageTest, SaysThatTheGeometryIsStaleWhereLagsAloneAreRenewed) {
 TEST_F(WatchStageTest, RecalibratesWhenAPersonAsksForIt) {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "recalibrate") << "please";
-  const auto stage = run(simulated_.truth, {{"request", text((folder / "recalibrate").string())}});
+  const auto stage = run(simulated().truth, {{"request", text((folder / "recalibrate").string())}});
   EXPECT_FALSE(std::filesystem::exists(folder / "recalibrate"));
   EXPECT_EQ(stage.given<Calibration>().size(), 2U);
 }
