@@ -29,6 +29,13 @@ asio::ip::address ip_of(const std::string& text) {
   return ip;
 }
 
+/// Where the plate's datagrams to a loopback address come from: the rig's plate, if it has one, too.
+asio::ip::address plate_address(const Rig& rig, const asio::ip::address& to) {
+  boost::system::error_code unknown;
+  const auto own = asio::ip::make_address(rig.plate.address.ip, unknown);
+  return own.is_loopback() && own.is_v4() == to.is_v4() ? own : to;
+}
+
 }  // namespace
 
 void Emulator::check(const EmulatorSettings& settings) const {
@@ -59,6 +66,8 @@ Emulator::Emulator(Rig rig, EmulatorSettings settings)
   }
   plate_to_ = {ip_of(settings_.plate_to.ip), settings_.plate_to.port};
   plate_.open(plate_to_.protocol());
+  // A socket that is bound nowhere would take datagrams from the network.
+  if (plate_to_.address().is_loopback()) plate_.bind({plate_address(rig_, plate_to_.address()), 0});
   for (const auto& laser : lasers_) laser->start();
   thread_ = std::thread([this] { context_.run(); });
 }

@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <chrono>
 #include <system_error>
 #include <utility>
@@ -159,7 +160,7 @@ void WatchStage::judge(CalibrationCheck found, Outputs& out, Context& context) {
       good_ = good_ || rqe - best_rqe_ <= settings_.tolerance;
     }
   }
-  line_ = fmt::format("RQE {:.3f}, {:.3f} above the best", rqe_, rqe_ - best_rqe_);
+  line_ = fmt::format("RQE {:.3f}, {:.3f} above the best", rqe_, std::max(0.0, rqe_ - best_rqe_));
   if (good_) return;
   line_ += ", the calibration is stale: " + found.moved;
   if (was_good) note("the calibration is stale: " + found.moved, context);

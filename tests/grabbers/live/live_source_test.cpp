@@ -244,6 +244,18 @@ TEST(LiveSource, RefusesAddressesThatItCannotUse) {
                Error);
 }
 
+TEST(Emulator, SendsThePlatesDatagramsFromItsAddress) {
+  Rig rig = loopback_rig(0);
+  rig.plate.address.ip = "127.0.0.2";
+  LiveSource source(rig, {.lasers = false, .plate_at = {.port = 0}});
+  Emulator emulator(rig,
+                    {.speed = 0, .wait_for_clients = false, .plate_to = {"127.0.0.1", source.plate_port()}});
+  emulator.send(PlateReading{.sequence = 7}, [] { return false; });
+  const auto item = source.next_within(test::kPatience);
+  ASSERT_TRUE(item);
+  EXPECT_EQ(std::get<PlateReading>(*item).sequence, 7U);
+}
+
 TEST(Emulator, ListensAtLoopbackAloneUnlessAllowed) {
   Rig rig = loopback_rig();
   rig.lasers[2].address.ip = "0.0.0.0";
