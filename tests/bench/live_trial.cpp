@@ -199,16 +199,16 @@ class Watch {
     return latencies_[static_cast<std::size_t>(share * static_cast<double>(latencies_.size() - 1))];
   }
   double elapsed() const { return last_ - begun; }
-  /// The most in each minute.
-  std::string memory_by_minute() const {
-    constexpr std::size_t kMinute = 60;
+  /// The most in each tenth of the time.
+  std::string memory_in_tenths() const {
+    constexpr std::size_t kTenths = 10;
     std::string text;
-    for (std::size_t begin = 0; begin < memory.size(); begin += kMinute) {
-      const auto first = memory.begin() + static_cast<std::ptrdiff_t>(begin);
-      const auto end = memory.begin() + static_cast<std::ptrdiff_t>(std::min(begin + kMinute, memory.size()));
-      text += fmt::format("{}{:.1f}", begin == 0 ? "" : ", ", *std::max_element(first, end));
+    for (std::size_t k = 0; k < kTenths; ++k) {
+      const auto first = memory.begin() + static_cast<std::ptrdiff_t>(k * memory.size() / kTenths);
+      const auto end = memory.begin() + static_cast<std::ptrdiff_t>((k + 1) * memory.size() / kTenths);
+      if (first != end) text += fmt::format("{:.1f} ", *std::max_element(first, end));
     }
-    return text + " MiB, the most in each minute";
+    return text + "MiB, the most in each tenth of the time";
   }
 
   std::uint64_t scans = 0, readings = 0, points = 0;
@@ -347,7 +347,7 @@ int attempt(const Trial& trial, const fs::path& folder) {
             << "latency from a telegram's arrival to its points: median " << 1e3 * watch.quantile(0.5)
             << " ms, 99 % " << 1e3 * watch.quantile(0.99) << " ms, most " << 1e3 * watch.quantile(1)
             << " ms\n"
-            << "resident memory: " << watch.memory_by_minute() << "\n"
+            << "resident memory: " << watch.memory_in_tenths() << "\n"
             << "stopped within " << 1e3 * stopping << " ms\n"
             << "measurements from the recording: " << offline.fingerprint.scans << " scans, "
             << (same ? "byte for byte the same" : "NOT THE SAME") << "\n"
