@@ -34,7 +34,7 @@ void LiveStatus::note(const std::string& device, const Counts& counts, double no
                       std::vector<std::string>& events) {
   constexpr double kNotAgainFor = 10;  // [s]
   for (const auto& [what, n] : counts.all()) {
-    const std::string name = device.empty() ? what : device + ": " + what;
+    const std::string name = device.empty() ? what : fmt::format("{}: {}", device, what);
     const auto [known, fresh] = events_.try_emplace(name);
     Event& event = known->second;
     if (n == event.told || (!fresh && now < event.again)) continue;
