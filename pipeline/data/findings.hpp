@@ -43,11 +43,26 @@ struct UnnamedFinding {
   bool accepted = false;
 };
 
+/// What the stamps of one device say of its clock, its link and its mirror.
+struct DeviceFacts {
+  std::string device;         ///< "laser1", "plate"
+  std::size_t stamps = 0;     ///< that were looked at
+  double skew = 0;            ///< hub seconds a device second − 1
+  double skew_std_error = 0;  ///< of it
+  double delay_median = 0;    ///< [s] of receipts beyond the shortest delay
+  double delay_95 = 0;        ///< [s] 95 of 100 are not later
+  double period = 0;          ///< [s] mean, of a laser's mirror; 0 for the plate
+  double period_std_error = 0;
+  double nominal_period = 0;  ///< [s]
+  double wander = 0;          ///< RMS of slow changes of the mirror's period, as a share of it
+};
+
 /// What a diagnosis says.
 struct Findings {
   std::vector<Finding> findings;  ///< in the order in which they were taken into the model
   std::vector<UnnamedFinding> unnamed;
   std::vector<Unobservable> unobservable;  ///< causes that these data could not show
+  std::vector<DeviceFacts> devices;
   double before_p = 1;  ///< that what is left of the residuals is noise: with the model that came …
   double after_p = 1;   ///< … and with the extended one
 };

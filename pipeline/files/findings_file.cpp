@@ -49,6 +49,19 @@ Json json_of(const Unobservable& unobservable) {
           {"combination", unobservable.combination}};
 }
 
+Json json_of(const DeviceFacts& facts) {
+  return {{"device", facts.device},
+          {"stamps", facts.stamps},
+          {"skew", facts.skew},
+          {"skew_std_error", facts.skew_std_error},
+          {"delay_median", facts.delay_median},
+          {"delay_95", facts.delay_95},
+          {"period", facts.period},
+          {"period_std_error", facts.period_std_error},
+          {"nominal_period", facts.nominal_period},
+          {"wander", facts.wander}};
+}
+
 template <class Things>
 Json list_of(const Things& things) {
   Json all = Json::array();
@@ -63,6 +76,7 @@ std::string findings_json(const Findings& findings) {
                     {"findings", list_of(findings.findings)},
                     {"unnamed", list_of(findings.unnamed)},
                     {"unobservable", list_of(findings.unobservable)},
+                    {"devices", list_of(findings.devices)},
                     {"indistinguishable", {{"before_p", findings.before_p}, {"after_p", findings.after_p}}}};
   return all.dump(2) + "\n";
 }

@@ -45,7 +45,7 @@ struct AlignmentSink {
 };
 
 /// From scans and readings in the order of receipt to measurements and the plate's trajectory on the hub's
-/// clock. The epoch is the whole second before the first receipt.
+/// clock. The epoch is that of epoch_of_run().
 class Aligner {
  public:
   Aligner() = default;

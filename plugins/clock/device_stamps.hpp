@@ -8,7 +8,7 @@
 
 #include "pipeline/data/clock_map.hpp"
 #include "plugins/clock/fitted_clock.hpp"
-#include "plugins/clock/unwrap.hpp"
+#include "pipeline/clocks/unwrap.hpp"
 
 namespace crisp {
 

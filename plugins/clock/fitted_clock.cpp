@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plugins/clock/unwrap.hpp"
+#include "pipeline/clocks/unwrap.hpp"
 
 namespace crisp {
 namespace {

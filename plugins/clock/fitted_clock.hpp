@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "pipeline/data/clock_map.hpp"
-#include "plugins/clock/clock_line.hpp"
+#include "pipeline/clocks/clock_line.hpp"
 #include "plugins/clock/delay_histogram.hpp"
-#include "plugins/clock/lower_hull.hpp"
+#include "pipeline/clocks/lower_hull.hpp"
 
 namespace crisp {
 

@@ -7,8 +7,6 @@
 namespace crisp {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-
 DeviceStamps stamps_of(const std::string& device, const AlignmentSettings& settings) {
   return {device, FittedClock(device, settings.find, settings.drift), 0};
 }
@@ -29,7 +27,7 @@ HubTracks::HubTracks(const Rig& rig, const AlignmentSettings& settings)
       plate_(rig.plate, stamps_of(rig.plate.name, settings), settings.source) {}
 
 double HubTracks::arrive(std::int64_t receipt_ns) {
-  if (!begun_) epoch_ns_ = receipt_ns - ((receipt_ns % kSecond_ns) + kSecond_ns) % kSecond_ns;
+  if (!begun_) epoch_ns_ = epoch_of_run(receipt_ns);
   const double hub = 1e-9 * static_cast<double>(receipt_ns - epoch_ns_);
   if (!begun_) now_ = hub;
   begun_ = true;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -80,22 +81,31 @@ std::vector<Departure::Rival> rivals(const Choice& choice, const Dictionary& dic
   return result;
 }
 
-/// Candidates that could be as large as the noise of ranges without showing.
-std::vector<std::string> hidden(const std::vector<std::optional<Look>>& looks, const Dictionary& dictionary) {
-  constexpr double kAsNoise = 1;
-  std::map<std::string, bool> all;
+/// By how much a candidate can change ranges (RMS, in units of their noise) without being taken.
+double limit_of(const Candidate& candidate, const Look& look, const SelectionSettings& settings,
+                std::size_t beams) {
+  const auto parameters = static_cast<double>(look.value.size()) + (candidate.forms > 1 ? 1 : 0);
+  return std::sqrt(settings.bic + parameters * std::log(static_cast<double>(beams))) * look.whole_error;
+}
+
+/// Candidates that could be half as large as the noise of ranges, in every form, without being seen.
+std::vector<Diagnosis::Limit> hidden(const std::vector<std::optional<Look>>& looks,
+                                     const Dictionary& dictionary, const SelectionSettings& settings,
+                                     std::size_t beams) {
+  constexpr double kMuch = 0.5;
+  std::map<std::string, double> limits;
   for (std::size_t c = 0; c < looks.size(); ++c) {
     const Candidate& candidate = dictionary.candidates()[c];
     if (!looks[c] || !candidate.is_cause()) continue;
-    const bool is_hidden = !(looks[c]->whole_error < kAsNoise);
-    const auto [known, is_new] = all.try_emplace(candidate.name, is_hidden);
-    known->second = known->second && is_hidden;
+    const double limit = limit_of(candidate, *looks[c], settings, beams);
+    const auto [known, is_new] = limits.try_emplace(candidate.name, limit);
+    known->second = std::min(known->second, limit);
   }
-  std::vector<std::string> names;
-  for (const auto& [name, is_hidden] : all) {
-    if (is_hidden) names.push_back(name);
+  std::vector<Diagnosis::Limit> hidden;
+  for (const auto& [name, limit] : limits) {
+    if (!(limit < kMuch)) hidden.push_back({.name = name, .size = limit});
   }
-  return names;
+  return hidden;
 }
 
 /// One look at a model: what it needs, as candidates with values.
@@ -115,7 +125,8 @@ void look(const Evidence& evidence, const TermRegistry& terms, const SelectionSe
          .rivals = rivals(choice, dictionary),
          .gains = {}});
   }
-  result.unobservable = hidden(looks_beside(taken, dictionary, equations), dictionary);
+  result.unobservable =
+      hidden(looks_beside(taken, dictionary, equations), dictionary, settings, equations.beams);
   result.looks = names_of(dictionary.candidates()).size();
 }
 
@@ -194,9 +205,11 @@ class Diagnoser {
     }
   }
 
+  /// Whether the likelihood of held-out turns rises; by how little for sure is told, but no reason to refuse
+  /// what is significant on the others.
   static bool pays(const std::vector<Gain>& gains) {
     const auto likelihood = std::ranges::find(gains, HeldOut::kLikelihood, &Gain::metric);
-    return likelihood != gains.end() && likelihood->ci95[0] > 0;
+    return likelihood != gains.end() && likelihood->after > likelihood->before;
   }
 
   void compare(Diagnosis& result) const {

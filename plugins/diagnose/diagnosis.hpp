@@ -36,9 +36,15 @@ struct Diagnosis {
   Refinement before;  ///< without any terms
   Refinement after;   ///< with those that were accepted
   std::vector<Departure> departures;
-  std::vector<std::string> unobservable;  ///< candidates that these data cannot tell
-  std::size_t looks = 0;                  ///< different things that were looked for
-  bool settled = false;  ///< whether a last look at the extended model asked for nothing else
+  /// A candidate of which these data tell little.
+  struct Limit {
+    std::string name;
+    double size =
+        0;  ///< RMS change of ranges that would not be seen, in units of their noise; may be infinite
+  };
+  std::vector<Limit> unobservable;
+  std::size_t looks = 0;  ///< different things that were looked for
+  bool settled = false;   ///< whether a last look at the extended model asked for nothing else
   SideBySide left_before;
   SideBySide left_after;
 };

@@ -3,12 +3,14 @@
 
 #include "plugins/diagnose/crispness_stage.hpp"
 #include "plugins/diagnose/model_stage.hpp"
+#include "plugins/diagnose/stamps_stage.hpp"
 
 namespace crisp {
 
 void register_diagnose(Registrar& registrar) {
   registrar.stage<CrispnessStage>();
   registrar.stage<DiagnoseModelStage>();
+  registrar.stage<DiagnoseStampsStage>();
 }
 
 }  // namespace crisp

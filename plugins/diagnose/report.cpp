@@ -72,27 +72,20 @@ std::string gain_in_words(const std::vector<Gain>& gains) {
   if (gains.empty()) return "  too little was held out to say what that brings\n";
   std::string words;
   for (const Gain& gain : gains) {
-    const double factor = gain.unit == "m" ? 1e3 : 1;
+    const double factor = gain.unit == "m" ? 1e3 : gain.unit == "s" ? 1e6 : 1;
+    const std::string unit = gain.unit == "m" ? "mm" : gain.unit == "s" ? "us" : gain.unit;
     words += fmt::format("  {:<32}{:>10.4f} -> {:>8.4f} {:<3}  change {:+.4f} to {:+.4f}\n", gain.metric,
-                         gain.before * factor, gain.after * factor, gain.unit == "m" ? "mm" : gain.unit,
-                         gain.ci95[0] * factor, gain.ci95[1] * factor);
+                         gain.before * factor, gain.after * factor, unit, gain.ci95[0] * factor,
+                         gain.ci95[1] * factor);
   }
   return words;
 }
 
-std::string finding_in_words(const Finding& finding) {
-  std::string words =
-      fmt::format("{} of {}{}: ", finding.cause, finding.scope, finding.accepted ? "" : " (refused)");
-  for (std::size_t k = 0; k < finding.parameters.size(); ++k) {
-    words += (k > 0 ? ", " : "") + with_unit(finding.parameters[k]);
-  }
-  words += fmt::format("\n  explains {:.0f} % of what was found; odds against the next cause 10^{:.0f}",
-                       100 * finding.explained_fraction, finding.log10_odds);
-  if (!finding.confounded_with.empty()) {
-    words += fmt::format("; these data cannot tell it from {}", fmt::join(finding.confounded_with, ", "));
-  }
-  if (!finding.accepted) words += "; it does not pay on turns that it was not fitted to";
-  return words + "\n" + gain_in_words(finding.gain);
+std::string reason_of(const Diagnosis::Limit& limit, double noise) {
+  if (!std::isfinite(limit.size)) return "the other parameters do all that it could do to these data";
+  return fmt::format(
+      "beside the other parameters it would not show if it changed ranges by less than {:.0f} mm (RMS)",
+      1e3 * limit.size * noise);
 }
 
 /// The profiles that depart most from the simulation.
@@ -123,13 +116,27 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
       all.unnamed.push_back(unnamed_of(departure, calibration, diagnosis, noise));
     }
   }
-  for (const std::string& name : diagnosis.unobservable) {
+  for (const Diagnosis::Limit& limit : diagnosis.unobservable) {
     all.unobservable.push_back(
-        {.parameter = name,
-         .reason = "as large as the noise of ranges it would not show beside the other parameters",
-         .combination = {}});
+        {.parameter = limit.name, .reason = reason_of(limit, noise), .combination = {}});
   }
   return all;
+}
+
+std::string in_words(const Finding& finding) {
+  std::string words =
+      fmt::format("{} of {}{}: ", finding.cause, finding.scope, finding.accepted ? "" : " (refused)");
+  for (std::size_t k = 0; k < finding.parameters.size(); ++k) {
+    words += (k > 0 ? ", " : "") + with_unit(finding.parameters[k]);
+  }
+  words += fmt::format("\n  explains {:.0f} % of what was found", 100 * finding.explained_fraction);
+  if (finding.log10_odds != 0)
+    words += fmt::format("; odds against the next cause 10^{:.0f}", finding.log10_odds);
+  if (!finding.confounded_with.empty()) {
+    words += fmt::format("; these data cannot tell it from {}", fmt::join(finding.confounded_with, ", "));
+  }
+  if (!finding.accepted) words += "; it does not pay on turns that it was not fitted to";
+  return words + "\n" + gain_in_words(finding.gain);
 }
 
 std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
@@ -138,7 +145,7 @@ std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
   const std::string departing = profiles_in_words(diagnosis.left_before);
   words += departing.empty() ? "  nothing departs from the simulation\n" : departing;
   if (findings.findings.empty() && findings.unnamed.empty()) words += "no cause is found\n";
-  for (const Finding& finding : findings.findings) words += finding_in_words(finding);
+  for (const Finding& finding : findings.findings) words += in_words(finding);
   for (const UnnamedFinding& finding : findings.unnamed) {
     words +=
         fmt::format("unnamed: {} of {} depends on the {}, by {:.3f} mm{}\n", finding.quantity, finding.scope,

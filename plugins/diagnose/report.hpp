@@ -13,6 +13,7 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
                      const SelectionSettings& settings, double noise);
 
 /// And for people.
+std::string in_words(const Finding& finding);
 std::string in_words(const Diagnosis& diagnosis, const Findings& findings);
 
 }  // namespace crisp

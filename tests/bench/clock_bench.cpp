@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "plugins/clock/clock_aligner.hpp"
-#include "plugins/clock/lower_hull.hpp"
+#include "pipeline/clocks/lower_hull.hpp"
 #include "tests/plugins/clock/simulated_scanner.hpp"
 
 namespace crisp {

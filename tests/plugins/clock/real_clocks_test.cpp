@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "plugins/clock/clock_line.hpp"
+#include "pipeline/clocks/clock_line.hpp"
 #include "tests/grabbers/wire/samples.hpp"
-#include "tests/plugins/clock/simulated_stamps.hpp"
+#include "tests/support/simulated_stamps.hpp"
 
 namespace crisp {
 namespace {

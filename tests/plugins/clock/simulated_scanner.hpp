@@ -12,7 +12,7 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/scan.hpp"
-#include "tests/plugins/clock/simulated_stamps.hpp"
+#include "tests/support/simulated_stamps.hpp"
 
 namespace crisp::testing {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "plugins/clock/clock_line.hpp"
-#include "tests/plugins/clock/simulated_stamps.hpp"
+#include "pipeline/clocks/clock_line.hpp"
+#include "tests/support/simulated_stamps.hpp"
 
 namespace crisp {
 namespace {

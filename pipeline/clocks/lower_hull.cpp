@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/clock/lower_hull.hpp"
+#include "pipeline/clocks/lower_hull.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/clock/clock_line.hpp"
+#include "pipeline/clocks/clock_line.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "plugins/clock/lower_hull.hpp"
+#include "pipeline/clocks/lower_hull.hpp"
 
 namespace crisp {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/clock/unwrap.hpp"
+#include "pipeline/clocks/unwrap.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "plugins/clock/clock_line.hpp"
-#include "plugins/clock/lower_hull.hpp"
+#include "pipeline/clocks/clock_line.hpp"
+#include "pipeline/clocks/lower_hull.hpp"
 
 namespace crisp {
 namespace {

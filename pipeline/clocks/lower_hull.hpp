@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "plugins/clock/clock_line.hpp"
+#include "pipeline/clocks/clock_line.hpp"
 
 namespace crisp {
 

@@ -7,6 +7,10 @@
 
 namespace crisp {
 
+/// [ns since the Unix epoch] The epoch of a run whose first item was received then: the nearest whole second,
+/// so that times in a run are small numbers.
+std::int64_t epoch_of_run(std::int64_t first_receipt_ns);
+
 /// The number nearest to `expected` that leaves `residue` when divided by `modulus`.
 std::int64_t nearest_congruent(std::int64_t residue, std::int64_t modulus, double expected);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/clock/clock_line.hpp"
+#include "pipeline/clocks/clock_line.hpp"
 
 #include <gtest/gtest.h>
 
-#include "plugins/clock/lower_hull.hpp"
-#include "tests/plugins/clock/simulated_stamps.hpp"
+#include "pipeline/clocks/lower_hull.hpp"
+#include "tests/support/simulated_stamps.hpp"
 
 namespace crisp {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/clock/unwrap.hpp"
+#include "pipeline/clocks/unwrap.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/clocks/clock_line.hpp"
 #include "pipeline/data/error.hpp"
-#include "plugins/clock/clock_line.hpp"
 
 namespace crisp {
 namespace {
@@ -18,6 +18,12 @@ constexpr double kLeastStep = 0.25;    // [s] a clock that two others contradict
 constexpr std::uint32_t kSecond_us = 1'000'000;
 
 }  // namespace
+
+std::int64_t epoch_of_run(std::int64_t first_receipt_ns) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  const std::int64_t later = first_receipt_ns + kSecond_ns / 2;
+  return later - (later % kSecond_ns + kSecond_ns) % kSecond_ns;
+}
 
 std::int64_t nearest_congruent(std::int64_t residue, std::int64_t modulus, double expected) {
   return residue +

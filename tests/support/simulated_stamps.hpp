@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "plugins/clock/clock_line.hpp"
+#include "pipeline/clocks/clock_line.hpp"
 
 namespace crisp::testing {
 

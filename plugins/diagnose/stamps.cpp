@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/stamps.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "pipeline/clocks/unwrap.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::int64_t kWrap_us = std::int64_t{1} << 32;
+constexpr std::size_t kFewest = 64;  // stamps that say anything
+
+/// The stamp with the least delay of each of some windows.
+struct Envelope {
+  std::vector<std::size_t> stamp;  // index of each window's least
+  std::vector<std::size_t> first;  // index of each window's first stamp; one more than there are windows
+  Eigen::VectorXd time;            // [s] receipt since the first stamp
+  Eigen::VectorXd lead;            // [s]
+  Eigen::Index size() const { return lead.size(); }
+};
+
+double receipt(const CountedStamp& s) { return s.stamp.device + s.stamp.lead; }
+
+ClockLine line_of(std::span<const CountedStamp> stamps) {
+  std::vector<Stamp> bare;
+  for (const auto& s : stamps) bare.push_back(s.stamp);
+  std::ranges::stable_sort(bare, {}, &Stamp::device);
+  double sum = 0;
+  for (const Stamp& s : bare) sum += s.device;
+  return line_by_convex_hull(bare, sum / static_cast<double>(bare.size()));
+}
+
+Envelope envelope_of(std::span<const CountedStamp> stamps) {
+  constexpr std::size_t kOfWindow = 12;
+  const std::size_t windows = std::clamp<std::size_t>(stamps.size() / kOfWindow, 6, 64);
+  Envelope envelope;
+  envelope.time.resize(static_cast<Eigen::Index>(windows));
+  envelope.lead.resize(static_cast<Eigen::Index>(windows));
+  // Within a window the clock's own slope counts: by the line through all of them.
+  const double slope =
+      (stamps.back().stamp.lead - stamps.front().stamp.lead) / std::max(1e-9, receipt(stamps.back()));
+  for (std::size_t w = 0; w < windows; ++w) {
+    const std::size_t begin = w * stamps.size() / windows;
+    const std::size_t end = (w + 1) * stamps.size() / windows;
+    std::size_t least = begin;
+    const auto height = [&](std::size_t i) { return stamps[i].stamp.lead - slope * receipt(stamps[i]); };
+    for (std::size_t i = begin; i < end; ++i) {
+      if (height(i) < height(least)) least = i;
+    }
+    envelope.first.push_back(begin);
+    envelope.stamp.push_back(least);
+    envelope.time[static_cast<Eigen::Index>(w)] = receipt(stamps[least]);
+    envelope.lead[static_cast<Eigen::Index>(w)] = stamps[least].stamp.lead;
+  }
+  envelope.first.push_back(stamps.size());
+  return envelope;
+}
+
+/// What is tried beside a straight line: a parabola first, then a step before each window but the outermost.
+Eigen::MatrixXd tried(const Eigen::VectorXd& time) {
+  constexpr Eigen::Index kMargin = 2;
+  const Eigen::Index n = time.size();
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, 1 + std::max<Eigen::Index>(0, n - 2 * kMargin + 1));
+  columns.col(0) = (time.array() - time.mean()).square();
+  for (Eigen::Index k = 1; k < columns.cols(); ++k) columns.col(k).tail(n - (kMargin + k - 1)).setOnes();
+  return columns;
+}
+
+Eigen::MatrixXd straight(const Eigen::VectorXd& time) {
+  Eigen::MatrixXd base(time.size(), 2);
+  base.col(0).setOnes();
+  base.col(1) = time.array() - time.mean();
+  return base;
+}
+
+/// What a straight line leaves of each column.
+Eigen::MatrixXd off_line(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns) {
+  const Eigen::MatrixXd orthonormal =
+      base.householderQr().householderQ() * Eigen::MatrixXd::Identity(base.rows(), base.cols());
+  return columns - orthonormal * (orthonormal.transpose() * columns);
+}
+
+/// How much better each column does than the line alone: F with one degree of freedom.
+Eigen::VectorXd scores(const Eigen::MatrixXd& unit, const Eigen::VectorXd& left) {
+  const double all = left.squaredNorm();
+  const auto freedom = static_cast<double>(left.size() - 3);
+  const Eigen::ArrayXd gain = (unit.transpose() * left).array().square();
+  return freedom * gain / (all - gain).max(1e-9 * all + 1e-30);
+}
+
+struct Chosen {
+  Eigen::Index column = 0;
+  double p_value = 1;
+};
+
+/// The column that does best, and how often as much is seen where the least delays are shuffled.
+Chosen choose_column(const Eigen::MatrixXd& unit, const Eigen::VectorXd& left, std::uint64_t seed) {
+  constexpr int kShuffles = 4999;
+  Chosen choice;
+  const double best = scores(unit, left).maxCoeff(&choice.column);
+  std::mt19937_64 random(seed);
+  Eigen::VectorXd shuffled = left;
+  int above = 0;
+  for (int s = 0; s < kShuffles; ++s) {
+    std::ranges::shuffle(shuffled, random);
+    above += scores(unit, shuffled).maxCoeff() >= best ? 1 : 0;
+  }
+  choice.p_value = (1.0 + above) / (1.0 + kShuffles);
+  return choice;
+}
+
+struct Fit {
+  Eigen::VectorXd values;
+  Eigen::VectorXd errors;
+};
+
+Fit least_squares(const Eigen::MatrixXd& design, const Eigen::VectorXd& values) {
+  const auto solver = design.colPivHouseholderQr();
+  Fit fit{.values = solver.solve(values), .errors = {}};
+  const double squares = (values - design * fit.values).squaredNorm();
+  const double variance =
+      squares / static_cast<double>(std::max<Eigen::Index>(1, design.rows() - design.cols()));
+  fit.errors = (variance * (design.transpose() * design).inverse().diagonal()).cwiseSqrt();
+  return fit;
+}
+
+Eigen::MatrixXd beside(const Eigen::MatrixXd& base, const Eigen::VectorXd& column) {
+  Eigen::MatrixXd both(base.rows(), base.cols() + 1);
+  both << base, column;
+  return both;
+}
+
+/// RMS of every other window's least delay about a fit to the rest.
+std::vector<double> held_out(const Eigen::MatrixXd& design, const Eigen::VectorXd& values) {
+  std::vector<Eigen::Index> fitted;
+  std::vector<Eigen::Index> rest;
+  for (Eigen::Index w = 0; w < values.size(); ++w) (w % 2 == 0 ? fitted : rest).push_back(w);
+  const Fit fit = least_squares(design(fitted, Eigen::all), values(fitted));
+  const Eigen::VectorXd left = values(rest) - design(rest, Eigen::all) * fit.values;
+  return {left.begin(), left.end()};
+}
+
+Gain gain_of(const Eigen::MatrixXd& base, const Eigen::VectorXd& column, const Eigen::VectorXd& values,
+             std::uint64_t seed) {
+  constexpr std::size_t kDraws = 999;
+  const auto before = held_out(base, values);
+  const auto after = held_out(beside(base, column), values);
+  const auto rms = [](const std::vector<double>& all, const std::vector<std::size_t>& drawn) {
+    double squares = 0;
+    for (const std::size_t i : drawn) squares += all[i] * all[i];
+    return std::sqrt(squares / static_cast<double>(drawn.size()));
+  };
+  std::vector<std::size_t> drawn(before.size());
+  std::iota(drawn.begin(), drawn.end(), std::size_t{0});
+  Gain gain{.metric = "least delays about the clock",
+            .unit = "s",
+            .before = rms(before, drawn),
+            .after = rms(after, drawn)};
+  std::mt19937_64 random(seed);
+  std::vector<double> changes;
+  for (std::size_t draw = 0; draw < kDraws; ++draw) {
+    for (auto& i : drawn) i = random() % before.size();
+    changes.push_back(rms(after, drawn) - rms(before, drawn));
+  }
+  std::ranges::sort(changes);
+  gain.ci95 = {changes[kDraws / 40], changes[kDraws - 1 - kDraws / 40]};
+  return gain;
+}
+
+/// The first stamp after a step of the shortest delay: all before a step up and all after a step down come in
+/// earlier than half-way between. `level` [s] is the envelope's line without the step.
+std::size_t first_after(std::span<const CountedStamp> stamps, double step, const auto& level) {
+  const auto early = [&](const CountedStamp& s) { return s.stamp.lead - level(receipt(s)) < step / 2; };
+  if (step < 0) {
+    return static_cast<std::size_t>(std::ranges::find_if(stamps, early) - stamps.begin());
+  }
+  std::size_t i = stamps.size();
+  while (i > 0 && !early(stamps[i - 1])) --i;
+  return i;
+}
+
+/// By how much the device's time since the stamp before is longer than its counter says [s].
+double jump_of_device(std::span<const CountedStamp> stamps, std::size_t at) {
+  constexpr std::size_t kAround = 20;
+  const std::size_t begin = at > kAround ? at - kAround : 1;
+  std::vector<double> rates;
+  for (std::size_t i = begin; i < std::min(stamps.size(), at + kAround); ++i) {
+    const auto counts = static_cast<double>(stamps[i].count - stamps[i - 1].count);
+    if (i != at && counts > 0)
+      rates.push_back((stamps[i].stamp.device - stamps[i - 1].stamp.device) / counts);
+  }
+  if (rates.empty()) return 0;
+  std::ranges::nth_element(rates, rates.begin() + static_cast<std::ptrdiff_t>(rates.size() / 2));
+  const auto counts = static_cast<double>(std::max<std::int64_t>(1, stamps[at].count - stamps[at - 1].count));
+  return stamps[at].stamp.device - stamps[at - 1].stamp.device - rates[rates.size() / 2] * counts;
+}
+
+/// Where in a stretch of stamps the device's time jumps most.
+std::size_t largest_jump(std::span<const CountedStamp> stamps, std::size_t begin, std::size_t end) {
+  std::size_t best = std::max<std::size_t>(1, begin);
+  for (std::size_t i = best; i < end; ++i) {
+    if (std::abs(jump_of_device(stamps, i)) > std::abs(jump_of_device(stamps, best))) best = i;
+  }
+  return best;
+}
+
+void tell_step(std::span<const CountedStamp> stamps, const Envelope& envelope, std::size_t window,
+               const Fit& fit, ClockDeparture& departure) {
+  const std::size_t begin = envelope.first[window - 1];
+  const std::size_t end = envelope.first[std::min(window + 1, envelope.stamp.size())];
+  std::size_t at = largest_jump(stamps, begin, end);
+  departure.kind = ClockDeparture::Kind::latency_step;
+  // When a device's clock goes forwards, what it sends seems to have come in earlier.
+  if (std::abs(jump_of_device(stamps, at) + departure.size) < 0.5 * std::abs(departure.size)) {
+    departure.kind = ClockDeparture::Kind::clock_step;
+    departure.size = -departure.size;
+  } else {
+    const double middle = envelope.time.mean();
+    const auto level = [&](double t) { return fit.values[0] + fit.values[1] * (t - middle); };
+    at = std::clamp<std::size_t>(first_after(stamps, departure.size, level), 1, stamps.size() - 1);
+  }
+  departure.at = receipt(stamps[at]);
+  departure.at_std_error = departure.at - receipt(stamps[at - 1]);
+}
+
+}  // namespace
+
+void StampTrack::add(std::uint16_t counter, std::uint32_t device_us, std::int64_t receipt_ns) {
+  constexpr std::int64_t kRestart = 1000;  // counts: no telegram is repeated so late
+  std::int64_t count = 0;
+  if (stamps_.empty()) {
+    first_ns_ = receipt_ns;
+  } else {
+    CounterUnwrapper unwrapper;
+    unwrapper.accept(last_counter_);
+    const std::int64_t steps = unwrapper.advance(counter, 1);
+    if (steps <= 0 && steps > -kRestart) return;  // the same once more
+    count = stamps_.back().count + (steps > 0 ? steps : 1);
+    const auto gone_us = static_cast<double>(receipt_ns - last_ns_) / 1e3;
+    device_us_ += nearest_congruent(static_cast<std::uint32_t>(device_us - last_us_), kWrap_us, gone_us);
+  }
+  last_counter_ = counter;
+  last_us_ = device_us;
+  last_ns_ = receipt_ns;
+  const double device = 1e-6 * static_cast<double>(device_us_);
+  const double hub = 1e-9 * static_cast<double>(receipt_ns - first_ns_);
+  stamps_.push_back({.count = count, .stamp = {.device = device, .lead = hub - device}});
+}
+
+ClockFacts clock_facts(std::span<const CountedStamp> stamps) {
+  if (stamps.size() < 2) return {};
+  const ClockLine line = line_of(stamps);
+  std::vector<Stamp> bare;
+  std::vector<double> delays;
+  for (const auto& s : stamps) {
+    bare.push_back(s.stamp);
+    delays.push_back(s.stamp.lead - line.lead(s.stamp.device));
+  }
+  std::ranges::sort(delays);
+  constexpr double kMost = 0.95;
+  return {.skew = line.slope,
+          .skew_std_error = errors_of_line(bare, line).slope,
+          .delay_median = delays[delays.size() / 2],
+          .delay_95 = delays[static_cast<std::size_t>(kMost * static_cast<double>(delays.size() - 1))]};
+}
+
+std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stamps, std::size_t looks,
+                                              std::uint64_t seed) {
+  constexpr double kSignificant = 0.002;
+  if (stamps.size() < kFewest) return std::nullopt;
+  const Envelope envelope = envelope_of(stamps);
+  const Eigen::MatrixXd base = straight(envelope.time);
+  const Eigen::MatrixXd columns = tried(envelope.time);
+  const Eigen::MatrixXd unit = off_line(base, columns).colwise().normalized();
+  const Chosen choice = choose_column(unit, off_line(base, envelope.lead), seed);
+  ClockDeparture departure{.p_value = std::min(1.0, choice.p_value * static_cast<double>(looks))};
+  if (departure.p_value > kSignificant) return std::nullopt;
+  const Fit fit = least_squares(beside(base, columns.col(choice.column)), envelope.lead);
+  departure.size = fit.values[2];
+  departure.std_error = fit.errors[2];
+  departure.gain = gain_of(base, columns.col(choice.column), envelope.lead, seed);
+  if (choice.column == 0) {
+    // lead = skew t + drift t²/2
+    departure.size *= 2;
+    departure.std_error *= 2;
+    departure.skew = fit.values[1] - departure.size * envelope.time.mean();
+    departure.skew_std_error = std::hypot(fit.errors[1], departure.std_error * envelope.time.mean());
+    return departure;
+  }
+  departure.skew = fit.values[1];
+  departure.skew_std_error = fit.errors[1];
+  const auto window = static_cast<std::size_t>((columns.col(choice.column).array() == 0).count());
+  tell_step(stamps, envelope, window, fit, departure);
+  return departure;
+}
+
+std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes) {
+  constexpr std::size_t kOfPiece = 8;
+  if (passes.size() < 2 * kOfPiece) return std::nullopt;
+  MirrorFacts facts;
+  const auto turns = [&](std::size_t from, std::size_t to) {
+    return static_cast<double>(passes[to].count - passes[from].count);
+  };
+  const auto period = [&](std::size_t from, std::size_t to) {
+    return (passes[to].stamp.device - passes[from].stamp.device) / turns(from, to);
+  };
+  facts.period = period(0, passes.size() - 1);
+  double squares = 0;
+  double pieces = 0;
+  for (std::size_t i = 0; i + kOfPiece < passes.size(); i += kOfPiece) {
+    squares += std::pow(period(i, i + kOfPiece) - facts.period, 2);
+    pieces += 1;
+  }
+  const double spread = std::sqrt(squares / pieces);
+  facts.wander = spread / facts.period;
+  facts.period_std_error = spread / std::sqrt(pieces);
+  return facts;
+}
+
+}  // namespace crisp

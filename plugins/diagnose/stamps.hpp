@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pipeline/clocks/clock_line.hpp"
+#include "pipeline/data/findings.hpp"
+
+namespace crisp {
+
+/// One telegram: when its device says that it was sent, when the hub received it, and which it was.
+struct CountedStamp {
+  std::int64_t count = 0;  ///< of the device's counter, unwrapped
+  Stamp stamp;             ///< device time since the first stamp, and by how much later it came in
+};
+
+/// The stamps of one device as they come in, with counter and clock unwrapped. A clock that jumps is
+/// followed: its lead jumps.
+class StampTrack {
+ public:
+  /// @param counter    wraps at 65536
+  /// @param device_us  [µs] wraps at 2³²
+  /// @param receipt_ns [ns]
+  void add(std::uint16_t counter, std::uint32_t device_us, std::int64_t receipt_ns);
+  std::span<const CountedStamp> stamps() const { return stamps_; }
+  std::int64_t first_ns() const { return first_ns_; }  ///< [ns] receipt of the first
+
+ private:
+  std::vector<CountedStamp> stamps_;
+  std::uint16_t last_counter_ = 0;
+  std::uint32_t last_us_ = 0;
+  std::int64_t first_ns_ = 0, last_ns_ = 0;
+  std::int64_t device_us_ = 0;  // since the first
+};
+
+/// A way in which a clock or its link is not what a straight line above constant shortest delay describes.
+struct ClockDeparture {
+  enum class Kind { drift, clock_step, latency_step };
+  Kind kind = Kind::drift;
+  double size = 0;       ///< drift: [1/s] of the skew; steps: [s] forwards, or later
+  double std_error = 0;  ///< of it
+  double skew = 0;       ///< at the first stamp
+  double skew_std_error = 0;
+  double at = 0;            ///< [s] of the steps: receipt of the first stamp after it, since the first of all
+  double at_std_error = 0;  ///< [s]
+  double p_value = 1;       ///< by permutations of the least delays
+  Gain gain;                ///< RMS of held-out least delays about the clock
+};
+
+/// What is usual of a device's clock and link.
+struct ClockFacts {
+  double skew = 0;  ///< hub seconds a device second − 1
+  double skew_std_error = 0;
+  double delay_median = 0;  ///< [s] beyond the shortest
+  double delay_95 = 0;      ///< [s]
+};
+
+ClockFacts clock_facts(std::span<const CountedStamp> stamps);
+
+/// Looks at the lower envelope of receipt minus device time: at the least delay in each of up to 64 windows.
+/// A step is one of the device's clock where the time between two counts jumps with it, and else one of the
+/// link.
+///
+/// @param looks  so many devices are looked at; the p-value is corrected for them
+/// @return  the most significant departure, if there is one beyond 0.002
+std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stamps, std::size_t looks,
+                                              std::uint64_t seed);
+
+/// How a mirror turns by its own stamps.
+struct MirrorFacts {
+  double period = 0;  ///< [s] mean, on the device's clock
+  double period_std_error = 0;
+  double wander = 0;  ///< RMS of the period's slow changes, as a share of it
+};
+
+/// @param passes  when the mirror passed its index, with the turn that it was; ascending
+/// @return  nothing for fewer than 16 turns
+std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes);
+
+}  // namespace crisp

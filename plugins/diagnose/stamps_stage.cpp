@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/stamps_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <limits>
+
+#include "pipeline/clocks/unwrap.hpp"
+#include "pipeline/data/scan.hpp"
+#include "plugins/diagnose/report.hpp"
+
+namespace crisp {
+namespace {
+
+Parameter parameter(const char* name, const char* unit, double value, double std_error) {
+  return {.name = name, .unit = unit, .value = value, .std_error = std_error, .free = true};
+}
+
+const char* cause_of(ClockDeparture::Kind kind) {
+  switch (kind) {
+    case ClockDeparture::Kind::drift:
+      return "clock.drift";
+    case ClockDeparture::Kind::clock_step:
+      return "clock.step";
+    case ClockDeparture::Kind::latency_step:
+      return "latency.step";
+  }
+  return "";
+}
+
+Finding finding_of(const ClockDeparture& departure, const std::string& device) {
+  Finding finding{.cause = cause_of(departure.kind),
+                  .scope = device,
+                  .parameters = {},
+                  .explained_fraction = 1 - std::pow(departure.gain.after / departure.gain.before, 2),
+                  .p_value = departure.p_value,
+                  .confounded_with = {},
+                  .gain = {departure.gain},
+                  .accepted = departure.gain.ci95[1] < 0};
+  if (departure.kind == ClockDeparture::Kind::drift) {
+    finding.parameters = {parameter("skew", "1", departure.skew, departure.skew_std_error),
+                          parameter("drift", "1/s", departure.size, departure.std_error)};
+  } else {
+    finding.parameters = {parameter("by", "s", departure.size, departure.std_error),
+                          parameter("at", "s", departure.at, departure.at_std_error)};
+  }
+  return finding;
+}
+
+std::string facts_in_words(const std::vector<DeviceFacts>& devices) {
+  std::string words =
+      "stamps              skew ppm     delay median, 95 %    mirror against nominal   wander";
+  for (const DeviceFacts& facts : devices) {
+    words +=
+        fmt::format("\n  {:<12}{:>+9.2f} ± {:<5.2f}{:>8.3f}, {:>7.3f} ms", facts.device, facts.skew * 1e6,
+                    facts.skew_std_error * 1e6, facts.delay_median * 1e3, facts.delay_95 * 1e3);
+    if (facts.period > 0 && facts.nominal_period > 0) {
+      words += fmt::format("{:>+14.3f} ± {:.3f} %{:>9.3f} %", 100 * (facts.nominal_period / facts.period - 1),
+                           100 * facts.period_std_error / facts.period, 100 * facts.wander);
+    }
+  }
+  return words;
+}
+
+}  // namespace
+
+void DiagnoseStampsStage::describe(StageDescription<DiagnoseStampsStage>& d) {
+  d.name("diagnose.stamps").summary("says what the telegrams' times show of clocks, links and mirrors");
+  d.details(
+      "Receipt less device time has a lower envelope: telegrams come in late, never early. The stage looks "
+      "at "
+      "the least delay in each of up to 64 stretches of the recording, and says where they depart from a "
+      "clock "
+      "of constant rate behind a link with a constant shortest delay: a clock whose rate changes "
+      "(`clock.drift`), one that jumps (`clock.step`: the device's own time between two telegrams jumps), a "
+      "link whose shortest delay becomes another (`latency.step`). Significance is by permutations of the "
+      "least delays, the gain by every other one of them. It also lists what is usual: skews, delays, and "
+      "how "
+      "mirrors turn against their nominal rate.");
+  d.takes<Scan>().takes<PlateReading>().gives<Findings>();
+  d.option(
+      "nominal_mirrors", &DiagnoseStampsStage::nominal_mirrors_,
+      "whether a mirror that is off its nominal rate is a departure (`mirror.period`); clock stages measure "
+      "the rate, so that points do not suffer by it");
+}
+
+DiagnoseStampsStage::Device& DiagnoseStampsStage::device(std::size_t index, const Rig& rig) {
+  if (devices_.empty()) {
+    for (const RigLaser& laser : rig.lasers)
+      devices_.push_back({.name = laser.name, .telegrams = {}, .passes = {}});
+    devices_.push_back({.name = rig.plate.name, .telegrams = {}, .passes = {}});
+  }
+  return devices_.at(index);
+}
+
+void DiagnoseStampsStage::process(const Inputs& in, Outputs&, Context& context) {
+  if (const Scan* scan = in.find<Scan>()) {
+    Device& laser = device(scan->laser, context.rig());
+    laser.telegrams.add(scan->telegram_counter, scan->transmission_time_us, scan->receipt_ns);
+    laser.passes.add(scan->scan_counter, scan->scan_time_us, scan->receipt_ns);
+    if (scan->scan_frequency > 0) laser.nominal_period = 1 / scan->scan_frequency;
+  }
+  if (const PlateReading* reading = in.find<PlateReading>()) {
+    device(context.rig().lasers.size(), context.rig())
+        .telegrams.add(reading->sequence, reading->device_us, reading->receipt_ns);
+  }
+}
+
+void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, std::uint64_t seed,
+                                    Findings& all) const {
+  const auto stamps = device.telegrams.stamps();
+  const ClockFacts clock = clock_facts(stamps);
+  DeviceFacts facts{.device = device.name,
+                    .stamps = stamps.size(),
+                    .skew = clock.skew,
+                    .skew_std_error = clock.skew_std_error,
+                    .delay_median = clock.delay_median,
+                    .delay_95 = clock.delay_95};
+  if (const auto mirror = mirror_facts(device.passes.stamps())) {
+    facts.period = mirror->period;
+    facts.period_std_error = mirror->period_std_error;
+    facts.nominal_period = device.nominal_period;
+    facts.wander = mirror->wander;
+    if (nominal_mirrors_ && device.nominal_period > 0) add_mirror(device, *mirror, all);
+  }
+  all.devices.push_back(facts);
+  if (auto departure = clock_departure(stamps, looks, seed)) {
+    departure->at += 1e-9 * static_cast<double>(device.telegrams.first_ns() - epoch_ns());
+    all.findings.push_back(finding_of(*departure, device.name));
+  }
+}
+
+std::int64_t DiagnoseStampsStage::epoch_ns() const {
+  std::int64_t first = std::numeric_limits<std::int64_t>::max();
+  for (const Device& device : devices_) {
+    if (!device.telegrams.stamps().empty()) first = std::min(first, device.telegrams.first_ns());
+  }
+  return epoch_of_run(first);
+}
+
+void DiagnoseStampsStage::add_mirror(const Device& device, const MirrorFacts& facts, Findings& all) const {
+  constexpr double kSignificant = 0.002;
+  const double excess = facts.period - device.nominal_period;
+  const double z = std::abs(excess) / facts.period_std_error;
+  const double p = 2 * cdf(complement(boost::math::normal(), z)) * static_cast<double>(devices_.size());
+  if (!(p < kSignificant)) return;
+  all.findings.push_back({.cause = "mirror.period",
+                          .scope = device.name,
+                          .parameters = {parameter("excess", "s", excess, facts.period_std_error)},
+                          .explained_fraction = 1,
+                          .p_value = p,
+                          .confounded_with = {},
+                          .gain = {},
+                          .accepted = true});
+}
+
+void DiagnoseStampsStage::finish(Outputs& out, Context& context) {
+  Findings all;
+  std::size_t looks = 0;
+  for (const Device& device : devices_) looks += device.telegrams.stamps().empty() ? 0 : 1;
+  for (const Device& device : devices_) {
+    if (!device.telegrams.stamps().empty()) add_clock(device, looks, context.seed(), all);
+  }
+  context.say(facts_in_words(all.devices));
+  for (const Finding& finding : all.findings) context.say(in_words(finding));
+  context.report({{"findings", all.findings.size()}});
+  out.give(std::move(all));
+}
+
+}  // namespace crisp

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/diagnose/stamps.hpp"
+
+namespace crisp {
+
+/// Says what the stamps of telegrams show of clocks, links and mirrors.
+class DiagnoseStampsStage final : public Stage {
+ public:
+  static void describe(StageDescription<DiagnoseStampsStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  struct Device {
+    std::string name;
+    StampTrack telegrams;       // when each was sent
+    StampTrack passes;          // of the mirror's index
+    double nominal_period = 0;  // [s]
+  };
+  Device& device(std::size_t index, const Rig& rig);
+  std::int64_t epoch_ns() const;
+  void add_clock(const Device& device, std::size_t looks, std::uint64_t seed, Findings& all) const;
+  void add_mirror(const Device& device, const MirrorFacts& facts, Findings& all) const;
+
+  bool nominal_mirrors_ = false;
+  std::vector<Device> devices_;  // the lasers of the rig, then the plate
+};
+
+}  // namespace crisp

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How often the diagnosis names what hides in recordings: the long suite, of which the tests run a small
+// draw. Prints a line for each recording, and a table in the end.
+//
+//     hidden_trial WHAT [SEEDS [FIRST [MILLIMETRES [EFFECT]]]]
+//
+// WHAT hides: `one` effect of the catalogue (SEEDS recordings of each), `two` or `three` at once, `none`, or
+// something `else` that no effect describes. MILLIMETRES: RMS by which each changes ranges (8).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
+#include <map>
+#include <span>
+
+#include "tests/plugins/diagnose/drawn.hpp"
+
+namespace crisp {
+namespace {
+
+using test::Drawer;
+using test::Drawn;
+
+std::vector<std::string> causes() {
+  std::vector<std::string> names;
+  for (const auto& name : built_in_terms().names()) {
+    if (built_in_terms().get(name)->info().covariate.empty()) names.push_back(name);
+  }
+  return names;
+}
+
+/// What became of one recording.
+struct Outcome {
+  std::size_t hidden = 0, named = 0, in_class = 0, said_unobservable = 0;
+  std::size_t wrong = 0, unnamed = 0, right_covariate = 0;
+  std::size_t parameters = 0, within_three = 0;
+};
+
+bool stands_for(const Departure& departure, const std::string& name) {
+  return std::ranges::any_of(departure.rivals, [&](const auto& rival) {
+    return rival.name == name && rival.behind < SelectionSettings{}.odds;
+  });
+}
+
+void count_hidden(const Drawn& drawn, const Diagnosis& diagnosis, const std::string& name, Outcome& outcome) {
+  ++outcome.hidden;
+  const auto taken = [&](auto matches) {
+    return std::ranges::any_of(diagnosis.departures, [&](const Departure& departure) {
+      return departure.accepted && departure.candidate.is_cause() && matches(departure);
+    });
+  };
+  if (taken([&](const Departure& departure) { return departure.candidate.name == name; })) {
+    ++outcome.named;
+    for (const double error : test::errors_of(diagnosis, drawn.recording.scanner.truth, name)) {
+      ++outcome.parameters;
+      outcome.within_three += std::abs(error) < 3 ? 1 : 0;
+    }
+  } else if (taken([&](const Departure& departure) { return stands_for(departure, name); })) {
+    ++outcome.in_class;
+  } else if (std::ranges::count(diagnosis.unobservable, name, &Diagnosis::Limit::name) > 0) {
+    ++outcome.said_unobservable;
+  }
+}
+
+Outcome outcome_of(const Drawn& drawn, const Diagnosis& diagnosis) {
+  Outcome outcome;
+  for (const std::string& name : drawn.names) count_hidden(drawn, diagnosis, name, outcome);
+  for (const Departure& departure : diagnosis.departures) {
+    if (!departure.accepted) continue;
+    if (departure.candidate.is_cause()) {
+      const bool right = std::ranges::any_of(drawn.names, [&](const std::string& name) {
+        return departure.candidate.name == name || stands_for(departure, name);
+      });
+      outcome.wrong += right ? 0 : 1;
+    } else {
+      ++outcome.unnamed;
+      outcome.right_covariate += departure.candidate.covariate == drawn.covariate ? 1 : 0;
+    }
+  }
+  return outcome;
+}
+
+std::string found_by(const Diagnosis& diagnosis) {
+  std::string words;
+  for (const Departure& departure : diagnosis.departures) {
+    words += fmt::format(" {}", departure.candidate.name);
+    if (!departure.accepted && !departure.gains.empty()) {
+      const Gain& gain = *std::ranges::find(departure.gains, "log-likelihood a measurement", &Gain::metric);
+      words += fmt::format("(refused: {:+.5f} to {:+.5f})", gain.ci95[0], gain.ci95[1]);
+    }
+    for (const auto& rival : departure.rivals) {
+      if (rival.behind < SelectionSettings{}.odds) words += "|" + rival.name;
+    }
+  }
+  return words.empty() ? " nothing" : words;
+}
+
+struct Row {
+  std::size_t recordings = 0, settled = 0;
+  Outcome sum;
+
+  void add(const Outcome& one, bool is_settled) {
+    ++recordings;
+    settled += is_settled ? 1 : 0;
+    for (auto part :
+         {&Outcome::hidden, &Outcome::named, &Outcome::in_class, &Outcome::said_unobservable, &Outcome::wrong,
+          &Outcome::unnamed, &Outcome::right_covariate, &Outcome::parameters, &Outcome::within_three}) {
+      sum.*part += one.*part;
+    }
+  }
+};
+
+class Trial {
+ public:
+  void run(const std::string& what, const Drawn& drawn) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Diagnosis diagnosis = test::diagnosed(drawn.recording);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    const Outcome outcome = outcome_of(drawn, diagnosis);
+    rows_[what].add(outcome, diagnosis.settled);
+    std::string errors;
+    for (const std::string& name : drawn.names) {
+      for (const double error : test::errors_of(diagnosis, drawn.recording.scanner.truth, name)) {
+        errors += fmt::format(" {:+.1f}", error);
+      }
+    }
+    fmt::print(
+        "{:<26} seed {:<4} {:<6} {} lasers {:<9} hidden: {}{}; found:{}; errors{}; p {:.3f} {:.3f}; "
+        "noise {:.3f} {:.3f} mm; {:.0f} s{}\n",
+        what, drawn.recording.scanner.seed, drawn.scene, drawn.recording.scanner.rig.lasers.size(),
+        drawn.motion, fmt::join(drawn.names, " "), drawn.covariate, found_by(diagnosis), errors,
+        diagnosis.left_before.p_value, diagnosis.left_after.p_value, diagnosis.left_before.noise * 1e3,
+        diagnosis.left_after.noise * 1e3, seconds.count(), diagnosis.settled ? "" : "; NOT SETTLED");
+    for (const auto& limit : diagnosis.unobservable) {
+      if (std::ranges::count(drawn.names, limit.name) > 0) {
+        fmt::print("    {} would not show below {:.2f} of the noise\n", limit.name, limit.size);
+      }
+    }
+    std::fflush(stdout);
+  }
+
+  void print() const {
+    fmt::print(
+        "\n| what hides | recordings | hidden | named | its class | said to be unobservable | wrong "
+        "names | unnamed | of these right | parameters within 3 s.e. |\n"
+        "|---|---|---|---|---|---|---|---|---|---|\n");
+    Row all;
+    for (const auto& [what, row] : rows_) {
+      print(what, row);
+      all.add(row.sum, true);
+      all.recordings += row.recordings - 1;
+    }
+    print("all", all);
+  }
+
+ private:
+  static void print(const std::string& what, const Row& row) {
+    const Outcome& s = row.sum;
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} of {} |\n", what, row.recordings, s.hidden,
+               s.named, s.in_class, s.said_unobservable, s.wrong, s.unnamed, s.right_covariate,
+               s.within_three, s.parameters);
+  }
+  std::map<std::string, Row> rows_;
+};
+
+/// Different effects, drawn from a seed.
+std::vector<std::string> some_of(std::vector<std::string> names, std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 random(seed + 1'000'000);
+  std::ranges::shuffle(names, random);
+  names.resize(count);
+  return names;
+}
+
+struct Wanted {
+  std::string what = "one";
+  std::uint64_t seeds = 10;
+  std::uint64_t first = 1;
+  double size = 0.008;
+  std::string effect;  // empty: all
+};
+
+void run(const Wanted& wanted) {
+  Trial trial;
+  const std::uint64_t end = wanted.first + wanted.seeds;
+  for (std::uint64_t seed = wanted.first; seed < end; ++seed) {
+    if (wanted.what == "one") {
+      std::uint64_t k = 0;
+      for (const std::string& effect : causes()) {
+        const std::uint64_t own = seed + 1000 * ++k;
+        if (!wanted.effect.empty() && effect != wanted.effect) continue;
+        trial.run(effect, Drawer(own).with({effect}, wanted.size));
+      }
+    } else if (wanted.what == "else") {
+      for (std::size_t k = 0; k < Drawer::kSomethingElse; ++k) {
+        trial.run(fmt::format("else {}", k), Drawer(seed + 1000 * k).with_something_else(k, wanted.size));
+      }
+    } else {
+      const std::size_t count = wanted.what == "three" ? 3 : wanted.what == "two" ? 2 : 0;
+      trial.run(wanted.what, Drawer(seed).with(some_of(causes(), count, seed), wanted.size));
+    }
+  }
+  trial.print();
+}
+
+}  // namespace
+}  // namespace crisp
+
+int main(int argc, char** argv) {
+  const std::span<char*> arguments(argv, static_cast<std::size_t>(argc));
+  crisp::Wanted wanted;
+  if (arguments.size() > 1) wanted.what = arguments[1];
+  if (arguments.size() > 2) wanted.seeds = std::strtoull(arguments[2], nullptr, 10);
+  if (arguments.size() > 3) wanted.first = std::strtoull(arguments[3], nullptr, 10);
+  if (arguments.size() > 4) wanted.size = std::strtod(arguments[4], nullptr) / 1e3;
+  if (arguments.size() > 5) wanted.effect = arguments[5];
+  try {
+    crisp::run(wanted);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

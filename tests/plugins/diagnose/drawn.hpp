@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "grabbers/simulate/motion.hpp"
+#include "tests/plugins/diagnose/hidden.hpp"
+
+namespace crisp::test {
+
+/// A scanner, a scene, a motion and what hides there, all drawn from one seed.
+struct Drawn {
+  std::string scene;
+  std::string motion;
+  std::vector<std::string> names;  ///< of the terms that were hidden: "laser2.mirror.cone"
+  std::string covariate;           ///< of what was hidden that no term describes
+  Recording recording;
+};
+
+/// Draws recordings of ten seconds.
+class Drawer {
+ public:
+  explicit Drawer(std::uint64_t seed) : random_(seed) {
+    drawn_.recording.scanner.seed = seed;
+    draw_scene();
+    draw_rig();
+    draw_motion();
+  }
+
+  /// Hides effects by their names without an owner, each as large as `size` [m].
+  Drawn with(const std::vector<std::string>& effects, double size) {
+    for (const std::string& effect : effects) hide(effect, size);
+    return record();
+  }
+
+  /// Hides one of the errors that no term of the catalogue describes: `which` counts them.
+  Drawn with_something_else(std::size_t which, double size);
+  static constexpr std::size_t kSomethingElse = 6;
+
+ private:
+  ScannerSettings& scanner() { return drawn_.recording.scanner; }
+  double uniform(double from, double to) { return std::uniform_real_distribution(from, to)(random_); }
+  double normal() { return std::normal_distribution()(random_); }
+  std::size_t below(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random_); }
+
+  void draw_scene() {
+    static const std::array<std::string, 3> kNames = {"office", "hall", "street"};
+    drawn_.scene = kNames[below(kNames.size())];
+    scene_ = built_in_scene(drawn_.scene);
+  }
+
+  /// Two to four lasers, mounted a little off what the rig says of them.
+  void draw_rig() {
+    const std::size_t lasers = 2 + below(3);
+    const RigLaser like = default_rig().lasers.front();
+    Rig rig = default_rig();
+    rig.lasers.clear();
+    for (std::size_t k = 0; k < lasers; ++k) {
+      RigLaser laser = like;
+      laser.name = "laser" + std::to_string(k + 1);
+      laser.nominal.name = laser.name;
+      laser.nominal.lambda.value =
+          2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(lasers) +
+          (k > 0 ? uniform(-0.15, 0.15) : 0);
+      laser.nominal.tau.value = uniform(0.15, 0.25);
+      laser.nominal.alpha.value = uniform(-0.1, 0.1);
+      rig.lasers.push_back(laser);
+    }
+    scanner().rig = rig;
+    scanner().truth = nominal_calibration(rig);
+    for (std::size_t k = 0; k < lasers; ++k) {
+      LaserCalibration& laser = scanner().truth.lasers[k];
+      if (k > 0) laser.lambda.value += 0.01 * normal();
+      laser.tau.value += 0.003 * normal();
+      laser.alpha.value += 0.01 * normal();
+      laser.eta.value += 0.002 * normal();
+    }
+  }
+
+  void draw_motion() {
+    MotionSettings& motion = scanner().motion;
+    motion.max_rate = uniform(1, 2);
+    switch (below(3)) {
+      case 0:
+        drawn_.motion = "varying";
+        motion.min_rate = uniform(0, 0.5);
+        break;
+      case 1:
+        drawn_.motion = "both ways";
+        motion.min_rate = -motion.max_rate;
+        break;
+      default:
+        drawn_.motion = "reversal";
+        motion.kind = MotionKind::reversal;
+    }
+  }
+
+  void draw_parameters(TermParameters& term) {
+    const auto& declared = built_in_terms().get(term.term)->info().parameters;
+    for (std::size_t k = 0; k < declared.size(); ++k) {
+      const EffectParameter& p = declared[k];
+      const double share = uniform(0.2, 0.8);
+      double& value = term.parameters[k].value;
+      if (!p.shape) {
+        value = p.neutral + normal() * 1e-3 * (p.upper - p.lower);
+      } else if (p.tries.spacing == Tries::Spacing::kInstants) {
+        value = share * scanner().duration;
+      } else if (p.tries.count > 0) {
+        value = p.tries.from * std::pow(p.tries.to / p.tries.from, share);
+      }
+    }
+  }
+
+  /// Makes a term so large that ranges change by `size` RMS.
+  void scale(const std::string& name, double size) {
+    TermParameters& term = term_of(scanner().truth, name);
+    const auto& declared = built_in_terms().get(term.term)->info().parameters;
+    constexpr int kRounds = 3;
+    for (int round = 0; round < kRounds; ++round) {
+      const double factor = size / change_of_ranges(name);
+      for (std::size_t k = 0; k < declared.size(); ++k) {
+        const EffectParameter& p = declared[k];
+        double& value = term.parameters[k].value;
+        if (!p.shape) value = std::clamp(p.neutral + (value - p.neutral) * factor, p.lower, p.upper);
+      }
+    }
+  }
+
+  /// RMS by which a term of the truth changes the ranges of those lasers that it concerns [m]: beams of two
+  /// recordings without noise side by side, those aside that meet another thing.
+  double change_of_ranges(const std::string& name) {
+    ScannerSettings with = scanner();
+    with.range.sigma = 0;
+    with.beams.clear();
+    constexpr std::uint16_t kEvery = 12;
+    for (std::uint16_t beam = 0; beam < with.field.beams(); beam += kEvery) with.beams.push_back(beam);
+    ScannerSettings without = with;
+    std::erase_if(without.truth.plate_terms, [&](const auto& term) { return term.term == name; });
+    for (auto& laser : without.truth.lasers) {
+      std::erase_if(laser.terms, [&](const auto& term) { return laser.name + "." + term.term == name; });
+    }
+    return rms_change(simulate_measurements(with, scene_, built_in_terms()).beams,
+                      simulate_measurements(without, scene_, built_in_terms()).beams);
+  }
+
+  static double rms_change(const Measurements& a, const Measurements& b) {
+    constexpr double kOtherThing = 0.3;  // [m]
+    const auto key = [](const Measurements& m, std::size_t i) { return std::tuple(m.laser[i], m.time[i]); };
+    std::map<std::tuple<std::uint16_t, double>, float> ranges;
+    for (std::size_t i = 0; i < b.size(); ++i) ranges[key(b, i)] = b.range[i];
+    double squares = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const auto other = ranges.find(key(a, i));
+      if (other == ranges.end()) continue;
+      const double change = double{a.range[i]} - double{other->second};
+      if (change == 0 || std::abs(change) > kOtherThing) continue;
+      squares += change * change;
+      ++count;
+    }
+    return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, count)));
+  }
+
+  void hide(const std::string& effect, double size) {
+    const bool of_plate = built_in_terms().get(effect)->info().scope == Scope::kPlate;
+    const std::string name =
+        of_plate ? effect : "laser" + std::to_string(1 + below(scanner().rig.lasers.size())) + "." + effect;
+    add_wanted_terms(scanner().truth, {name}, built_in_terms());
+    draw_parameters(term_of(scanner().truth, name));
+    scale(name, size);
+    drawn_.names.push_back(name);
+  }
+
+  Drawn record() {
+    drawn_.recording.made = simulate_measurements(scanner(), scene_, built_in_terms());
+    return std::move(drawn_);
+  }
+
+  std::mt19937_64 random_;
+  Scene scene_;
+  Drawn drawn_;
+};
+
+/// Formulae of the test's own: of ranges, and of the angles that are reported.
+inline Drawn Drawer::with_something_else(std::size_t which, double size) {
+  const std::size_t laser = below(scanner().rig.lasers.size());
+  const double phase = uniform(0, 2 * std::numbers::pi);
+  const int order = 3 + static_cast<int>(below(2));
+  Drawn made = record();
+  Measurements& beams = made.recording.made.beams;
+  PlateTrajectory& plate = made.recording.made.plate;
+  const double sine = size * std::numbers::sqrt2;  // of this RMS
+  constexpr double kUsualRange = 3;                // [m]
+  const std::array<const char*, kSomethingElse> covariates = {"mirror angle", "plate angle",  "time",
+                                                              "range",        "mirror angle", "plate angle"};
+  made.covariate = covariates.at(which);
+  if (which == 5) {
+    std::vector<double> times;
+    std::vector<double> angles;
+    constexpr double kStep = 0.002;  // [s]
+    for (double t = beams.time.front() - 0.2; t < beams.time.back() + 0.2; t += kStep) {
+      const auto state = plate.at(t);
+      if (!state) continue;
+      times.push_back(t);
+      angles.push_back(state->angle + sine / kUsualRange * std::sin(order * state->angle + phase));
+    }
+    plate = PlateTrajectory(beams.epoch_ns, times, angles, 0.1);
+    return made;
+  }
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (beams.laser[i] != laser) continue;
+    const double mirror = double{beams.mirror_angle[i]};
+    const double turned = plate.at(beams.time[i]).value_or(PlateState{}).angle;
+    double error = 0;
+    switch (which) {
+      case 0:
+        error = sine * std::sin(order * mirror + phase);
+        break;
+      case 1:
+        error = sine * std::sin(order * turned + phase);
+        break;
+      case 2:
+        error = sine * std::sin(2 * std::numbers::pi * beams.time[i] / 5 + phase);
+        break;
+      case 3:
+        error = 2 * size * std::exp(-std::pow((double{beams.range[i]} - kUsualRange) / 0.7, 2));
+        break;
+      default:
+        beams.mirror_angle[i] += static_cast<float>(sine / kUsualRange * std::sin(order * mirror + phase));
+    }
+    beams.range[i] += static_cast<float>(error);
+  }
+  return made;
+}
+
+}  // namespace crisp::test

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clocks and links that depart from a straight line are told apart, and straight ones are left alone.
+#include "plugins/diagnose/stamps.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/support/simulated_stamps.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kRate = 50;                        // [Hz]
+constexpr double kDuration = 60;                    // [s]
+constexpr std::uint32_t kStart_us = 4'294'000'000;  // wraps a second later
+constexpr std::int64_t kEpoch_ns = 1'700'000'000'000'000'000;
+
+struct Hidden {
+  double skew = 40e-6;
+  double drift = 0;
+  double clock_step = 0;
+  double latency_step = 0;
+  double at = 1e9;
+};
+
+/// Telegrams of a device with what is hidden, made by hand: hub time t, device time, receipt.
+StampTrack track_of(std::uint64_t seed, const Hidden& hidden, const testing::Delays& delays) {
+  testing::Random random(seed);
+  StampTrack track;
+  std::uint16_t counter = 65'000;  // wraps soon
+  for (double t = 0; t < kDuration; t += 1 / kRate) {
+    const bool stepped = t >= hidden.at;
+    const double device =
+        t / (1 + hidden.skew) - hidden.drift * t * t / 2 + (stepped ? hidden.clock_step : 0);
+    const double receipt = t + 0.001 + delays(random) + (stepped ? hidden.latency_step : 0);
+    track.add(counter++, kStart_us + static_cast<std::uint32_t>(static_cast<std::int64_t>(device * 1e6)),
+              kEpoch_ns + static_cast<std::int64_t>(receipt * 1e9));
+  }
+  return track;
+}
+
+const auto kDelays = testing::exponential_delays(1e-4);
+
+TEST(Stamps, AreUnwrappedAndRepeatedOnesAreLeftOut) {
+  StampTrack track;
+  track.add(65'535, 4'294'967'290, kEpoch_ns);
+  track.add(0, 4, kEpoch_ns + 11'000);
+  track.add(0, 4, kEpoch_ns + 12'000);
+  track.add(3, 34, kEpoch_ns + 40'000);
+  ASSERT_EQ(track.stamps().size(), 3U);
+  EXPECT_EQ(track.stamps()[1].count, 1);
+  EXPECT_NEAR(track.stamps()[1].stamp.device, 10e-6, 1e-12);
+  EXPECT_EQ(track.stamps()[2].count, 4);
+  EXPECT_NEAR(track.stamps()[2].stamp.lead, 0, 1e-12);
+}
+
+TEST(Stamps, OfADeviceThatStartsAgainGoOn) {
+  StampTrack track;
+  track.add(5'000, 100'000'000, kEpoch_ns);
+  track.add(5'001, 100'020'000, kEpoch_ns + 20'000'000);
+  track.add(1, 15'000, kEpoch_ns + 3'000'000'000);
+  ASSERT_EQ(track.stamps().size(), 3U);
+  EXPECT_EQ(track.stamps()[2].count, 2);
+}
+
+TEST(Stamps, OfStraightClocksNameNothing) {
+  constexpr int kClocks = 200;
+  int named = 0;
+  for (int seed = 0; seed < kClocks; ++seed) {
+    const auto delays = seed % 2 == 0 ? kDelays : testing::bursty_delays(1e-4, 3e-3, 20, 0.01);
+    const auto track = track_of(static_cast<std::uint64_t>(seed), {}, delays);
+    if (clock_departure(track.stamps(), 1, 1)) ++named;
+  }
+  EXPECT_LE(named, 2);  // 0.4 expected
+}
+
+TEST(Stamps, OfAClockThatDriftsGiveItsDrift) {
+  for (const double drift : {2e-7, -2e-6}) {
+    const auto track = track_of(3, {.drift = drift}, kDelays);
+    const auto found = clock_departure(track.stamps(), 4, 1);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->kind, ClockDeparture::Kind::drift);
+    EXPECT_NEAR(found->size, drift, 4 * found->std_error);
+    EXPECT_NEAR(found->skew, 40e-6, 4 * found->skew_std_error);
+    EXPECT_LT(found->gain.ci95[1], 0) << "on what it was not fitted to";
+  }
+}
+
+TEST(Stamps, OfAClockThatJumpsAreNotTakenForALink) {
+  for (const double step : {0.004, -0.0003, 1.5}) {
+    const auto track = track_of(4, {.clock_step = step, .at = 23.4}, kDelays);
+    const auto found = clock_departure(track.stamps(), 4, 1);
+    ASSERT_TRUE(found) << step;
+    EXPECT_EQ(found->kind, ClockDeparture::Kind::clock_step) << step;
+    EXPECT_NEAR(found->size, step, std::max(20e-6, 4 * found->std_error));
+    EXPECT_NEAR(found->at, 23.4, 0.03) << step;
+  }
+}
+
+TEST(Stamps, OfALinkWhoseShortestDelayStepsAreNotTakenForAClock) {
+  for (const double step : {0.002, -0.0004}) {
+    const auto track = track_of(5, {.latency_step = step, .at = 41.2}, kDelays);
+    const auto found = clock_departure(track.stamps(), 4, 1);
+    ASSERT_TRUE(found) << step;
+    EXPECT_EQ(found->kind, ClockDeparture::Kind::latency_step) << step;
+    EXPECT_NEAR(found->size, step, std::max(20e-6, 4 * found->std_error));
+    EXPECT_NEAR(found->at, 41.2, 0.1) << step;
+  }
+}
+
+TEST(Stamps, GiveTheUsualOfAClock) {
+  const ClockFacts facts = clock_facts(track_of(6, {}, kDelays).stamps());
+  EXPECT_NEAR(facts.skew, 40e-6, 4 * facts.skew_std_error);
+  EXPECT_NEAR(facts.delay_median, 1e-4 * std::log(2.0), 1e-5);
+  EXPECT_NEAR(facts.delay_95, 1e-4 * std::log(20.0), 4e-5);
+}
+
+TEST(Stamps, GiveTheRateOfAMirror) {
+  StampTrack passes;
+  constexpr double kPeriod_us = 20'114.5;
+  for (int k = 0; k < 200; ++k) {
+    const auto at = static_cast<std::uint32_t>(kPeriod_us * k);
+    passes.add(static_cast<std::uint16_t>(k), at, kEpoch_ns + std::int64_t{at} * 1000);
+  }
+  const auto facts = mirror_facts(passes.stamps());
+  ASSERT_TRUE(facts);
+  EXPECT_NEAR(facts->period, kPeriod_us * 1e-6, 1e-8);
+  EXPECT_LT(facts->wander, 1e-5);
+}
+
+}  // namespace
+}  // namespace crisp
