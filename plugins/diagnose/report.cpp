@@ -139,6 +139,12 @@ std::string in_words(const Finding& finding) {
   return words + "\n" + gain_in_words(finding.gain);
 }
 
+std::string in_words(const UnnamedFinding& finding) {
+  return fmt::format("unnamed: {} of {} depends on the {}, by {:.3f} mm{}\n", finding.quantity, finding.scope,
+                     finding.covariate, finding.amplitude * 1e3, finding.accepted ? "" : " (refused)") +
+         gain_in_words(finding.gain);
+}
+
 std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
   std::string words =
       fmt::format("what is wrong: residuals against what the scanner simulated again shows\n");
@@ -147,10 +153,7 @@ std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
   if (findings.findings.empty() && findings.unnamed.empty()) words += "no cause is found\n";
   for (const Finding& finding : findings.findings) words += in_words(finding);
   for (const UnnamedFinding& finding : findings.unnamed) {
-    words +=
-        fmt::format("unnamed: {} of {} depends on the {}, by {:.3f} mm{}\n", finding.quantity, finding.scope,
-                    finding.covariate, finding.amplitude * 1e3, finding.accepted ? "" : " (refused)");
-    words += gain_in_words(finding.gain);
+    words += in_words(finding);
   }
   words += fmt::format("measured and simulated residuals: p = {:.3f} before, {:.3f} after", findings.before_p,
                        findings.after_p);

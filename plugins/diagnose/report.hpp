@@ -14,6 +14,7 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
 
 /// And for people.
 std::string in_words(const Finding& finding);
+std::string in_words(const UnnamedFinding& finding);
 std::string in_words(const Diagnosis& diagnosis, const Findings& findings);
 
 }  // namespace crisp

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/stamps.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <random>
 
 #include "pipeline/clocks/unwrap.hpp"
+#include "plugins/diagnose/series.hpp"
 
 namespace crisp {
 namespace {
@@ -62,12 +60,11 @@ Envelope envelope_of(std::span<const CountedStamp> stamps) {
 }
 
 /// What is tried beside a straight line: a parabola first, then a step before each window but the outermost.
-Eigen::MatrixXd tried(const Eigen::VectorXd& time) {
+Eigen::MatrixXd bends_and_steps(const Eigen::VectorXd& time) {
   constexpr Eigen::Index kMargin = 2;
-  const Eigen::Index n = time.size();
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, 1 + std::max<Eigen::Index>(0, n - 2 * kMargin + 1));
-  columns.col(0) = (time.array() - time.mean()).square();
-  for (Eigen::Index k = 1; k < columns.cols(); ++k) columns.col(k).tail(n - (kMargin + k - 1)).setOnes();
+  const Eigen::MatrixXd all_steps = steps(time.size(), kMargin);
+  Eigen::MatrixXd columns(time.size(), 1 + all_steps.cols());
+  columns << (time.array() - time.mean()).square().matrix(), all_steps;
   return columns;
 }
 
@@ -76,100 +73,6 @@ Eigen::MatrixXd straight(const Eigen::VectorXd& time) {
   base.col(0).setOnes();
   base.col(1) = time.array() - time.mean();
   return base;
-}
-
-/// What a straight line leaves of each column.
-Eigen::MatrixXd off_line(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns) {
-  const Eigen::MatrixXd orthonormal =
-      base.householderQr().householderQ() * Eigen::MatrixXd::Identity(base.rows(), base.cols());
-  return columns - orthonormal * (orthonormal.transpose() * columns);
-}
-
-/// How much better each column does than the line alone: F with one degree of freedom.
-Eigen::VectorXd scores(const Eigen::MatrixXd& unit, const Eigen::VectorXd& left) {
-  const double all = left.squaredNorm();
-  const auto freedom = static_cast<double>(left.size() - 3);
-  const Eigen::ArrayXd gain = (unit.transpose() * left).array().square();
-  return freedom * gain / (all - gain).max(1e-9 * all + 1e-30);
-}
-
-struct Chosen {
-  Eigen::Index column = 0;
-  double p_value = 1;
-};
-
-/// The column that does best, and how often as much is seen where the least delays are shuffled.
-Chosen choose_column(const Eigen::MatrixXd& unit, const Eigen::VectorXd& left, std::uint64_t seed) {
-  constexpr int kShuffles = 4999;
-  Chosen choice;
-  const double best = scores(unit, left).maxCoeff(&choice.column);
-  std::mt19937_64 random(seed);
-  Eigen::VectorXd shuffled = left;
-  int above = 0;
-  for (int s = 0; s < kShuffles; ++s) {
-    std::ranges::shuffle(shuffled, random);
-    above += scores(unit, shuffled).maxCoeff() >= best ? 1 : 0;
-  }
-  choice.p_value = (1.0 + above) / (1.0 + kShuffles);
-  return choice;
-}
-
-struct Fit {
-  Eigen::VectorXd values;
-  Eigen::VectorXd errors;
-};
-
-Fit least_squares(const Eigen::MatrixXd& design, const Eigen::VectorXd& values) {
-  const auto solver = design.colPivHouseholderQr();
-  Fit fit{.values = solver.solve(values), .errors = {}};
-  const double squares = (values - design * fit.values).squaredNorm();
-  const double variance =
-      squares / static_cast<double>(std::max<Eigen::Index>(1, design.rows() - design.cols()));
-  fit.errors = (variance * (design.transpose() * design).inverse().diagonal()).cwiseSqrt();
-  return fit;
-}
-
-Eigen::MatrixXd beside(const Eigen::MatrixXd& base, const Eigen::VectorXd& column) {
-  Eigen::MatrixXd both(base.rows(), base.cols() + 1);
-  both << base, column;
-  return both;
-}
-
-/// RMS of every other window's least delay about a fit to the rest.
-std::vector<double> held_out(const Eigen::MatrixXd& design, const Eigen::VectorXd& values) {
-  std::vector<Eigen::Index> fitted;
-  std::vector<Eigen::Index> rest;
-  for (Eigen::Index w = 0; w < values.size(); ++w) (w % 2 == 0 ? fitted : rest).push_back(w);
-  const Fit fit = least_squares(design(fitted, Eigen::all), values(fitted));
-  const Eigen::VectorXd left = values(rest) - design(rest, Eigen::all) * fit.values;
-  return {left.begin(), left.end()};
-}
-
-Gain gain_of(const Eigen::MatrixXd& base, const Eigen::VectorXd& column, const Eigen::VectorXd& values,
-             std::uint64_t seed) {
-  constexpr std::size_t kDraws = 999;
-  const auto before = held_out(base, values);
-  const auto after = held_out(beside(base, column), values);
-  const auto rms = [](const std::vector<double>& all, const std::vector<std::size_t>& drawn) {
-    double squares = 0;
-    for (const std::size_t i : drawn) squares += all[i] * all[i];
-    return std::sqrt(squares / static_cast<double>(drawn.size()));
-  };
-  std::vector<std::size_t> drawn(before.size());
-  std::iota(drawn.begin(), drawn.end(), std::size_t{0});
-  Gain gain{.metric = "least delays about the clock",
-            .unit = "s",
-            .before = rms(before, drawn),
-            .after = rms(after, drawn)};
-  std::mt19937_64 random(seed);
-  std::vector<double> changes;
-  for (std::size_t draw = 0; draw < kDraws; ++draw) {
-    for (auto& i : drawn) i = random() % before.size();
-    changes.push_back(rms(after, drawn) - rms(before, drawn));
-  }
-  std::ranges::sort(changes);
-  gain.ci95 = {changes[kDraws / 40], changes[kDraws - 1 - kDraws / 40]};
-  return gain;
 }
 
 /// The first stamp after a step of the shortest delay: all before a step up and all after a step down come in
@@ -210,7 +113,7 @@ std::size_t largest_jump(std::span<const CountedStamp> stamps, std::size_t begin
 }
 
 void tell_step(std::span<const CountedStamp> stamps, const Envelope& envelope, std::size_t window,
-               const Fit& fit, ClockDeparture& departure) {
+               const Eigen::VectorXd& line, ClockDeparture& departure) {
   const std::size_t begin = envelope.first[window - 1];
   const std::size_t end = envelope.first[std::min(window + 1, envelope.stamp.size())];
   std::size_t at = largest_jump(stamps, begin, end);
@@ -221,7 +124,7 @@ void tell_step(std::span<const CountedStamp> stamps, const Envelope& envelope, s
     departure.size = -departure.size;
   } else {
     const double middle = envelope.time.mean();
-    const auto level = [&](double t) { return fit.values[0] + fit.values[1] * (t - middle); };
+    const auto level = [&](double t) { return line[0] + line[1] * (t - middle); };
     at = std::clamp<std::size_t>(first_after(stamps, departure.size, level), 1, stamps.size() - 1);
   }
   departure.at = receipt(stamps[at]);
@@ -274,28 +177,27 @@ std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stam
   constexpr double kSignificant = 0.002;
   if (stamps.size() < kFewest) return std::nullopt;
   const Envelope envelope = envelope_of(stamps);
-  const Eigen::MatrixXd base = straight(envelope.time);
-  const Eigen::MatrixXd columns = tried(envelope.time);
-  const Eigen::MatrixXd unit = off_line(base, columns).colwise().normalized();
-  const Chosen choice = choose_column(unit, off_line(base, envelope.lead), seed);
-  ClockDeparture departure{.p_value = std::min(1.0, choice.p_value * static_cast<double>(looks))};
+  const Eigen::MatrixXd columns = bends_and_steps(envelope.time);
+  const SeriesLook look = look_at_series(straight(envelope.time), columns, envelope.lead, seed);
+  ClockDeparture departure{.size = look.values[2],
+                           .std_error = look.errors[2],
+                           .skew = look.values[1],
+                           .skew_std_error = look.errors[1],
+                           .p_value = std::min(1.0, look.p_value * static_cast<double>(looks)),
+                           .gain = look.gain};
+  departure.gain.metric = "least delays about the clock";
+  departure.gain.unit = "s";
   if (departure.p_value > kSignificant) return std::nullopt;
-  const Fit fit = least_squares(beside(base, columns.col(choice.column)), envelope.lead);
-  departure.size = fit.values[2];
-  departure.std_error = fit.errors[2];
-  departure.gain = gain_of(base, columns.col(choice.column), envelope.lead, seed);
-  if (choice.column == 0) {
+  if (look.column == 0) {
     // lead = skew t + drift t²/2
     departure.size *= 2;
     departure.std_error *= 2;
-    departure.skew = fit.values[1] - departure.size * envelope.time.mean();
-    departure.skew_std_error = std::hypot(fit.errors[1], departure.std_error * envelope.time.mean());
+    departure.skew -= departure.size * envelope.time.mean();
+    departure.skew_std_error = std::hypot(look.errors[1], departure.std_error * envelope.time.mean());
     return departure;
   }
-  departure.skew = fit.values[1];
-  departure.skew_std_error = fit.errors[1];
-  const auto window = static_cast<std::size_t>((columns.col(choice.column).array() == 0).count());
-  tell_step(stamps, envelope, window, fit, departure);
+  const auto window = static_cast<std::size_t>(before_step(columns.col(look.column)));
+  tell_step(stamps, envelope, window, look.values, departure);
   return departure;
 }
 

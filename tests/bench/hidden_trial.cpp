@@ -127,11 +127,15 @@ class Trial {
         errors += fmt::format(" {:+.1f}", error);
       }
     }
+    std::string hidden = drawn.covariate;
+    for (std::size_t k = 0; k < drawn.names.size(); ++k) {
+      hidden += fmt::format(" {} ({:.1f} mm)", drawn.names[k], 1e3 * drawn.sizes[k]);
+    }
     fmt::print(
-        "{:<26} seed {:<4} {:<6} {} lasers {:<9} hidden: {}{}; found:{}; errors{}; p {:.3f} {:.3f}; "
+        "{:<26} seed {:<4} {:<6} {} lasers {:<9} hidden:{}; found:{}; errors{}; p {:.3f} {:.3f}; "
         "noise {:.3f} {:.3f} mm; {:.0f} s{}\n",
         what, drawn.recording.scanner.seed, drawn.scene, drawn.recording.scanner.rig.lasers.size(),
-        drawn.motion, fmt::join(drawn.names, " "), drawn.covariate, found_by(diagnosis), errors,
+        drawn.motion, hidden, found_by(diagnosis), errors,
         diagnosis.left_before.p_value, diagnosis.left_after.p_value, diagnosis.left_before.noise * 1e3,
         diagnosis.left_after.noise * 1e3, seconds.count(), diagnosis.settled ? "" : "; NOT SETTLED");
     for (const auto& limit : diagnosis.unobservable) {

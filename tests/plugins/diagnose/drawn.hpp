@@ -20,7 +20,8 @@ struct Drawn {
   std::string scene;
   std::string motion;
   std::vector<std::string> names;  ///< of the terms that were hidden: "laser2.mirror.cone"
-  std::string covariate;           ///< of what was hidden that no term describes
+  std::vector<double> sizes;  ///< [m] RMS by which each changes ranges; less than asked where bounds end it
+  std::string covariate;      ///< of what was hidden that no term describes
   Recording recording;
 };
 
@@ -176,6 +177,7 @@ class Drawer {
     draw_parameters(term_of(scanner().truth, name));
     scale(name, size);
     drawn_.names.push_back(name);
+    drawn_.sizes.push_back(change_of_ranges(name));
   }
 
   Drawn record() {

@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/noise.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <random>
+
+namespace crisp {
+namespace {
+
+std::size_t beams_of(const RangeErrors& errors) {
+  return errors.beam.empty() ? 0 : std::ranges::max(errors.beam) + std::size_t{1};
+}
+
+/// One of the up to four normal laws that a range may have come from.
+struct Part {
+  double share = 1;
+  double mean = 0;
+  double scale = 1;  // of σ(r)
+  bool far = false;
+  bool tail = false;
+};
+
+struct Parts {
+  std::array<Part, 4> all;
+  std::size_t count = 0;
+};
+
+Parts parts_of(const NoiseLaw& law, std::uint16_t beam) {
+  Parts parts;
+  const double weight = law.has_peaks() ? law.weight[beam] : 0;
+  const double tail = law.has_tail ? law.tail_share : 0;
+  for (const bool far : {false, true}) {
+    if (far && !law.has_peaks()) break;
+    const double mean = law.separation * ((far ? 1 : 0) - weight);
+    const double share = far ? weight : 1 - weight;
+    parts.all[parts.count++] = {.share = share * (1 - tail), .mean = mean, .far = far};
+    if (!law.has_tail) continue;
+    parts.all[parts.count++] = {
+        .share = share * tail, .mean = mean, .scale = law.tail_scale, .far = far, .tail = true};
+  }
+  return parts;
+}
+
+double density(const Part& part, double value, double sigma) {
+  const double s = part.scale * sigma;
+  const double z = (value - part.mean) / s;
+  return part.share * std::exp(-z * z / 2) / (s * std::sqrt(2 * std::numbers::pi));
+}
+
+double sigma_at(const NoiseLaw& law, double range, std::uint16_t beam) {
+  const double spread = law.has_spread() ? law.spread[beam] : 1;
+  return spread * std::hypot(law.sigma, law.slope * range);
+}
+
+/// Sums of one round of expectation.
+struct Sums {
+  double all = 0, likelihood = 0, tail = 0, tail_squares = 0;
+  double separation = 0, separation_weight = 0;
+  // regression of squares on 1 and r²: σ² and slope²
+  double w = 0, wr = 0, wrr = 0, wy = 0, wry = 0;
+  std::vector<double> far, of_beam, squares;  // by beam
+};
+
+void add(const NoiseLaw& law, double value, double range, std::uint16_t beam, Sums& sums) {
+  const Parts parts = parts_of(law, beam);
+  const double sigma = sigma_at(law, range, beam);
+  const double spread = law.has_spread() ? law.spread[beam] : 1;
+  std::array<double, 4> probable{};
+  double total = 1e-300;
+  for (std::size_t k = 0; k < parts.count; ++k) {
+    probable[k] = density(parts.all[k], value, sigma);
+    total += probable[k];
+  }
+  sums.all += 1;
+  sums.likelihood += std::log(total);
+  sums.of_beam[beam] += 1;
+  const double variance = std::pow(sigma / spread, 2);
+  const double square_range = range * range;
+  for (std::size_t k = 0; k < parts.count; ++k) {
+    const Part& part = parts.all[k];
+    const double p = probable[k] / total;
+    const double square = std::pow((value - part.mean) / (part.scale * spread), 2);
+    const double w = p / (variance * variance);
+    sums.w += w;
+    sums.wr += w * square_range;
+    sums.wrr += w * square_range * square_range;
+    sums.wy += w * square;
+    sums.wry += w * square_range * square;
+    sums.squares[beam] += p * square / variance * spread * spread;
+    if (part.tail) {
+      sums.tail += p;
+      sums.tail_squares += p * std::pow((value - part.mean) / sigma, 2);
+    }
+    if (!law.has_peaks()) continue;
+    const double lever = (part.far ? 1 : 0) - law.weight[beam];
+    const double precision = p / std::pow(part.scale * sigma, 2);
+    sums.separation += precision * value * lever;
+    sums.separation_weight += precision * lever * lever;
+    if (part.far) sums.far[beam] += p;
+  }
+}
+
+void take_variance(const Sums& sums, NoiseLaw& law) {
+  constexpr double kLeast = 1e-10;  // [m²]
+  double variance = sums.wy / sums.w;
+  double slope = 0;
+  if (law.has_slope) {
+    const double determinant = sums.w * sums.wrr - sums.wr * sums.wr;
+    if (determinant > 1e-9 * sums.w * sums.wrr) {
+      slope = std::max(0.0, (sums.w * sums.wry - sums.wr * sums.wy) / determinant);
+    }
+    variance = (sums.wy - slope * sums.wr) / sums.w;
+  }
+  law.sigma = std::sqrt(std::max(kLeast, variance));
+  law.slope = std::sqrt(slope);
+}
+
+/// About 1, so that sigma is that of a usual beam.
+void take_spread(const Sums& sums, NoiseLaw& law) {
+  double logarithms = 0;
+  double beams = 0;
+  for (std::size_t b = 0; b < law.spread.size(); ++b) {
+    law.spread[b] = std::sqrt((sums.squares[b] + 1) / (sums.of_beam[b] + 1));
+    if (sums.of_beam[b] == 0) continue;
+    logarithms += std::log(law.spread[b]);
+    beams += 1;
+  }
+  const double usual = std::exp(logarithms / std::max(1.0, beams));
+  for (double& spread : law.spread) spread /= usual;
+  law.sigma *= usual;
+  law.slope *= usual;
+}
+
+void take(const Sums& sums, NoiseLaw& law) {
+  constexpr double kLeastScale = 1.5;
+  take_variance(sums, law);
+  if (law.has_spread()) take_spread(sums, law);
+  if (law.has_tail) {
+    law.tail_share = std::clamp(sums.tail / sums.all, 1e-6, 0.5);
+    if (sums.tail > 0) law.tail_scale = std::max(kLeastScale, std::sqrt(sums.tail_squares / sums.tail));
+  }
+  if (law.has_peaks()) {
+    if (sums.separation_weight > 0) law.separation = std::max(0.0, sums.separation / sums.separation_weight);
+    for (std::size_t b = 0; b < law.weight.size(); ++b) {
+      law.weight[b] = (sums.far[b] + 0.5) / (sums.of_beam[b] + 1);
+    }
+  }
+}
+
+double log_likelihood(const NoiseLaw& law, const RangeErrors& errors) {
+  double sum = 0;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    sum += law.log_density(double{errors.value[i]}, double{errors.range[i]}, errors.beam[i]);
+  }
+  return sum;
+}
+
+std::map<std::uint16_t, double> beams_in(const RangeErrors& errors) {
+  std::map<std::uint16_t, double> counts;
+  for (const std::uint16_t beam : errors.beam) counts[beam] += 1;
+  return counts;
+}
+
+/// What a law's parameters cost, as BIC has it: ln of the number of ranges that each is told by.
+double price(const NoiseLaw& law, const RangeErrors& errors) {
+  const double of_all = std::log(static_cast<double>(errors.size()));
+  double sum = of_all * (1 + (law.has_slope ? 1 : 0) + (law.has_tail ? 2 : 0) + (law.has_peaks() ? 1 : 0));
+  const double of_each = (law.has_peaks() ? 1 : 0) + (law.has_spread() ? 1 : 0);
+  for (const auto& [beam, count] : beams_in(errors)) sum += of_each * std::log(count);
+  return sum;
+}
+
+RangeErrors some_of(const RangeErrors& errors, const std::function<bool(std::uint32_t block)>& is_wanted) {
+  RangeErrors some;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!is_wanted(errors.block[i])) continue;
+    some.value.push_back(errors.value[i]);
+    some.range.push_back(errors.range[i]);
+    some.beam.push_back(errors.beam[i]);
+    some.block.push_back(errors.block[i]);
+  }
+  return some;
+}
+
+/// Some blocks of all, strewn: as many ranges as tell all there is to tell.
+RangeErrors thinned(const RangeErrors& errors) {
+  constexpr std::size_t kMost = 120'000;
+  constexpr std::uint32_t kStrewn = 2'654'435'761;  // Knuth's multiplicative hash
+  const auto nth = static_cast<std::uint32_t>((errors.size() + kMost - 1) / kMost);
+  if (nth <= 1) return errors;
+  return some_of(errors, [nth](std::uint32_t block) { return (block * kStrewn >> 16) % nth == 0; });
+}
+
+/// One way of not being normal.
+struct Way {
+  const char* cause;
+  std::function<void(NoiseLaw&)> add;
+  std::function<std::vector<Parameter>(const NoiseLaw&)> parameters;
+};
+
+double quantile_of(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+std::vector<Way> ways(const RangeErrors& errors, double sigma) {
+  const std::size_t beams = beams_of(errors);
+  return {{"",  // no cause: each beam has a spread of its own, of what it meets or of itself
+           [beams](NoiseLaw& law) { law.spread.assign(beams, 1); },
+           [](const NoiseLaw&) { return std::vector<Parameter>{}; }},
+          {"noise.range_dependent", [](NoiseLaw& law) { law.has_slope = true; },
+           [](const NoiseLaw& law) {
+             return std::vector<Parameter>{{.name = "slope", .unit = "1", .value = law.slope}};
+           }},
+          {"noise.heavy_tail",
+           [](NoiseLaw& law) {
+             law.has_tail = true;
+             law.tail_share = 0.02;
+           },
+           [](const NoiseLaw& law) {
+             return std::vector<Parameter>{{.name = "share", .unit = "1", .value = law.tail_share},
+                                           {.name = "scale", .unit = "1", .value = law.tail_scale}};
+           }},
+          {"noise.two_peaks",
+           [beams, sigma](NoiseLaw& law) {
+             law.weight.assign(beams, 0.5);
+             law.separation = 1.6 * sigma;
+             law.sigma = 0.6 * sigma;
+           },
+           [](const NoiseLaw& law) {
+             return std::vector<Parameter>{
+                 {.name = "separation", .unit = "m", .value = law.separation},
+                 {.name = "least", .unit = "1", .value = quantile_of(law.weight, 0.05)},
+                 {.name = "most", .unit = "1", .value = quantile_of(law.weight, 0.95)}};
+           }}};
+}
+
+/// Standard errors by leaving out one of eight parts of the recording after another (jackknife).
+void add_errors(const NoiseLaw& law, const RangeErrors& errors, const Way& way,
+                std::vector<Parameter>& found) {
+  constexpr std::uint32_t kParts = 8;
+  std::vector<std::vector<Parameter>> without;
+  for (std::uint32_t part = 0; part < kParts; ++part) {
+    const auto rest = some_of(errors, [part](std::uint32_t block) { return block % kParts != part; });
+    without.push_back(way.parameters(fitted(law, rest)));
+  }
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    double sum = 0;
+    double squares = 0;
+    for (const auto& one : without) {
+      sum += one[k].value;
+      squares += one[k].value * one[k].value;
+    }
+    const double spread = squares / kParts - std::pow(sum / kParts, 2);
+    found[k].std_error = std::sqrt(std::max(0.0, spread) * (kParts - 1));
+    found[k].free = true;
+  }
+}
+
+/// Mean log-likelihood of every other block under laws that were fitted to the rest.
+Gain gain_of(const NoiseLaw& before, const NoiseLaw& after, const RangeErrors& errors, std::uint64_t seed) {
+  constexpr std::size_t kDraws = 999;
+  const auto fitted_half = some_of(errors, [](std::uint32_t block) { return block % 2 == 0; });
+  const NoiseLaw first = fitted(before, fitted_half);
+  const NoiseLaw second = fitted(after, fitted_half);
+  struct Block {
+    double count = 0, before = 0, after = 0;
+  };
+  std::map<std::uint32_t, Block> of;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (errors.block[i] % 2 == 0) continue;
+    Block& block = of[errors.block[i]];
+    block.count += 1;
+    block.before += first.log_density(double{errors.value[i]}, double{errors.range[i]}, errors.beam[i]);
+    block.after += second.log_density(double{errors.value[i]}, double{errors.range[i]}, errors.beam[i]);
+  }
+  std::vector<Block> blocks;
+  Block all;
+  const auto sum = [](Block& to, const Block& one) {
+    to.count += one.count;
+    to.before += one.before;
+    to.after += one.after;
+  };
+  for (const auto& [number, block] : of) {
+    blocks.push_back(block);
+    sum(all, block);
+  }
+  Gain gain{.metric = "log-likelihood a measurement", .unit = "nat"};
+  if (blocks.size() < 2) return gain;
+  gain.before = all.before / all.count;
+  gain.after = all.after / all.count;
+  std::mt19937_64 random(seed);
+  std::vector<double> changes;
+  for (std::size_t draw = 0; draw < kDraws; ++draw) {
+    Block drawn;
+    for (std::size_t k = 0; k < blocks.size(); ++k) sum(drawn, blocks[random() % blocks.size()]);
+    changes.push_back((drawn.after - drawn.before) / drawn.count);
+  }
+  std::ranges::sort(changes);
+  gain.ci95 = {changes[kDraws / 40], changes[kDraws - 1 - kDraws / 40]};
+  return gain;
+}
+
+}  // namespace
+
+double NoiseLaw::log_density(double value, double range_m, std::uint16_t beam) const {
+  const Parts parts = parts_of(*this, beam);
+  const double sigma_here = sigma_at(*this, range_m, beam);
+  double sum = 1e-300;
+  for (std::size_t k = 0; k < parts.count; ++k) sum += density(parts.all[k], value, sigma_here);
+  return std::log(sum);
+}
+
+NoiseLaw fitted(const NoiseLaw& like, const RangeErrors& errors) {
+  constexpr int kMostRounds = 300;
+  constexpr double kSettled = 0.02;  // [nat] that a round brings
+  NoiseLaw law = like;
+  double last = -HUGE_VAL;
+  for (int round = 0; round < kMostRounds; ++round) {
+    Sums sums;
+    for (auto* by_beam : {&sums.far, &sums.of_beam, &sums.squares}) by_beam->resize(beams_of(errors));
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      add(law, double{errors.value[i]}, double{errors.range[i]}, errors.beam[i], sums);
+    }
+    take(sums, law);
+    if (sums.likelihood - last < kSettled) break;
+    last = sums.likelihood;
+  }
+  return law;
+}
+
+namespace {
+
+/// A way of not being normal that has been tried beside what the law already has.
+struct Tried {
+  std::size_t way = 0;
+  NoiseLaw law;
+  double rise = 0;  // of BIC
+};
+
+Tried best_of(const std::vector<Way>& ways, const NoiseLaw& law, const RangeErrors& errors) {
+  const double before = 2 * log_likelihood(law, errors) - price(law, errors);
+  Tried best;
+  for (std::size_t w = 0; w < ways.size(); ++w) {
+    Tried one{.way = w, .law = law};
+    ways[w].add(one.law);
+    one.law = fitted(one.law, errors);
+    one.rise = 2 * log_likelihood(one.law, errors) - price(one.law, errors) - before;
+    if (one.rise > best.rise) best = std::move(one);
+  }
+  return best;
+}
+
+double p_value_of(const NoiseLaw& before, const NoiseLaw& after, const RangeErrors& errors) {
+  const auto beams = static_cast<double>(beams_in(errors).size());
+  const auto count = [&](const NoiseLaw& law) {
+    return (law.has_slope ? 1 : 0) + (law.has_tail ? 2 : 0) + (law.has_peaks() ? 1 + beams : 0) +
+           (law.has_spread() ? beams : 0);
+  };
+  const double fall = 2 * (log_likelihood(after, errors) - log_likelihood(before, errors));
+  return fall > 0 ? cdf(complement(boost::math::chi_squared(count(after) - count(before)), fall)) : 1;
+}
+
+Finding finding_of(const std::string& scope, const Way& way, const Tried& tried, const NoiseLaw& before,
+                   const RangeErrors& errors, std::uint64_t seed) {
+  Finding finding{.cause = way.cause,
+                  .scope = scope,
+                  .parameters = way.parameters(tried.law),
+                  .log10_odds = tried.rise / 2 / std::numbers::ln10,
+                  .p_value = p_value_of(before, tried.law, errors),
+                  .confounded_with = {},
+                  .gain = {gain_of(before, tried.law, errors, seed)}};
+  finding.accepted = finding.gain[0].ci95[0] > 0;
+  add_errors(tried.law, errors, way, finding.parameters);
+  return finding;
+}
+
+UnnamedFinding unnamed_of(const Finding& finding, const NoiseLaw& law) {
+  double squares = 0;
+  for (const double spread : law.spread) squares += std::pow(law.sigma * (spread - 1), 2);
+  return {.covariate = "beam",
+          .quantity = "noise",
+          .scope = finding.scope,
+          .amplitude = std::sqrt(squares / static_cast<double>(law.spread.size())),
+          .unit = "m",
+          .p_value = finding.p_value,
+          .gain = finding.gain,
+          .accepted = finding.accepted};
+}
+
+}  // namespace
+
+NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, std::uint64_t seed) {
+  constexpr double kBic = 10;
+  const RangeErrors errors = thinned(all);
+  NoiseDiagnosis result{.plain = fitted({}, errors), .law = {}, .findings = {}, .unnamed = {}};
+  result.law = result.plain;
+  auto left = ways(errors, result.plain.sigma);
+  while (!left.empty()) {
+    const Tried best = best_of(left, result.law, errors);
+    if (best.rise < kBic) break;
+    const Finding finding = finding_of(scope, left[best.way], best, result.law, errors, seed);
+    if (finding.cause.empty()) {
+      result.unnamed.push_back(unnamed_of(finding, best.law));
+    } else {
+      result.findings.push_back(finding);
+    }
+    if (finding.accepted) result.law = best.law;
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(best.way));
+  }
+  return result;
+}
+
+}  // namespace crisp

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/rest_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pipeline/clocks/unwrap.hpp"
+#include "plugins/diagnose/report.hpp"
+
+namespace crisp {
+namespace {
+
+Finding finding_of(const CommonChange& change, const std::string& laser) {
+  const auto parameter = [](const char* name, const char* unit, double value, double error) {
+    return Parameter{.name = name, .unit = unit, .value = value, .std_error = error, .free = true};
+  };
+  Finding finding{.cause = change.is_step ? "range.step" : "range.warmup",
+                  .scope = laser,
+                  .parameters = {},
+                  .explained_fraction = 1 - std::pow(change.gain.after / change.gain.before, 2),
+                  .p_value = change.p_value,
+                  .confounded_with = {},
+                  .gain = {change.gain},
+                  .accepted = change.gain.ci95[1] < 0};
+  finding.parameters = {parameter(change.is_step ? "by" : "c", "m", change.size, change.std_error),
+                        parameter(change.is_step ? "at" : "T", "s", change.shape, change.shape_error)};
+  return finding;
+}
+
+}  // namespace
+
+void DiagnoseRestStage::describe(StageDescription<DiagnoseRestStage>& d) {
+  d.name("diagnose.rest").summary("says how the ranges of lasers that stand still scatter");
+  d.details(
+      "Each beam of a laser at rest meets the same spot again and again. What all beams do together (a jump, "
+      "`range.step`, or a creeping, `range.warmup`) is looked for scan by scan, by permutations. What is "
+      "left "
+      "of each beam about its mean is compared with the normal law of the plain simulator: a spread that "
+      "grows with the range, heavy tails, two peaks with a weight of each beam's own (`noise.*`), forward by "
+      "BIC, each judged by scans that it was not fitted to. A laser that moves is passed over with a word.");
+  d.takes<Scan>().gives<Findings>();
+}
+
+void DiagnoseRestStage::process(const Inputs& in, Outputs&, Context& context) {
+  const Scan& scan = in.get<Scan>();
+  if (lasers_.empty()) {
+    lasers_.resize(context.rig().lasers.size());
+    first_ns_ = scan.receipt_ns;
+  }
+  if (scan.laser < lasers_.size()) lasers_[scan.laser].add(scan);
+}
+
+void DiagnoseRestStage::add_laser(const std::string& name, const AtRest& scans, Findings& all,
+                                  Context& context) const {
+  context.count("scans left out of the diagnosis", scans.left_out());
+  auto errors = scans.errors();
+  if (!errors) {
+    context.say(fmt::format("{} moves, or all before it does: nothing is said of its noise", name));
+    return;
+  }
+  const std::int64_t epoch_ns = epoch_of_run(first_ns_);
+  std::vector<double> seconds;
+  for (std::size_t scan = 0; scan < scans.scans(); ++scan) {
+    seconds.push_back(1e-9 * static_cast<double>(scans.receipt_ns(scan) - epoch_ns));
+  }
+  if (const auto change = common_change(*errors, seconds, lasers_.size(), context.seed())) {
+    all.findings.push_back(finding_of(*change, name));
+    take_out(*change, seconds, *errors);
+  }
+  const NoiseDiagnosis noise = diagnose_noise(name, *errors, context.seed());
+  context.say(fmt::format("{}: {} ranges of beams at rest scatter by {:.2f} mm (RMS)", name, errors->size(),
+                          1e3 * noise.plain.sigma));
+  all.findings.insert(all.findings.end(), noise.findings.begin(), noise.findings.end());
+  all.unnamed.insert(all.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
+}
+
+void DiagnoseRestStage::finish(Outputs& out, Context& context) {
+  Findings all;
+  for (std::size_t laser = 0; laser < lasers_.size(); ++laser) {
+    if (lasers_[laser].scans() == 0) continue;
+    context.progress(static_cast<double>(laser) / static_cast<double>(lasers_.size()), "fitting noise");
+    if (context.interrupted()) return;
+    add_laser(context.rig().lasers[laser].name, lasers_[laser], all, context);
+  }
+  for (const Finding& finding : all.findings) context.say(in_words(finding));
+  for (const UnnamedFinding& finding : all.unnamed) context.say(in_words(finding));
+  context.report({{"findings", all.findings.size()}});
+  out.give(std::move(all));
+}
+
+}  // namespace crisp

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/diagnose/at_rest.hpp"
+
+namespace crisp {
+
+/// Says how the ranges of lasers that stand still scatter, and what they do together.
+class DiagnoseRestStage final : public Stage {
+ public:
+  static void describe(StageDescription<DiagnoseRestStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  void add_laser(const std::string& name, const AtRest& scans, Findings& all, Context& context) const;
+
+  std::vector<AtRest> lasers_;  // of the rig
+  std::int64_t first_ns_ = 0;   // receipt of the first scan
+};
+
+}  // namespace crisp

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "pipeline/data/findings.hpp"
+
+namespace crisp {
+
+/// What a short series of values shows beside what is expected of it.
+struct SeriesLook {
+  Eigen::Index column = 0;  ///< the one that does best
+  double p_value = 1;       ///< how often any column does as much where what is left is shuffled
+  Eigen::VectorXd values;   ///< of the base's columns, then of that one
+  Eigen::VectorXd errors;   ///< of them: standard errors
+  Gain gain;                ///< RMS of every other value about a fit to the rest, without and with the column
+};
+
+/// Tries each of some columns beside a base, by least squares. Significance is by 4999 permutations of what
+/// the base leaves, so that no law of the values is assumed but that they are exchangeable.
+///
+/// @param base     n × m: what is expected
+/// @param columns  n × c: what is tried, one at a time
+SeriesLook look_at_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
+                          const Eigen::VectorXd& values, std::uint64_t seed);
+
+/// Steps before each of n values but the `margin` outermost at either end: a column each.
+Eigen::MatrixXd steps(Eigen::Index n, Eigen::Index margin);
+
+/// How many values are before the step that a column of steps() describes.
+Eigen::Index before_step(const Eigen::VectorXd& column);
+
+}  // namespace crisp

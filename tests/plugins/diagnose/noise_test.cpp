@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How ranges scatter is told from the ranges, and plain noise is left alone.
+#include "plugins/diagnose/noise.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace crisp {
+namespace {
+
+using testing::IsEmpty;
+using testing::SizeIs;
+
+using Random = std::mt19937_64;
+
+constexpr double kSigma = 0.008;
+
+/// Shots of beams at rest, each at its own range, less the mean of its beam.
+RangeErrors shots(std::uint64_t seed, int beams, int scans,
+                  const std::function<double(Random&, int beam, double range)>& error) {
+  Random random(seed);
+  RangeErrors all;
+  for (int beam = 0; beam < beams; ++beam) {
+    const double range = 1 + 14.0 * beam / beams;
+    std::vector<double> values;
+    double mean = 0;
+    for (int scan = 0; scan < scans; ++scan) {
+      values.push_back(error(random, beam, range));
+      mean += values.back() / scans;
+    }
+    for (int scan = 0; scan < scans; ++scan) {
+      all.value.push_back(static_cast<float>(values[static_cast<std::size_t>(scan)] - mean));
+      all.range.push_back(static_cast<float>(range));
+      all.beam.push_back(static_cast<std::uint16_t>(beam));
+      all.block.push_back(static_cast<std::uint32_t>(scan / 5));
+    }
+  }
+  return all;
+}
+
+double normal(Random& random) { return std::normal_distribution<>()(random); }
+
+double value_of(const Finding& finding, const std::string& name) {
+  return std::ranges::find(finding.parameters, name, &Parameter::name)->value;
+}
+double error_of(const Finding& finding, const std::string& name) {
+  return std::ranges::find(finding.parameters, name, &Parameter::name)->std_error;
+}
+
+TEST(Noise, ThatIsPlainIsGivenNoCause) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const auto found = diagnose_noise(
+        "laser1", shots(seed, 200, 100, [](Random& random, int, double) { return kSigma * normal(random); }),
+        1);
+    EXPECT_THAT(found.findings, IsEmpty()) << seed;
+    EXPECT_THAT(found.unnamed, IsEmpty()) << seed;
+    EXPECT_NEAR(found.law.sigma, kSigma, 2e-4);
+  }
+}
+
+TEST(Noise, AboutTwoValuesIsFoundWithTheirDistance) {
+  std::vector<double> weights;
+  Random draw(7);
+  for (int beam = 0; beam < 200; ++beam) weights.push_back(std::uniform_real_distribution<>(0.2, 0.9)(draw));
+  const auto found = diagnose_noise("laser1",
+                                    shots(2, 200, 150,
+                                          [&](Random& random, int beam, double) {
+                                            const double weight = weights[static_cast<std::size_t>(beam)];
+                                            const bool far =
+                                                std::uniform_real_distribution<>(0, 1)(random) < weight;
+                                            return 0.005 * normal(random) + (far ? 0.015 : 0);
+                                          }),
+                                    1);
+  ASSERT_THAT(found.findings, SizeIs(1));
+  const Finding& finding = found.findings[0];
+  EXPECT_EQ(finding.cause, "noise.two_peaks");
+  EXPECT_NEAR(value_of(finding, "separation"), 0.015, std::max(3 * error_of(finding, "separation"), 5e-4));
+  EXPECT_NEAR(value_of(finding, "least"), 0.2, 0.1);
+  EXPECT_NEAR(value_of(finding, "most"), 0.9, 0.1);
+  EXPECT_GT(finding.gain.at(0).ci95[0], 0);
+}
+
+TEST(Noise, ThatGrowsWithTheRangeIsFoundWithItsSlope) {
+  const auto found = diagnose_noise("laser1",
+                                    shots(3, 200, 100,
+                                          [](Random& random, int, double range) {
+                                            return std::hypot(kSigma, 8e-4 * range) * normal(random);
+                                          }),
+                                    1);
+  ASSERT_THAT(found.findings, SizeIs(1));
+  EXPECT_EQ(found.findings[0].cause, "noise.range_dependent");
+  EXPECT_NEAR(value_of(found.findings[0], "slope"), 8e-4, 4 * error_of(found.findings[0], "slope"));
+}
+
+TEST(Noise, OfWhichAShareIsLargerIsFoundWithThatShare) {
+  const auto found = diagnose_noise("laser1",
+                                    shots(4, 200, 100,
+                                          [](Random& random, int, double) {
+                                            const bool tail =
+                                                std::uniform_real_distribution<>(0, 1)(random) < 0.03;
+                                            return kSigma * (tail ? 6 : 1) * normal(random);
+                                          }),
+                                    1);
+  ASSERT_THAT(found.findings, SizeIs(1));
+  EXPECT_EQ(found.findings[0].cause, "noise.heavy_tail");
+  EXPECT_NEAR(value_of(found.findings[0], "share"), 0.03, 4 * error_of(found.findings[0], "share"));
+  EXPECT_NEAR(value_of(found.findings[0], "scale"), 6, 4 * error_of(found.findings[0], "scale"));
+}
+
+TEST(Noise, OfAnotherSizeInEachBeamHasNoCause) {
+  const auto found = diagnose_noise("laser1",
+                                    shots(6, 200, 100,
+                                          [](Random& random, int beam, double) {
+                                            return kSigma * (beam % 3 == 0 ? 2 : 1) * normal(random);
+                                          }),
+                                    1);
+  EXPECT_THAT(found.findings, IsEmpty());
+  ASSERT_THAT(found.unnamed, SizeIs(1));
+  EXPECT_EQ(found.unnamed[0].covariate, "beam");
+  EXPECT_TRUE(found.unnamed[0].accepted);
+}
+
+TEST(Noise, OfTwoKindsIsFoundAsBoth) {
+  const auto found = diagnose_noise(
+      "laser1",
+      shots(5, 200, 150,
+            [](Random& random, int beam, double range) {
+              const bool far = std::uniform_real_distribution<>(0, 1)(random) < 0.3 + 0.4 * (beam % 2);
+              return std::hypot(0.004, 4e-4 * range) * normal(random) + (far ? 0.02 : 0);
+            }),
+      1);
+  std::vector<std::string> causes;
+  for (const auto& finding : found.findings) causes.push_back(finding.cause);
+  EXPECT_THAT(causes, testing::UnorderedElementsAre("noise.two_peaks", "noise.range_dependent"));
+}
+
+}  // namespace
+}  // namespace crisp
