@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -81,11 +82,15 @@ std::vector<Departure::Rival> rivals(const Choice& choice, const Dictionary& dic
   return result;
 }
 
-/// By how much a candidate can change ranges (RMS, in units of their noise) without being taken.
+/// By how much a candidate can change ranges (RMS, in units of their noise) without being taken: because it
+/// is not significant, or because the other parameters leave too little of it to be seen.
 double limit_of(const Candidate& candidate, const Look& look, const SelectionSettings& settings,
                 std::size_t beams) {
   const auto parameters = static_cast<double>(look.value.size()) + (candidate.forms > 1 ? 1 : 0);
-  return std::sqrt(settings.bic + parameters * std::log(static_cast<double>(beams))) * look.whole_error;
+  const double significant =
+      std::sqrt(settings.bic + parameters * std::log(static_cast<double>(beams))) * look.whole_error;
+  const double left = std::sqrt(look.identifiability());
+  return left > 0 ? std::max(significant, settings.visible / left) : std::numeric_limits<double>::infinity();
 }
 
 /// Candidates that could be half as large as the noise of ranges, in every form, without being seen.

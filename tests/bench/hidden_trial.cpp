@@ -115,7 +115,13 @@ struct Row {
 
 class Trial {
  public:
-  void run(const std::string& what, const Drawn& drawn) {
+  void run(const std::string& what, const Drawn& drawn, double size) {
+    constexpr double kNearly = 0.9;
+    if (std::ranges::any_of(drawn.sizes, [&](double reached) { return reached < kNearly * size; })) {
+      fmt::print("{:<26} seed {:<4} cannot be so large within its bounds: {:.1f} mm\n", what,
+                 drawn.recording.scanner.seed, 1e3 * std::ranges::min(drawn.sizes));
+      return;
+    }
     const auto begin = std::chrono::steady_clock::now();
     const Diagnosis diagnosis = test::diagnosed(drawn.recording);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
@@ -135,9 +141,9 @@ class Trial {
         "{:<26} seed {:<4} {:<6} {} lasers {:<9} hidden:{}; found:{}; errors{}; p {:.3f} {:.3f}; "
         "noise {:.3f} {:.3f} mm; {:.0f} s{}\n",
         what, drawn.recording.scanner.seed, drawn.scene, drawn.recording.scanner.rig.lasers.size(),
-        drawn.motion, hidden, found_by(diagnosis), errors,
-        diagnosis.left_before.p_value, diagnosis.left_after.p_value, diagnosis.left_before.noise * 1e3,
-        diagnosis.left_after.noise * 1e3, seconds.count(), diagnosis.settled ? "" : "; NOT SETTLED");
+        drawn.motion, hidden, found_by(diagnosis), errors, diagnosis.left_before.p_value,
+        diagnosis.left_after.p_value, diagnosis.left_before.noise * 1e3, diagnosis.left_after.noise * 1e3,
+        seconds.count(), diagnosis.settled ? "" : "; NOT SETTLED");
     for (const auto& limit : diagnosis.unobservable) {
       if (std::ranges::count(drawn.names, limit.name) > 0) {
         fmt::print("    {} would not show below {:.2f} of the noise\n", limit.name, limit.size);
@@ -195,15 +201,16 @@ void run(const Wanted& wanted) {
       for (const std::string& effect : causes()) {
         const std::uint64_t own = seed + 1000 * ++k;
         if (!wanted.effect.empty() && effect != wanted.effect) continue;
-        trial.run(effect, Drawer(own).with({effect}, wanted.size));
+        trial.run(effect, Drawer(own).with({effect}, wanted.size), wanted.size);
       }
     } else if (wanted.what == "else") {
       for (std::size_t k = 0; k < Drawer::kSomethingElse; ++k) {
-        trial.run(fmt::format("else {}", k), Drawer(seed + 1000 * k).with_something_else(k, wanted.size));
+        trial.run(fmt::format("else {}", k), Drawer(seed + 1000 * k).with_something_else(k, wanted.size),
+                  wanted.size);
       }
     } else {
       const std::size_t count = wanted.what == "three" ? 3 : wanted.what == "two" ? 2 : 0;
-      trial.run(wanted.what, Drawer(seed).with(some_of(causes(), count, seed), wanted.size));
+      trial.run(wanted.what, Drawer(seed).with(some_of(causes(), count, seed), wanted.size), wanted.size);
     }
   }
   trial.print();

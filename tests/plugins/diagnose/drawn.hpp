@@ -152,7 +152,7 @@ class Drawer {
   }
 
   static double rms_change(const Measurements& a, const Measurements& b) {
-    constexpr double kOtherThing = 0.3;  // [m]
+    constexpr double kOtherThing = 0.05;  // [m]
     const auto key = [](const Measurements& m, std::size_t i) { return std::tuple(m.laser[i], m.time[i]); };
     std::map<std::tuple<std::uint16_t, double>, float> ranges;
     for (std::size_t i = 0; i < b.size(); ++i) ranges[key(b, i)] = b.range[i];
