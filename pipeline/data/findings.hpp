@@ -65,6 +65,9 @@ struct Findings {
   std::vector<DeviceFacts> devices;
   double before_p = 1;  ///< that what is left of the residuals is noise: with the model that came …
   double after_p = 1;   ///< … and with the extended one
+
+  /// Adds what another diagnosis says of the same recording.
+  void append(const Findings& other);
 };
 
 }  // namespace crisp

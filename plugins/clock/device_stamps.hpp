@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/clocks/unwrap.hpp"
 #include "pipeline/data/clock_map.hpp"
 #include "plugins/clock/fitted_clock.hpp"
-#include "pipeline/clocks/unwrap.hpp"
 
 namespace crisp {
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/clock_map.hpp"
 #include "pipeline/clocks/clock_line.hpp"
-#include "plugins/clock/delay_histogram.hpp"
 #include "pipeline/clocks/lower_hull.hpp"
+#include "pipeline/data/clock_map.hpp"
+#include "plugins/clock/delay_histogram.hpp"
 
 namespace crisp {
 

@@ -13,6 +13,7 @@ void DiagnoseModelStage::describe(StageDescription<DiagnoseModelStage>& d) {
       "meet, takes into the model what is needed, and says what that brings on turns of the plate that it "
       "was not fitted to. It needs a calibration that is right to some centimetres: calibrate.refine.");
   d.takes<Measurements>()
+      .takes<Findings>(Need::optional)
       .holds<PlateTrajectory>()
       .holds<Calibration>()
       .gives<Findings>()
@@ -27,6 +28,8 @@ void DiagnoseModelStage::describe(StageDescription<DiagnoseModelStage>& d) {
 }
 
 void DiagnoseModelStage::process(const Inputs& in, Outputs&, Context&) {
+  if (const Findings* before = in.find<Findings>()) all_.append(*before);
+  if (!in.find<Measurements>()) return;
   start_ = in.share<Calibration>();
   collected_.add(in.share<Measurements>(), in.share<PlateTrajectory>());
 }
@@ -57,7 +60,8 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
                   {"unnamed", findings.unnamed.size()},
                   {"before_p", findings.before_p},
                   {"after_p", findings.after_p}});
-  out.give(std::move(findings));
+  all_.append(findings);
+  out.give(std::move(all_));
   out.give(std::move(calibration));
 }
 

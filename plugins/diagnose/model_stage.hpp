@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "pipeline/data/findings.hpp"
 #include "pipeline/estimate/collected.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
@@ -22,6 +23,7 @@ class DiagnoseModelStage final : public Stage {
   double noise_ = SurfelSettings{}.noise;
   Collected collected_;
   std::shared_ptr<const Calibration> start_;
+  Findings all_;  // what other diagnoses said before
 };
 
 }  // namespace crisp

@@ -342,6 +342,7 @@ struct Tried {
   std::size_t way = 0;
   NoiseLaw law;
   double rise = 0;  // of BIC
+  double lead = 0;  // over the next best
 };
 
 Tried best_of(const std::vector<Way>& ways, const NoiseLaw& law, const RangeErrors& errors) {
@@ -352,7 +353,12 @@ Tried best_of(const std::vector<Way>& ways, const NoiseLaw& law, const RangeErro
     ways[w].add(one.law);
     one.law = fitted(one.law, errors);
     one.rise = 2 * log_likelihood(one.law, errors) - price(one.law, errors) - before;
-    if (one.rise > best.rise) best = std::move(one);
+    one.lead = one.rise - best.rise;
+    if (one.rise > best.rise) {
+      best = std::move(one);
+    } else {
+      best.lead = std::min(best.lead, best.rise - one.rise);
+    }
   }
   return best;
 }
@@ -372,7 +378,7 @@ Finding finding_of(const std::string& scope, const Way& way, const Tried& tried,
   Finding finding{.cause = way.cause,
                   .scope = scope,
                   .parameters = way.parameters(tried.law),
-                  .log10_odds = tried.rise / 2 / std::numbers::ln10,
+                  .log10_odds = tried.lead / 2 / std::numbers::ln10,
                   .p_value = p_value_of(before, tried.law, errors),
                   .confounded_with = {},
                   .gain = {gain_of(before, tried.law, errors, seed)}};

@@ -3,7 +3,7 @@
 
 #include "plugins/diagnose/crispness_stage.hpp"
 #include "plugins/diagnose/model_stage.hpp"
-#include "plugins/diagnose/rest_stage.hpp"
+#include "plugins/diagnose/noise_stage.hpp"
 #include "plugins/diagnose/stamps_stage.hpp"
 
 namespace crisp {
@@ -11,7 +11,7 @@ namespace crisp {
 void register_diagnose(Registrar& registrar) {
   registrar.stage<CrispnessStage>();
   registrar.stage<DiagnoseModelStage>();
-  registrar.stage<DiagnoseRestStage>();
+  registrar.stage<DiagnoseNoiseStage>();
   registrar.stage<DiagnoseStampsStage>();
 }
 

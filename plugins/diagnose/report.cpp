@@ -59,13 +59,13 @@ UnnamedFinding unnamed_of(const Departure& departure, const Calibration& calibra
 
 std::string with_unit(const Parameter& parameter) {
   const auto shown = [&](double factor, const char* unit) {
-    return fmt::format("{} = {:.4g} ± {:.2g} {}", parameter.name, parameter.value * factor,
-                       parameter.std_error * factor, unit);
+    return fmt::format("{} = {:.4g} ± {:.2g}{}{}", parameter.name, parameter.value * factor,
+                       parameter.std_error * factor, *unit ? " " : "", unit);
   };
   if (parameter.unit == "rad") return shown(180 / std::numbers::pi, "deg");
   if (parameter.unit == "m") return shown(1e3, "mm");
-  if (parameter.unit == "s") return shown(1e3, "ms");
-  return shown(1, parameter.unit.c_str());
+  if (parameter.unit == "s" && std::abs(parameter.value) < 1) return shown(1e3, "ms");
+  return shown(1, parameter.unit == "1" ? "" : parameter.unit.c_str());
 }
 
 std::string gain_in_words(const std::vector<Gain>& gains) {
@@ -129,13 +129,16 @@ std::string in_words(const Finding& finding) {
   for (std::size_t k = 0; k < finding.parameters.size(); ++k) {
     words += (k > 0 ? ", " : "") + with_unit(finding.parameters[k]);
   }
-  words += fmt::format("\n  explains {:.0f} % of what was found", 100 * finding.explained_fraction);
-  if (finding.log10_odds != 0)
-    words += fmt::format("; odds against the next cause 10^{:.0f}", finding.log10_odds);
+  if (finding.explained_fraction > 0) {
+    words += fmt::format("\n  explains {:.0f} % of what was found", 100 * finding.explained_fraction);
+  }
+  if (finding.log10_odds != 0) {
+    words += fmt::format("\n  odds against the next cause 10^{:.0f}", finding.log10_odds);
+  }
   if (!finding.confounded_with.empty()) {
     words += fmt::format("; these data cannot tell it from {}", fmt::join(finding.confounded_with, ", "));
   }
-  if (!finding.accepted) words += "; it does not pay on turns that it was not fitted to";
+  if (!finding.accepted) words += "\n  it does not pay on data that it was not fitted to";
   return words + "\n" + gain_in_words(finding.gain);
 }
 

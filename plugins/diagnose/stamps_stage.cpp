@@ -80,7 +80,7 @@ void DiagnoseStampsStage::describe(StageDescription<DiagnoseStampsStage>& d) {
       "least delays, the gain by every other one of them. It also lists what is usual: skews, delays, and "
       "how "
       "mirrors turn against their nominal rate.");
-  d.takes<Scan>().takes<PlateReading>().gives<Findings>();
+  d.takes<Scan>().takes<PlateReading>().takes<Findings>(Need::optional).gives<Findings>();
   d.option(
       "nominal_mirrors", &DiagnoseStampsStage::nominal_mirrors_,
       "whether a mirror that is off its nominal rate is a departure (`mirror.period`); clock stages measure "
@@ -97,6 +97,7 @@ DiagnoseStampsStage::Device& DiagnoseStampsStage::device(std::size_t index, cons
 }
 
 void DiagnoseStampsStage::process(const Inputs& in, Outputs&, Context& context) {
+  if (const Findings* before = in.find<Findings>()) all_.append(*before);
   if (const Scan* scan = in.find<Scan>()) {
     Device& laser = device(scan->laser, context.rig());
     laser.telegrams.add(scan->telegram_counter, scan->transmission_time_us, scan->receipt_ns);
@@ -167,7 +168,8 @@ void DiagnoseStampsStage::finish(Outputs& out, Context& context) {
   context.say(facts_in_words(all.devices));
   for (const Finding& finding : all.findings) context.say(in_words(finding));
   context.report({{"findings", all.findings.size()}});
-  out.give(std::move(all));
+  all_.append(all);
+  out.give(std::move(all_));
 }
 
 }  // namespace crisp

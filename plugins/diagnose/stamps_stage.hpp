@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/data/findings.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/diagnose/stamps.hpp"
@@ -31,6 +32,7 @@ class DiagnoseStampsStage final : public Stage {
 
   bool nominal_mirrors_ = false;
   std::vector<Device> devices_;  // the lasers of the rig, then the plate
+  Findings all_;                 // what other diagnoses said before
 };
 
 }  // namespace crisp

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <memory>
 
 #include "pipeline/data/findings.hpp"
 #include "pipeline/stage/context.hpp"
@@ -19,7 +19,7 @@ class WriteFindingsStage final : public Stage {
 
  private:
   std::filesystem::path file_;
-  std::optional<Findings> all_;  // that have come, joined
+  std::shared_ptr<const Findings> last_;
 };
 
 }  // namespace crisp

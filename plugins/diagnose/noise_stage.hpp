@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/data/findings.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/diagnose/at_rest.hpp"
@@ -11,9 +12,9 @@
 namespace crisp {
 
 /// Says how the ranges of lasers that stand still scatter, and what they do together.
-class DiagnoseRestStage final : public Stage {
+class DiagnoseNoiseStage final : public Stage {
  public:
-  static void describe(StageDescription<DiagnoseRestStage>& d);
+  static void describe(StageDescription<DiagnoseNoiseStage>& d);
   void process(const Inputs& in, Outputs& out, Context& context) override;
   void finish(Outputs& out, Context& context) override;
 
@@ -22,6 +23,7 @@ class DiagnoseRestStage final : public Stage {
 
   std::vector<AtRest> lasers_;  // of the rig
   std::int64_t first_ns_ = 0;   // receipt of the first scan
+  Findings all_;                // what other diagnoses said before
 };
 
 }  // namespace crisp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/diagnose/rest_stage.hpp"
+#include "plugins/diagnose/noise_stage.hpp"
 
 #include <fmt/format.h>
 
@@ -30,8 +30,8 @@ Finding finding_of(const CommonChange& change, const std::string& laser) {
 
 }  // namespace
 
-void DiagnoseRestStage::describe(StageDescription<DiagnoseRestStage>& d) {
-  d.name("diagnose.rest").summary("says how the ranges of lasers that stand still scatter");
+void DiagnoseNoiseStage::describe(StageDescription<DiagnoseNoiseStage>& d) {
+  d.name("diagnose.noise").summary("says how the ranges of lasers that stand still scatter");
   d.details(
       "Each beam of a laser at rest meets the same spot again and again. What all beams do together (a jump, "
       "`range.step`, or a creeping, `range.warmup`) is looked for scan by scan, by permutations. What is "
@@ -39,20 +39,22 @@ void DiagnoseRestStage::describe(StageDescription<DiagnoseRestStage>& d) {
       "of each beam about its mean is compared with the normal law of the plain simulator: a spread that "
       "grows with the range, heavy tails, two peaks with a weight of each beam's own (`noise.*`), forward by "
       "BIC, each judged by scans that it was not fitted to. A laser that moves is passed over with a word.");
-  d.takes<Scan>().gives<Findings>();
+  d.takes<Scan>().takes<Findings>(Need::optional).gives<Findings>();
 }
 
-void DiagnoseRestStage::process(const Inputs& in, Outputs&, Context& context) {
-  const Scan& scan = in.get<Scan>();
+void DiagnoseNoiseStage::process(const Inputs& in, Outputs&, Context& context) {
+  if (const Findings* before = in.find<Findings>()) all_.append(*before);
+  const Scan* scan = in.find<Scan>();
+  if (!scan) return;
   if (lasers_.empty()) {
     lasers_.resize(context.rig().lasers.size());
-    first_ns_ = scan.receipt_ns;
+    first_ns_ = scan->receipt_ns;
   }
-  if (scan.laser < lasers_.size()) lasers_[scan.laser].add(scan);
+  if (scan->laser < lasers_.size()) lasers_[scan->laser].add(*scan);
 }
 
-void DiagnoseRestStage::add_laser(const std::string& name, const AtRest& scans, Findings& all,
-                                  Context& context) const {
+void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans, Findings& all,
+                                   Context& context) const {
   context.count("scans left out of the diagnosis", scans.left_out());
   auto errors = scans.errors();
   if (!errors) {
@@ -75,7 +77,7 @@ void DiagnoseRestStage::add_laser(const std::string& name, const AtRest& scans, 
   all.unnamed.insert(all.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
 }
 
-void DiagnoseRestStage::finish(Outputs& out, Context& context) {
+void DiagnoseNoiseStage::finish(Outputs& out, Context& context) {
   Findings all;
   for (std::size_t laser = 0; laser < lasers_.size(); ++laser) {
     if (lasers_[laser].scans() == 0) continue;
@@ -86,7 +88,8 @@ void DiagnoseRestStage::finish(Outputs& out, Context& context) {
   for (const Finding& finding : all.findings) context.say(in_words(finding));
   for (const UnnamedFinding& finding : all.unnamed) context.say(in_words(finding));
   context.report({{"findings", all.findings.size()}});
-  out.give(std::move(all));
+  all_.append(all);
+  out.give(std::move(all_));
 }
 
 }  // namespace crisp

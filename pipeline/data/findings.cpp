@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/data/findings.hpp"
+
+#include <algorithm>
+
+namespace crisp {
+
+void Findings::append(const Findings& other) {
+  const auto add = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
+  add(findings, other.findings);
+  add(unnamed, other.unnamed);
+  add(unobservable, other.unobservable);
+  add(devices, other.devices);
+  before_p = std::min(before_p, other.before_p);
+  after_p = std::min(after_p, other.after_p);
+}
+
+}  // namespace crisp

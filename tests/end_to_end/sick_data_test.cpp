@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What recordings of SICK lasers at rest show that the plain simulator has none of, found by
+// configs/real/sick.yaml. The figures are those of an independent look at the same recordings. Skipped where
+// they are not at hand.
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "tests/end_to_end/workshop.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SickData : public testing::Test {
+ protected:
+  /// Runs the diagnosis on a recording; false if it is not at hand.
+  bool diagnose(const std::string& name) {
+    const char* place = std::getenv("CRISP_SHARED_DATA");
+    const fs::path folder =
+        place != nullptr ? fs::path(place) : fs::path(CRISP_SOURCE_DIR) / "../shared/data";
+    const fs::path file = folder / "sick" / name;
+    missing_ = file.string() + " is missing; CRISP_SHARED_DATA names the folder of the data";
+    if (!fs::exists(file)) return false;
+    const auto outcome = workshop_.run("real/sick.yaml", file, "out");
+    EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+    diagnosis_ = nlohmann::json::parse(test::bytes_of(workshop_ / "out/diagnosis.json"));
+    return true;
+  }
+  std::vector<std::string> accepted() const {
+    std::vector<std::string> causes;
+    for (const auto& finding : diagnosis_["findings"]) {
+      if (finding["accepted"]) causes.push_back(finding["cause"]);
+    }
+    return causes;
+  }
+  /// A parameter of a cause, "value" or "std_error".
+  double number(const std::string& cause, const std::string& parameter, const char* which = "value") const {
+    for (const auto& finding : diagnosis_["findings"]) {
+      if (finding["cause"] != cause) continue;
+      for (const auto& p : finding["parameters"]) {
+        if (p["name"] == parameter) return p[which];
+      }
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const test::Workshop workshop_;
+  nlohmann::json diagnosis_;
+  std::string missing_;
+};
+
+TEST_F(SickData, AnLms111TurnsSlowlyJumpsAndScattersAboutTwoValues) {
+  if (!diagnose("lms111-20210302-colab-rebuilt.pcap")) GTEST_SKIP() << missing_;
+  EXPECT_THAT(accepted(), testing::UnorderedElementsAre("mirror.period", "range.step", "noise.two_peaks"));
+  EXPECT_NEAR(number("mirror.period", "excess"), 114.5e-6, 1e-6);  // 20 114.5 us for 20 000
+  EXPECT_NEAR(number("range.step", "by"), 2.05e-3, 3 * number("range.step", "by", "std_error"));
+  EXPECT_GT(number("noise.two_peaks", "separation"), 13.5e-3);
+  EXPECT_LT(number("noise.two_peaks", "separation"), 16.7e-3);
+  for (const auto& finding : diagnosis_["findings"]) {
+    const std::string cause = finding["cause"];
+    if (cause == "mirror.period") continue;  // nothing is held out
+    const auto& ci95 = finding["gain"][0]["ci95"];
+    EXPECT_GT(cause == "noise.two_peaks" ? double{ci95[0]} : -double{ci95[1]}, 0) << cause;
+  }
+}
+
+TEST_F(SickData, ATim781KeepsItsRateAndItsNoiseHasOnePeak) {
+  if (!diagnose("tim781s-20210106-colab.pcapng")) GTEST_SKIP() << missing_;
+  const auto causes = accepted();
+  EXPECT_THAT(causes, testing::Not(testing::Contains("noise.two_peaks")));
+  EXPECT_THAT(causes, testing::Not(testing::Contains("mirror.period")));
+  ASSERT_EQ(diagnosis_["devices"].size(), 1U);
+  const auto& device = diagnosis_["devices"][0];
+  EXPECT_NEAR(device["period"], 66'666.3e-6, 3 * double{device["period_std_error"]});
+  EXPECT_NEAR(device["skew"], 4.5e-6, 2e-6);
+  ASSERT_FALSE(diagnosis_["unnamed"].empty());
+  EXPECT_EQ(diagnosis_["unnamed"][0]["covariate"], "beam") << "targets differ, and so does what is scattered";
+}
+
+}  // namespace
+}  // namespace crisp
