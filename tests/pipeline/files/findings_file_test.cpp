@@ -32,6 +32,7 @@ Findings some_findings() {
                               .unit = "m",
                               .p_value = 1e-4});
   findings.unobservable.push_back({.parameter = "encoder.backlash", .reason = "no reversal"});
+  findings.devices.push_back({.device = "laser1", .stamps = 172, .skew = 7e-6});
   return findings;
 }
 
@@ -44,7 +45,7 @@ std::vector<std::string> keys_of(const nlohmann::json& object) {
 TEST(FindingsFile, HoldsWhatProgramsAreToldToExpect) {
   const auto json = nlohmann::json::parse(findings_json(some_findings()));
   EXPECT_THAT(keys_of(json), testing::UnorderedElementsAre("crisp", "findings", "unnamed", "unobservable",
-                                                           "indistinguishable"));
+                                                           "devices", "indistinguishable"));
   const auto& finding = json["findings"][0];
   EXPECT_THAT(keys_of(finding),
               testing::UnorderedElementsAre("cause", "scope", "parameters", "explained_fraction",
@@ -56,7 +57,20 @@ TEST(FindingsFile, HoldsWhatProgramsAreToldToExpect) {
   EXPECT_EQ(finding["gain"][0]["ci95"][1], -1e-4);
   EXPECT_EQ(json["unnamed"][0]["covariate"], "mirror angle");
   EXPECT_EQ(json["unobservable"][0]["cause"], "encoder.backlash");
+  EXPECT_EQ(json["devices"][0]["skew"], 7e-6);
   EXPECT_EQ(json["indistinguishable"]["before_p"], 0.005);
+}
+
+TEST(FindingsFile, HoldsWhatSeveralDiagnosesSay) {
+  Findings all = some_findings();
+  all.append(some_findings());
+  all.append({.before_p = 0.5, .after_p = 0.1});
+  const auto json = nlohmann::json::parse(findings_json(all));
+  for (const char* list : {"findings", "unnamed", "unobservable", "devices"}) {
+    EXPECT_EQ(json[list].size(), 2U) << list;
+  }
+  EXPECT_EQ(json["indistinguishable"]["before_p"], 0.005) << "the smallest";
+  EXPECT_EQ(json["indistinguishable"]["after_p"], 0.1);
 }
 
 TEST(FindingsFile, IsDocumentedKeyByKey) {
@@ -70,6 +84,7 @@ TEST(FindingsFile, IsDocumentedKeyByKey) {
                                          json["findings"][0]["gain"][0],
                                          json["unnamed"][0],
                                          json["unobservable"][0],
+                                         json["devices"][0],
                                          json["indistinguishable"]};
   for (const auto& object : objects) {
     for (const auto& key : keys_of(object)) {
