@@ -3,12 +3,14 @@
 
 #include "grabbers/pcd/cloud_stage.hpp"
 #include "grabbers/pcd/measurements_stage.hpp"
+#include "grabbers/pcd/pcd_inspector.hpp"
 
 namespace crisp {
 
 void register_pcd(Registrar& registrar) {
   registrar.stage<GrabCloudStage>();
   registrar.stage<GrabMeasurementsStage>();
+  registrar.inspector(pcd_inspector());
 }
 
 }  // namespace crisp

@@ -116,7 +116,7 @@ ExitStatus effects_command(const EffectsRequest& request, const Registrar& regis
     std::cout << effects_markdown(catalogue);
   } else {
     for (const auto& effect : catalogue) {
-      std::cout << (request.names ? effect.name : fmt::format("{:<26}{}", effect.name, effect.summary))
+      std::cout << (request.names ? effect.name : fmt::format("{:<42}{}", effect.name, effect.summary))
                 << "\n";
     }
   }

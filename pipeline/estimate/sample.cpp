@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -60,6 +61,19 @@ Sample covered(const Sample& sample, double earliest, double latest) {
     const double t = sample.beams.time[i];
     return early.at(t + earliest) && middle.at(t) && late.at(t + latest);
   });
+}
+
+double turned(const Sample& sample) {
+  PlateTrajectory::Cursor plate(*sample.plate);
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (const double time : sample.beams.time) {
+    const auto state = plate.at(time);
+    if (!state) continue;
+    least = std::min(least, state->angle);
+    most = std::max(most, state->angle);
+  }
+  return std::max(0.0, most - least);
 }
 
 Sample in_plane(const Sample& sample, double half_width, Half half) {

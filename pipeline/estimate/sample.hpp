@@ -25,6 +25,9 @@ Sample of_laser(const Sample& sample, std::size_t laser);
 /// turn η without points coming and going.
 Sample covered(const Sample& sample, double earliest, double latest);
 
+/// [rad] Between the least and the greatest angle that the plate had while beams were fired.
+double turned(const Sample& sample);
+
 /// The two beams of each scan that lie in the plate's plane (θ = ±90°), or as near to it as the angular step
 /// allows. `half` says which.
 enum class Half { kFront, kBack, kBoth };  ///< θ < 0 (reported −45° with the usual mount), θ > 0 (135°), both

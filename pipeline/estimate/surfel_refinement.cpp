@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/agreement.hpp"
@@ -156,12 +158,25 @@ class Refiner {
   double last_step_ = std::numeric_limits<double>::infinity();
 };
 
+/// One laser that has not come round to see surfaces from its other side, too, has only their flatness to go
+/// by, and takes what is not flat for an error of its own.
+std::optional<std::string> doubt_of_half_a_turn(const SensorModel& model, const Sample& sample) {
+  const double way = turned(sample);
+  if (model.lasers() > 1 || way > 0.98 * std::numbers::pi) return std::nullopt;
+  return fmt::format(
+      "the plate turned by {:.0f} degrees only: one laser then sees no surface twice, and how flat surfaces "
+      "are "
+      "is all that tells where it sits",
+      way * 180 / std::numbers::pi);
+}
+
 }  // namespace
 
 Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
                              const RefinementSettings& settings, const RoundReporter& report) {
   const LagRange lag = lag_range(start, settings.prior.eta);
   Sample inside = covered(sample, lag.earliest, lag.latest);
+  const auto doubt = doubt_of_half_a_turn(start, inside);
   FreeParameters parameters =
       can_be_told(free_parameters(start, inside.beams, settings.fixed, settings.terms, settings.forms), start,
                   inside, SearchRange{});
@@ -184,6 +199,7 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
   refiner.widen_by_shared_errors();
   Refinement result = refiner.result();
   result.outcome.unobservable = std::move(parameters.unobservable);
+  if (doubt) result.outcome.doubts.push_back(*doubt);
   result.rounds = round;
   result.converged = converged;
   if (!converged && round == settings.max_rounds) {

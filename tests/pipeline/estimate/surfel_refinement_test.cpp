@@ -61,6 +61,21 @@ TEST(SurfelRefinement, KeepsWhatAConstantSpeedDoesNotTell) {
   EXPECT_LT(error.dot(refined.outcome.covariance.inverse() * error), 40);
 }
 
+TEST(SurfelRefinement, DoubtsWhatOneLaserTellsOfASingleSweep) {
+  const auto recording = simulate_measurements(misplaced_scanner(1, 4.0), office());
+  const Calibration only = {.lasers = {recording.truth.lasers[0]}};
+  const Sample own = of_laser(sample_of(recording), 0);
+  const auto doubts_up_to = [&](double angle) {
+    const double first = own.plate->at(own.beams.time.front())->angle;
+    const Sample part =
+        select(own, [&](std::size_t i) { return own.plate->at(own.beams.time[i])->angle < first + angle; });
+    return refine_by_surfels(SensorModel(only), part, {}).outcome.doubts;
+  };
+  EXPECT_THAT(doubts_up_to(1.5), testing::Contains(testing::HasSubstr("sees no surface twice")));
+  EXPECT_THAT(doubts_up_to(6.5),
+              testing::Not(testing::Contains(testing::HasSubstr("sees no surface twice"))));
+}
+
 TEST(SurfelRefinement, CountsBeamsAlongEdgesToo) {
   const auto recording = simulate_measurements(misplaced_scanner(1, 2.0), office());
   const Refinement refined = refine_by_surfels(SensorModel(recording.truth), sample_of(recording), {});

@@ -140,8 +140,10 @@ class Drawer {
     ScannerSettings with = scanner();
     with.range.sigma = 0;
     with.beams.clear();
-    constexpr std::uint16_t kEvery = 12;
-    for (std::uint16_t beam = 0; beam < with.field.beams(); beam += kEvery) with.beams.push_back(beam);
+    constexpr std::size_t kEvery = 12;
+    for (std::size_t beam = 0; beam < with.field.beams(); beam += kEvery) {
+      with.beams.push_back(static_cast<std::uint16_t>(beam));
+    }
     ScannerSettings without = with;
     std::erase_if(without.truth.plate_terms, [&](const auto& term) { return term.term == name; });
     for (auto& laser : without.truth.lasers) {
