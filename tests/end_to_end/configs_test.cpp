@@ -130,12 +130,17 @@ struct FreeLoopback {
     std::vector<boost::asio::ip::tcp::acceptor> taken;  // at once, so that they differ
     for (const std::string usual : {"2121", "2122", "2123"}) {
       taken.emplace_back(context, boost::asio::ip::tcp::endpoint(loopback, 0));
-      text.replace(text.find(usual), 4, std::to_string(taken.back().local_endpoint().port()));
+      set_port(text, usual, std::to_string(taken.back().local_endpoint().port()));
     }
     const boost::asio::ip::udp::socket socket(context, boost::asio::ip::udp::endpoint(loopback, 0));
     plate = std::to_string(socket.local_endpoint().port());
-    text.replace(text.find("4000"), 4, plate);
+    set_port(text, "4000", plate);
     std::ofstream(file) << text;
+  }
+  /// Whole numbers: a free port may have a usual one's digits in its own.
+  static void set_port(std::string& text, const std::string& usual, const std::string& free) {
+    const std::string line = "port: " + usual + "\n";
+    text.replace(text.find(line), line.size(), "port: " + free + "\n");
   }
   std::string plate;  ///< port
 };
