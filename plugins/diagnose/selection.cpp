@@ -37,7 +37,8 @@ class Chooser {
            (!which.in_model || look.p_value * static_cast<double>(looks_) < settings_.p_value);
   }
 
-  /// The best of those that are needed, causes before mere descriptions.
+  /// The best of those that are needed: a cause, unless a mere description says much more. Where a cause is
+  /// at work, it does about as well as what describes it by its shape, and other causes do not.
   std::optional<std::size_t> best(const std::vector<std::optional<Look>>& looks) const {
     std::array<std::optional<std::size_t>, 2> best;
     for (std::size_t c = 0; c < looks.size(); ++c) {
@@ -45,7 +46,9 @@ class Chooser {
       auto& of_kind = best[dictionary_.candidates()[c].is_cause() ? 0 : 1];
       if (!of_kind || looks[c]->bic > looks[*of_kind]->bic) of_kind = c;
     }
-    return best[0] ? best[0] : best[1];
+    constexpr double kMuchMore = 2;
+    const bool is_cause = best[0] && (!best[1] || looks[*best[1]]->bic < kMuchMore * looks[*best[0]]->bic);
+    return is_cause ? best[0] : best[1];
   }
 
   /// Leaves out, one after another, what is not needed beside the rest.

@@ -30,7 +30,7 @@ nan 3 0.5 9 0 0 1
 )";
 
 std::filesystem::path written(const std::string& name, std::string_view text) {
-  const auto file = std::filesystem::path(testing::TempDir()) / name;
+  auto file = std::filesystem::path(testing::TempDir()) / name;
   std::ofstream(file) << text;
   return file;
 }
