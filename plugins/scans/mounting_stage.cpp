@@ -93,14 +93,14 @@ void DiagnoseMountingStage::describe(StageDescription<DiagnoseMountingStage>& d)
       "the noise, "
       "and a formal error does not know that.");
   d.takes<Scan>().takes<PlateReading>();
-  d.holds<Findings>(Need::optional).gives<Findings>();
+  d.takes<Findings>(Need::optional).gives<Findings>();
   d.option("sides", &DiagnoseMountingStage::sides_, "sizes of the windows; none: 8, 12, 16 and 24 degrees")
       .unit("rad")
       .range(0.01, 2);
 }
 
 void DiagnoseMountingStage::process(const Inputs& in, Outputs&, Context&) {
-  if (auto findings = in.share<Findings>()) before_ = std::move(findings);
+  if (const Findings* before = in.find<Findings>()) findings_.append(*before);
   if (const auto* reading = in.find<PlateReading>()) series_.add(*reading);
   if (auto scan = in.share<Scan>(); scan && scan->laser == 0) series_.add(std::move(scan));
 }
@@ -160,9 +160,8 @@ void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const
 
 void DiagnoseMountingStage::finish(Outputs& out, Context& context) {
   if (series_.scans().empty()) throw Error("no scans with readings of an actuator came");
-  Findings findings = before_ ? *before_ : Findings{};
-  diagnose(findings, context);
-  if (!context.interrupted()) out.give(std::move(findings));
+  diagnose(findings_, context);
+  if (!context.interrupted()) out.give(std::move(findings_));
 }
 
 }  // namespace crisp

@@ -20,7 +20,7 @@ class DiagnoseMountingStage final : public Stage {
 
   std::vector<double> sides_;
   ScanSeries series_;
-  std::shared_ptr<const Findings> before_;
+  Findings findings_;  // what diagnoses above it said, and then its own
 };
 
 }  // namespace crisp

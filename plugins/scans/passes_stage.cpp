@@ -167,7 +167,7 @@ void DiagnosePassesStage::describe(StageDescription<DiagnosePassesStage>& d) {
       "measurements "
       "are given on with half of the shift on either way: which way is right cannot be seen.");
   d.takes<Scan>().takes<PlateReading>().takes<Measurements>().holds<PlateTrajectory>();
-  d.holds<Findings>(Need::optional).gives<Findings>().gives<PlateTrajectory>().gives<Measurements>();
+  d.takes<Findings>(Need::optional).gives<Findings>().gives<PlateTrajectory>().gives<Measurements>();
   d.option("shortest", &DiagnosePassesStage::shortest_, "way that counts as a pass")
       .unit("rad")
       .range(1e-4, 1e4);
@@ -177,7 +177,7 @@ void DiagnosePassesStage::describe(StageDescription<DiagnosePassesStage>& d) {
 }
 
 void DiagnosePassesStage::process(const Inputs& in, Outputs&, Context&) {
-  if (auto findings = in.share<Findings>()) before_ = std::move(findings);
+  if (const Findings* before = in.find<Findings>()) findings_.append(*before);
   if (auto plate = in.share<PlateTrajectory>()) plate_ = std::move(plate);
   if (const auto* reading = in.find<PlateReading>()) series_.add(*reading);
   if (auto scan = in.share<Scan>(); scan && scan->laser == 0) series_.add(std::move(scan));
@@ -210,9 +210,8 @@ double DiagnosePassesStage::diagnose(Findings& findings, Context& context) const
 
 void DiagnosePassesStage::finish(Outputs& out, Context& context) {
   if (!plate_ || series_.scans().empty()) throw Error("no scans with readings of an actuator came");
-  Findings findings = before_ ? *before_ : Findings{};
-  const double shift = diagnose(findings, context);
-  out.give(std::move(findings));
+  const double shift = diagnose(findings_, context);
+  out.give(std::move(findings_));
   out.give(mended(*plate_, shift));
   for (const auto& beams : beams_) out.give(beams);
 }

@@ -27,7 +27,7 @@ class DiagnosePassesStage final : public Stage {
   double shortest_ = 0.05;
   bool mend_ = true;
   ScanSeries series_;
-  std::shared_ptr<const Findings> before_;
+  Findings findings_;  // what diagnoses above it said, and then its own
   std::shared_ptr<const PlateTrajectory> plate_;
   std::vector<std::shared_ptr<const Measurements>> beams_;
 };

@@ -81,13 +81,19 @@ void DiagnoseRestStage::describe(StageDescription<DiagnoseRestStage>& d) {
       "judged by the second half, and by how well scans of a sweep are foretold by their neighbours.\n\n"
       "A kind whose beams point elsewhere (`mirror.interleave`) is given on with its true angles; of what is "
       "otherwise different it only says that it is (`unnamed`).");
-  d.takes<Scan>().takes<PlateReading>().gives<Findings>().gives<Scan>().gives<PlateReading>();
+  d.takes<Scan>()
+      .takes<PlateReading>()
+      .takes<Findings>(Need::optional)
+      .gives<Findings>()
+      .gives<Scan>()
+      .gives<PlateReading>();
   d.option("mend", &DiagnoseRestStage::mend_,
            "whether the scans that it gives have the angles that were found");
   d.option("folder", &DiagnoseRestStage::folder_, "where plots go; auto: nowhere");
 }
 
 void DiagnoseRestStage::process(const Inputs& in, Outputs&, Context& context) {
+  if (const Findings* before = in.find<Findings>()) findings_.append(*before);
   lasers_.resize(context.rig().lasers.size());
   if (const auto* reading = in.find<PlateReading>()) {
     for (auto& laser : lasers_) laser.series.add(*reading);
@@ -200,12 +206,11 @@ std::shared_ptr<const Scan> DiagnoseRestStage::mended(const std::shared_ptr<cons
 }
 
 void DiagnoseRestStage::finish(Outputs& out, Context& context) {
-  Findings findings;
   for (std::size_t i = 0; i < lasers_.size(); ++i) {
-    if (!lasers_[i].series.scans().empty()) diagnose(i, findings, context);
+    if (!lasers_[i].series.scans().empty()) diagnose(i, findings_, context);
     if (context.interrupted()) return;
   }
-  out.give(std::move(findings));
+  out.give(std::move(findings_));
   for (const auto& item : items_) {
     if (const auto* reading = std::get_if<PlateReading>(&item)) {
       out.give(*reading);

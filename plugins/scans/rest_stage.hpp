@@ -38,6 +38,7 @@ class DiagnoseRestStage final : public Stage {
   bool mend_ = true;
   std::vector<Laser> lasers_;
   std::vector<std::variant<std::size_t, PlateReading>> items_;  ///< as they came; of a scan, whose it was
+  Findings findings_;  // what diagnoses above it said, and then its own
 };
 
 }  // namespace crisp

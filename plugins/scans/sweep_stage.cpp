@@ -130,13 +130,13 @@ void DiagnoseSweepStage::describe(StageDescription<DiagnoseSweepStage>& d) {
       "answer, it is "
       "called unobservable, as are the mounting's offsets.");
   d.takes<Scan>().takes<PlateReading>().takes<ClockMap>();
-  d.holds<Findings>(Need::optional).gives<Findings>();
+  d.takes<Findings>(Need::optional).gives<Findings>();
   d.option("folder", &DiagnoseSweepStage::folder_, "where plots go; auto: nowhere");
 }
 
 void DiagnoseSweepStage::process(const Inputs& in, Outputs&, Context& context) {
   lasers_.resize(context.rig().lasers.size());
-  before_ = in.share<Findings>();
+  if (const Findings* before = in.find<Findings>()) findings_.append(*before);
   if (const auto* reading = in.find<PlateReading>()) {
     for (auto& laser : lasers_) laser.add(*reading);
   }
@@ -185,12 +185,11 @@ void DiagnoseSweepStage::diagnose(std::size_t index, Findings& findings, Context
 }
 
 void DiagnoseSweepStage::finish(Outputs& out, Context& context) {
-  Findings findings = before_ ? *before_ : Findings{};
   for (std::size_t i = 0; i < lasers_.size(); ++i) {
-    if (!lasers_[i].scans().empty()) diagnose(i, findings, context);
+    if (!lasers_[i].scans().empty()) diagnose(i, findings_, context);
     if (context.interrupted()) return;
   }
-  out.give(std::move(findings));
+  out.give(std::move(findings_));
 }
 
 }  // namespace crisp

@@ -27,7 +27,7 @@ class DiagnoseSweepStage final : public Stage {
   std::optional<std::filesystem::path> folder_;
   std::vector<ScanSeries> lasers_;
   std::map<std::string, ClockMap> clocks_;
-  std::shared_ptr<const Findings> before_;
+  Findings findings_;  // what diagnoses above it said, and then its own
 };
 
 }  // namespace crisp

@@ -9,6 +9,7 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/files/calibration_file.hpp"
 #include "tests/end_to_end/workshop.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace crisp {
 namespace {
@@ -18,12 +19,7 @@ namespace fs = std::filesystem;
 class RealData : public testing::Test {
  protected:
   /// A file of the data that are shared but not in the repository; the test is skipped where it is missing.
-  fs::path data(const std::string& name) const {
-    const char* place = std::getenv("CRISP_SHARED_DATA");
-    const fs::path folder =
-        place != nullptr ? fs::path(place) : fs::path(CRISP_SOURCE_DIR) / "../shared/data";
-    return folder / "actuated" / name;
-  }
+  static fs::path data(const std::string& name) { return shared_data() / "actuated" / name; }
   const test::Workshop workshop_;
 };
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/end_to_end/workshop.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace crisp {
 namespace {
@@ -18,10 +19,7 @@ class SickData : public testing::Test {
  protected:
   /// Runs the diagnosis on a recording; false if it is not at hand.
   bool diagnose(const std::string& name) {
-    const char* place = std::getenv("CRISP_SHARED_DATA");
-    const fs::path folder =
-        place != nullptr ? fs::path(place) : fs::path(CRISP_SOURCE_DIR) / "../shared/data";
-    const fs::path file = folder / "sick" / name;
+    const fs::path file = shared_data() / "sick" / name;
     missing_ = file.string() + " is missing; CRISP_SHARED_DATA names the folder of the data";
     if (!fs::exists(file)) return false;
     const auto outcome = workshop_.run("real/sick.yaml", file, "out");

@@ -6,7 +6,7 @@
 
 #include "pipeline/data/error.hpp"
 #include "tests/grabbers/capture/capture_bytes.hpp"
-#include "tests/grabbers/capture/shared_data.hpp"
+#include "tests/support/shared_data.hpp"
 #include "tests/grabbers/capture/temporary_folder.hpp"
 
 namespace crisp {

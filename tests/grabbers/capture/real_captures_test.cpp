@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "grabbers/capture/capture_reader.hpp"
-#include "tests/grabbers/capture/shared_data.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace crisp {
 namespace {

@@ -26,11 +26,6 @@ Bytes real_telegram(std::string_view file) {
   return from_hex(std::string(std::istreambuf_iterator<char>(in), {}));
 }
 
-std::filesystem::path shared_data() {
-  if (const char* place = std::getenv("CRISP_SHARED_DATA")) return place;
-  return std::filesystem::path(CRISP_SOURCE_DIR) / "../shared/data";
-}
-
 ScanData full_scan_data(std::uint32_t seed) {
   std::mt19937 generator(seed);
   const auto random = [&] { return static_cast<std::uint32_t>(generator()); };

@@ -7,6 +7,7 @@
 
 #include "grabbers/wire/cola_framer.hpp"
 #include "grabbers/wire/scan_data.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace crisp {
 
@@ -15,9 +16,6 @@ Bytes from_hex(std::string_view hex);
 
 /// A real telegram of tests/grabbers/wire/telegrams, framing included.
 Bytes real_telegram(std::string_view file);
-
-/// Where data that is shared but not in the repository lies: $CRISP_SHARED_DATA or ../shared/data.
-std::filesystem::path shared_data();
 
 /// A telegram with every optional block, several encoders and channels; `seed` varies the values.
 ScanData full_scan_data(std::uint32_t seed);
