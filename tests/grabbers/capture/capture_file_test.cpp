@@ -6,8 +6,8 @@
 
 #include "pipeline/data/error.hpp"
 #include "tests/grabbers/capture/capture_bytes.hpp"
-#include "tests/support/shared_data.hpp"
 #include "tests/grabbers/capture/temporary_folder.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace crisp {
 namespace {
