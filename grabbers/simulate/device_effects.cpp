@@ -20,6 +20,7 @@ const std::vector<Row>& rows() {
   using L = LaserEffects;
   using D = DeviceEffects;
   static const std::vector<Row> kRows = {
+      {"noise.normal", "sigma", [](L& l) -> double& { return l.noise.sigma; }},
       {"noise.range_dependent", "slope", [](L& l) -> double& { return l.noise.slope; }},
       {"noise.heavy_tail", "share", [](L& l) -> double& { return l.noise.tail_share; }},
       {"noise.heavy_tail", "scale", [](L& l) -> double& { return l.noise.tail_scale; }},
@@ -37,6 +38,7 @@ const std::vector<Row>& rows() {
       {"clock.step", "at", nullptr, [](D& d) -> double& { return d.clock.at; }},
       {"latency.step", "by", nullptr, [](D& d) -> double& { return d.latency.by; }},
       {"latency.step", "at", nullptr, [](D& d) -> double& { return d.latency.at; }},
+      {"latency.jitter", "mean", nullptr, [](D& d) -> double& { return d.jitter; }},
   };
   return kRows;
 }
@@ -51,6 +53,12 @@ bool befalls_devices(const std::string& effect) {
   return std::ranges::any_of(rows(), [&](const Row& row) { return row.effect == effect; });
 }
 
+bool befalls_clocks(const std::string& effect) {
+  return std::ranges::any_of(rows(), [&](const Row& row) { return row.effect == effect && row.of_device; });
+}
+
+bool befalls(const Effect& effect, std::size_t device) { return !effect.owner || *effect.owner == device; }
+
 void set(const Row& row, std::size_t device, double value, RecordingSettings& settings) {
   if (row.of_device) {
     row.of_device(settings.device_effects[device]) = value;
@@ -59,15 +67,26 @@ void set(const Row& row, std::size_t device, double value, RecordingSettings& se
   }
 }
 
+void draw_nothing_beside(const Effect& measured, std::size_t device, RecordingSettings& settings) {
+  if (measured.name == "clock.drift") settings.device_effects[device].drawn = false;
+  if (measured.name == "mirror.period") settings.scanner.laser_effects[device].mirror_drawn = false;
+}
+
 }  // namespace
 
 std::vector<EffectInfo> recording_catalogue(const TermRegistry& terms) {
   std::vector<EffectInfo> catalogue = effect_catalogue(terms);
   for (auto& info : catalogue) {
-    const bool clocks =
-        std::ranges::any_of(rows(), [&](const Row& row) { return row.effect == info.name && row.of_device; });
-    if (clocks) info.scope = Scope::kDevice;
+    if (befalls_clocks(info.name)) info.scope = Scope::kDevice;
   }
+  return catalogue;
+}
+
+std::vector<EffectInfo> laser_catalogue(const TermRegistry& terms) {
+  std::vector<EffectInfo> catalogue = effect_catalogue(terms);
+  std::erase_if(catalogue, [](const EffectInfo& info) {
+    return !befalls_devices(info.name) || befalls_clocks(info.name);
+  });
   return catalogue;
 }
 
@@ -79,7 +98,9 @@ std::vector<Effect> apply_device_effects(std::vector<Effect> effects, RecordingS
     for (const auto& [parameter, value] : effect.values) {
       const Row* row = find_row(effect.name, parameter);
       for (std::size_t device = 0; row && device <= lasers; ++device) {
-        if (!effect.owner || *effect.owner == device) set(*row, device, value, settings);
+        if (!befalls(effect, device)) continue;
+        set(*row, device, value, settings);
+        if (effect.measured) draw_nothing_beside(effect, device, settings);
       }
     }
   }

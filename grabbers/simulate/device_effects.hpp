@@ -14,6 +14,9 @@ namespace crisp {
 /// so also the plate's.
 std::vector<EffectInfo> recording_catalogue(const TermRegistry& terms);
 
+/// Of the catalogue what befalls a laser's noise and mirror: what is simulated of a device without telegrams.
+std::vector<EffectInfo> laser_catalogue(const TermRegistry& terms);
+
 /// Puts the effects that befall devices (clocks, links, mirrors, noise) into the settings. Those of the true
 /// calibration, which are terms, are left.
 ///

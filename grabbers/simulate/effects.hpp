@@ -20,6 +20,7 @@ struct Effect {
                                      ///< plate; nothing: all that can have it
   std::vector<std::pair<std::string, double>> values;  ///< of the parameters that were given, in SI
   Place place;                                         ///< where it was asked for
+  bool measured = false;  ///< on a real device: it is in place of what would be drawn, not beside it
 };
 
 /// Understands a map of effects: `{encoder.eccentricity: {a: 0.1deg}, laser2.mirror.cone: {kappa: 0.3deg}}`.

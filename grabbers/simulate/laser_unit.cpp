@@ -54,7 +54,7 @@ LaserUnit::LaserUnit(const RecordingSettings& settings, const RecordingTruth& tr
       truth_(truth.lasers[index]),
       rig_(settings.scanner.rig.lasers[index]),
       index_(index),
-      link_(settings.laser_link, truth_.minimum_delay, settings.scanner.seed, rig_.name, truth_.latency),
+      link_(truth_.link, truth_.minimum_delay, settings.scanner.seed, rig_.name, truth_.latency),
       handover_(settings.scanner.seed, rig_.name + ".handover"),
       losses_(settings.scanner.seed, rig_.name + ".losses") {
   check(settings.scanner);

@@ -20,6 +20,7 @@ struct RangeSettings {
 /// How one laser's noise departs from a plain normal one: effects `noise.*` of the catalogue. The defaults
 /// change nothing.
 struct NoiseEffects {
+  double sigma = 0;           ///< [m] standard deviation; 0: of RangeSettings::sigma
   double slope = 0;           ///< standard deviation a metre of range, far away
   double tail_share = 0;      ///< share of the ranges whose noise is `tail_scale` times as large
   double tail_scale = 5;      ///< see tail_share

@@ -18,7 +18,7 @@ PlateUnit::PlateUnit(const RecordingSettings& settings, const RecordingTruth& tr
     : settings_(settings),
       truth_(truth.plate),
       motion_(&motion),
-      link_(settings.plate_link, truth_.minimum_delay, settings.scanner.seed, truth_.name, truth_.latency),
+      link_(truth_.link, truth_.minimum_delay, settings.scanner.seed, truth_.name, truth_.latency),
       losses_(settings.scanner.seed, truth_.name + ".losses"),
       begin_(begin),
       time_(begin) {

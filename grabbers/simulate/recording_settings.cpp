@@ -12,7 +12,8 @@ namespace {
 constexpr double kWrap = 4294.967296;  // [s] of a 32-bit counter of microseconds
 
 DeviceTruth draw_device(const RecordingSettings& settings, std::size_t index, const std::string& name) {
-  DeviceTruth device{.name = name};
+  const bool is_laser = index < settings.scanner.rig.lasers.size();
+  DeviceTruth device{.name = name, .link = is_laser ? settings.laser_link : settings.plate_link};
   if (!settings.clock_overrides.empty()) {
     device.clock = settings.clock_overrides[index];
   } else {
@@ -23,10 +24,12 @@ DeviceTruth draw_device(const RecordingSettings& settings, std::size_t index, co
   }
   if (!settings.device_effects.empty()) {
     const DeviceEffects& effects = settings.device_effects[index];
+    if (!effects.drawn) device.clock.skew = device.clock.drift = 0;
     device.clock.skew += effects.skew;
     device.clock.drift += effects.drift;
     device.clock.step = effects.clock;
     device.latency = effects.latency;
+    if (effects.jitter > 0) device.link.jitter = effects.jitter;
   }
   for (const auto& restart : settings.faults.restarts) {
     if (restart.device == name) device.clock.resets.push_back(restart.time);

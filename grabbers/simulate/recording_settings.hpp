@@ -58,16 +58,19 @@ struct FaultSettings {
 /// How one device's clock and link depart from those of the others: effects `clock.*` and `latency.*` of the
 /// catalogue. The defaults change nothing.
 struct DeviceEffects {
-  double skew = 0;   ///< beyond what is drawn
-  double drift = 0;  ///< [1/s] beyond what is drawn
+  double skew = 0;    ///< beyond what is drawn
+  double drift = 0;   ///< [1/s] beyond what is drawn
+  bool drawn = true;  ///< whether a skew and a drift are drawn besides
   Step clock;
   Step latency;
+  double jitter = 0;  ///< [s] mean delay beyond the shortest; 0: its link's
 };
 
 /// One device as it is: what clock alignment and calibration should find.
 struct DeviceTruth {
   std::string name;
   DeviceClock clock;
+  LinkSettings link;         ///< those of its kind, with its own jitter
   double minimum_delay = 0;  ///< [s] of its link
   Step latency;              ///< of the minimum delay
   double stamp_lag = 0;      ///< [s] how much later the scan's stamp is than the rig's offsets say

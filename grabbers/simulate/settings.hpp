@@ -28,6 +28,7 @@ struct FieldOfView {
 struct LaserEffects {
   NoiseEffects noise;
   double mirror_excess = 0;  ///< [s] of its mirror's mean period over the nominal one; 0: as drawn
+  bool mirror_drawn = true;  ///< false: an excess of 0 is one of 0
 };
 
 /// The scanner to simulate: what is true of it. All lasers are of one kind; their mirrors, clocks and noise

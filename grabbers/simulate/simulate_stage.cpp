@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <variant>
 
 #include "grabbers/simulate/truth_file.hpp"
@@ -38,36 +40,38 @@ Restart parse_restart(const std::string& text) {
 
 }  // namespace
 
-RecordingSettings SimulateStage::settings(const RunSettings& run, std::vector<Effect>& of_truth) const {
+RecordingSettings SimulateStage::settings(const RunSettings& run) const {
   RecordingSettings result = settings_;
   result.scanner.rig = run.rig;
   result.scanner.seed = seed_.value_or(run.seed);
   for (const auto& text : silences_) result.faults.silences.push_back(parse_silence(text));
   for (const auto& text : restarts_) result.faults.restarts.push_back(parse_restart(text));
-  of_truth = apply_device_effects(
-      read_effects(hidden_.effects, run.rig, recording_catalogue(known_terms(run))), result);
   return result;
 }
 
 void SimulateStage::check(const RunSettings& run) const {
-  std::vector<Effect> effects;
-  RecordingSettings planned = settings(run, effects);
+  RecordingSettings planned = settings(run);
   planned.scanner.truth = hidden_.drawn(run, planned.scanner.seed);
-  add_terms(planned.scanner.truth, effects, known_terms(run));
+  const TermRegistry& terms = known_terms(run);
+  auto effects = read_effects(hidden_.effects, run.rig, recording_catalogue(terms));
+  add_terms(planned.scanner.truth, apply_device_effects(std::move(effects), planned), terms);
   draw_devices(planned);
   make_motion(planned.scanner.motion, planned.scanner.duration, planned.scanner.seed);
   planned.scanner.field.beams();
 }
 
 void SimulateStage::process(const Inputs&, Outputs& out, Context& context) {
-  std::vector<Effect> effects;
-  simulated_ = settings(context.run(), effects);
+  const TermRegistry& terms = known_terms(context.run());
+  simulated_ = settings(context.run());
   simulated_.scanner.truth = hidden_.load(context, simulated_.scanner.seed);
-  add_terms(simulated_.scanner.truth, effects, known_terms(context.run()));
+  const auto catalogue = recording_catalogue(terms);
+  auto effects = load_found(findings_file_, catalogue, context);
+  std::ranges::move(read_effects(hidden_.effects, context.rig(), catalogue), std::back_inserter(effects));
+  add_terms(simulated_.scanner.truth, apply_device_effects(std::move(effects), simulated_), terms);
   const Scene surroundings = scene_.load(context);
   simulated_scene_ = surroundings.name;
 
-  RecordingSimulator simulator(simulated_, surroundings, known_terms(context.run()));
+  RecordingSimulator simulator(simulated_, surroundings, terms);
   truth_ = simulator.truth();
   if (!capture_file_.empty()) {
     capture_ = std::make_unique<RecordedCapture>(capture_file_, simulated_, truth_, wire_faults_);

@@ -42,14 +42,13 @@ class SimulateStage final : public Stage {
   RangeSettings& range() { return settings_.scanner.range; }
   MotionSettings& motion() { return settings_.scanner.motion; }
 
-  /// The settings for this run with all effects but those of the true calibration, which a file may hold;
-  /// these are left in `of_truth`.
-  RecordingSettings settings(const RunSettings& run, std::vector<Effect>& of_truth) const;
+  RecordingSettings settings(const RunSettings& run) const;  ///< for this run, without a truth and effects
 
   RecordingSettings settings_;
   TruthChoice hidden_{.departures = {.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04},
                       .calibration_file = {},
                       .effects = {}};
+  std::filesystem::path findings_file_;
   WireFaults wire_faults_;
   SceneChoice scene_;
   std::vector<std::string> silences_;

@@ -74,8 +74,10 @@ SweepSimulator::SweepSimulator(const ScannerSettings& settings, const Scene& sce
   for (std::size_t i = 0; i < settings_.rig.lasers.size(); ++i) {
     const auto& name = settings_.rig.lasers[i].name;
     const LaserEffects effects = settings_.effects_of(i);
+    MirrorSettings mirror = settings_.mirror;
+    if (!effects.mirror_drawn) mirror.slowest = 0;
     Laser& laser = lasers_.emplace_back(Laser{
-        .mirror = Mirror(settings_.mirror, settings_.seed, name, effects.mirror_excess),
+        .mirror = Mirror(mirror, settings_.seed, name, effects.mirror_excess),
         .noise = RangeNoise(settings_.range, effects.noise, settings_.field.beams(), settings_.seed, name),
         .foliage = RandomStream(settings_.seed, name + ".foliage"),
         .spot = Spot(effects.noise, settings_.range.max_distance, reflectances),

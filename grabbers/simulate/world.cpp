@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/simulate/world.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
+#include "grabbers/simulate/found_effects.hpp"
 #include "grabbers/simulate/paper.hpp"
 #include "grabbers/simulate/scene_file.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/calibration_file.hpp"
+#include "pipeline/files/findings_file.hpp"
 #include "pipeline/stage/registry.hpp"
 
 namespace crisp {
@@ -40,6 +45,19 @@ Calibration TruthChoice::load(Context& context, std::uint64_t seed) const {
   context.reads(calibration_file);
   check_lasers(truth, context.rig(), calibration_file);
   return truth;
+}
+
+std::vector<Effect> load_found(const std::filesystem::path& findings_file,
+                               const std::vector<EffectInfo>& catalogue, Context& context) {
+  if (findings_file.empty()) return {};
+  const Findings findings = read_findings(findings_file);
+  context.reads(findings_file);
+  FoundEffects found = effects_of(findings, findings_file.string(), context.rig(), catalogue);
+  if (!found.others.empty()) {
+    context.say(fmt::format("not simulated of what was found: {}", fmt::join(found.others, ", ")));
+  }
+  context.report({{"findings_simulated", found.effects.size()}, {"findings_not_simulated", found.others}});
+  return std::move(found.effects);
 }
 
 const TermRegistry& known_terms(const RunSettings& run) {

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "grabbers/simulate/departures.hpp"
+#include "grabbers/simulate/effects.hpp"
 #include "grabbers/simulate/scene.hpp"
 #include "pipeline/stage/context.hpp"
 
@@ -33,6 +35,14 @@ struct TruthChoice {
   /// @throws Error if the file is not a calibration of the run's rig
   Calibration load(Context& context, std::uint64_t seed) const;
 };
+
+/// The effects that a diagnosis found, if there is a file of it; see effects_of(). What cannot be simulated
+/// is told to people, by name.
+///
+/// @param catalogue         what can be simulated
+/// @throws Error or Errors  as read_findings() and effects_of() do
+std::vector<Effect> load_found(const std::filesystem::path& findings_file,
+                               const std::vector<EffectInfo>& catalogue, Context& context);
 
 /// The terms that the program knows; none where a stage is run without one.
 const TermRegistry& known_terms(const RunSettings& run);

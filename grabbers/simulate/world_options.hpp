@@ -17,6 +17,14 @@ void describe_scene(StageDescription<S>& d, Way way) {
   d.option("scene_file", way, &SceneChoice::file, "a scene of your own in YAML, in place of `scene`");
 }
 
+/// @param way  to the path of a file
+template <class S, class Way>
+void describe_findings(StageDescription<S>& d, Way way) {
+  d.option("findings", way,
+           "a diagnosis.json: what was found and accepted befalls the simulated scanner, and each device has "
+           "the noise, clock, delays and mirror that were measured");
+}
+
 /// @param way  to a TruthChoice
 template <class S, class Way>
 void describe_truth(StageDescription<S>& d, Way way) {

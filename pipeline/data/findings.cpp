@@ -11,6 +11,7 @@ void Findings::append(const Findings& other) {
   add(unnamed, other.unnamed);
   add(unobservable, other.unobservable);
   add(devices, other.devices);
+  add(noise, other.noise);
   before_p = std::min(before_p, other.before_p);
   after_p = std::min(after_p, other.after_p);
 }

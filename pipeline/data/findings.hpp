@@ -57,12 +57,20 @@ struct DeviceFacts {
   double wander = 0;          ///< RMS of slow changes of the mirror's period, as a share of it
 };
 
+/// How the ranges of one laser scatter, apart from what its findings `noise.*` say.
+struct NoiseFacts {
+  std::string laser;
+  std::size_t ranges = 0;  ///< that were looked at
+  double sigma = 0;        ///< [m] of the normal law that is left
+};
+
 /// What a diagnosis says.
 struct Findings {
   std::vector<Finding> findings;  ///< in the order in which they were taken into the model
   std::vector<UnnamedFinding> unnamed;
   std::vector<Unobservable> unobservable;  ///< causes that these data could not show
   std::vector<DeviceFacts> devices;
+  std::vector<NoiseFacts> noise;
   double before_p = 1;  ///< that what is left of the residuals is noise: with the model that came …
   double after_p = 1;   ///< … and with the extended one
 

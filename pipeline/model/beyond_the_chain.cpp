@@ -31,11 +31,33 @@ std::vector<EffectInfo> clocks_and_links() {
        .parameters = {{.name = "by", .unit = "s", .lower = -10, .upper = 10, .summary = "later"}, instant()},
        .details =
            "The lower envelope of receipt less device time steps, the device's time does not. Milliseconds, "
-           "where a switch or a driver queues from then on."}};
+           "where a switch or a driver queues from then on."},
+      {.name = "latency.jitter",
+       .summary = "a device's telegrams are delayed by more or less than those of others",
+       .scope = Scope::kDevice,
+       .parameters = {{.name = "mean",
+                       .unit = "s",
+                       .lower = 0,
+                       .upper = 10,
+                       .summary = "of the exponentially distributed delay beyond the shortest; 0: that of "
+                                  "its kind of link"}},
+       .details = "Half of the telegrams are later than the shortest delay by more than 0.69 of it. A real "
+                  "LMS111: 0.1 ms."}};
 }
 
 std::vector<EffectInfo> noises() {
   return {
+      {.name = "noise.normal",
+       .summary = "a laser's noise is larger or smaller than that of others",
+       .scope = Scope::kLaser,
+       .parameters = {{.name = "sigma",
+                       .unit = "m",
+                       .lower = 0,
+                       .upper = 1,
+                       .summary = "standard deviation of a range; 0: that of its kind"}},
+       .details =
+           "The data sheet of the LMS-151 has 12 mm; a real LMS111 scattered by 5.3 mm about either of "
+           "its two values."},
       {.name = "noise.range_dependent",
        .summary = "a laser's noise grows with the range",
        .scope = Scope::kLaser,

@@ -23,7 +23,8 @@ Finding finding_of(const CommonChange& change, const std::string& laser) {
                   .confounded_with = {},
                   .gain = {change.gain},
                   .accepted = change.gain.ci95[1] < 0};
-  finding.parameters = {parameter(change.is_step ? "by" : "c", "m", change.size, change.std_error),
+  // The catalogue has what is to be added to a range.
+  finding.parameters = {parameter(change.is_step ? "h" : "c", "m", -change.size, change.std_error),
                         parameter(change.is_step ? "at" : "T", "s", change.shape, change.shape_error)};
   return finding;
 }
@@ -73,6 +74,7 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
   const NoiseDiagnosis noise = diagnose_noise(name, *errors, context.seed());
   context.say(fmt::format("{}: {} ranges of beams at rest scatter by {:.2f} mm (RMS)", name, errors->size(),
                           1e3 * noise.plain.sigma));
+  all.noise.push_back({.laser = name, .ranges = errors->size(), .sigma = noise.law.sigma});
   all.findings.insert(all.findings.end(), noise.findings.begin(), noise.findings.end());
   all.unnamed.insert(all.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/world_options.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
@@ -72,6 +73,7 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
   d.option("noise", &MonteCarloStage::trial, &TrialSettings::noise, "standard deviation of a range")
       .unit("m")
       .range(1e-5, 1);
+  describe_findings(d, &MonteCarloStage::findings_file_);
   d.option("eta", &MonteCarloStage::trial, &TrialSettings::truth, &Departures::eta,
            "the true lags are drawn up to this from 0, where RQE starts")
       .unit("s")
@@ -112,12 +114,25 @@ void MonteCarloStage::check(const RunSettings& run) const {
   make_motion(motion, settings_.trial.duration, 1);
 }
 
+void MonteCarloStage::use_findings(TrialSettings& trial, Context& context) const {
+  if (findings_file_.empty()) return;
+  const auto catalogue = laser_catalogue(known_terms(context.run()));
+  RecordingSettings recording{.scanner = {.rig = trial.rig}};
+  apply_device_effects(load_found(findings_file_, catalogue, context), recording);
+  trial.laser_effects = recording.scanner.laser_effects;
+  trial.counted_noise = noise_in(trial, context.seed());
+  context.say(fmt::format("ranges scatter by {:.2f} mm (RMS) with the noise that was measured",
+                          1e3 * *trial.counted_noise));
+  context.report({{"noise", *trial.counted_noise}});
+}
+
 void MonteCarloStage::process(const Inputs&, Outputs&, Context& context) {
   MonteCarloSettings settings = settings_;
   settings.first_seed = context.seed();
   settings.threads = context.threads();
   settings.trial.rig = context.rig();
   settings.trial.scene = scene_.load(context);
+  use_findings(settings.trial, context);
   settings.trial.rqe.in_plane.sigma_from = sigma_[0];
   settings.trial.rqe.in_plane.sigma_to = sigma_[1];
   trials_ = run_trials(settings, rqe_maker(context.run()),

@@ -27,8 +27,12 @@ class MonteCarloStage final : public Stage {
   MotionSettings& motion() { return settings_.trial.motion; }
   Departures& start() { return settings_.trial.start; }
 
+  /// Has the lasers scatter as a diagnosis found real ones to, if there is a file of it.
+  void use_findings(TrialSettings& trial, Context& context) const;
+
   MonteCarloSettings settings_;
   SceneChoice scene_{.name = "paper", .file = {}};
+  std::filesystem::path findings_file_;
   std::vector<double> sigma_ = {0.5, 0.1};
   std::filesystem::path runs_file_;
   std::filesystem::path table_file_;

@@ -23,13 +23,6 @@ Eigen::Vector3d normal_of(const Surface& surface) {
   return sum.normalized();
 }
 
-ScannerSettings without_noise(ScannerSettings scanner) {
-  scanner.range.sigma = 0;
-  scanner.range.quantum = 0;
-  scanner.encoder_quantised = false;
-  return scanner;
-}
-
 /// The beams that met something flat, and what. Curved things, foliage and what moves tell too little, or too
 /// intricately, to be counted.
 struct FlatlyMet {
@@ -60,6 +53,17 @@ Eigen::VectorXd errors_of_known(const Eigen::MatrixXd& information, const std::v
 }
 
 }  // namespace
+
+ScannerSettings without_noise(ScannerSettings scanner) {
+  scanner.range.sigma = 0;
+  scanner.range.quantum = 0;
+  scanner.encoder_quantised = false;
+  for (LaserEffects& effects : scanner.laser_effects) {
+    const NoiseEffects& noise = effects.noise;
+    effects.noise = {.divergence = noise.divergence, .aperture = noise.aperture, .merge = noise.merge};
+  }
+  return scanner;
+}
 
 SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const Motion& motion,
                        BeamChoice beams, const TermRegistry& terms) {

@@ -21,6 +21,9 @@ struct SceneBound {
   std::size_t no_echo = 0;                 ///< of which nothing did
 };
 
+/// The scanner with exact ranges and an exact encoder; its mirrors and where its beams mix are the same.
+ScannerSettings without_noise(ScannerSettings scanner);
+
 /// The bound for a scanner at a scene: each of its surfaces counts as a plane of its own, as unknown as the
 /// parameters. The ranges' noise is `scanner.range.sigma`; the encoder and the ranges' steps count as exact.
 /// Terms beyond equation (2) are taken as known.

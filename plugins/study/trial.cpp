@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/study/trial.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/encoder_smoothing.hpp"
@@ -20,7 +23,13 @@ ScannerSettings scanner_of(const TrialSettings& settings, std::uint64_t seed) {
   scanner.duration = settings.duration;
   scanner.range.sigma = settings.noise;
   scanner.range.quantum = settings.quantum;
+  scanner.laser_effects = settings.laser_effects;
+  if (!scanner.laser_effects.empty()) scanner.laser_effects.resize(settings.lasers);
   return scanner;
+}
+
+double counted_noise(const TrialSettings& settings) {
+  return settings.counted_noise.value_or(settings.noise);
 }
 
 Motion motion_of(const TrialSettings& settings, std::uint64_t seed) {
@@ -36,8 +45,9 @@ Calibration start_of(const TrialSettings& settings, const Calibration& truth, st
 
 /// The least standard errors for exactly this recording's geometry.
 Eigen::VectorXd bound_of(const TrialSettings& settings, std::uint64_t seed) {
-  return scene_bound(scanner_of(settings, seed), settings.scene, motion_of(settings, seed), settings.beams)
-      .std_errors;
+  ScannerSettings scanner = scanner_of(settings, seed);
+  scanner.range.sigma = counted_noise(settings);
+  return scene_bound(scanner, settings.scene, motion_of(settings, seed), settings.beams).std_errors;
 }
 
 Eigen::VectorXd errors(const SensorModel& found, const SensorModel& truth,
@@ -67,7 +77,7 @@ Estimate refine(const SensorModel& start, const SensorModel& truth, const Sample
                 const std::vector<std::size_t>& free, const TrialSettings& settings) {
   try {
     RefinementSettings knowing = settings.refinement;
-    knowing.surfels.noise = settings.noise;
+    knowing.surfels.noise = counted_noise(settings);
     const Refinement found = refine_by_surfels(start, sample, knowing);
     if (found.outcome.free != free) return {.failure = "the refinement left some parameters as they were"};
     if (!found.converged) return {.failure = "the refinement did not converge"};
@@ -98,6 +108,26 @@ Recording record(const TrialSettings& settings, std::uint64_t seed) {
       .start = start_of(settings, scanner.truth, seed)};
   recording.simulated.plate = as_aligned(recording.simulated.plate, scanner.rig.plate);
   return recording;
+}
+
+double noise_in(const TrialSettings& settings, std::uint64_t seed) {
+  const ScannerSettings scanner = scanner_of(settings, seed);
+  const Motion motion = motion_of(settings, seed);
+  const auto noisy = simulate_beams(settings.beams, scanner, settings.scene, motion).beams;
+  const auto exact = simulate_beams(settings.beams, without_noise(scanner), settings.scene, motion).beams;
+  std::map<std::pair<std::uint16_t, double>, float> exactly;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    exactly.emplace(std::pair(exact.laser[i], exact.time[i]), exact.range[i]);
+  }
+  double squares = 0;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < noisy.size(); ++i) {
+    const auto found = exactly.find({noisy.laser[i], noisy.time[i]});
+    if (found == exactly.end()) continue;  // noise can take a beam that is near, or give it
+    squares += std::pow(double{noisy.range[i]} - double{found->second}, 2);
+    ++n;
+  }
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, n)));
 }
 
 Trial run_trial(const TrialSettings& settings, std::uint64_t seed, const MakeMeasure& make_measure) {

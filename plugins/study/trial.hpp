@@ -34,6 +34,8 @@ struct TrialSettings {
   std::optional<std::uint64_t> motion_seed;  ///< the motion of all runs; none: each run draws its own
   double noise = 0.012;                      ///< [m] standard deviation of a range
   double quantum = 0.001;                    ///< [m] ranges are multiples of it
+  std::vector<LaserEffects> laser_effects;   ///< one a laser of the rig: noise of its own; empty: none
+  std::optional<double> counted_noise;       ///< [m] that estimators and bound count on; none: `noise`
   Departures truth{.eta = 0.04};             ///< how far the truth lies off the rig at most
   Estimators estimators = Estimators::kBoth;
   Departures start;  ///< how far off the start of RQE is at most; its η is 0
@@ -53,6 +55,10 @@ struct Recording {
 
 /// True: the rig's nominal τ, α and λ, η drawn. The start is drawn around it.
 Recording record(const TrialSettings& settings, std::uint64_t seed);
+
+/// Standard deviation [m] of the ranges of a recording, whatever the law of their noise: of their difference
+/// from those of the same recording without noise.
+double noise_in(const TrialSettings& settings, std::uint64_t seed);
 
 /// What one estimator made of a recording.
 struct Estimate {

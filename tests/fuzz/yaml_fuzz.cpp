@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "pipeline/files/calibration_file.hpp"
+#include "pipeline/files/findings_file.hpp"
 #include "pipeline/files/rig_file.hpp"
 #include "pipeline/stage/pipeline_file.hpp"
 
@@ -69,6 +70,11 @@ void write_again(const Calibration& calibration) {
   if (to_yaml(parse_calibration(parse_yaml(text, "again"))) != text) std::abort();
 }
 
+void write_again(const Findings& findings) {
+  const std::string text = findings_json(findings);
+  if (findings_json(parse_findings(parse_yaml(text, "again"))) != text) std::abort();
+}
+
 }  // namespace
 }  // namespace crisp
 
@@ -79,6 +85,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   crisp::attempt([&] { return crisp::parse_rig(*root); });
   const auto calibration = crisp::attempt([&] { return crisp::parse_calibration(*root); });
   if (calibration) crisp::write_again(*calibration);
+  const auto findings = crisp::attempt([&] { return crisp::parse_findings(*root); });
+  if (findings) crisp::write_again(*findings);
   crisp::attempt([&] { return crisp::read_pipeline(*root); });
   return 0;
 }

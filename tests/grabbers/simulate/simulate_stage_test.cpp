@@ -9,7 +9,9 @@
 #include <sstream>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/calibration_file.hpp"
+#include "pipeline/files/findings_file.hpp"
 #include "pipeline/model/catalogue.hpp"
 #include "pipeline/stage/pipeline_file.hpp"
 #include "pipeline/stage/runner.hpp"
@@ -138,6 +140,38 @@ TEST_F(SimulateStageTest, WritesItsEffectsIntoTheTruth) {
   EXPECT_EQ(truth.provenance.at("effect laser3.noise.heavy_tail.share"), "0.01");
   EXPECT_EQ(truth.provenance.at("plate.clock.drift"), "1e-06");
   EXPECT_NO_THROW(SensorModel(truth, terms_)) << "assembly takes it as it is";
+}
+
+TEST_F(SimulateStageTest, PutsWhatWasFoundInTheScannerBelowWhatIsAskedFor) {
+  Findings findings;
+  findings.findings = {{.cause = "mirror.cone",
+                        .scope = "laser2",
+                        .parameters = {{.name = "kappa", .unit = "rad", .value = 3e-3}},
+                        .accepted = true},
+                       {.cause = "encoder.eccentricity",
+                        .scope = "plate",
+                        .parameters = {{.name = "a", .unit = "rad", .value = 1e-3}},
+                        .accepted = true},
+                       {.cause = "latency.bursts", .scope = "laser1", .parameters = {}, .accepted = true}};
+  write_file(folder_ / "diagnosis.json", findings_json(findings));
+  const auto results = run(
+      "duration: 0.1s, truth: truth.yaml, findings: diagnosis.json, effects: {laser2.mirror.cone: {kappa: "
+      "4mrad}}");
+  const Calibration truth = read_calibration(folder_ / "truth.yaml");
+  EXPECT_EQ(truth.plate_terms.at(0).parameters.at(0).value, 1e-3);
+  EXPECT_EQ(truth.lasers.at(1).terms.at(0).parameters.at(0).value, 4e-3);
+  EXPECT_THAT(results[0].report.lines, testing::Contains(HasSubstr("latency.bursts of laser1")));
+  EXPECT_EQ(results[0].report.section["findings_simulated"], 2);
+}
+
+TEST_F(SimulateStageTest, RefusesFindingsThatAreNotThereOrOfAnotherRig) {
+  EXPECT_THAT(complaint("findings: nowhere.json"), HasSubstr("nowhere.json"));
+  Findings findings;
+  findings.findings = {{.cause = "mirror.cone", .scope = "laser9", .parameters = {}, .accepted = true}};
+  write_file(folder_ / "diagnosis.json", findings_json(findings));
+  EXPECT_THAT(complaint("findings: diagnosis.json"), HasSubstr("laser9"));
+  std::ofstream(folder_ / "damaged.json") << findings_json(findings).substr(0, 100);
+  EXPECT_THAT(complaint("findings: damaged.json"), HasSubstr("damaged.json:"));
 }
 
 TEST_F(SimulateStageTest, ReadsEveryTermBackFromTheTruth) {

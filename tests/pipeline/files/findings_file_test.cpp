@@ -3,9 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+
+#include "tests/pipeline/files/errors_of.hpp"
 
 namespace crisp {
 namespace {
@@ -33,6 +36,7 @@ Findings some_findings() {
                               .p_value = 1e-4});
   findings.unobservable.push_back({.parameter = "encoder.backlash", .reason = "no reversal"});
   findings.devices.push_back({.device = "laser1", .stamps = 172, .skew = 7e-6});
+  findings.noise.push_back({.laser = "laser1", .ranges = 31'000, .sigma = 4.6e-3});
   return findings;
 }
 
@@ -45,7 +49,7 @@ std::vector<std::string> keys_of(const nlohmann::json& object) {
 TEST(FindingsFile, HoldsWhatProgramsAreToldToExpect) {
   const auto json = nlohmann::json::parse(findings_json(some_findings()));
   EXPECT_THAT(keys_of(json), testing::UnorderedElementsAre("crisp", "findings", "unnamed", "unobservable",
-                                                           "devices", "indistinguishable"));
+                                                           "devices", "noise", "indistinguishable"));
   const auto& finding = json["findings"][0];
   EXPECT_THAT(keys_of(finding),
               testing::UnorderedElementsAre("cause", "scope", "parameters", "explained_fraction",
@@ -66,7 +70,7 @@ TEST(FindingsFile, HoldsWhatSeveralDiagnosesSay) {
   all.append(some_findings());
   all.append({.before_p = 0.5, .after_p = 0.1});
   const auto json = nlohmann::json::parse(findings_json(all));
-  for (const char* list : {"findings", "unnamed", "unobservable", "devices"}) {
+  for (const char* list : {"findings", "unnamed", "unobservable", "devices", "noise"}) {
     EXPECT_EQ(json[list].size(), 2U) << list;
   }
   EXPECT_EQ(json["indistinguishable"]["before_p"], 0.005) << "the smallest";
@@ -85,12 +89,68 @@ TEST(FindingsFile, IsDocumentedKeyByKey) {
                                          json["unnamed"][0],
                                          json["unobservable"][0],
                                          json["devices"][0],
+                                         json["noise"][0],
                                          json["indistinguishable"]};
   for (const auto& object : objects) {
     for (const auto& key : keys_of(object)) {
       EXPECT_THAT(text.str(), testing::HasSubstr("`" + key + "`"));
     }
   }
+}
+
+TEST(FindingsFile, IsReadAsItWasWritten) {
+  Findings written = some_findings();
+  written.findings[0].parameters.push_back({"P", "m", 0.1 + 0.2, std::nan(""), true});
+  const Findings read = parse_findings(parse_yaml(findings_json(written), "diagnosis.json"));
+  EXPECT_EQ(findings_json(read), findings_json(written));
+  ASSERT_EQ(read.findings.size(), 1U);
+  const Finding& finding = read.findings[0];
+  EXPECT_EQ(finding.cause, "mirror.cone");
+  EXPECT_EQ(finding.scope, "laser2");
+  ASSERT_EQ(finding.parameters.size(), 2U);
+  EXPECT_EQ(finding.parameters[0].value, 0.003);
+  EXPECT_EQ(finding.parameters[1].value, 0.1 + 0.2) << "every digit";
+  EXPECT_TRUE(std::isnan(finding.parameters[1].std_error)) << "null";
+  EXPECT_EQ(finding.gain.at(0).ci95[0], -3e-4);
+  EXPECT_TRUE(finding.accepted);
+  EXPECT_EQ(read.unnamed.at(0).quantity, "range");
+  EXPECT_EQ(read.unobservable.at(0).parameter, "encoder.backlash");
+  EXPECT_EQ(read.devices.at(0).stamps, 172U);
+  EXPECT_EQ(read.noise.at(0).sigma, 4.6e-3);
+  EXPECT_EQ(read.before_p, 0.005);
+}
+
+std::vector<std::string> complaints(const std::string& text) {
+  return errors_of([&] { parse_findings(parse_yaml(text, "diagnosis.json")); });
+}
+
+/// findings_json() of some findings with a part of it replaced.
+std::string with(const std::string& part, const std::string& other) {
+  std::string text = findings_json(some_findings());
+  const auto at = text.find(part);
+  EXPECT_NE(at, std::string::npos) << part;
+  return text.replace(at, part.size(), other);
+}
+
+TEST(FindingsFile, ThatIsDamagedIsRefusedWithTheLine) {
+  using testing::AllOf;
+  using testing::ElementsAre;
+  using testing::HasSubstr;
+  EXPECT_THAT(
+      complaints(with("\"laser2\"", "[1]")),
+      ElementsAre(AllOf(HasSubstr("diagnosis.json:6:"), HasSubstr("findings[0]"), HasSubstr("scope"))));
+  EXPECT_THAT(complaints(with("0.003", "\"much\"")),
+              ElementsAre(AllOf(HasSubstr("findings[0], parameters[0]"), HasSubstr("'much'"))));
+  EXPECT_THAT(complaints(with("\"accepted\": true", "\"acepted\": true")),
+              ElementsAre(HasSubstr("'accepted' is missing"), HasSubstr("did you mean 'accepted'?")));
+  EXPECT_THAT(complaints(with("\"gain\": [", "\"gain\": {}, \"was\": [")),
+              testing::Contains(HasSubstr("'gain': a map is not a list")));
+  EXPECT_THAT(complaints(with("\"crisp\": 1", "\"crisp\": 2")), ElementsAre(HasSubstr("use a newer crisp")));
+  const std::string whole = findings_json(some_findings());
+  EXPECT_FALSE(complaints(whole.substr(0, whole.size() / 2)).empty());
+  EXPECT_FALSE(complaints("").empty());
+  EXPECT_THAT(errors_of([] { read_findings("nowhere/diagnosis.json"); }),
+              ElementsAre(HasSubstr("nowhere/diagnosis.json")));
 }
 
 }  // namespace

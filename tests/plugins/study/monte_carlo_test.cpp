@@ -56,6 +56,25 @@ TEST(MonteCarlo, RefinesToTheBoundFromAnyLambda) {
   EXPECT_GT(sum / n, 1 - 4 * std::sqrt(3 * 2 / n));
 }
 
+TEST(MonteCarlo, CountsOnTheNoiseThatItsLasersHave) {
+  TrialSettings settings = small(1).trial;
+  const double sigma = 5e-3;
+  const double separation = 15e-3;
+  settings.laser_effects.resize(
+      3, {.noise = {.sigma = sigma, .separation = separation, .least_weight = 0.5, .most_weight = 0.5}});
+  const double rms = std::hypot(sigma, separation / 2, settings.quantum / std::sqrt(12));
+  const double noise = noise_in(settings, 3);
+  const double ranges = static_cast<double>(record(settings, 3).simulated.beams.size());
+  EXPECT_NEAR(noise, rms, 4 * rms / std::sqrt(2 * ranges));
+  // The bound is of normal noise of that size: as many times smaller.
+  const Trial plain = run_trial(settings, 3, make_rqe);
+  settings.counted_noise = noise;
+  const Trial counted = run_trial(settings, 3, make_rqe);
+  for (Eigen::Index k = 0; k < plain.bound.size(); ++k) {
+    EXPECT_NEAR(counted.bound[k] / plain.bound[k], noise / settings.noise, 1e-9);
+  }
+}
+
 TEST(MonteCarlo, StartsWithLambdaAnywhereAndTheTruthWhereThePaperHasIt) {
   TrialSettings settings;
   double farthest = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/files/findings_file.hpp"
-
 #include <nlohmann/json.hpp>
+
+#include "pipeline/files/findings_file.hpp"
 
 namespace crisp {
 namespace {
@@ -62,6 +62,10 @@ Json json_of(const DeviceFacts& facts) {
           {"wander", facts.wander}};
 }
 
+Json json_of(const NoiseFacts& facts) {
+  return {{"laser", facts.laser}, {"ranges", facts.ranges}, {"sigma", facts.sigma}};
+}
+
 template <class Things>
 Json list_of(const Things& things) {
   Json all = Json::array();
@@ -77,6 +81,7 @@ std::string findings_json(const Findings& findings) {
                     {"unnamed", list_of(findings.unnamed)},
                     {"unobservable", list_of(findings.unobservable)},
                     {"devices", list_of(findings.devices)},
+                    {"noise", list_of(findings.noise)},
                     {"indistinguishable", {{"before_p", findings.before_p}, {"after_p", findings.after_p}}}};
   return all.dump(2) + "\n";
 }

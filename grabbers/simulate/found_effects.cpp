@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/found_effects.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+/// Something that was found of one device, before it is known whether it can be simulated.
+struct Found {
+  std::string where;  // in the file: "findings[2]"
+  std::string cause;
+  std::string scope;
+  std::vector<Parameter> parameters;
+};
+
+Found fact(const std::string& where, const std::string& cause, const std::string& device,
+           const Parameter& parameter) {
+  return {.where = where, .cause = cause, .scope = device, .parameters = {parameter}};
+}
+
+void add_clocks_and_links(const Findings& findings, std::vector<Found>& all) {
+  for (std::size_t i = 0; i < findings.devices.size(); ++i) {
+    const DeviceFacts& facts = findings.devices[i];
+    const std::string where = fmt::format("devices[{}]", i);
+    all.push_back(
+        fact(where, "clock.drift", facts.device, {.name = "skew", .unit = "1", .value = facts.skew}));
+    // Of an exponential distribution the median is ln 2 of the mean.
+    const double mean = facts.delay_median / std::numbers::ln2;
+    all.push_back(fact(where, "latency.jitter", facts.device, {.name = "mean", .unit = "s", .value = mean}));
+  }
+}
+
+void add_mirrors(const Findings& findings, std::vector<Found>& all) {
+  for (std::size_t i = 0; i < findings.devices.size(); ++i) {
+    const DeviceFacts& facts = findings.devices[i];
+    if (!(facts.period > 0 && facts.nominal_period > 0)) continue;
+    // The period was told by the laser's own clock.
+    const double excess = facts.period * (1 + facts.skew) - facts.nominal_period;
+    all.push_back(fact(fmt::format("devices[{}]", i), "mirror.period", facts.device,
+                       {.name = "excess", .unit = "s", .value = excess}));
+  }
+}
+
+std::vector<Found> all_found(const Findings& findings) {
+  std::vector<Found> all;
+  add_clocks_and_links(findings, all);
+  for (std::size_t i = 0; i < findings.noise.size(); ++i) {
+    const NoiseFacts& facts = findings.noise[i];
+    all.push_back(fact(fmt::format("noise[{}]", i), "noise.normal", facts.laser,
+                       {.name = "sigma", .unit = "m", .value = facts.sigma}));
+  }
+  for (std::size_t i = 0; i < findings.findings.size(); ++i) {
+    const Finding& finding = findings.findings[i];
+    if (!finding.accepted) continue;
+    all.push_back({.where = fmt::format("findings[{}]", i),
+                   .cause = finding.cause,
+                   .scope = finding.scope,
+                   .parameters = finding.parameters});
+  }
+  add_mirrors(findings, all);  // above a finding of the same, which does not know the laser's clock
+  return all;
+}
+
+void check_device(const Found& found, const std::string& file, const Rig& rig) {
+  if (found.scope == "plate" || found.scope == rig.plate.name) return;
+  std::vector<std::string> names;
+  for (const auto& laser : rig.lasers) names.push_back(laser.name);
+  if (std::ranges::find(names, found.scope) != names.end()) return;
+  throw Error(
+      fmt::format("{}: {} is of '{}', which the rig does not have", found.where, found.cause, found.scope),
+      fmt::format("it has {} and {}: give --rig the rig that was diagnosed", fmt::join(names, ", "),
+                  rig.plate.name),
+      {file});
+}
+
+/// As `effects` would have it.
+OptionGroup as_option(const Found& found, const std::string& file) {
+  OptionGroup group{.name = found.scope + "." + found.cause, .entries = {}, .place = {file}};
+  for (const Parameter& parameter : found.parameters) {
+    const std::string unit = parameter.unit == "1" ? "" : " " + parameter.unit;
+    group.entries.push_back(
+        {.name = parameter.name, .value = fmt::format("{}{}", parameter.value, unit), .place = {file}});
+  }
+  return group;
+}
+
+}  // namespace
+
+FoundEffects effects_of(const Findings& findings, const std::string& file, const Rig& rig,
+                        const std::vector<EffectInfo>& catalogue) {
+  FoundEffects result;
+  OptionGroups wanted;
+  for (const Found& found : all_found(findings)) {
+    check_device(found, file, rig);
+    const auto info = std::ranges::find(catalogue, found.cause, &EffectInfo::name);
+    if (info != catalogue.end() && info->scope != Scope::kScene) {
+      wanted.push_back(as_option(found, file));
+    } else {
+      result.others.push_back(fmt::format("{} of {}", found.cause, found.scope));
+    }
+  }
+  for (const UnnamedFinding& finding : findings.unnamed) {
+    if (!finding.accepted) continue;
+    result.others.push_back(fmt::format("{} of {} over the {}, unnamed: the file has its size, not its shape",
+                                        finding.quantity, finding.scope, finding.covariate));
+  }
+  result.effects = read_effects(wanted, rig, catalogue);
+  for (Effect& effect : result.effects) effect.measured = true;
+  return result;
+}
+
+}  // namespace crisp

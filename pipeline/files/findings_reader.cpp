@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+
+#include "pipeline/files/findings_file.hpp"
+#include "pipeline/files/yaml_map.hpp"
+
+namespace crisp {
+namespace {
+
+/// One map of the file, whose keys are all required.
+class FindingsMap {
+ public:
+  FindingsMap(const YamlNode& node, std::string what, std::vector<Error>& errors)
+      : map_(node, std::move(what), errors), errors_(errors) {}
+
+  std::string text(const std::string& key) {
+    map_.require(key);
+    return map_.text(key, {});
+  }
+  bool boolean(const std::string& key) {
+    map_.require(key);
+    return map_.boolean(key, false);
+  }
+  std::size_t count(const std::string& key) {
+    map_.require(key);
+    return static_cast<std::size_t>(map_.integer(key, 0, 0, std::numeric_limits<std::int64_t>::max()));
+  }
+  /// JSON has no NaN: it is written as null.
+  double number(const std::string& key) {
+    const YamlNode* node = map_.require(key);
+    if (node && node->kind == YamlNode::Kind::null) return std::numeric_limits<double>::quiet_NaN();
+    return map_.number(key, "", 0);
+  }
+  /// Calls read(item, where), where being "findings[2]".
+  template <class Read>
+  void each(const std::string& key, Read read) {
+    const YamlNode* node = map_.require(key);
+    if (!node) return;
+    if (node->kind != YamlNode::Kind::sequence) {
+      return map_.fail(node->place, "'" + key + "': " + describe(*node) + " is not a list");
+    }
+    for (std::size_t i = 0; i < node->items.size(); ++i) read(node->items[i], fmt::format("{}[{}]", key, i));
+  }
+  std::vector<std::string> texts(const std::string& key) {
+    std::vector<std::string> all;
+    each(key, [&](const YamlNode& item, const std::string& where) {
+      std::string wrong;
+      if (auto text = read_text(item, wrong)) {
+        all.push_back(std::move(*text));
+      } else {
+        map_.fail(item.place, where + ": " + wrong);
+      }
+    });
+    return all;
+  }
+  /// A list of `n` numbers.
+  template <std::size_t n>
+  std::array<double, n> numbers(const std::string& key) {
+    std::array<double, n> all{};
+    const YamlNode* node = map_.require(key);
+    if (!node) return all;
+    if (node->kind != YamlNode::Kind::sequence || node->items.size() != n) {
+      map_.fail(node->place, fmt::format("'{}': {} is not a list of {} numbers", key, describe(*node), n));
+      return all;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      std::string wrong;
+      const bool unknown = node->items[i].kind == YamlNode::Kind::null;
+      const auto number = unknown ? std::nullopt : read_number(node->items[i], "", wrong);
+      all[i] = number.value_or(std::numeric_limits<double>::quiet_NaN());
+      if (!wrong.empty()) map_.fail(node->items[i].place, "'" + key + "': " + wrong);
+    }
+    return all;
+  }
+  YamlMap& map() { return map_; }
+  std::vector<Error>& errors() { return errors_; }
+
+ private:
+  YamlMap map_;
+  std::vector<Error>& errors_;
+};
+
+std::vector<Gain> read_gains(FindingsMap& parent, const std::string& what) {
+  std::vector<Gain> all;
+  parent.each("gain", [&](const YamlNode& node, const std::string& where) {
+    FindingsMap map(node, what + ", " + where, parent.errors());
+    all.push_back({.metric = map.text("metric"),
+                   .unit = map.text("unit"),
+                   .before = map.number("before"),
+                   .after = map.number("after"),
+                   .ci95 = map.numbers<2>("ci95")});
+    map.map().refuse_others();
+  });
+  return all;
+}
+
+std::vector<Parameter> read_parameters(FindingsMap& parent, const std::string& what) {
+  std::vector<Parameter> all;
+  parent.each("parameters", [&](const YamlNode& node, const std::string& where) {
+    FindingsMap map(node, what + ", " + where, parent.errors());
+    all.push_back({.name = map.text("name"),
+                   .unit = map.text("unit"),
+                   .value = map.number("value"),
+                   .std_error = map.number("std_error")});
+    map.map().refuse_others();
+  });
+  return all;
+}
+
+Finding finding_in(FindingsMap& map, const std::string& what) {
+  return {.cause = map.text("cause"),
+          .scope = map.text("scope"),
+          .parameters = read_parameters(map, what),
+          .explained_fraction = map.number("explained_fraction"),
+          .log10_odds = map.number("log10_odds"),
+          .p_value = map.number("p_value"),
+          .confounded_with = map.texts("confounded_with"),
+          .gain = read_gains(map, what),
+          .accepted = map.boolean("accepted")};
+}
+
+UnnamedFinding unnamed_in(FindingsMap& map, const std::string& what) {
+  return {.covariate = map.text("covariate"),
+          .quantity = map.text("quantity"),
+          .scope = map.text("scope"),
+          .amplitude = map.number("amplitude"),
+          .unit = map.text("unit"),
+          .p_value = map.number("p_value"),
+          .gain = read_gains(map, what),
+          .accepted = map.boolean("accepted")};
+}
+
+Unobservable unobservable_in(FindingsMap& map, const std::string&) {
+  return {map.text("cause"), map.text("reason"), map.text("combination")};
+}
+
+DeviceFacts device_in(FindingsMap& map, const std::string&) {
+  return {.device = map.text("device"),
+          .stamps = map.count("stamps"),
+          .skew = map.number("skew"),
+          .skew_std_error = map.number("skew_std_error"),
+          .delay_median = map.number("delay_median"),
+          .delay_95 = map.number("delay_95"),
+          .period = map.number("period"),
+          .period_std_error = map.number("period_std_error"),
+          .nominal_period = map.number("nominal_period"),
+          .wander = map.number("wander")};
+}
+
+NoiseFacts noise_in(FindingsMap& map, const std::string&) {
+  return {.laser = map.text("laser"), .ranges = map.count("ranges"), .sigma = map.number("sigma")};
+}
+
+template <class Thing>
+void read_list(FindingsMap& parent, const char* key, Thing (*read)(FindingsMap&, const std::string&),
+               std::vector<Thing>& all) {
+  parent.each(key, [&](const YamlNode& node, const std::string& where) {
+    FindingsMap map(node, where, parent.errors());
+    all.push_back(read(map, where));
+    map.map().refuse_others();
+  });
+}
+
+}  // namespace
+
+Findings parse_findings(const YamlNode& root) {
+  std::vector<Error> errors;
+  FindingsMap map(root, "findings of a diagnosis", errors);
+  check_schema(map.map(), 1);
+  Findings all;
+  read_list(map, "findings", finding_in, all.findings);
+  read_list(map, "unnamed", unnamed_in, all.unnamed);
+  read_list(map, "unobservable", unobservable_in, all.unobservable);
+  read_list(map, "devices", device_in, all.devices);
+  if (map.map().find("noise")) read_list(map, "noise", noise_in, all.noise);  // older files have none
+  if (const YamlNode* node = map.map().require("indistinguishable")) {
+    FindingsMap alike(*node, "indistinguishable", errors);
+    all.before_p = alike.number("before_p");
+    all.after_p = alike.number("after_p");
+    alike.map().refuse_others();
+  }
+  map.map().refuse_others();
+  if (!errors.empty()) throw Errors(std::move(errors));
+  return all;
+}
+
+Findings read_findings(const std::filesystem::path& file) { return parse_findings(read_yaml(file)); }
+
+}  // namespace crisp

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is found in a scanner is put into a simulated one, and found there again.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "pipeline/files/findings_file.hpp"
+#include "tests/end_to_end/workshop.hpp"
+
+namespace crisp {
+namespace {
+
+const Parameter& parameter_of(const Findings& findings, const std::string& cause, const std::string& name) {
+  for (const Finding& finding : findings.findings) {
+    if (finding.cause != cause) continue;
+    for (const Parameter& parameter : finding.parameters) {
+      if (parameter.name == name) return parameter;
+    }
+  }
+  throw std::runtime_error("no " + name + " of " + cause + " was found");
+}
+
+double sigma_of(const Findings& findings, const std::string& laser) {
+  for (const NoiseFacts& facts : findings.noise) {
+    if (facts.laser == laser) return facts.sigma;
+  }
+  return std::nan("");
+}
+
+/// A scanner that stands still is simulated, and diagnosed.
+Findings diagnosed(const test::Workshop& workshop, std::vector<std::string> options) {
+  for (const char* option : {"duration=4s", "motion=constant", "max_rate=0Hz", "last_angle=45deg"}) {
+    options.emplace_back(option);
+  }
+  workshop.simulate("made", options);
+  const auto outcome = workshop.run("real/sick.yaml", workshop / "made/hub.pcap", "out", {},
+                                    CRISP_SOURCE_DIR "/configs/rig.yaml");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  return read_findings(workshop / "out/diagnosis.json");
+}
+
+TEST(Findings, OfOneScannerAreThoseOfTheOneThatIsSimulatedWithThem) {
+  const test::Workshop workshop;
+  const Findings first = diagnosed(
+      workshop, {"effects={laser2.noise.two_peaks: {separation: 15mm}, laser2.noise.normal: {sigma: 5mm}, "
+                 "laser1.range.step: {h: -8mm, at: 1.5s}, laser3.mirror.period: {excess: 0.1ms}}"});
+  std::filesystem::rename(workshop / "out/diagnosis.json", workshop / "found.json");
+  const Findings again =
+      diagnosed(workshop, {"findings=" + (workshop / "found.json").string(), "seed=77", "mirror_wander=0"});
+  const auto expect_near = [&](const char* cause, const char* name, double truth) {
+    const Parameter& before = parameter_of(first, cause, name);
+    const Parameter& after = parameter_of(again, cause, name);
+    EXPECT_NEAR(before.value, truth, 4 * before.std_error) << cause;
+    EXPECT_NEAR(after.value, before.value, 4 * std::hypot(before.std_error, after.std_error)) << cause;
+  };
+  expect_near("noise.two_peaks", "separation", 15e-3);
+  expect_near("range.step", "h", -8e-3);
+  // 36 000 ranges tell a normal law's spread to 0.4 %; beside two peaks to less.
+  EXPECT_NEAR(sigma_of(again, "laser1"), 12e-3, 0.02 * 12e-3);
+  EXPECT_NEAR(sigma_of(again, "laser2"), 5e-3, 0.04 * 5e-3);
+  ASSERT_EQ(again.devices.size(), first.devices.size());
+  for (std::size_t k = 0; k < first.devices.size(); ++k) {
+    // Stamps of 1 us over 4 s; without wander the mean period of any time is that of all.
+    EXPECT_NEAR(again.devices[k].period, first.devices[k].period, 1e-6) << first.devices[k].device;
+  }
+}
+
+}  // namespace
+}  // namespace crisp
