@@ -27,26 +27,30 @@ double sigma_of(const Findings& findings, const std::string& laser) {
   return std::nan("");
 }
 
-/// A scanner that stands still is simulated, and diagnosed.
-Findings diagnosed(const test::Workshop& workshop, std::vector<std::string> options) {
+/// A scanner that stands still is simulated by a pipeline, and diagnosed into the folder `output`.
+Findings diagnosed(const test::Workshop& workshop, const std::string& config,
+                   const std::filesystem::path& input, const std::string& output,
+                   std::vector<std::string> options) {
   for (const char* option : {"duration=4s", "motion=constant", "max_rate=0Hz", "last_angle=45deg"}) {
     options.emplace_back(option);
   }
-  workshop.simulate("made", options);
-  const auto outcome = workshop.run("real/sick.yaml", workshop / "made/hub.pcap", "out", {},
+  for (auto& option : options) option.insert(0, "grabber.simulate.");
+  const auto simulated = workshop.run(config, input, "made", options);
+  EXPECT_EQ(simulated.status, ExitStatus::done) << simulated.told;
+  const auto outcome = workshop.run("real/sick.yaml", workshop / "made/hub.pcap", output, {},
                                     CRISP_SOURCE_DIR "/configs/rig.yaml");
   EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  return read_findings(workshop / "out/diagnosis.json");
+  return read_findings(workshop / (output + "/diagnosis.json"));
 }
 
 TEST(Findings, OfOneScannerAreThoseOfTheOneThatIsSimulatedWithThem) {
   const test::Workshop workshop;
-  const Findings first = diagnosed(
-      workshop, {"effects={laser2.noise.two_peaks: {separation: 15mm}, laser2.noise.normal: {sigma: 5mm}, "
+  const Findings first =
+      diagnosed(workshop, "simulate.yaml", {}, "first",
+                {"effects={laser2.noise.two_peaks: {separation: 15mm}, laser2.noise.normal: {sigma: 5mm}, "
                  "laser1.range.step: {h: -8mm, at: 1.5s}, laser3.mirror.period: {excess: 0.1ms}}"});
-  std::filesystem::rename(workshop / "out/diagnosis.json", workshop / "found.json");
   const Findings again =
-      diagnosed(workshop, {"findings=" + (workshop / "found.json").string(), "seed=77", "mirror_wander=0"});
+      diagnosed(workshop, "like_real.yaml", workshop / "first", "again", {"seed=77", "mirror_wander=0"});
   const auto expect_near = [&](const char* cause, const char* name, double truth) {
     const Parameter& before = parameter_of(first, cause, name);
     const Parameter& after = parameter_of(again, cause, name);
