@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/model_stage.hpp"
 
+#include "pipeline/plot/write_plot.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/diagnose/report.hpp"
+#include "plugins/diagnose/residual_plots.hpp"
 
 namespace crisp {
+namespace {
+
+void draw(const std::filesystem::path& folder, const Diagnosis& diagnosis, Context& context) {
+  const auto& lasers = context.rig().lasers;
+  for (std::size_t laser = 0; laser < lasers.size(); ++laser) {
+    const auto plots = residual_plots(laser, lasers[laser].name, diagnosis.left_before, diagnosis.left_after);
+    if (!plots.empty()) write_plots(folder / (lasers[laser].name + "_residuals.svg"), plots, context);
+  }
+}
+
+}  // namespace
 
 void DiagnoseModelStage::describe(StageDescription<DiagnoseModelStage>& d) {
   d.name("diagnose.model").summary("names what the model of the sensor lacks, and extends it by that");
@@ -25,6 +38,8 @@ void DiagnoseModelStage::describe(StageDescription<DiagnoseModelStage>& d) {
   d.option("rounds", &DiagnoseModelStage::settings_, &DiagnosisSettings::rounds,
            "most times that the model is extended and looked at again")
       .range(1, 100);
+  d.option("folder", &DiagnoseModelStage::folder_,
+           "where plots of each laser's residuals go, with and without what was found; auto: nowhere");
 }
 
 void DiagnoseModelStage::process(const Inputs& in, Outputs&, Context&) {
@@ -56,6 +71,7 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
   calibration.quality["chi2"] = diagnosis.after.chi2;
   Findings findings = findings_of(diagnosis, calibration, settings_.selection, noise_);
   context.say(in_words(diagnosis, findings));
+  if (folder_) draw(*folder_, diagnosis, context);
   context.report({{"findings", findings.findings.size()},
                   {"unnamed", findings.unnamed.size()},
                   {"before_p", findings.before_p},

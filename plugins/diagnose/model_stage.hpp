@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "pipeline/data/findings.hpp"
 #include "pipeline/estimate/collected.hpp"
@@ -20,6 +22,7 @@ class DiagnoseModelStage final : public Stage {
 
  private:
   DiagnosisSettings settings_;
+  std::optional<std::filesystem::path> folder_;
   double noise_ = SurfelSettings{}.noise;
   Collected collected_;
   std::shared_ptr<const Calibration> start_;

@@ -85,11 +85,13 @@ std::vector<double> simulated(const Residuals& measured, double noise, std::uint
   return values;
 }
 
-/// Of one residual.
-using Covariate = std::function<double(std::size_t residual)>;
+struct Covariate {
+  std::string name;
+  std::string unit;
+  std::function<double(std::size_t residual)> value;
+};
 
-std::vector<std::pair<std::string, Covariate>> covariates(const Evidence& evidence,
-                                                          const Residuals& residuals) {
+std::vector<Covariate> covariates(const Evidence& evidence, const Residuals& residuals) {
   const Measurements& beams = evidence.sample().beams;
   const PlateTrajectory& plate = *evidence.sample().plate;
   const auto beam = [&residuals](std::size_t k) { return residuals.beam[k]; };
@@ -97,16 +99,17 @@ std::vector<std::pair<std::string, Covariate>> covariates(const Evidence& eviden
     return plate.at(beams.time[beam(k)]).value_or(PlateState{});
   };
   return {
-      {"mirror angle", [&beams, beam](std::size_t k) { return double{beams.mirror_angle[beam(k)]}; }},
-      {"plate angle",
+      {"mirror angle", "rad", [&beams, beam](std::size_t k) { return double{beams.mirror_angle[beam(k)]}; }},
+      {"plate angle", "rad",
        [plate_at](std::size_t k) { return std::remainder(plate_at(k).angle, 2 * std::numbers::pi); }},
       // Where the surface is: sorted by what was measured, noise would look like a profile.
-      {"range",
+      {"range", "m",
        [&beams, &residuals, beam](std::size_t k) { return beams.range[beam(k)] - residuals.value[k]; }},
-      {"incidence", [&residuals](std::size_t k) { return std::acos(std::min(1.0, residuals.cosine[k])); }},
-      {"remission", [&beams, beam](std::size_t k) { return double{beams.remission[beam(k)]}; }},
-      {"plate rate", [plate_at](std::size_t k) { return plate_at(k).rate; }},
-      {"time", [&beams, beam](std::size_t k) { return beams.time[beam(k)]; }},
+      {"incidence", "rad",
+       [&residuals](std::size_t k) { return std::acos(std::min(1.0, residuals.cosine[k])); }},
+      {"remission", "", [&beams, beam](std::size_t k) { return double{beams.remission[beam(k)]}; }},
+      {"plate rate", "rad/s", [plate_at](std::size_t k) { return plate_at(k).rate; }},
+      {"time", "s", [&beams, beam](std::size_t k) { return beams.time[beam(k)]; }},
   };
 }
 
@@ -123,7 +126,7 @@ std::vector<Layout> layouts(const Evidence& evidence, const Residuals& residuals
   for (std::uint32_t k = 0; k < residuals.beam.size(); ++k)
     of_laser[beams.laser[residuals.beam[k]]].push_back(k);
   std::vector<Layout> all;
-  for (const auto& [name, value] : covariates(evidence, residuals)) {
+  for (const auto& [name, unit, value] : covariates(evidence, residuals)) {
     for (const auto& [laser, members] : of_laser) {
       std::vector<double> values(members.size());
       for (std::size_t k = 0; k < members.size(); ++k) values[k] = value(members[k]);
@@ -131,7 +134,9 @@ std::vector<Layout> layouts(const Evidence& evidence, const Residuals& residuals
       std::iota(order.begin(), order.end(), std::size_t{0});
       std::ranges::stable_sort(order, {}, [&](std::size_t k) { return values[k]; });
       if (order.empty() || values[order.front()] == values[order.back()]) continue;
-      Layout layout{.profile = {.covariate = name, .laser = laser, .bins = {}}, .residual = {}, .first = {0}};
+      Layout layout{.profile = {.covariate = name, .unit = unit, .laser = laser, .bins = {}},
+                    .residual = {},
+                    .first = {0}};
       for (std::size_t b = 0; b < kBins; ++b) {
         const std::size_t end = (b + 1) * order.size() / kBins;
         double sum = 0;

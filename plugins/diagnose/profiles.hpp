@@ -11,6 +11,7 @@ namespace crisp {
 /// Residuals of one laser against one quantity, in bins of equally many beams.
 struct Profile {
   std::string covariate;
+  std::string unit;  ///< of the covariate, SI; empty: it has none
   std::size_t laser = 0;
   struct Bin {
     double at = 0;         ///< mean of the covariate, in SI

@@ -7,8 +7,7 @@
 #include <cmath>
 
 #include "pipeline/data/degree.hpp"
-#include "pipeline/files/atomic_file.hpp"
-#include "plugins/scans/plot.hpp"
+#include "pipeline/plot/write_plot.hpp"
 
 namespace crisp {
 namespace {
@@ -144,9 +143,7 @@ void draw(const std::filesystem::path& folder, const std::string& laser, const P
     }
     plot.series.push_back(std::move(series));
   }
-  const auto file = folder / (laser + "_passes.svg");
-  write_file(file, as_svg(plot));
-  context.wrote(file);
+  write_plots(folder / (laser + "_passes.svg"), {plot}, context);
 }
 
 }  // namespace

@@ -7,9 +7,8 @@
 #include <cmath>
 
 #include "pipeline/data/degree.hpp"
-#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/plot/write_plot.hpp"
 #include "plugins/scans/neighbours.hpp"
-#include "plugins/scans/plot.hpp"
 #include "plugins/scans/profiles_at_rest.hpp"
 
 namespace crisp {
@@ -152,9 +151,7 @@ void DiagnoseRestStage::draw(const std::string& name, const std::vector<KindDepa
     for (const double error : departure.error_over_shift) series.y.push_back(1e3 * error);
     plot.series.push_back(std::move(series));
   }
-  const auto file = *folder_ / (name + "_rest.svg");
-  write_file(file, as_svg(plot));
-  context.wrote(file);
+  write_plots(*folder_ / (name + "_rest.svg"), {plot}, context);
 }
 
 void DiagnoseRestStage::diagnose(std::size_t index, Findings& findings, Context& context) {

@@ -5,9 +5,8 @@
 
 #include <cmath>
 
-#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/plot/write_plot.hpp"
 #include "plugins/scans/bursts.hpp"
-#include "plugins/scans/plot.hpp"
 
 namespace crisp {
 namespace {
@@ -107,9 +106,7 @@ void draw(const std::filesystem::path& folder, const std::string& laser, const A
                  {.name = "every other scan later, the rest earlier",
                   .x = scaled(answers.by),
                   .y = scaled(answers.by_turns)}};
-  const auto file = folder / (laser + "_sweep.svg");
-  write_file(file, as_svg(plot));
-  context.wrote(file);
+  write_plots(folder / (laser + "_sweep.svg"), {plot}, context);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ struct PlotSeries {
   std::vector<double> x;
   std::vector<double> y;
   bool joined = true;
+  std::vector<double> error = {};  ///< half the height of a bar at each point; empty: no bars
 };
 
 struct Plot {
@@ -21,8 +22,8 @@ struct Plot {
   std::vector<PlotSeries> series;
 };
 
-/// The plot as an SVG picture of a few kilobytes, axes and names included. Points that are no numbers are
-/// left out.
-std::string as_svg(const Plot& plot);
+/// The plots as one SVG picture, two in a row, with axes and names, a few kilobytes each. Points that are no
+/// numbers are left out.
+std::string as_svg(const std::vector<Plot>& plots);
 
 }  // namespace crisp

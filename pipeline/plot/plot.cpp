@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/scans/plot.hpp"
+#include "pipeline/plot/plot.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,8 @@
 namespace crisp {
 namespace {
 
-constexpr double kWidth = 640, kHeight = 400;                       // [pixels] of the picture
+constexpr double kWidth = 640, kHeight = 400;  // [pixels] of a plot
+constexpr std::size_t kInARow = 2;
 constexpr double kLeft = 70, kRight = 20, kTop = 36, kBottom = 50;  // [pixels] around the curves
 constexpr std::array<const char*, 5> kColours = {"#1f5fbf", "#d9731a", "#2a8f3c", "#8a3fa8", "#777777"};
 
@@ -66,14 +67,20 @@ class PlotAxis {
   double first_pixel_, last_pixel_;
 };
 
+double error_at(const PlotSeries& series, std::size_t i) {
+  return i < series.error.size() && std::isfinite(series.error[i]) ? series.error[i] : 0;
+}
+
 PlotAxis axis_of(const Plot& plot, bool along_x) {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
   for (const auto& series : plot.series) {
-    for (const double value : along_x ? series.x : series.y) {
-      if (!std::isfinite(value)) continue;
-      least = std::min(least, value);
-      most = std::max(most, value);
+    const auto& values = along_x ? series.x : series.y;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i])) continue;
+      const double around = along_x ? 0 : error_at(series, i);
+      least = std::min(least, values[i] - around);
+      most = std::max(most, values[i] + around);
     }
   }
   if (!std::isfinite(least)) least = 0, most = 1;
@@ -109,34 +116,55 @@ std::string frame(const Plot& plot, const PlotAxis& x, const PlotAxis& y) {
 std::string curve(const PlotSeries& series, const char* colour, const PlotAxis& x, const PlotAxis& y) {
   std::string path;
   std::string dots;
+  std::string bars;
   for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
     if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
     const double px = x.pixel(series.x[i]), py = y.pixel(series.y[i]);
+    const double around = error_at(series, i);
+    if (around > 0) {
+      bars += fmt::format("M{:.1f} {:.1f}V{:.1f}", px, y.pixel(series.y[i] - around),
+                          y.pixel(series.y[i] + around));
+    }
     if (series.joined)
       path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", px, py);
     else
       dots += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.2\" fill=\"{}\"/>\n", px, py, colour);
   }
-  if (path.empty()) return dots;
-  return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"/>\n", path, colour);
+  const auto line = [colour](const std::string& way, double width) {
+    if (way.empty()) return std::string();
+    return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/>\n", way, colour,
+                       width);
+  };
+  return line(path, 1.6) + line(bars, 0.8) + dots;
 }
 
-}  // namespace
-
-std::string as_svg(const Plot& plot) {
+std::string drawn(const Plot& plot) {
   const PlotAxis x = axis_of(plot, true);
   const PlotAxis y = axis_of(plot, false);
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-      "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
-      kWidth, kHeight);
-  svg += frame(plot, x, y);
+  std::string svg = frame(plot, x, y);
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const char* colour = kColours[i % kColours.size()];
     svg += curve(plot.series[i], colour, x, y);
     const double line = kTop + 16 + 15 * static_cast<double>(i);
     svg += text_at(kWidth - kRight - 8, line, "end", plot.series[i].name,
                    fmt::format(" fill=\"{}\"", colour).c_str());
+  }
+  return svg;
+}
+
+}  // namespace
+
+std::string as_svg(const std::vector<Plot>& plots) {
+  const std::size_t columns = std::clamp<std::size_t>(plots.size(), 1, kInARow);
+  const std::size_t rows = std::max<std::size_t>(1, (plots.size() + kInARow - 1) / kInARow);
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
+      "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
+      kWidth * static_cast<double>(columns), kHeight * static_cast<double>(rows));
+  for (std::size_t i = 0; i < plots.size(); ++i) {
+    svg +=
+        fmt::format("<g transform=\"translate({},{})\">\n{}</g>\n", kWidth * static_cast<double>(i % kInARow),
+                    kHeight * static_cast<double>(i / kInARow), drawn(plots[i]));
   }
   return svg + "</svg>\n";
 }

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/plot/write_plot.hpp"
+
+#include "pipeline/files/atomic_file.hpp"
+
+namespace crisp {
+
+void write_plots(const std::filesystem::path& file, const std::vector<Plot>& plots, Context& context) {
+  write_file(file, as_svg(plots));
+  context.wrote(file);
+}
+
+}  // namespace crisp

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "pipeline/plot/plot.hpp"
+#include "pipeline/stage/context.hpp"
+
+namespace crisp {
+
+/// Writes plots into one picture, SVG, and tells the run of the file.
+/// @throws Error that names the file, if it cannot be written
+void write_plots(const std::filesystem::path& file, const std::vector<Plot>& plots, Context& context);
+
+}  // namespace crisp

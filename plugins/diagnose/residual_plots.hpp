@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/plot/plot.hpp"
+#include "plugins/diagnose/profiles.hpp"
+
+namespace crisp {
+
+/// One laser's residuals [mm] against each covariate, with bars of two standard errors either way: measured
+/// beside simulated, with the model that came and with the extended one. Angles are in degrees.
+///
+/// @param after  the same as `before` where nothing was found: it is left out then
+std::vector<Plot> residual_plots(std::size_t laser, const std::string& name, const SideBySide& before,
+                                 const SideBySide& after);
+
+}  // namespace crisp
