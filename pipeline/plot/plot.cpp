@@ -146,8 +146,10 @@ std::string drawn(const Plot& plot) {
     const char* colour = kColours[i % kColours.size()];
     svg += curve(plot.series[i], colour, x, y);
     const double line = kTop + 16 + 15 * static_cast<double>(i);
-    svg += text_at(kWidth - kRight - 8, line, "end", plot.series[i].name,
-                   fmt::format(" fill=\"{}\"", colour).c_str());
+    svg +=
+        text_at(kWidth - kRight - 8, line, "end", plot.series[i].name,
+                fmt::format(" fill=\"{}\" stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\"", colour)
+                    .c_str());
   }
   return svg;
 }
