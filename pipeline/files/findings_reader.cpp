@@ -71,7 +71,7 @@ class FindingsMap {
       const bool unknown = node->items[i].kind == YamlNode::Kind::null;
       const auto number = unknown ? std::nullopt : read_number(node->items[i], "", wrong);
       all[i] = number.value_or(std::numeric_limits<double>::quiet_NaN());
-      if (!wrong.empty()) map_.fail(node->items[i].place, "'" + key + "': " + wrong);
+      if (!wrong.empty()) map_.fail(node->items[i].place, fmt::format("'{}': {}", key, wrong));
     }
     return all;
   }

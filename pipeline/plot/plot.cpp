@@ -146,10 +146,9 @@ std::string drawn(const Plot& plot) {
     const char* colour = kColours[i % kColours.size()];
     svg += curve(plot.series[i], colour, x, y);
     const double line = kTop + 16 + 15 * static_cast<double>(i);
-    svg +=
-        text_at(kWidth - kRight - 8, line, "end", plot.series[i].name,
-                fmt::format(" fill=\"{}\" stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\"", colour)
-                    .c_str());
+    const auto style =
+        fmt::format(R"( fill="{}" stroke="white" stroke-width="3" paint-order="stroke")", colour);
+    svg += text_at(kWidth - kRight - 8, line, "end", plot.series[i].name, style.c_str());
   }
   return svg;
 }
@@ -164,9 +163,10 @@ std::string as_svg(const std::vector<Plot>& plots) {
       "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
       kWidth * static_cast<double>(columns), kHeight * static_cast<double>(rows));
   for (std::size_t i = 0; i < plots.size(); ++i) {
-    svg +=
-        fmt::format("<g transform=\"translate({},{})\">\n{}</g>\n", kWidth * static_cast<double>(i % kInARow),
-                    kHeight * static_cast<double>(i / kInARow), drawn(plots[i]));
+    const std::size_t row = i / kInARow;
+    const std::size_t column = i % kInARow;
+    svg += fmt::format("<g transform=\"translate({},{})\">\n{}</g>\n", kWidth * static_cast<double>(column),
+                       kHeight * static_cast<double>(row), drawn(plots[i]));
   }
   return svg + "</svg>\n";
 }

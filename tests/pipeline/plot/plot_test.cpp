@@ -63,7 +63,7 @@ TEST(Plot, PutsHigherValuesHigherUpAndBarsAroundThem) {
 
 TEST(Plot, OfSeveralStandTwoInARow) {
   const std::string svg = as_svg({{.title = "one"}, {.title = "two"}, {.title = "three"}});
-  for (const char* text : {"width=\"1280\" height=\"800\"", "translate(0,0)", "translate(640,0)",
+  for (const char* text : {R"(width="1280" height="800")", "translate(0,0)", "translate(640,0)",
                            "translate(0,400)", ">three<"}) {
     EXPECT_THAT(svg, HasSubstr(text));
   }
