@@ -7,7 +7,8 @@
 #include <functional>
 #include <map>
 #include <numbers>
-#include <random>
+
+#include "plugins/diagnose/likelihood_gain.hpp"
 
 namespace crisp {
 namespace {
@@ -124,46 +125,17 @@ void add_errors(const NoiseLaw& law, const RangeErrors& errors, const Way& way,
 
 /// Mean log-likelihood of every other block under laws that were fitted to the rest.
 Gain gain_of(const NoiseLaw& before, const NoiseLaw& after, const RangeErrors& errors, std::uint64_t seed) {
-  constexpr std::size_t kDraws = 999;
   const auto fitted_half = some_of(errors, [](std::uint32_t block) { return block % 2 == 0; });
   const NoiseLaw first = fitted(before, fitted_half);
   const NoiseLaw second = fitted(after, fitted_half);
-  struct Block {
-    double count = 0, before = 0, after = 0;
-  };
-  std::map<std::uint32_t, Block> of;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (errors.block[i] % 2 == 0) continue;
-    Block& block = of[errors.block[i]];
-    block.count += 1;
-    block.before += first.log_density(double{errors.value[i]}, double{errors.range[i]}, errors.beam[i]);
-    block.after += second.log_density(double{errors.value[i]}, double{errors.range[i]}, errors.beam[i]);
+  const auto rest = some_of(errors, [](std::uint32_t block) { return block % 2 == 1; });
+  std::vector<double> without;
+  std::vector<double> with;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    without.push_back(first.log_density(double{rest.value[i]}, double{rest.range[i]}, rest.beam[i]));
+    with.push_back(second.log_density(double{rest.value[i]}, double{rest.range[i]}, rest.beam[i]));
   }
-  std::vector<Block> blocks;
-  Block all;
-  const auto sum = [](Block& to, const Block& one) {
-    to.count += one.count;
-    to.before += one.before;
-    to.after += one.after;
-  };
-  for (const auto& [number, block] : of) {
-    blocks.push_back(block);
-    sum(all, block);
-  }
-  Gain gain{.metric = "log-likelihood a measurement", .unit = "nat"};
-  if (blocks.size() < 2) return gain;
-  gain.before = all.before / all.count;
-  gain.after = all.after / all.count;
-  std::mt19937_64 random(seed);
-  std::vector<double> changes;
-  for (std::size_t draw = 0; draw < kDraws; ++draw) {
-    Block drawn;
-    for (std::size_t k = 0; k < blocks.size(); ++k) sum(drawn, blocks[random() % blocks.size()]);
-    changes.push_back((drawn.after - drawn.before) / drawn.count);
-  }
-  std::ranges::sort(changes);
-  gain.ci95 = {changes[kDraws / 40], changes[kDraws - 1 - kDraws / 40]};
-  return gain;
+  return likelihood_gain(without, with, rest.block, seed);
 }
 
 /// A way of not being normal that has been tried beside what the law already has.
@@ -231,7 +203,8 @@ UnnamedFinding unnamed_of(const Finding& finding, const NoiseLaw& law) {
 
 }  // namespace
 
-NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, std::uint64_t seed) {
+NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, std::uint64_t seed,
+                              double least_gain) {
   constexpr double kBic = 10;
   const RangeErrors errors = thinned(all);
   NoiseDiagnosis result{.plain = fitted({}, errors), .law = {}, .findings = {}, .unnamed = {}};
@@ -241,6 +214,7 @@ NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, 
     const Tried best = best_of(left, result.law, errors);
     if (best.rise < kBic) break;
     const Finding finding = finding_of(scope, left[best.way], best, result.law, errors, seed);
+    if (finding.gain[0].after - finding.gain[0].before < least_gain) break;
     if (finding.cause.empty()) {
       result.unnamed.push_back(unnamed_of(finding, best.law));
     } else {

@@ -18,8 +18,10 @@ struct NoiseDiagnosis {
   std::vector<UnnamedFinding> unnamed;  ///< beams that scatter each by another amount
 };
 
-/// @param scope  the laser's name
-/// @param all    at least some hundred ranges; of very many, some blocks count
-NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, std::uint64_t seed);
+/// @param scope       the laser's name
+/// @param all         at least some hundred ranges; of very many, some blocks count
+/// @param least_gain  [nat] a range, on those held out: what brings less is not spoken of
+NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, std::uint64_t seed,
+                              double least_gain = 0);
 
 }  // namespace crisp

@@ -4,6 +4,7 @@
 #include "plugins/diagnose/crispness_stage.hpp"
 #include "plugins/diagnose/model_stage.hpp"
 #include "plugins/diagnose/noise_stage.hpp"
+#include "plugins/diagnose/scatter_stage.hpp"
 #include "plugins/diagnose/stamps_stage.hpp"
 
 namespace crisp {
@@ -12,6 +13,7 @@ void register_diagnose(Registrar& registrar) {
   registrar.stage<CrispnessStage>();
   registrar.stage<DiagnoseModelStage>();
   registrar.stage<DiagnoseNoiseStage>();
+  registrar.stage<DiagnoseScatterStage>();
   registrar.stage<DiagnoseStampsStage>();
 }
 

@@ -69,7 +69,7 @@ std::string with_unit(const Parameter& parameter) {
 }
 
 std::string gain_in_words(const std::vector<Gain>& gains) {
-  if (gains.empty()) return "  too little was held out to say what that brings\n";
+  if (gains.empty()) return "  no held-out data say what that brings\n";
   std::string words;
   for (const Gain& gain : gains) {
     const double factor = gain.unit == "m" ? 1e3 : gain.unit == "s" ? 1e6 : 1;

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <random>
 
+#include "pipeline/quality/resampling.hpp"
+
 namespace crisp {
 namespace {
 
@@ -58,18 +60,16 @@ Gain gain_of(const Eigen::MatrixXd& base, const Eigen::VectorXd& column, const E
     for (const std::size_t i : drawn) squares += all[i] * all[i];
     return std::sqrt(squares / static_cast<double>(drawn.size()));
   };
-  std::vector<std::size_t> drawn(before.size());
-  std::iota(drawn.begin(), drawn.end(), std::size_t{0});
-  Gain gain{.metric = {}, .unit = {}, .before = rms(before, drawn), .after = rms(after, drawn)};
-  std::mt19937_64 random(seed);
-  std::vector<double> changes;
-  for (std::size_t draw = 0; draw < kDraws; ++draw) {
-    for (auto& i : drawn) i = random() % before.size();
-    changes.push_back(rms(after, drawn) - rms(before, drawn));
-  }
-  std::ranges::sort(changes);
-  gain.ci95 = {changes[kDraws / 40], changes[kDraws - 1 - kDraws / 40]};
-  return gain;
+  std::vector<std::size_t> all(before.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const auto change = [&](const std::vector<std::size_t>& drawn) {
+    return rms(after, drawn) - rms(before, drawn);
+  };
+  return {.metric = {},
+          .unit = {},
+          .before = rms(before, all),
+          .after = rms(after, all),
+          .ci95 = bootstrap(before.size(), 1, seed, kDraws, change).ci95};
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "plugins/scans/profiles_at_rest.hpp"
-#include "plugins/scans/resampling.hpp"
+#include "pipeline/quality/resampling.hpp"
 
 namespace crisp {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "plugins/scans/alternation.hpp"
 #include "plugins/scans/profiles_at_rest.hpp"
-#include "plugins/scans/resampling.hpp"
+#include "pipeline/quality/resampling.hpp"
 
 namespace crisp {
 namespace {

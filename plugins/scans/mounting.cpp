@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "plugins/scans/resampling.hpp"
+#include "pipeline/quality/resampling.hpp"
 
 namespace crisp {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "plugins/scans/resampling.hpp"
+#include "pipeline/quality/resampling.hpp"
 
 namespace crisp {
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "plugins/scans/passes.hpp"
-#include "plugins/scans/resampling.hpp"
+#include "pipeline/quality/resampling.hpp"
 
 namespace crisp {
 namespace {

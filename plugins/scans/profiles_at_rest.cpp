@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plugins/scans/resampling.hpp"
+#include "pipeline/quality/resampling.hpp"
 
 namespace crisp {
 

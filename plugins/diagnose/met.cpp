@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/met.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pipeline/quality/blocks.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kSide = 0.1;      // [m] of a cell
+constexpr double kSteep = 0.5;     // least |cos β| of what is ahead
+constexpr double kAlong = 0.1;     // and of where a beam ends
+constexpr std::uint16_t kFew = 3;  // beams that make a cell known
+
+Eigen::Vector3d vector_of(const PointsView& points, std::size_t i) {
+  return {points.x[i], points.y[i], points.z[i]};
+}
+
+/// A surface, and in which cells of its plane it is known.
+class KnownSurface {
+ public:
+  KnownSurface(const Surfel& surfel, const Surfels& all, const BeamsView& beams) : surfel_(surfel) {
+    Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+    Eigen::Vector2d most = -least;
+    const auto members = all.beams_of(surfel);
+    std::vector<Eigen::Vector2d> feet;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      if (all.weights[surfel.begin + k] == 0) continue;
+      feet.push_back(foot(vector_of(beams.points, members[k])));
+      least = least.cwiseMin(feet.back());
+      most = most.cwiseMax(feet.back());
+    }
+    if (feet.empty()) return;
+    least_ = least - Eigen::Vector2d::Constant(kSide);  // a rim of unknown cells all around
+    columns_ = along(most.x() - least_.x()) + 2;
+    counts_.resize(columns_ * (along(most.y() - least_.y()) + 2));
+    for (const auto& at : feet) {
+      std::uint16_t& count = counts_[cell(at)];
+      count = static_cast<std::uint16_t>(std::min(count + 1, int{kFew}));
+    }
+  }
+
+  const Surfel& surfel() const { return surfel_; }
+  Eigen::Vector2d foot(const Eigen::Vector3d& point) const {
+    return {surfel_.u.dot(point - surfel_.middle), surfel_.v.dot(point - surfel_.middle)};
+  }
+  bool is_known(const Eigen::Vector2d& at) const { return is_on(at) && counts_[cell(at)] == kFew; }
+  bool is_well_inside(const Eigen::Vector2d& at) const {
+    if (!is_known(at)) return false;
+    const std::size_t middle = cell(at);
+    for (const std::size_t row : {middle - columns_, middle, middle + columns_}) {
+      for (const std::size_t one : {row - 1, row, row + 1}) {
+        if (counts_[one] < kFew) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  static std::size_t along(double length) { return static_cast<std::size_t>(length / kSide); }
+  std::size_t cell(const Eigen::Vector2d& at) const {
+    return along(at.y() - least_.y()) * columns_ + along(at.x() - least_.x());
+  }
+  bool is_on(const Eigen::Vector2d& at) const {
+    if (counts_.empty() || at.x() < least_.x() || at.y() < least_.y()) return false;
+    return along(at.x() - least_.x()) < columns_ && cell(at) < counts_.size();
+  }
+
+  Surfel surfel_;
+  Eigen::Vector2d least_ = Eigen::Vector2d::Zero();
+  std::size_t columns_ = 0;
+  std::vector<std::uint16_t> counts_;  // beams in each cell, up to kFew
+};
+
+struct Ray {
+  Eigen::Vector3d origin;
+  Eigen::Vector3d direction;
+  double range = 0;
+};
+
+void follow(const Ray& ray, const std::vector<KnownSurface>& surfaces, std::size_t i, Met& met) {
+  double nearest = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
+    const Surfel& surfel = surfaces[s].surfel();
+    const double cosine = -surfel.normal.dot(ray.direction);
+    if (cosine < kAlong) continue;
+    const double there = surfel.normal.dot(ray.origin - surfel.middle) / cosine;
+    const bool may_be_ahead = cosine >= kSteep && there > 0 && there < nearest;
+    const bool may_be_end = std::abs(ray.range - there) < least;
+    if (!may_be_ahead && !may_be_end) continue;
+    const Eigen::Vector2d foot = surfaces[s].foot(ray.origin + there * ray.direction);
+    if (may_be_end && surfaces[s].is_known(foot)) {
+      least = std::abs(ray.range - there);
+      met.end[i] = s;
+      met.distance[i] = static_cast<float>(ray.range - there);
+    }
+    if (may_be_ahead && surfaces[s].is_well_inside(foot)) {
+      nearest = there;
+      met.ahead[i] = s;
+      met.error[i] = static_cast<float>(ray.range - there);
+      met.cosine[i] = static_cast<float>(cosine);
+    }
+  }
+}
+
+}  // namespace
+
+Met met_by(const Surfels& surfels, const BeamsView& beams, const std::vector<float>& ranges) {
+  constexpr std::size_t kAtOnce = 4096;
+  std::vector<KnownSurface> surfaces;
+  surfaces.reserve(surfels.surfels.size());
+  for (const Surfel& surfel : surfels.surfels) surfaces.emplace_back(surfel, surfels, beams);
+  const std::size_t n = ranges.size();
+  Met met;
+  met.ahead.assign(n, kNothing);
+  met.end.assign(n, kNothing);
+  for (auto* values : {&met.error, &met.cosine, &met.distance}) values->assign(n, 0);
+  for_blocks(n, kAtOnce, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Vector3d direction = vector_of(beams.directions, i);
+      const double range{ranges[i]};
+      follow(
+          {.origin = vector_of(beams.points, i) - range * direction, .direction = direction, .range = range},
+          surfaces, i, met);
+    }
+  });
+  return met;
+}
+
+double usual_error(const Met& met) {
+  constexpr double kOfNormal = 1.4826;
+  std::vector<float> sizes;
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    if (met.ahead[i] != kNothing) sizes.push_back(std::abs(met.error[i]));
+  }
+  if (sizes.empty()) return 0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::ranges::nth_element(sizes, middle);
+  return kOfNormal * double{*middle};
+}
+
+}  // namespace crisp

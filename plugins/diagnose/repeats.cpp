@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/repeats.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+
+namespace crisp {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// A direction as a cell, and when it was looked at.
+struct Glance {
+  std::size_t laser = 0;
+  std::size_t column = 0;  // of plate angle
+  std::size_t row = 0;     // of mirror angle
+  std::size_t when = 0;    // half turns of the plate since the first beam, at its usual rate
+};
+
+/// The cells' sizes: as wide as the plate turns between two scans.
+class Grid {
+ public:
+  Grid(const Measurements& beams, const PlateTrajectory& plate) : plate_(plate) {
+    constexpr double kNarrowest = std::numbers::pi / 90;
+    std::vector<double> turned;
+    std::vector<double> rates;
+    std::map<std::uint16_t, double> last;
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      if (i > 0 && beams.laser[i] == beams.laser[i - 1] && beams.beam[i] > beams.beam[i - 1]) continue;
+      const auto state = plate.at(beams.time[i]);
+      if (!state) continue;
+      rates.push_back(std::abs(state->rate));
+      const auto [before, is_first] = last.try_emplace(beams.laser[i], state->angle);
+      if (!is_first) turned.push_back(std::abs(state->angle - before->second));
+      before->second = state->angle;
+    }
+    if (turned.empty()) return;
+    const double side = std::max(kNarrowest, middle(turned));
+    columns_ = std::max<std::size_t>(1, static_cast<std::size_t>(kTurn / side));
+    half_turn_ = std::numbers::pi / std::max(1e-3, middle(rates));
+    start_ = std::ranges::min(beams.time);
+    whens_ = 1 + static_cast<std::size_t>((std::ranges::max(beams.time) - start_) / half_turn_);
+    lasers_ = std::size_t{std::ranges::max(beams.laser)} + 1;
+  }
+
+  std::size_t cells() const { return lasers_ * columns_ * kRows; }
+  std::size_t whens() const { return whens_; }
+  std::size_t cell(const Glance& glance) const {
+    return (glance.laser * columns_ + glance.column) * kRows + glance.row;
+  }
+  std::optional<Glance> glance(const Measurements& beams, std::size_t i) const {
+    const auto state = plate_.at(beams.time[i]);
+    if (!state) return std::nullopt;
+    const double phase = state->angle / kTurn - std::floor(state->angle / kTurn);
+    const double mirror = double{beams.mirror_angle[i]} / kTurn + 0.5;
+    return Glance{
+        .laser = beams.laser[i],
+        .column = std::min(columns_ - 1, static_cast<std::size_t>(phase * static_cast<double>(columns_))),
+        .row = static_cast<std::size_t>((mirror - std::floor(mirror)) * double{kRows}) % kRows,
+        .when = static_cast<std::size_t>((beams.time[i] - start_) / half_turn_)};
+  }
+  /// Those about a cell, itself among them; fewer at the ends of the sweep.
+  std::vector<std::size_t> around(std::size_t cell) const {
+    const std::size_t row = cell % kRows;
+    const std::size_t column = cell / kRows % columns_;
+    const std::size_t laser = cell / kRows / columns_;
+    std::vector<std::size_t> cells;
+    for (const std::size_t c : {column + columns_ - 1, column, column + 1}) {
+      for (const std::size_t r : {row + kRows - 1, row, row + 1}) {
+        cells.push_back((laser * columns_ + c % columns_) * kRows + r % kRows);
+      }
+    }
+    return cells;
+  }
+
+ private:
+  static constexpr std::size_t kRows = 180;
+  static double middle(std::vector<double>& values) {
+    const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, half);
+    return *half;
+  }
+
+  const PlateTrajectory& plate_;
+  std::size_t lasers_ = 0;
+  std::size_t columns_ = 1;
+  std::size_t whens_ = 0;
+  double half_turn_ = 1;  // [s]
+  double start_ = 0;      // [s]
+};
+
+/// What most of the beams of one glance say, if they agree.
+class Glances {
+ public:
+  explicit Glances(const Grid& grid) : grid_(grid), counts_(grid.cells() * grid.whens()) {}
+
+  void add(const Glance& glance, Glimpse glimpse) {
+    Count& count = counts_[grid_.cell(glance) * grid_.whens() + glance.when];
+    if (glimpse == Glimpse::kSurface) ++count.surface;
+    if (glimpse == Glimpse::kHidden) ++count.hidden;
+  }
+
+  std::vector<Glimpse> looks(std::size_t cell) const {
+    constexpr double kAgree = 0.8;
+    constexpr int kEnough = 2;
+    std::vector<Glimpse> looks(grid_.whens(), Glimpse::kNone);
+    for (std::size_t when = 0; when < looks.size(); ++when) {
+      const Count& count = counts_[cell * grid_.whens() + when];
+      const int all = count.surface + count.hidden;
+      if (all < kEnough) continue;
+      if (count.surface >= kAgree * all) looks[when] = Glimpse::kSurface;
+      if (count.hidden >= kAgree * all) looks[when] = Glimpse::kHidden;
+    }
+    return looks;
+  }
+  std::size_t hidden(std::size_t cell) const {
+    std::size_t sum = 0;
+    for (std::size_t when = 0; when < grid_.whens(); ++when)
+      sum += counts_[cell * grid_.whens() + when].hidden;
+    return sum;
+  }
+
+ private:
+  struct Count {
+    std::uint16_t surface = 0, hidden = 0;
+  };
+  const Grid& grid_;
+  std::vector<Count> counts_;
+};
+
+bool changes(const std::vector<Glimpse>& looks) {
+  return std::ranges::count(looks, Glimpse::kSurface) > 0 && std::ranges::count(looks, Glimpse::kHidden) > 0;
+}
+
+ChangingDirections changing_among(const Grid& grid, const Glances& glances, double beams) {
+  std::vector<bool> does_change(grid.cells());
+  for (std::size_t cell = 0; cell < grid.cells(); ++cell) does_change[cell] = changes(glances.looks(cell));
+  ChangingDirections result;
+  std::map<std::size_t, std::size_t> place;  // of a cell among those that count
+  for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
+    if (!std::ranges::all_of(grid.around(cell), [&](std::size_t other) { return does_change[other]; }))
+      continue;
+    place.emplace(cell, result.looks.size());
+    result.looks.push_back(glances.looks(cell));
+    result.hidden += static_cast<double>(glances.hidden(cell)) / std::max(1.0, beams);
+  }
+  for (const auto& [cell, one] : place) {
+    for (const std::size_t near : grid.around(cell)) {
+      const auto other = place.find(near);
+      if (other != place.end() && other->second > one) result.neighbours.emplace_back(one, other->second);
+    }
+  }
+  return result;
+}
+
+/// How often two neighbours are hidden at once.
+std::size_t hidden_together(const ChangingDirections& directions) {
+  std::size_t count = 0;
+  for (const auto& [one, other] : directions.neighbours) {
+    const auto& first = directions.looks[one];
+    const auto& second = directions.looks[other];
+    for (std::size_t when = 0; when < first.size(); ++when) {
+      count += first[when] == Glimpse::kHidden && second[when] == Glimpse::kHidden ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+void shuffle_times(std::mt19937_64& random, std::vector<Glimpse>& looks) {
+  std::vector<std::size_t> known;
+  for (std::size_t when = 0; when < looks.size(); ++when) {
+    if (looks[when] != Glimpse::kNone) known.push_back(when);
+  }
+  for (std::size_t k = known.size(); k > 1; --k) std::swap(looks[known[k - 1]], looks[known[random() % k]]);
+}
+
+}  // namespace
+
+ChangingDirections changing_directions(const Measurements& beams, const PlateTrajectory& plate,
+                                       const Met& met, double usual) {
+  constexpr double kBefore = 0.3;                  // [m] before the surface, at least, is what hides it
+  constexpr double kSeenWithin = 4, kFarOff = 10;  // usual errors
+  const Grid grid(beams, plate);
+  Glances glances(grid);
+  double ahead = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (met.ahead[i] == kNothing) continue;
+    const auto glance = grid.glance(beams, i);
+    if (!glance) continue;
+    ahead += 1;
+    const double error{met.error[i]};
+    if (std::abs(error) < kSeenWithin * usual) glances.add(*glance, Glimpse::kSurface);
+    if (error < -std::max(kBefore, kFarOff * usual)) glances.add(*glance, Glimpse::kHidden);
+  }
+  return changing_among(grid, glances, ahead);
+}
+
+double p_value(const ChangingDirections& directions, std::uint64_t seed) {
+  constexpr int kShuffled = 999;
+  const std::size_t together = hidden_together(directions);
+  std::mt19937_64 random(seed);
+  ChangingDirections shuffled = directions;
+  int as_often = 0;
+  for (int shuffle = 0; shuffle < kShuffled; ++shuffle) {
+    for (auto& looks : shuffled.looks) shuffle_times(random, looks);
+    as_often += hidden_together(shuffled) >= together ? 1 : 0;
+  }
+  return (1.0 + as_often) / (1.0 + kShuffled);
+}
+
+std::optional<Finding> moving(const ChangingDirections& directions, std::uint64_t seed) {
+  constexpr std::size_t kFewDirections = 10;
+  constexpr double kByChance = 0.002;
+  if (directions.looks.size() < kFewDirections) return std::nullopt;
+  const double p = p_value(directions, seed);
+  if (!(p < kByChance)) return std::nullopt;
+  return Finding{.cause = "scene.moving",
+                 .scope = "scene",
+                 .parameters = {{.name = "hidden_share", .unit = "1", .value = directions.hidden},
+                                {.name = "directions",
+                                 .unit = "1",
+                                 .value = static_cast<double>(directions.looks.size())}},
+                 .p_value = p,
+                 .confounded_with = {},
+                 .gain = {},
+                 .accepted = true};
+}
+
+}  // namespace crisp

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/scatter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <map>
+
+#include "plugins/diagnose/likelihood_gain.hpp"
+
+namespace crisp {
+namespace {
+
+/// Less the mean of each beam.
+void centre_beams(RangeErrors& errors) {
+  struct Mean {
+    double sum = 0, count = 0;
+  };
+  std::map<std::uint16_t, Mean> means;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    means[errors.beam[i]].sum += double{errors.value[i]};
+    means[errors.beam[i]].count += 1;
+  }
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const Mean& mean = means[errors.beam[i]];
+    errors.value[i] -= static_cast<float>(mean.sum / mean.count);
+  }
+}
+
+/// Leaves out of those errors that are too short by `least` to `most` [m] all but as many as are too long by
+/// so much: what is thin and stands before a surface does but shorten.
+void balance(const std::vector<float>& errors, double least, double most, std::vector<bool>& counts) {
+  const auto is_within = [&](double size) { return size > least && size <= most; };
+  const auto too_long = std::ranges::count_if(errors, [&](float error) { return is_within(double{error}); });
+  const auto too_short =
+      std::ranges::count_if(errors, [&](float error) { return is_within(-double{error}); });
+  if (too_short <= too_long) return;
+  std::ptrdiff_t seen = 0;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!is_within(-double{errors[i]})) continue;
+    counts[i] = (seen + 1) * too_long / too_short > seen * too_long / too_short;  // evenly strewn
+    ++seen;
+  }
+}
+
+constexpr std::size_t kGroups = 10;
+
+/// For each value the group it is of: tenths of all.
+std::vector<std::size_t> groups_of(const std::vector<float>& values) {
+  std::vector<float> sorted = values;
+  std::ranges::sort(sorted);
+  std::vector<float> ends;
+  for (std::size_t g = 1; g < kGroups; ++g) ends.push_back(sorted[g * sorted.size() / kGroups]);
+  std::vector<std::size_t> groups;
+  groups.reserve(values.size());
+  for (const float value : values) {
+    groups.push_back(static_cast<std::size_t>(std::ranges::upper_bound(ends, value) - ends.begin()));
+  }
+  return groups;
+}
+
+/// How much larger the noise of each group is than the law has it.
+struct GroupScales {
+  std::array<double, kGroups> count{};
+  std::array<double, kGroups> scale{};
+  double p_value = 1;
+};
+
+GroupScales scales_of(const std::vector<std::size_t>& groups, const std::vector<double>& squares,
+                      const std::vector<bool>& is_used) {
+  GroupScales result;
+  std::array<double, kGroups> sum{};
+  double fourth = 0;
+  double all = 0;
+  double used = 0;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (!is_used[i]) continue;
+    result.count[groups[i]] += 1;
+    sum[groups[i]] += squares[i];
+    all += squares[i];
+    fourth += squares[i] * squares[i];
+    used += 1;
+  }
+  const double mean = all / std::max(1.0, used);
+  const double variance = fourth / std::max(1.0, used) - mean * mean;
+  double chi2 = 0;
+  double freedoms = -1;
+  for (std::size_t g = 0; g < kGroups; ++g) {
+    result.scale[g] = 1;
+    if (result.count[g] == 0) continue;
+    result.scale[g] = std::sqrt(sum[g] / result.count[g] / mean);
+    chi2 += result.count[g] * std::pow(sum[g] / result.count[g] - mean, 2) / variance;
+    freedoms += 1;
+  }
+  if (freedoms > 0) result.p_value = cdf(complement(boost::math::chi_squared(freedoms), chi2));
+  return result;
+}
+
+}  // namespace
+
+Scatter scatter_of(std::size_t laser, const Measurements& beams, const Met& met, double usual,
+                   const std::vector<std::uint32_t>& block) {
+  constexpr double kOn = 4;  // usual errors
+  constexpr std::array<double, 6> kFarOff = {5, 7, 9, 12, 17, 25};
+  const auto is_on = [&](std::size_t i, std::uint32_t surface) {
+    return met.ahead[i] == surface && std::abs(double{met.error[i]}) < kOn * usual;
+  };
+  std::vector<std::size_t> chosen;
+  std::vector<float> errors;
+  for (std::size_t i = 1; i + 1 < beams.size(); ++i) {
+    if (beams.laser[i] != laser || met.ahead[i] == kNothing) continue;
+    if (!are_neighbours(beams, i - 1, i) || !are_neighbours(beams, i, i + 1)) continue;
+    if (!is_on(i - 1, met.ahead[i]) || !is_on(i + 1, met.ahead[i])) continue;
+    if (std::abs(double{met.error[i]}) > kFarOff.back() * usual) continue;
+    chosen.push_back(i);
+    errors.push_back(met.error[i]);
+  }
+  std::vector<bool> counts(errors.size(), true);
+  for (std::size_t k = 0; k + 1 < kFarOff.size(); ++k) {
+    balance(errors, kFarOff[k] * usual, kFarOff[k + 1] * usual, counts);
+  }
+  Scatter scatter;
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    if (!counts[k]) continue;
+    const std::size_t i = chosen[k];
+    scatter.errors.value.push_back(met.error[i]);
+    scatter.errors.range.push_back(beams.range[i] - met.error[i]);
+    scatter.errors.beam.push_back(beams.beam[i]);
+    scatter.errors.block.push_back(block[i]);
+    scatter.cosine.push_back(met.cosine[i]);
+    scatter.remission.push_back(beams.remission[i]);
+  }
+  centre_beams(scatter.errors);
+  return scatter;
+}
+
+std::optional<UnnamedFinding> noise_by(const std::string& name, const std::vector<float>& values,
+                                       const std::string& scope, const RangeErrors& errors,
+                                       const NoiseLaw& law, double least_gain, std::uint64_t seed) {
+  constexpr double kUnlikely = 0.002;
+  const auto [least, most] = std::ranges::minmax(values);
+  if (errors.size() < 100 * kGroups || least == most) return std::nullopt;
+  const auto groups = groups_of(values);
+  std::vector<double> squares;
+  std::vector<bool> is_even;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double sigma = std::hypot(law.sigma, law.slope * double{errors.range[i]});
+    squares.push_back(std::pow(double{errors.value[i]} / sigma, 2));
+    is_even.push_back(errors.block[i] % 2 == 0);
+  }
+  const GroupScales all = scales_of(groups, squares, std::vector<bool>(groups.size(), true));
+  if (!(all.p_value < kUnlikely)) return std::nullopt;
+  const GroupScales half = scales_of(groups, squares, is_even);
+  std::vector<double> before;
+  std::vector<double> after;
+  std::vector<std::uint32_t> blocks;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (is_even[i]) continue;
+    const double scale = half.scale[groups[i]];
+    const double value{errors.value[i]};
+    const double range{errors.range[i]};
+    before.push_back(law.log_density(value, range, errors.beam[i]));
+    after.push_back(law.log_density(value / scale, range, errors.beam[i]) - std::log(scale));
+    blocks.push_back(errors.block[i]);
+  }
+  const Gain gain = likelihood_gain(before, after, blocks, seed);
+  if (gain.after - gain.before < least_gain) return std::nullopt;
+  double change = 0;
+  double count = 0;
+  for (std::size_t g = 0; g < kGroups; ++g) {
+    change += all.count[g] * std::pow(law.sigma * (all.scale[g] - 1), 2);
+    count += all.count[g];
+  }
+  return UnnamedFinding{.covariate = name,
+                        .quantity = "noise",
+                        .scope = scope,
+                        .amplitude = std::sqrt(change / count),
+                        .unit = "m",
+                        .p_value = all.p_value,
+                        .gain = {gain},
+                        .accepted = gain.ci95[0] > 0};
+}
+
+}  // namespace crisp

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/scatter_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/recording_blocks.hpp"
+#include "pipeline/stage/registry.hpp"
+#include "plugins/diagnose/comb.hpp"
+#include "plugins/diagnose/edges.hpp"
+#include "plugins/diagnose/evidence.hpp"
+#include "plugins/diagnose/noise.hpp"
+#include "plugins/diagnose/repeats.hpp"
+#include "plugins/diagnose/report.hpp"
+#include "plugins/diagnose/scatter.hpp"
+
+namespace crisp {
+
+void DiagnoseScatterStage::describe(StageDescription<DiagnoseScatterStage>& d) {
+  d.name("diagnose.scatter").summary("says how the ranges of a turning scanner scatter, and what moved");
+  d.details(
+      "Follows each beam to the flat surface that it should have met, by a calibration that is right: put it "
+      "behind diagnose.model. How the ranges of each laser scatter there is compared with the plain "
+      "simulator's normal noise: growing with the range, heavy tails, two peaks, steps (`noise.*`), or with "
+      "incidence or remission (`unnamed`); each is judged by parts of the recording that it was not fitted "
+      "to. At edges it looks for ranges between what is before and behind (`noise.mixed_pixels`), and it "
+      "compares what the same directions show from turn to turn (`scene.moving`).");
+  d.takes<Measurements>()
+      .takes<Findings>(Need::optional)
+      .holds<PlateTrajectory>()
+      .holds<Calibration>()
+      .gives<Findings>();
+  d.option("noise", &DiagnoseScatterStage::noise_, "standard deviation of a range, about")
+      .unit("m")
+      .range(1e-6, 1);
+  d.option("least_gain", &DiagnoseScatterStage::least_gain_,
+           "by which a law of noise must raise the log-likelihood of a range that it was not fitted to: what "
+           "brings less may be the surfaces' own roughness")
+      .unit("nat")
+      .range(0, 10);
+}
+
+void DiagnoseScatterStage::process(const Inputs& in, Outputs&, Context&) {
+  if (const Findings* before = in.find<Findings>()) all_.append(*before);
+  if (!in.find<Measurements>()) return;
+  calibration_ = in.share<Calibration>();
+  collected_.add(in.share<Measurements>(), in.share<PlateTrajectory>());
+}
+
+void DiagnoseScatterStage::finish(Outputs& out, Context& context) {
+  const Sample sample = collected_.sample();
+  context.count("beams left out of the diagnosis of a long recording", collected_.left_out());
+  const SensorModel model(*calibration_, context.run().registrar->get<TermRegistry>());
+  const LagRange lag = lag_range(model, 0);
+  SurfelSettings settings;
+  settings.noise = noise_;
+  context.progress(0, "following beams to their surfaces");
+  const Evidence evidence(model, covered(sample, lag.earliest, lag.latest), settings,
+                          std::numeric_limits<std::size_t>::max());
+  const Measurements& beams = evidence.sample().beams;
+  Followed all{.beams = beams,
+               .points = evidence.beams().points,
+               .met = met_by(evidence.surfels(), evidence.beams(), beams.range),
+               .crowd = Crowd(evidence.beams().points),
+               .blocks = recording_blocks(beams)};
+  all.usual = usual_error(all.met);
+  Findings found;
+  for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
+    context.progress(static_cast<double>(laser) / static_cast<double>(model.lasers()), "fitting noise");
+    if (context.interrupted()) return;
+    add_laser(laser, all, found, context);
+  }
+  const auto changing = changing_directions(beams, *evidence.sample().plate, all.met, all.usual);
+  if (const auto moved = moving(changing, context.seed())) found.findings.push_back(*moved);
+  for (const Finding& finding : found.findings) context.say(in_words(finding));
+  for (const UnnamedFinding& finding : found.unnamed) context.say(in_words(finding));
+  context.report({{"findings", found.findings.size()}, {"unnamed", found.unnamed.size()}});
+  all_.append(found);
+  out.give(std::move(all_));
+}
+
+void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Findings& found,
+                                     Context& context) const {
+  const std::string& name = calibration_->lasers[laser].name;
+  add_noise(laser, all, found, context);
+  std::vector<float> ranges;
+  std::vector<std::uint32_t> blocks;
+  for (std::size_t i = 0; i < all.beams.size(); ++i) {
+    if (all.beams.laser[i] != laser) continue;
+    ranges.push_back(all.beams.range[i]);
+    blocks.push_back(all.blocks[i]);
+  }
+  if (const auto comb = quantisation(name, ranges, blocks, context.seed())) found.findings.push_back(*comb);
+  const Crossings edges = crossings_of(laser, all.beams, all.points, all.met, all.crowd, all.usual);
+  context.say(fmt::format("{}: {} edges crossed, {:.1f} % of them with a range that ends in thin air", name,
+                          edges.mixed.size(), 100 * edges.share()));
+  if (const auto mixed = mixed_pixels(name, edges, context.seed())) found.findings.push_back(*mixed);
+}
+
+void DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
+                                     Context& context) const {
+  constexpr std::size_t kTooFew = 1000;
+  const std::string& name = calibration_->lasers[laser].name;
+  const Scatter scatter = scatter_of(laser, all.beams, all.met, all.usual, all.blocks);
+  if (scatter.errors.size() < kTooFew) {
+    context.say(
+        fmt::format("{}: too few beams well inside flat surfaces to say how its ranges scatter", name));
+    return;
+  }
+  const NoiseDiagnosis noise = diagnose_noise(name, scatter.errors, context.seed(), least_gain_);
+  context.say(fmt::format("{}: {} ranges on flat surfaces scatter by {:.2f} mm (RMS)", name,
+                          scatter.errors.size(), 1e3 * noise.plain.sigma));
+  found.findings.insert(found.findings.end(), noise.findings.begin(), noise.findings.end());
+  found.unnamed.insert(found.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
+  for (const auto& [covariate, values] :
+       {std::pair("incidence", &scatter.cosine), std::pair("remission", &scatter.remission)}) {
+    const auto changes =
+        noise_by(covariate, *values, name, scatter.errors, noise.law, least_gain_, context.seed());
+    if (changes) found.unnamed.push_back(*changes);
+  }
+}
+
+}  // namespace crisp

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pipeline/data/findings.hpp"
+#include "pipeline/estimate/collected.hpp"
+#include "pipeline/quality/surfels.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/diagnose/edges.hpp"
+#include "plugins/diagnose/met.hpp"
+
+namespace crisp {
+
+/// Says how the ranges of a turning scanner scatter, and what moved (stage `diagnose.scatter`).
+class DiagnoseScatterStage final : public Stage {
+ public:
+  static void describe(StageDescription<DiagnoseScatterStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  /// All beams, and what became of them.
+  struct Followed {
+    const Measurements& beams;
+    PointsView points;
+    Met met;
+    Crowd crowd;
+    double usual = 0;  // [m] standard deviation of ranges
+    std::vector<std::uint32_t> blocks;
+  };
+  void add_laser(std::size_t laser, const Followed& all, Findings& found, Context& context) const;
+  void add_noise(std::size_t laser, const Followed& all, Findings& found, Context& context) const;
+
+  double noise_ = SurfelSettings{}.noise;
+  double least_gain_ = 0.001;
+  Collected collected_;
+  std::shared_ptr<const Calibration> calibration_;
+  Findings all_;  // what other diagnoses said before
+};
+
+}  // namespace crisp

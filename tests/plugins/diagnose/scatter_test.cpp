@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a turning scanner's ranges do beyond plain noise is told from them, and a plain scanner is left alone.
+#include "plugins/diagnose/scatter.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/recording_blocks.hpp"
+#include "plugins/diagnose/comb.hpp"
+#include "plugins/diagnose/edges.hpp"
+#include "plugins/diagnose/evidence.hpp"
+#include "plugins/diagnose/noise.hpp"
+#include "plugins/diagnose/repeats.hpp"
+#include "tests/plugins/diagnose/hidden.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr double kLeastGain = 0.001;
+
+double value_in(const Finding& finding, const std::string& name) {
+  return std::ranges::find(finding.parameters, name, &Parameter::name)->value;
+}
+double error_in(const Finding& finding, const std::string& name) {
+  return std::ranges::find(finding.parameters, name, &Parameter::name)->std_error;
+}
+
+/// A recording of known calibration, whose beams have been followed.
+class Followed {
+ public:
+  Followed(const std::string& scene, const NoiseEffects& noise, double sigma = 0.012, std::uint64_t seed = 3)
+      : recording_(record(scene, noise, sigma, seed)), evidence_(evidence_of(recording_, sigma)) {
+    met_ = met_by(evidence_.surfels(), evidence_.beams(), beams().range);
+    blocks_ = recording_blocks(beams());
+  }
+
+  const Measurements& beams() const { return evidence_.sample().beams; }
+  const Met& met() const { return met_; }
+  double usual() const { return usual_error(met_); }
+  Scatter scatter() const { return scatter_of(0, beams(), met_, usual(), blocks_); }
+  NoiseDiagnosis noise() const { return diagnose_noise("laser1", scatter().errors, 1, kLeastGain); }
+  std::optional<Finding> comb() const {
+    std::vector<float> ranges;
+    std::vector<std::uint32_t> blocks;
+    for (std::size_t i = 0; i < beams().size(); ++i) {
+      if (beams().laser[i] != 0) continue;
+      ranges.push_back(beams().range[i]);
+      blocks.push_back(blocks_[i]);
+    }
+    return quantisation("laser1", ranges, blocks, 1);
+  }
+  Crossings crossings() const {
+    const PointsView points = evidence_.beams().points;
+    return crossings_of(0, beams(), points, met_, Crowd(points), usual());
+  }
+  ChangingDirections changing() const {
+    return changing_directions(beams(), *evidence_.sample().plate, met_, usual());
+  }
+
+ private:
+  static test::Recording record(const std::string& scene, const NoiseEffects& noise, double sigma,
+                                std::uint64_t seed) {
+    ScannerSettings scanner = test::scanner_of(seed, 10);
+    scanner.range.sigma = sigma;
+    scanner.laser_effects.assign(scanner.rig.lasers.size(), {.noise = noise});
+    return test::recorded(scanner, built_in_scene(scene));
+  }
+  static Evidence evidence_of(const test::Recording& recording, double sigma) {
+    const SensorModel model(recording.made.truth, built_in_terms());
+    const LagRange lag = lag_range(model, 0);
+    SurfelSettings settings;
+    settings.noise = sigma;
+    return {model, covered(recording.sample(), lag.earliest, lag.latest), settings,
+            std::numeric_limits<std::size_t>::max()};
+  }
+
+  test::Recording recording_;
+  Evidence evidence_;
+  Met met_;
+  std::vector<std::uint32_t> blocks_;
+};
+
+TEST(Scatter, OfAPlainScannerNamesNothing) {
+  for (const char* scene : {"office", "hall", "street"}) {
+    const Followed plain(scene, {});
+    const Scatter scatter = plain.scatter();
+    const NoiseDiagnosis noise = plain.noise();
+    EXPECT_THAT(noise.findings, IsEmpty()) << scene;
+    EXPECT_THAT(noise.unnamed, IsEmpty()) << scene;
+    EXPECT_NEAR(noise.law.sigma, 0.012, 0.0002) << scene;
+    EXPECT_FALSE(noise_by("incidence", scatter.cosine, "laser1", scatter.errors, noise.law, kLeastGain, 1));
+    EXPECT_FALSE(plain.comb()) << scene << ": the telegram's millimetre is no news";
+    EXPECT_FALSE(mixed_pixels("laser1", plain.crossings(), 1)) << scene;
+    EXPECT_FALSE(moving(plain.changing(), 1)) << scene;
+  }
+}
+
+TEST(Scatter, WithHeavyTailsIsNamedAndMeasured) {
+  const auto found = Followed("office", {.tail_share = 0.03, .tail_scale = 5}).noise().findings;
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].cause, "noise.heavy_tail");
+  EXPECT_TRUE(found[0].accepted);
+  // 0.001: what is balanced away and edges that pass for tails; four standard errors of 3 % of 180 000 ranges
+  EXPECT_NEAR(value_in(found[0], "share"), 0.03, 4 * error_in(found[0], "share") + 0.001);
+  EXPECT_NEAR(value_in(found[0], "scale"), 5, 4 * error_in(found[0], "scale") + 0.1);
+}
+
+TEST(Scatter, ThatGrowsWithTheRangeIsNamedAndMeasured) {
+  const auto found = Followed("hall", {.slope = 0.0015}).noise().findings;
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].cause, "noise.range_dependent");
+  EXPECT_NEAR(value_in(found[0], "slope"), 0.0015, 4 * error_in(found[0], "slope"));
+}
+
+TEST(Scatter, WithTwoPeaksIsNamedAndMeasured) {
+  const auto found = Followed("office", {.separation = 0.015}, 0.005).noise().findings;
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].cause, "noise.two_peaks");
+  EXPECT_NEAR(value_in(found[0], "separation"), 0.015, 2e-4) << "RMS bumps of the surfaces' planes";
+}
+
+TEST(Scatter, InStepsIsNamedWithTheStep) {
+  for (const double step : {0.01, 0.0025}) {
+    const auto found = Followed("office", {.step = step}).comb();
+    ASSERT_TRUE(found) << step;
+    EXPECT_NEAR(value_in(*found, "step"), step, 1e-6);
+    EXPECT_TRUE(found->accepted);
+  }
+}
+
+TEST(Scatter, BetweenBothSidesOfAnEdgeIsNamed) {
+  const NoiseEffects spot{.divergence = 0.014, .aperture = 0.008};
+  for (const char* scene : {"office", "workshop"}) {
+    EXPECT_TRUE(mixed_pixels("laser1", Followed(scene, spot).crossings(), 1)) << scene;
+  }
+  EXPECT_LT(Followed("workshop", {}).crossings().share(), 0.03) << "cluttered, yet no spot is wide";
+}
+
+TEST(Scatter, OfSomebodyWhoWalksByIsNamed) {
+  EXPECT_TRUE(moving(Followed("people", {}).changing(), 1));
+  EXPECT_FALSE(moving(Followed("workshop", {}).changing(), 1)) << "cluttered, but still";
+}
+
+}  // namespace
+}  // namespace crisp
