@@ -59,6 +59,7 @@ std::string bounds(const EffectParameter& p) {
 std::string effect_text(const EffectInfo& effect) {
   std::string text = fmt::format("{}: {}\n\n{}\n\n  of {}\n", effect.name, effect.summary, effect.details,
                                  owner_of(effect.scope));
+  if (!effect.told_by.empty()) text += fmt::format("  what tells it: {}\n", effect.told_by);
   if (!effect.parameters.empty()) text += "\nparameters:\n";
   for (const auto& p : effect.parameters) {
     text += fmt::format("  {:<12} {}\n{:15}{}; neutral: {}{}\n", p.name, p.summary, "", bounds(p),
@@ -76,6 +77,7 @@ std::string effects_markdown(const std::vector<EffectInfo>& catalogue) {
     family = of;
     text += fmt::format("\n### {}\n\nOf {}: {}.\n\n{}\n", effect.name, owner_of(effect.scope), effect.summary,
                         effect.details);
+    if (!effect.told_by.empty()) text += fmt::format("\nWhat tells it: {}.\n", effect.told_by);
     if (effect.parameters.empty()) continue;
     text += "\n| parameter | meaning | neutral | bounds | |\n|---|---|---|---|---|\n";
     for (const auto& p : effect.parameters) {

@@ -26,7 +26,8 @@ struct Finding {
   double explained_fraction = 0;      ///< share of all that was found (in squared residuals)
   double log10_odds = 0;              ///< against the likeliest other cause
   double p_value = 1;                 ///< that noise alone makes as much, corrected for the number of looks
-  std::vector<std::string> confounded_with;  ///< causes that these data cannot tell from it
+  std::vector<std::string> confounded_with;     ///< causes that these data cannot tell from it
+  std::vector<std::string> told_apart_by = {};  ///< what a recording needs to tell them from it
   std::vector<Gain> gain;
   bool accepted = false;  ///< whether it is part of the model from now on: it paid on held-out data
 };

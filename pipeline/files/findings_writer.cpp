@@ -33,6 +33,7 @@ Json json_of(const Finding& finding) {
           {"log10_odds", finding.log10_odds},
           {"p_value", finding.p_value},
           {"confounded_with", finding.confounded_with},
+          {"told_apart_by", finding.told_apart_by},
           {"gain", json_of(finding.gain)},
           {"accepted", finding.accepted}};
 }

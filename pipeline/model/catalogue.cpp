@@ -35,7 +35,8 @@ std::vector<EffectInfo> effect_catalogue(const TermRegistry& terms) {
                    .summary = info.summary,
                    .scope = info.scope,
                    .parameters = info.parameters,
-                   .details = info.details});
+                   .details = info.details,
+                   .told_by = info.told_by});
   }
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return all;

@@ -43,7 +43,8 @@ struct EffectInfo {
   std::string summary;
   Scope scope = Scope::kLaser;
   std::vector<EffectParameter> parameters;
-  std::string details;  ///< its formula, typical sizes and their source, in Markdown
+  std::string details;       ///< its formula, typical sizes and their source, in Markdown
+  std::string told_by = {};  ///< what a recording needs to tell it from what resembles it
 };
 
 }  // namespace crisp

@@ -20,7 +20,8 @@ struct TermInfo {
   Phase phase = Phase::kRange;
   Scope scope = Scope::kLaser;  ///< the laser's or the plate's
   std::vector<EffectParameter> parameters;
-  std::string details;  ///< see EffectInfo
+  std::string details;       ///< see EffectInfo
+  std::string told_by = {};  ///< see EffectInfo
   /// Of a term that describes a departure by its shape instead of naming a cause: over what the shape is told
   /// ("mirror angle"). Empty for the others.
   std::string covariate = {};

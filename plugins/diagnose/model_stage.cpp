@@ -69,7 +69,7 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
   calibration.provenance["diagnosis"] = "diagnose.model";
   calibration.quality = start_->quality;
   calibration.quality["chi2"] = diagnosis.after.chi2;
-  Findings findings = findings_of(diagnosis, calibration, settings_.selection, noise_);
+  Findings findings = findings_of(diagnosis, calibration, terms, settings_.selection, noise_);
   context.say(in_words(diagnosis, findings));
   if (folder_) draw(*folder_, diagnosis, context);
   context.report({{"findings", findings.findings.size()},

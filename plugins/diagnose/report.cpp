@@ -21,8 +21,29 @@ std::string scope_of(const Candidate& candidate, const Calibration& calibration)
   return candidate.owner < calibration.lasers.size() ? calibration.lasers[candidate.owner].name : "plate";
 }
 
+/// What a recording needs to tell a candidate, "laser2.mirror.cone", from what resembles it.
+std::string told_by(const std::string& candidate, const TermRegistry& terms) {
+  for (const std::string& name : terms.names()) {
+    if (candidate == name || candidate.ends_with("." + name)) return terms.get(name)->info().told_by;
+  }
+  return {};
+}
+
+/// Of a finding and of what it is confounded with.
+std::vector<std::string> told_apart_by(const Finding& finding, const TermRegistry& terms) {
+  std::vector<std::string> needs;
+  if (finding.confounded_with.empty()) return needs;
+  std::vector<std::string> names = finding.confounded_with;
+  names.insert(names.begin(), finding.cause);
+  for (const std::string& name : names) {
+    const std::string need = told_by(name, terms);
+    if (!need.empty() && std::ranges::find(needs, need) == needs.end()) needs.push_back(need);
+  }
+  return needs;
+}
+
 Finding finding_of(const Departure& departure, const Calibration& calibration, const Diagnosis& diagnosis,
-                   double odds) {
+                   const TermRegistry& terms, double odds) {
   double all = 0;
   for (const Departure& other : diagnosis.departures) all += other.look.gain;
   Finding finding{.cause = departure.candidate.term.term,
@@ -31,6 +52,7 @@ Finding finding_of(const Departure& departure, const Calibration& calibration, c
                   .explained_fraction = all > 0 ? departure.look.gain / all : 0,
                   .p_value = std::min(1.0, departure.look.p_value * static_cast<double>(diagnosis.looks)),
                   .confounded_with = {},
+                  .told_apart_by = {},
                   .gain = departure.gains,
                   .accepted = departure.accepted};
   const double behind = departure.rivals.empty() ? departure.look.bic : departure.rivals.front().behind;
@@ -38,6 +60,7 @@ Finding finding_of(const Departure& departure, const Calibration& calibration, c
   for (const auto& rival : departure.rivals) {
     if (rival.behind < odds) finding.confounded_with.push_back(rival.name);
   }
+  finding.told_apart_by = told_apart_by(finding, terms);
   return finding;
 }
 
@@ -81,11 +104,12 @@ std::string gain_in_words(const std::vector<Gain>& gains) {
   return words;
 }
 
-std::string reason_of(const Diagnosis::Limit& limit, double noise) {
-  if (!std::isfinite(limit.size)) return "the other parameters do all that it could do to these data";
+std::string reason_of(const Diagnosis::Limit& limit, const std::string& told_by, double noise) {
+  const std::string needs = told_by.empty() ? "" : "; what tells it: " + told_by;
+  if (!std::isfinite(limit.size)) return "the other parameters do all that it could do to these data" + needs;
   return fmt::format(
-      "beside the other parameters it would not show if it changed ranges by less than {:.0f} mm (RMS)",
-      1e3 * limit.size * noise);
+      "beside the other parameters it would not show if it changed ranges by less than {:.0f} mm (RMS){}",
+      1e3 * limit.size * noise, needs);
 }
 
 /// The profiles that depart most from the simulation.
@@ -102,7 +126,7 @@ std::string profiles_in_words(const SideBySide& left) {
 
 }  // namespace
 
-Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
+Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration, const TermRegistry& terms,
                      const SelectionSettings& settings, double noise) {
   Findings all{.findings = {},
                .unnamed = {},
@@ -111,14 +135,15 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
                .after_p = diagnosis.left_after.p_value};
   for (const Departure& departure : diagnosis.departures) {
     if (departure.candidate.is_cause()) {
-      all.findings.push_back(finding_of(departure, calibration, diagnosis, settings.odds));
+      all.findings.push_back(finding_of(departure, calibration, diagnosis, terms, settings.odds));
     } else {
       all.unnamed.push_back(unnamed_of(departure, calibration, diagnosis, noise));
     }
   }
   for (const Diagnosis::Limit& limit : diagnosis.unobservable) {
-    all.unobservable.push_back(
-        {.parameter = limit.name, .reason = reason_of(limit, noise), .combination = {}});
+    all.unobservable.push_back({.parameter = limit.name,
+                                .reason = reason_of(limit, told_by(limit.name, terms), noise),
+                                .combination = {}});
   }
   return all;
 }
@@ -137,6 +162,9 @@ std::string in_words(const Finding& finding) {
   }
   if (!finding.confounded_with.empty()) {
     words += fmt::format("; these data cannot tell it from {}", fmt::join(finding.confounded_with, ", "));
+  }
+  if (!finding.told_apart_by.empty()) {
+    words += fmt::format("\n  what would: {}", fmt::join(finding.told_apart_by, "; "));
   }
   if (!finding.accepted) words += "\n  it does not pay on data that it was not fitted to";
   return words + "\n" + gain_in_words(finding.gain);

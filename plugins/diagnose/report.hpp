@@ -9,7 +9,9 @@
 namespace crisp {
 
 /// A diagnosis for programs: findings in the order in which they were taken into the model.
-Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
+///
+/// @param terms  say what would tell causes apart that these data cannot
+Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration, const TermRegistry& terms,
                      const SelectionSettings& settings, double noise);
 
 /// And for people.

@@ -19,7 +19,8 @@ struct EncoderEccentricity final : DifferentiableTerm<EncoderEccentricity> {
                        {.name = "b", .unit = "rad", .lower = -0.1, .upper = 0.1, .summary = "of sin φ"}},
         .details =
             "`φ + a cos φ + b sin φ`. A disk of 20 mm radius that is 20 µm off its axis errs by up to "
-            "0.06°."};
+            "0.06°.",
+        .told_by = "lasers at other azimuths; other rates of the plate"};
     return kInfo;
   }
   template <class T>
@@ -42,7 +43,8 @@ struct EncoderSecondHarmonic final : DifferentiableTerm<EncoderSecondHarmonic> {
                        {.name = "b", .unit = "rad", .lower = -0.1, .upper = 0.1, .summary = "of sin 2φ"}},
         .details =
             "`φ + a cos 2φ + b sin 2φ`. Typically 0.02° to 0.2°. A laser's front and back, half a turn "
-            "apart, err alike: only lasers at other azimuths show it."};
+            "apart, err alike: only lasers at other azimuths show it.",
+        .told_by = "lasers that are not a third of a turn apart"};
     return kInfo;
   }
   template <class T>
@@ -71,7 +73,8 @@ struct EncoderBacklash final : DifferentiableTerm<EncoderBacklash> {
                         .summary = "half the play: by how much the plate is ahead of the encoder"}},
         .details =
             "`φ + δ tanh(ω / 0.05 rad/s)`, which is `φ + δ sign(ω)` but for a plate that hardly moves. "
-            "Typically 0.1°. Without a reversal it is a common λ."};
+            "Typically 0.1°. Without a reversal it is a common λ.",
+        .told_by = "both directions of turning, at three rates or more"};
     return kInfo;
   }
   template <class T>
@@ -96,7 +99,8 @@ struct EncoderSpeedLag final : DifferentiableTerm<EncoderSpeedLag> {
                         .lower = -0.01,
                         .upper = 0.01,
                         .summary = "angle [rad] a squared rate [rad/s]"}},
-        .details = "`φ + k ω |ω|`. Over a narrow range of rates it is a common η."};
+        .details = "`φ + k ω |ω|`. Over a narrow range of rates it is a common η.",
+        .told_by = "a wide range of rates"};
     return kInfo;
   }
   template <class T>

@@ -22,7 +22,8 @@ struct Cone final : DifferentiableTerm<Cone> {
                         .summary = "angle of the beam above the scan plane, outwards on the plate"}},
         .details =
             "`direction = cos κ (cos θ, sin θ, 0) + sin κ (0, 0, 1)` in the laser's frame. Typically "
-            "0.05° to 0.4°. At one range it looks like a tangential offset."};
+            "0.05° to 0.4°. At one range it looks like a tangential offset.",
+        .told_by = "surfaces near and far"};
     return kInfo;
   }
   template <class T>
@@ -46,7 +47,8 @@ struct MirrorEccentricity final : DifferentiableTerm<MirrorEccentricity> {
                        {.name = "b", .unit = "rad", .lower = -0.05, .upper = 0.05, .summary = "of sin θ"}},
         .details =
             "`θ + a cos θ + b sin θ`, θ as reported less the mount angle. Typically 0.05° to 0.2°. A "
-            "beam that starts beside the mirror's axis looks alike at one range."};
+            "beam that starts beside the mirror's axis looks alike at one range.",
+        .told_by = "surfaces near and far"};
     return kInfo;
   }
   template <class T>

@@ -18,7 +18,8 @@ struct TangentialOffset final : DifferentiableTerm<TangentialOffset> {
         .scope = Scope::kLaser,
         .parameters =
             {{.name = "y", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "along the tangent"}},
-        .details = "`origin += (0, y, 0)` in the plate's frame at the laser. Typically 1 to 5 mm."};
+        .details = "`origin += (0, y, 0)` in the plate's frame at the laser. Typically 1 to 5 mm.",
+        .told_by = "surfaces near and far, to the front and to the back of the laser"};
     return kInfo;
   }
   template <class T>
@@ -38,7 +39,8 @@ struct AxialOffset final : DifferentiableTerm<AxialOffset> {
         .parameters = {{.name = "z", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "along the axis"}},
         .details =
             "`origin += (0, 0, z)` in the plate's frame. Typically 1 to 20 mm. What is common to all "
-            "lasers moves the whole cloud and cannot be found: that of one of them is to stay 0."};
+            "lasers moves the whole cloud and cannot be found: that of one of them is to stay 0.",
+        .told_by = "another laser in the same recording: a common height is a gauge"};
     return kInfo;
   }
   template <class T>
@@ -57,7 +59,8 @@ struct MirrorZero final : DifferentiableTerm<MirrorZero> {
         .scope = Scope::kLaser,
         .parameters =
             {{.name = "theta", .unit = "rad", .lower = -0.2, .upper = 0.2, .summary = "added to θ"}},
-        .details = "`θ + theta`. Typically 0.1° to 1°. A laser's front and back see it with opposite signs."};
+        .details = "`θ + theta`. Typically 0.1° to 1°. A laser's front and back see it with opposite signs.",
+        .told_by = "the same surfaces to the front and to the back of the laser"};
     return kInfo;
   }
   template <class T>
@@ -81,7 +84,8 @@ struct ScanPlaneTilt final : DifferentiableTerm<ScanPlaneTilt> {
                         .summary = "right-handed about the tangent: the beam at θ = 0 leans to the axis"}},
         .details =
             "`direction = Ry(tilt) direction` in the plate's frame at the laser. Typically 0.1° to 1°. "
-            "In a narrow field of view it looks like α."};
+            "In a narrow field of view it looks like α.",
+        .told_by = "the whole sweep of the mirror"};
     return kInfo;
   }
   template <class T>

@@ -19,7 +19,8 @@ struct RangeOffset final : DifferentiableTerm<RangeOffset> {
         .parameters = {{.name = "c", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "added to r"}},
         .details =
             "`r + c`. The data sheet of the LMS-151 allows ±30 mm typically, ±40 mm at most. Flat walls "
-            "bulge by c cos β; what is common to all lasers is nearly invisible to crispness."};
+            "bulge by c cos β; what is common to all lasers is nearly invisible to crispness.",
+        .told_by = "large planes and opposed walls, near and far"};
     return kInfo;
   }
   template <class T>
@@ -38,7 +39,8 @@ struct RangeScale final : DifferentiableTerm<RangeScale> {
         .parameters = {{.name = "s", .unit = "1", .lower = -0.05, .upper = 0.05, .summary = "share of r"}},
         .details =
             "`r (1 + s)`. Below 0.3 %. What is common to all lasers changes the size of the whole cloud: "
-            "only a known length shows it."};
+            "only a known length shows it.",
+        .told_by = "a known length"};
     return kInfo;
   }
   template <class T>
@@ -71,7 +73,8 @@ struct RangeIncidence final : DifferentiableTerm<RangeIncidence> {
             "60°, 14 mm at 70° and 46 mm at 80°, 5 m away, which is what Laconte et al. (Lidar measurement "
             "bias estimation via return waveform modelling, ICRA 2019) measured, an LMS-151 among the "
             "sensors. β comes from the surfaces, so the term does nothing until somebody has found them, "
-            "and counts a β beyond 87° as 87°."};
+            "and counts a β beyond 87° as 87°.",
+        .told_by = "the same range at many incidences; patches of different reflectance"};
     return kInfo;
   }
   template <class T>
@@ -99,7 +102,8 @@ struct RangeIntensity final : DifferentiableTerm<RangeIntensity> {
         .details =
             "`r + a u + b u²` with `u = ln(I / 100)`, I the remission in the device's units; nothing where "
             "it is unknown (0). Millimetres to centimetres. As the remission falls with the incidence, it "
-            "is confounded with range.incidence; neighbouring dark and light patches tell."};
+            "is confounded with range.incidence; neighbouring dark and light patches tell.",
+        .told_by = "dark and light patches side by side"};
     return kInfo;
   }
   template <class T>
@@ -132,7 +136,8 @@ struct RangeCyclic final : DifferentiableTerm<RangeCyclic> {
         .details =
             "`r + a sin 2πr/P + b cos 2πr/P`, which is `A sin(2πr/P + p)` with `A² = a² + b²` and "
             "`tan p = b/a`, but linear in what is to be found. Typically millimetres: crosstalk and the "
-            "steps of a time-to-digital converter. P is to exceed 2πA, so that a distance has one range."};
+            "steps of a time-to-digital converter. P is to exceed 2πA, so that a distance has one range.",
+        .told_by = "surfaces at many distances"};
     return kInfo;
   }
   template <class T>

@@ -26,7 +26,8 @@ struct RangeWarmup final : DifferentiableTerm<RangeWarmup> {
               .tries = {.spacing = Tries::Spacing::kLogarithmic, .from = 1, .to = 100, .count = 4}}},
         .details =
             "`r + c (1 − exp(−t/T))`, t since the run's epoch. Millimetres to centimetres over minutes to "
-            "hours. In a short run it is a range.offset and a constant growth."};
+            "hours. In a short run it is a range.offset and a constant growth.",
+        .told_by = "a longer recording, from a cold start"};
     return kInfo;
   }
   template <class T>
@@ -56,7 +57,8 @@ struct RangeStep final : DifferentiableTerm<RangeStep> {
               .tries = {.spacing = Tries::Spacing::kInstants, .from = 0.05, .to = 0.95, .count = 19}}},
         .details =
             "`r + h (1 + tanh((t − at) / 5 ms)) / 2`: a jump. A real LMS111 reported 2.05 mm more from "
-            "2.4 s after its start on: h is −2.05 mm then."};
+            "2.4 s after its start on: h is −2.05 mm then.",
+        .told_by = "a longer recording, before it and after it"};
     return kInfo;
   }
   template <class T>

@@ -23,7 +23,8 @@ struct IntraScan final : DifferentiableTerm<IntraScan> {
         .details =
             "`t + κ k` for beam k of its scan, so that φ changes by `ω κ k`. Where the time between beams "
             "is left out altogether, κ is 28 µs at 50 Hz and half a degree, which is 2.7° over a sweep "
-            "while the plate turns at 0.5 Hz. At one speed it looks like α."};
+            "while the plate turns at 0.5 Hz. At one speed it looks like α.",
+        .told_by = "a reversal of the plate, or other rates; the mirror's own stamps"};
     return kInfo;
   }
   template <class T>
@@ -50,7 +51,8 @@ struct MirrorPeriod final : DifferentiableTerm<MirrorPeriod> {
             "`t + excess θ/2π`: a term for measurements whose times were taken from a nominal period. "
             "Real LMS1xx are 0.57 % slow, 114 µs of 20 ms, and wander by ±0.2 % within seconds. Within one "
             "scan it cannot be told from timing.intra_scan: the stamps of successive scans tell. Simulated "
-            "telegrams come from a mirror that does turn so."};
+            "telegrams come from a mirror that does turn so.",
+        .told_by = "the mirror's own stamps"};
     return kInfo;
   }
   template <class T>
@@ -80,7 +82,8 @@ struct ClockDrift final : DifferentiableTerm<ClockDrift> {
         .details =
             "`t + skew t + drift t²/2`, t since the run's epoch: as the cloud sees it, a lag that varies "
             "with time. 20 ppm over 0 to 50 °C; Sheehan, Harrison and Newman lost 90 s in 5 days, 208 ppm. "
-            "Simulated telegrams carry the stamps of a clock that does run so."};
+            "Simulated telegrams carry the stamps of a clock that does run so.",
+        .told_by = "a longer recording"};
     return kInfo;
   }
   template <class T>
