@@ -54,9 +54,9 @@ void count_hidden(const Drawn& drawn, const Diagnosis& diagnosis, const std::str
   };
   if (taken([&](const Departure& departure) { return departure.candidate.name == name; })) {
     ++outcome.named;
-    for (const double error : test::errors_of(diagnosis, drawn.recording.scanner.truth, name)) {
+    for (const auto& told : test::told_of(diagnosis, drawn.recording.scanner.truth, name)) {
       ++outcome.parameters;
-      outcome.within_three += std::abs(error) < 3 ? 1 : 0;
+      outcome.within_three += std::abs(told.error()) < 3 ? 1 : 0;
     }
   } else if (taken([&](const Departure& departure) { return stands_for(departure, name); })) {
     ++outcome.in_class;
@@ -129,8 +129,11 @@ class Trial {
     rows_[what].add(outcome, diagnosis.settled);
     std::string errors;
     for (const std::string& name : drawn.names) {
-      for (const double error : test::errors_of(diagnosis, drawn.recording.scanner.truth, name)) {
-        errors += fmt::format(" {:+.1f}", error);
+      for (const auto& told : test::told_of(diagnosis, drawn.recording.scanner.truth, name)) {
+        errors += fmt::format(" {:+.1f}", told.error());
+        if (std::abs(told.error()) < 3) continue;
+        errors += fmt::format(" ({} = {:.4g} ± {:.1g}, is {:.4g})", told.name, told.estimate, told.std_error,
+                              told.truth);
       }
     }
     std::string hidden = drawn.covariate;

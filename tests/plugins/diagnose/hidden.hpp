@@ -73,21 +73,33 @@ inline std::vector<std::string> names_in(const Diagnosis& diagnosis) {
   return names;
 }
 
-/// Errors of a term's estimated parameters in units of their standard errors.
-inline std::vector<double> errors_of(const Diagnosis& diagnosis, Calibration truth, const std::string& name) {
+/// What became of one parameter of a term.
+struct Told {
+  std::string name;
+  double truth = 0;
+  double estimate = 0;
+  double std_error = 0;
+  double error() const { return (estimate - truth) / std_error; }  ///< in standard errors
+};
+
+/// A term's estimated parameters.
+inline std::vector<Told> told_of(const Diagnosis& diagnosis, Calibration truth, const std::string& term) {
   const Outcome& outcome = diagnosis.after.outcome;
-  const auto& parameters = term_of(truth, name).parameters;
-  std::vector<double> errors;
+  const auto& parameters = term_of(truth, term).parameters;
+  std::vector<Told> all;
   for (std::size_t k = 0; k < outcome.free.size(); ++k) {
     const std::string& full = outcome.model.names()[outcome.free[k]];
     const std::string owned = full.starts_with("plate.") ? full.substr(6) : full;
-    if (!owned.starts_with(name + ".")) continue;
-    const auto which = std::ranges::find(parameters, owned.substr(name.size() + 1), &Parameter::name);
+    if (!owned.starts_with(term + ".")) continue;
+    const auto which = std::ranges::find(parameters, owned.substr(term.size() + 1), &Parameter::name);
     const auto at = static_cast<Eigen::Index>(outcome.free[k]);
     const auto i = static_cast<Eigen::Index>(k);
-    errors.push_back((outcome.model.values()[at] - which->value) / std::sqrt(outcome.covariance(i, i)));
+    all.push_back({.name = which->name,
+                   .truth = which->value,
+                   .estimate = outcome.model.values()[at],
+                   .std_error = std::sqrt(outcome.covariance(i, i))});
   }
-  return errors;
+  return all;
 }
 
 }  // namespace crisp::test

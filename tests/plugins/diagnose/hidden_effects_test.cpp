@@ -17,9 +17,9 @@ using testing::UnorderedElementsAre;
 /// Of four values 3 standard errors are exceeded by one in a hundred such tests; the seeds are fixed.
 void expect_within_errors(const Diagnosis& diagnosis, const test::Recording& recording,
                           const std::string& name, std::size_t count) {
-  const auto errors = test::errors_of(diagnosis, recording.scanner.truth, name);
-  EXPECT_THAT(errors, SizeIs(count)) << name;
-  for (const double error : errors) EXPECT_LT(std::abs(error), 3.5) << name;
+  const auto parameters = test::told_of(diagnosis, recording.scanner.truth, name);
+  EXPECT_THAT(parameters, SizeIs(count)) << name;
+  for (const auto& told : parameters) EXPECT_LT(std::abs(told.error()), 3.5) << name << '.' << told.name;
 }
 
 class CleanRecordings : public testing::TestWithParam<const char*> {};
