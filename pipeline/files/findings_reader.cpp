@@ -118,6 +118,7 @@ Finding finding_in(FindingsMap& map, const std::string& what) {
           .log10_odds = map.number("log10_odds"),
           .p_value = map.number("p_value"),
           .confounded_with = map.texts("confounded_with"),
+          .told_apart_by = map.texts("told_apart_by"),
           .gain = read_gains(map, what),
           .accepted = map.boolean("accepted")};
 }

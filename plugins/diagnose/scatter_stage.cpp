@@ -112,6 +112,7 @@ void DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Fin
   const NoiseDiagnosis noise = diagnose_noise(name, scatter.errors, context.seed(), least_gain_);
   context.say(fmt::format("{}: {} ranges on flat surfaces scatter by {:.2f} mm (RMS)", name,
                           scatter.errors.size(), 1e3 * noise.plain.sigma));
+  found.noise.push_back({.laser = name, .ranges = scatter.errors.size(), .sigma = noise.law.sigma});
   found.findings.insert(found.findings.end(), noise.findings.begin(), noise.findings.end());
   found.unnamed.insert(found.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
   for (const auto& [covariate, values] :

@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "plugins/scans/profiles_at_rest.hpp"
 #include "pipeline/quality/resampling.hpp"
+#include "plugins/scans/profiles_at_rest.hpp"
 
 namespace crisp {
 namespace {

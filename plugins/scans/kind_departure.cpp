@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/quality/resampling.hpp"
 #include "plugins/scans/alternation.hpp"
 #include "plugins/scans/profiles_at_rest.hpp"
-#include "pipeline/quality/resampling.hpp"
 
 namespace crisp {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "plugins/scans/passes.hpp"
 #include "pipeline/quality/resampling.hpp"
+#include "plugins/scans/passes.hpp"
 
 namespace crisp {
 namespace {

@@ -22,6 +22,7 @@ Findings some_findings() {
                                .log10_odds = 12,
                                .p_value = 1e-9,
                                .confounded_with = {"laser2.mount.tangential_offset"},
+                               .told_apart_by = {"surfaces near and far"},
                                .gain = {{.metric = "cloud thickness",
                                          .unit = "m",
                                          .before = 0.009,
@@ -51,9 +52,9 @@ TEST(FindingsFile, HoldsWhatProgramsAreToldToExpect) {
   EXPECT_THAT(keys_of(json), testing::UnorderedElementsAre("crisp", "findings", "unnamed", "unobservable",
                                                            "devices", "noise", "indistinguishable"));
   const auto& finding = json["findings"][0];
-  EXPECT_THAT(keys_of(finding),
-              testing::UnorderedElementsAre("cause", "scope", "parameters", "explained_fraction",
-                                            "log10_odds", "p_value", "confounded_with", "gain", "accepted"));
+  EXPECT_THAT(keys_of(finding), testing::UnorderedElementsAre(
+                                    "cause", "scope", "parameters", "explained_fraction", "log10_odds",
+                                    "p_value", "confounded_with", "told_apart_by", "gain", "accepted"));
   EXPECT_THAT(keys_of(finding["parameters"][0]),
               testing::UnorderedElementsAre("name", "value", "unit", "std_error"));
   EXPECT_THAT(keys_of(finding["gain"][0]),
