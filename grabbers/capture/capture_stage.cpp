@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "grabbers/capture/capture_report.hpp"
+#include "grabbers/capture/captures_in.hpp"
 #include "grabbers/capture/read_ahead.hpp"
 #include "pipeline/data/error.hpp"
 
@@ -19,11 +20,14 @@ void CaptureStage::describe(StageDescription<CaptureStage>& d) {
       "sentences. Each item carries the time of the packet that completed it, and items come in the order of "
       "these "
       "times.\n\n"
+      "A folder stands for all captures in it, one after the other in the order of their first packets: of "
+      "one "
+      "scanner in several places, or of one recording in several files.\n\n"
       "What is damaged, lost, repeated or unknown is counted by name; it never ends the reading. Memory does "
       "not "
       "depend on the size of the capture.");
   d.gives<Scan>().gives<PlateReading>();
-  d.option("file", &CaptureStage::file_, "the capture").required();
+  d.option("file", &CaptureStage::file_, "the capture, or a folder of captures").required();
   d.option("begin", &CaptureStage::begin_,
            "what was received earlier than this after the first packet is left out")
       .unit("s")
@@ -45,23 +49,66 @@ void CaptureStage::describe(StageDescription<CaptureStage>& d) {
 void CaptureStage::check(const RunSettings& run) const { check_addresses(run.rig); }
 
 void CaptureStage::process(const Inputs&, Outputs& out, Context& context) {
-  context.reads(file_);
-  CaptureReader reader(file_, context.rig(), settings_);
+  const auto files = captures_in(file_);
+  std::uint64_t found = 0;
+  std::string others;
+  auto sections = nlohmann::json::array();
+  for (const auto& file : files) {
+    if (files.size() > 1) context.say(file.filename().string());
+    const double done = static_cast<double>(sections.size()) / static_cast<double>(files.size());
+    const CaptureStatistics statistics =
+        read(file, done, 1 / static_cast<double>(files.size()), out, context);
+    if (context.interrupted()) return;
+    found += report(statistics, file, context);
+    for (const auto& device : statistics.devices) {
+      if (device.name.empty()) others += (others.empty() ? "" : ", ") + title(device);
+    }
+    sections.push_back(to_json(statistics));
+    sections.back()["file"] = file.string();
+  }
+  context.report(files.size() == 1 ? sections.front() : nlohmann::json{{"captures", sections}});
+  if (!others.empty()) context.warn("not in the rig: " + others);
+  if (found == 0) {
+    throw Error(fmt::format("{} holds no scan and no reading of the rig's devices", file_.string()),
+                others.empty()
+                    ? "no laser and no plate speaks in it at all: was the right interface captured?"
+                    : "it holds " + others + ": correct the addresses in the rig");
+  }
+}
+
+CaptureStatistics CaptureStage::read(const std::filesystem::path& file, double done, double share,
+                                     Outputs& out, Context& context) {
+  context.reads(file);
+  CaptureReader reader(file, context.rig(), settings_);
   std::optional<ReadAhead> ahead;
   if (context.threads() > 1) ahead.emplace(reader);
   while (true) {
     const ReadBatch batch = ahead ? ahead->next() : read_batch(reader);
     if (batch.items.empty()) break;
-    for (const auto& [item, first_ns] : batch.items) give(item, first_ns, out, context);
-    if (context.interrupted()) return;
-    context.progress(batch.progress, "reading the capture");
+    for (const auto& [item, first_ns] : batch.items) {
+      refuse_overlap(first_ns, file);
+      if (!first_ns_) first_ns_ = first_ns;
+      give(item, out, context);
+    }
+    if (context.interrupted()) return {};
+    context.progress(done + share * batch.progress, "reading the capture");
   }
   ahead.reset();
-  report(reader.statistics(), context);
+  CaptureStatistics statistics = reader.statistics();
+  last_ns_ = statistics.last_ns;
+  before_ = file;
+  return statistics;
 }
 
-void CaptureStage::give(const HubItem& item, std::int64_t first_ns, Outputs& out, Context& context) const {
-  const double since_begin = 1e-9 * static_cast<double>(receipt_ns(item) - first_ns) - begin_;
+void CaptureStage::refuse_overlap(std::int64_t first_ns, const std::filesystem::path& file) const {
+  if (before_.empty() || first_ns >= last_ns_) return;
+  throw Error(fmt::format("{} begins before {} ends: they are of the same time", file.string(),
+                          before_.filename().string()),
+              "join captures of several interfaces with mergecap, and give each scanner a folder of its own");
+}
+
+void CaptureStage::give(const HubItem& item, Outputs& out, Context& context) const {
+  const double since_begin = 1e-9 * static_cast<double>(receipt_ns(item) - *first_ns_) - begin_;
   if (since_begin < 0 || (duration_ && since_begin >= *duration_)) {
     context.count("items left out because of begin and duration");
   } else if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
@@ -71,30 +118,23 @@ void CaptureStage::give(const HubItem& item, std::int64_t first_ns, Outputs& out
   }
 }
 
-void CaptureStage::report(const CaptureStatistics& statistics, Context& context) const {
-  context.report(to_json(statistics));
+std::uint64_t CaptureStage::report(const CaptureStatistics& statistics, const std::filesystem::path& file,
+                                   Context& context) {
   context.say(device_table(statistics));
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
   std::uint64_t found = 0;
-  std::string others;
   for (const auto& device : statistics.devices) {
-    const bool known = !device.name.empty();
-    if (known) {
-      found += device.items;
-      for (const auto& [what, n] : device.losses.all()) context.count(device.name + ": " + what, n);
-      if (device.items == 0) context.warn(fmt::format("the capture holds nothing of {}", title(device)));
-    } else {
-      others += (others.empty() ? "" : ", ") + title(device);
+    if (device.name.empty()) {
       context.count(fmt::format("items of a {}, which the rig does not know", title(device)), device.items);
+      continue;
+    }
+    found += device.items;
+    for (const auto& [what, n] : device.losses.all()) context.count(device.name + ": " + what, n);
+    if (device.items == 0) {
+      context.warn(fmt::format("{} holds nothing of {}", file.filename().string(), title(device)));
     }
   }
-  if (!others.empty()) context.warn("not in the rig: " + others);
-  if (found == 0) {
-    throw Error(fmt::format("{} holds no scan and no reading of the rig's devices", file_.string()),
-                others.empty()
-                    ? "no laser and no plate speaks in it at all: was the right interface captured?"
-                    : "it holds " + others + ": correct the addresses in the rig");
-  }
+  return found;
 }
 
 }  // namespace crisp

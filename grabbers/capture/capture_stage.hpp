@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 
@@ -10,7 +11,8 @@
 
 namespace crisp {
 
-/// `grabber.capture`: gives the scans and readings of a capture of the hub's network interface.
+/// `grabber.capture`: gives the scans and readings of a capture of the hub's network interface, or
+/// of a folder of such.
 class CaptureStage final : public Stage {
  public:
   static void describe(StageDescription<CaptureStage>& d);
@@ -19,13 +21,20 @@ class CaptureStage final : public Stage {
   void process(const Inputs& in, Outputs& out, Context& context) override;
 
  private:
-  void give(const HubItem& item, std::int64_t first_ns, Outputs& out, Context& context) const;
-  void report(const CaptureStatistics& statistics, Context& context) const;
+  CaptureStatistics read(const std::filesystem::path& file, double done, double share, Outputs& out,
+                         Context& context);
+  void refuse_overlap(std::int64_t first_ns, const std::filesystem::path& file) const;
+  void give(const HubItem& item, Outputs& out, Context& context) const;
+  static std::uint64_t report(const CaptureStatistics& statistics, const std::filesystem::path& file,
+                              Context& context);
 
   std::filesystem::path file_;
   CaptureSettings settings_;
   double begin_ = 0;
   std::optional<double> duration_;
+  std::optional<std::int64_t> first_ns_;  // of the first packet of all
+  std::filesystem::path before_;          // the capture before the present one
+  std::int64_t last_ns_ = 0;              // of its last packet
 };
 
 }  // namespace crisp

@@ -29,6 +29,7 @@ void SimulateStage::describe_scanner(Description& d) {
   d.option("duration", &S::scanner, &ScannerSettings::duration, "how long to record")
       .unit("s")
       .range(0.01, 1e5);
+  d.option("start", &S::start_, "the hub's clock at the begin, since 1970").unit("s").range(0, 9e9);
   d.option("seed", &S::seed_, "of all that is drawn at random; auto: the run's");
   d.option("capture", &S::capture_file_, "pcap file to write what the network would have carried to");
   d.option("truth", &S::truth_file_, "file to write the true calibration, clocks and delays to");

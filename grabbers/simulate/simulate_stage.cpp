@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <variant>
 
@@ -42,6 +43,7 @@ Restart parse_restart(const std::string& text) {
 
 RecordingSettings SimulateStage::settings(const RunSettings& run) const {
   RecordingSettings result = settings_;
+  result.start_ns = std::llround(1e9 * start_);
   result.scanner.rig = run.rig;
   result.scanner.seed = seed_.value_or(run.seed);
   for (const auto& text : silences_) result.faults.silences.push_back(parse_silence(text));

@@ -52,6 +52,7 @@ class SimulateStage final : public Stage {
   WireFaults wire_faults_;
   SceneChoice scene_;
   std::vector<std::string> silences_;
+  double start_ = 1e-9 * static_cast<double>(RecordingSettings{}.start_ns);  // [s]
   std::vector<std::string> restarts_;
   std::optional<std::uint64_t> seed_;
   std::filesystem::path capture_file_;

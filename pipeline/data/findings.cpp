@@ -10,6 +10,7 @@ void Findings::append(const Findings& other) {
   add(findings, other.findings);
   add(unnamed, other.unnamed);
   add(unobservable, other.unobservable);
+  add(artefacts, other.artefacts);
   add(devices, other.devices);
   add(noise, other.noise);
   before_p = std::min(before_p, other.before_p);

@@ -65,11 +65,19 @@ struct NoiseFacts {
   double sigma = 0;        ///< [m] of the normal law that is left
 };
 
+/// A departure that the estimator made by itself: no cause in the scanner.
+struct Artefact {
+  std::string name;                   ///< "density", "aliasing"
+  std::vector<Parameter> parameters;  ///< in SI: what shifted by how much, or what describes it
+  std::string reason;
+};
+
 /// What a diagnosis says.
 struct Findings {
   std::vector<Finding> findings;  ///< in the order in which they were taken into the model
   std::vector<UnnamedFinding> unnamed;
   std::vector<Unobservable> unobservable;  ///< causes that these data could not show
+  std::vector<Artefact> artefacts;
   std::vector<DeviceFacts> devices;
   std::vector<NoiseFacts> noise;
   double before_p = 1;  ///< that what is left of the residuals is noise: with the model that came …

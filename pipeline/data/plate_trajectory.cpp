@@ -31,8 +31,12 @@ std::vector<double> slopes(std::span<const double> t, std::span<const double> y)
 }  // namespace
 
 PlateTrajectory::PlateTrajectory(std::int64_t epoch_ns, std::vector<double> times, std::vector<double> angles,
-                                 double max_gap)
-    : epoch_ns_(epoch_ns), times_(std::move(times)), angles_(std::move(angles)), max_gap_(max_gap) {
+                                 double max_gap, std::vector<double> new_zeros)
+    : epoch_ns_(epoch_ns),
+      times_(std::move(times)),
+      angles_(std::move(angles)),
+      new_zeros_(std::move(new_zeros)),
+      max_gap_(max_gap) {
   if (times_.size() != angles_.size()) throw Error("a plate trajectory needs one angle for each time");
   if (std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) != times_.end()) {
     throw Error("the times of a plate trajectory must ascend");

@@ -38,9 +38,11 @@ class PlateTrajectory {
   /// @param times    [s since epoch] strictly ascending
   /// @param angles   [rad] unwrapped, one a time
   /// @param max_gap  [s] longest silence to interpolate across
+  /// @param new_zeros [s since epoch] when the encoder began to count anew: angles from then on have no zero
+  ///                 in common with those before
   /// @throws Error   if the lengths differ or the times do not ascend
   PlateTrajectory(std::int64_t epoch_ns, std::vector<double> times, std::vector<double> angles,
-                  double max_gap);
+                  double max_gap, std::vector<double> new_zeros = {});
 
   /// The plate at time t [s since epoch], or nothing where the readings do not cover t.
   std::optional<PlateState> at(double t) const;
@@ -66,6 +68,7 @@ class PlateTrajectory {
   double max_gap() const { return max_gap_; }
   std::span<const double> times() const { return times_; }
   std::span<const double> angles() const { return angles_; }
+  std::span<const double> new_zeros() const { return new_zeros_; }
 
  private:
   std::optional<PlateArc> arc(std::size_t interval) const;
@@ -74,6 +77,7 @@ class PlateTrajectory {
   std::vector<double> times_;
   std::vector<double> angles_;
   std::vector<double> rates_;
+  std::vector<double> new_zeros_;
   double max_gap_ = 0;
 };
 

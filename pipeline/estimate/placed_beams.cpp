@@ -2,9 +2,13 @@
 #include "pipeline/estimate/placed_beams.hpp"
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/recordings.hpp"
 
 namespace crisp {
 namespace {
+
+/// [m] Between the places of recordings: farther than any beam goes.
+constexpr double kApart = 1000;
 
 Placed place_all(const SensorModel& model, const Measurements& beams, const PlateTrajectory& plate) {
   Placed placed = model.place(beams, plate);
@@ -32,9 +36,11 @@ PlacedBeams::PlacedBeams(const SensorModel& model, const Sample& sample) {
   points_.assign(n, 0);
   directions_.assign(n, 0);
   views_.resize(n);
+  const RecordingNumbers recording(*sample.plate);
   for (std::size_t i = 0; i < n; ++i) {
     const Eigen::Vector3d point = near.points.col(static_cast<Eigen::Index>(i));
-    set(points_, i, point);
+    const auto place = static_cast<double>(recording.of(sample.beams.time[i]));
+    set(points_, i, point + Eigen::Vector3d(place * kApart, 0, 0));
     set(directions_, i, (far.points.col(static_cast<Eigen::Index>(i)) - point).normalized());
     views_[i] = 2U * sample.beams.laser[i] + (sample.beams.mirror_angle[i] > 0 ? 1U : 0U);
   }

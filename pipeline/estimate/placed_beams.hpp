@@ -9,7 +9,9 @@
 
 namespace crisp {
 
-/// Where a model puts beams, and from which side they came: what surfels are found from.
+/// Where a model puts beams, and from which side they came: what surfels are found from. Each recording
+/// (recordings_of()) has a place of its own, a kilometre from the next one's, so that none sees the surfaces
+/// of another.
 class PlacedBeams {
  public:
   /// @param sample  n beams, all of which the plate's readings cover

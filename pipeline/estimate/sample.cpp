@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "pipeline/data/recordings.hpp"
+
 namespace crisp {
 namespace {
 
@@ -47,6 +49,15 @@ Sample select(const Sample& sample, const std::function<bool(std::size_t)>& keep
     if (keep(i)) kept.beams.append(sample.beams, i);
   }
   return kept;
+}
+
+Sample longest_recording(const Sample& sample) {
+  const RecordingNumbers number(*sample.plate);
+  if (number.count() < 2) return sample;
+  std::vector<std::size_t> beams(number.count(), 0);
+  for (const double time : sample.beams.time) ++beams[number.of(time)];
+  const auto longest = static_cast<std::size_t>(std::ranges::max_element(beams) - beams.begin());
+  return select(sample, [&](std::size_t i) { return number.of(sample.beams.time[i]) == longest; });
 }
 
 Sample of_laser(const Sample& sample, std::size_t laser) {
@@ -131,14 +142,17 @@ PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>
   if (pieces.empty()) return {};
   std::vector<double> times;
   std::vector<double> angles;
+  std::vector<double> new_zeros;
   for (const auto& piece : pieces) {
+    new_zeros.insert(new_zeros.end(), piece->new_zeros().begin(), piece->new_zeros().end());
     for (std::size_t i = 0; i < piece->size(); ++i) {
       if (!times.empty() && piece->times()[i] <= times.back()) continue;
       times.push_back(piece->times()[i]);
       angles.push_back(piece->angles()[i]);
     }
   }
-  return {pieces.front()->epoch_ns(), std::move(times), std::move(angles), pieces.front()->max_gap()};
+  return {pieces.front()->epoch_ns(), std::move(times), std::move(angles), pieces.front()->max_gap(),
+          std::move(new_zeros)};
 }
 
 }  // namespace crisp

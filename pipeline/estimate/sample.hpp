@@ -18,6 +18,9 @@ struct Sample {
 /// The beams for which `keep(index)` holds, in their order.
 Sample select(const Sample& sample, const std::function<bool(std::size_t)>& keep);
 
+/// The beams of the recording that has the most of them: see recordings_of().
+Sample longest_recording(const Sample& sample);
+
 /// The beams of one laser.
 Sample of_laser(const Sample& sample, std::size_t laser);
 

@@ -138,6 +138,11 @@ Unobservable unobservable_in(FindingsMap& map, const std::string&) {
   return {map.text("cause"), map.text("reason"), map.text("combination")};
 }
 
+Artefact artefact_in(FindingsMap& map, const std::string& what) {
+  return {
+      .name = map.text("artefact"), .parameters = read_parameters(map, what), .reason = map.text("reason")};
+}
+
 DeviceFacts device_in(FindingsMap& map, const std::string&) {
   return {.device = map.text("device"),
           .stamps = map.count("stamps"),
@@ -175,8 +180,9 @@ Findings parse_findings(const YamlNode& root) {
   read_list(map, "findings", finding_in, all.findings);
   read_list(map, "unnamed", unnamed_in, all.unnamed);
   read_list(map, "unobservable", unobservable_in, all.unobservable);
+  read_list(map, "artefacts", artefact_in, all.artefacts);
   read_list(map, "devices", device_in, all.devices);
-  if (map.map().find("noise")) read_list(map, "noise", noise_in, all.noise);  // older files have none
+  read_list(map, "noise", noise_in, all.noise);
   if (const YamlNode* node = map.map().require("indistinguishable")) {
     FindingsMap alike(*node, "indistinguishable", errors);
     all.before_p = alike.number("before_p");

@@ -20,15 +20,18 @@ Json json_of(const std::vector<Gain>& gains) {
   return all;
 }
 
-Json json_of(const Finding& finding) {
-  Json parameters = Json::array();
-  for (const Parameter& p : finding.parameters) {
-    parameters.push_back(
-        {{"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"std_error", p.std_error}});
+Json json_of(const std::vector<Parameter>& parameters) {
+  Json all = Json::array();
+  for (const Parameter& p : parameters) {
+    all.push_back({{"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"std_error", p.std_error}});
   }
+  return all;
+}
+
+Json json_of(const Finding& finding) {
   return {{"cause", finding.cause},
           {"scope", finding.scope},
-          {"parameters", parameters},
+          {"parameters", json_of(finding.parameters)},
           {"explained_fraction", finding.explained_fraction},
           {"log10_odds", finding.log10_odds},
           {"p_value", finding.p_value},
@@ -48,6 +51,11 @@ Json json_of(const Unobservable& unobservable) {
   return {{"cause", unobservable.parameter},
           {"reason", unobservable.reason},
           {"combination", unobservable.combination}};
+}
+
+Json json_of(const Artefact& artefact) {
+  return {
+      {"artefact", artefact.name}, {"parameters", json_of(artefact.parameters)}, {"reason", artefact.reason}};
 }
 
 Json json_of(const DeviceFacts& facts) {
@@ -81,6 +89,7 @@ std::string findings_json(const Findings& findings) {
                     {"findings", list_of(findings.findings)},
                     {"unnamed", list_of(findings.unnamed)},
                     {"unobservable", list_of(findings.unobservable)},
+                    {"artefacts", list_of(findings.artefacts)},
                     {"devices", list_of(findings.devices)},
                     {"noise", list_of(findings.noise)},
                     {"indistinguishable", {{"before_p", findings.before_p}, {"after_p", findings.after_p}}}};

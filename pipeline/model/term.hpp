@@ -14,6 +14,9 @@ namespace crisp {
 /// Where in the chain a term acts: see the table at Beam.
 enum class Phase { kTime, kPlate, kMirror, kBeam, kMount, kBase, kRange };
 
+/// From where a term counts what it depends on. Recordings that do not share that share no parameters of it.
+enum class CountsFrom { kNothing, kRunsEpoch, kEncodersZero };
+
 struct TermInfo {
   std::string name;  ///< as in docs/effects.md: "mirror.cone"
   std::string summary;
@@ -22,6 +25,7 @@ struct TermInfo {
   std::vector<EffectParameter> parameters;
   std::string details;       ///< see EffectInfo
   std::string told_by = {};  ///< see EffectInfo
+  CountsFrom counts_from = CountsFrom::kNothing;
   /// Of a term that describes a departure by its shape instead of naming a cause: over what the shape is told
   /// ("mirror angle"). Empty for the others.
   std::string covariate = {};

@@ -56,6 +56,11 @@ PcdTable to_table(const PlateTrajectory& plate) {
   table.set_note("max_gap", fmt::format("{}", plate.max_gap()));
   table.add<double>("time", [&](std::size_t i) { return plate.times()[i]; });
   table.add<double>("angle", [&](std::size_t i) { return plate.angles()[i]; });
+  if (!plate.new_zeros().empty()) {
+    table.add<std::uint16_t>("zero", [&](std::size_t i) {
+      return std::ranges::count_if(plate.new_zeros(), [&](double at) { return at <= plate.times()[i]; });
+    });
+  }
   return table;
 }
 
@@ -97,7 +102,14 @@ PlateTrajectory trajectory_of(const PcdTable& table) {
   if (!all_finite(times) || !all_finite(angles) || !(max_gap > 0)) {
     throw Error("the plate's readings are not all numbers, or their max_gap is missing");
   }
-  return {epoch_of(table), std::move(times), std::move(angles), max_gap};
+  std::vector<double> new_zeros;
+  if (table.has("zero")) {
+    const auto zeros = table.column<std::uint16_t>("zero");
+    for (std::size_t i = 0; i < zeros.size(); ++i) {
+      if (zeros[i] != (i == 0 ? 0 : zeros[i - 1])) new_zeros.push_back(times[i]);
+    }
+  }
+  return {epoch_of(table), std::move(times), std::move(angles), max_gap, std::move(new_zeros)};
 }
 
 PlateTrajectory trajectory_between(const PcdTable& measurements, double max_gap) {

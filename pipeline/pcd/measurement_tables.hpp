@@ -15,7 +15,8 @@ namespace crisp {
 /// exactly.
 PcdTable to_table(const Measurements& beams, const PlateTrajectory& plate);
 
-/// A trajectory as a PCD table: fields time and angle, one row a reading, and the notes epoch_ns and max_gap.
+/// A trajectory as a PCD table: fields time and angle, one row a reading, and the notes epoch_ns and max_gap;
+/// if the encoder began to count anew, the field zero says how often it had.
 /// It comes back exactly.
 PcdTable to_table(const PlateTrajectory& plate);
 

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/estimate/wanted_terms.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/calibrate/report.hpp"
@@ -23,6 +25,8 @@ void RefineStage::describe(StageDescription<RefineStage>& d) {
       "surfaces' planes as unknowns. It has none of the bias of an entropy's optimum and a tenth of its "
       "scatter, but needs a start that is right to some centimetres: calibrate.rqe, or calibrate.load. What "
       "the data do not determine stays as it came.\n\n"
+      "Several recordings (what pauses of 5 s divide) may have been made in several places: no surface is "
+      "looked for in more than one of them, and each has lags of its own, of which the mean is eta.\n\n"
       "If all beams lie in the plate's plane (two of each laser), the walls that they meet are taken to be "
       "upright.");
   d.takes<Measurements>().holds<PlateTrajectory>().holds<Calibration>().gives<Calibration>();
@@ -65,16 +69,23 @@ void RefineStage::process(const Inputs& in, Outputs&, Context&) {
 }
 
 void RefineStage::finish(Outputs& out, Context& context) {
-  const Sample sample = collected_.sample();
+  Sample sample = collected_.sample();
   context.count("beams left out of the calibration of a long recording", collected_.left_out());
   const auto& terms = context.run().registrar->get<TermRegistry>();
   Calibration with_terms = *start_;
   add_wanted_terms(with_terms, settings_.terms, terms);
   const SensorModel start(with_terms, terms);
-  const Refinement refined = refine_by_surfels(start, sample, settings_, [&](int round) {
+  const auto report = [&](int round) {
     context.progress(static_cast<double>(round) / (round + 4), fmt::format("round {}", round + 1));
     return !context.interrupted();
-  });
+  };
+  Refinement refined = refine_by_surfels(start, sample, settings_, report);
+  if (RecordingNumbers(*sample.plate).count() > 1 && !context.interrupted()) {
+    const RecordingLags lags = lags_of_recordings(refined.outcome.model, sample, settings_);
+    tell(lags, *sample.plate, context);
+    sample = with_common_lags(std::move(sample), lags);
+    refined = refine_by_surfels(start, sample, settings_, report);
+  }
   if (context.interrupted()) return;
 
   Calibration calibration = calibration_of(refined.outcome, context.rig());
@@ -91,7 +102,7 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
   const auto& terms = registrar.get<TermRegistry>();
   const auto measure =
       registrar.get<MeasureRegistry>().make("rqe", MeasureSettings{}, registrar.get<SearchRegistry>());
-  const Crispness crispness(sample, refined.outcome.model, {.sigma = sigma_}, *measure);
+  const Crispness crispness(longest_recording(sample), refined.outcome.model, {.sigma = sigma_}, *measure);
   calibration.quality = {{"rqe_before", crispness.of(SensorModel(nominal_calibration(context.rig()), terms))},
                          {"rqe_unrefined", crispness.of(SensorModel(*start_, terms))},
                          {"rqe_after", crispness.of(refined.outcome.model)},

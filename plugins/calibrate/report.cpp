@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 
@@ -62,6 +64,32 @@ void tell(const Calibration& calibration, const Calibration& start, Context& con
       context.distrust("the calibration made the cloud less crisp than it was");
     }
   }
+}
+
+void tell(const RecordingLags& lags, const PlateTrajectory& plate, Context& context) {
+  const auto recordings = recordings_of(plate);
+  const auto& lasers = context.rig().lasers;
+  std::string words = fmt::format(
+      "{} recordings, each with lags of its own: eta there less the mean over all [ms]", recordings.size());
+  auto section = nlohmann::json::array();
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    const auto& [begin, end, zero] = recordings[k];
+    words += fmt::format("\n  {:>10.1f} to {:.1f} s ", begin, end);
+    nlohmann::json own = {{"begin", begin}, {"end", end}, {"encoder_zero", zero}};
+    for (std::size_t laser = 0; laser < lasers.size(); ++laser) {
+      const auto row = static_cast<Eigen::Index>(k);
+      const auto column = static_cast<Eigen::Index>(laser);
+      const double error = lags.std_errors(row, column);
+      const bool known = std::isfinite(error);
+      words += known ? fmt::format(" {:>+9.4f} ± {:.4f}", 1e3 * lags.beyond(row, column), 1e3 * error)
+                     : fmt::format(" {:>18}", "unknown");
+      own["lags"][lasers[laser].name] = {{"beyond_mean", lags.beyond(row, column)},
+                                         {"std_error", known ? nlohmann::json(error) : nlohmann::json()}};
+    }
+    section.push_back(own);
+  }
+  context.say(words);
+  context.report({{"recordings", section}});
 }
 
 }  // namespace crisp

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/estimate/outcome.hpp"
+#include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/measure.hpp"
 #include "pipeline/stage/context.hpp"
@@ -30,5 +31,8 @@ class Crispness {
 /// Puts a calibration into the run's summary: the table for people, all of its numbers for programs, and a
 /// warning for each parameter that is not observable, unless a stage above has said so of `start`.
 void tell(const Calibration& calibration, const Calibration& start, Context& context);
+
+/// The recordings, and each one's lags, for people and for programs.
+void tell(const RecordingLags& lags, const PlateTrajectory& plate, Context& context);
 
 }  // namespace crisp

@@ -18,7 +18,9 @@ void RqeStage::describe(StageDescription<RqeStage>& d) {
       "values, or from those of a calibrate.load above. The standard errors show the scatter that noise "
       "causes; a bias of some millimetres, which an entropy's optimum has, is left to calibrate.refine.\n\n"
       "A plate that stands still is refused. One that is only seen in a few directions, since its rate and "
-      "the mirrors' are commensurate (2 and 50 Hz, exactly), is calibrated with a warning not to trust it.");
+      "the mirrors' are commensurate (2 and 50 Hz, exactly), is calibrated with a warning not to trust it. "
+      "Of "
+      "several recordings (what pauses of 5 s divide) the longest is looked at.");
   d.takes<Measurements>().holds<PlateTrajectory>().holds<Calibration>(Need::optional).gives<Calibration>();
   d.option("sigma", &RqeStage::sigma_, "kernel width over the whole field of view: at first, and at last")
       .unit("m")
@@ -85,7 +87,7 @@ void RqeStage::process(const Inputs& in, Outputs&, Context&) {
 }
 
 void RqeStage::finish(Outputs& out, Context& context) {
-  const Sample sample = collected_.sample();
+  const Sample sample = longest_recording(collected_.sample());
   context.count("beams left out of the calibration of a long recording", collected_.left_out());
   RqeCalibrationSettings settings = settings_;
   settings.sigma_from = sigma_[0];

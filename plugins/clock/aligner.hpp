@@ -32,10 +32,14 @@ struct AlignmentSettings {
 
 /// What an alignment did, for people and for the summary.
 struct AlignmentReport {
-  std::vector<DeviceReport> devices;  ///< the lasers in the order of the rig, then the plate
+  std::vector<DeviceReport>
+      devices;  ///< the lasers in the order of the rig, then the plate; of each recording
   std::map<std::string, std::uint64_t> counts;
   std::vector<std::string> warnings;
   std::vector<std::string> doubts;  ///< why the times cannot be trusted
+
+  /// Adds what was done of another recording.
+  void append(AlignmentReport other);
 };
 
 /// Where an alignment puts what it makes: the plate's trajectory over a time first, then measurements in it.
@@ -68,6 +72,10 @@ class HubTracks {
 
   /// Notes that something was received. @return [s since the epoch] when
   double arrive(std::int64_t receipt_ns);
+  /// [s] How long nothing had come from any device when this is received.
+  double pause_before(std::int64_t receipt_ns) const;
+  /// Forgets all but the epoch and where the plate was: what comes now is of another recording.
+  void begin_anew();
   /// The track that a scan belongs to; nullptr, and counted, if the rig has no such laser.
   LaserTrack* track_of(const Scan& scan);
 
@@ -80,6 +88,8 @@ class HubTracks {
   std::int64_t epoch_ns() const { return epoch_ns_; }
   double now() const { return now_; }  ///< [s since the epoch] latest receipt
 
+  bool has_scans() const;     ///< of any laser
+  bool has_readings() const;  ///< of the plate
   /// @throws Error as Aligner::finish()
   void refuse_if_missing() const;
   void finish_clocks();
@@ -87,6 +97,8 @@ class HubTracks {
   AlignmentReport report() const;
 
  private:
+  Rig rig_;
+  AlignmentSettings settings_;
   std::vector<LaserTrack> lasers_;
   PlateTrack plate_;
   Pool<Measurements> measurements_;

@@ -52,6 +52,13 @@ std::string doubt_of(const DeviceReport& device) {
 
 }  // namespace
 
+void AlignmentReport::append(AlignmentReport other) {
+  devices.insert(devices.end(), other.devices.begin(), other.devices.end());
+  for (const auto& [what, n] : other.counts) counts[what] += n;
+  for (auto& warning : other.warnings) warnings.push_back(std::move(warning));
+  for (auto& doubt : other.doubts) doubts.push_back(std::move(doubt));
+}
+
 AlignmentReport HubTracks::report() const {
   AlignmentReport report{.devices = reports()};
   for (const auto& laser : lasers_) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/data/recordings.hpp"
+
 namespace crisp {
 namespace {
 
@@ -21,16 +23,16 @@ ClockAligner::ClockAligner(const Rig& rig, const AlignmentSettings& settings, Al
       length_(settings.window.value_or(kWindow)) {}
 
 double ClockAligner::arrive(std::int64_t receipt_ns) {
+  if (tracks_.pause_before(receipt_ns) > kPause) end_recording();
   const double hub = tracks_.arrive(receipt_ns);
   advance_windows();
   return hub;
 }
 
 void ClockAligner::add(std::shared_ptr<const Scan> scan) {
-  LaserTrack* laser = tracks_.track_of(*scan);
-  if (laser == nullptr) return;
+  if (tracks_.track_of(*scan) == nullptr) return;
   const double hub = arrive(scan->receipt_ns);
-  laser->add(std::move(scan), hub);
+  tracks_.lasers()[scan->laser].add(std::move(scan), hub);
 }
 
 void ClockAligner::add(const PlateReading& reading) {
@@ -96,12 +98,24 @@ bool ClockAligner::idle() const {
   return is_idle(tracks_.plate()) && std::ranges::all_of(tracks_.lasers(), is_idle);
 }
 
+void ClockAligner::end_recording() {
+  if (tracks_.has_scans() && tracks_.has_readings()) {
+    settle(begin_, std::nextafter(tracks_.now(), std::numeric_limits<double>::infinity()));
+    tracks_.finish_clocks();
+    hand_out(std::numeric_limits<double>::infinity());
+    report_.append(tracks_.report());
+  } else {
+    ++report_.counts["recordings without any scan, or without any reading of the plate"];
+  }
+  tracks_.begin_anew();
+  length_ = settings_.window.value_or(kWindow);
+  begin_ = tracks_.now();
+}
+
 AlignmentReport ClockAligner::finish() {
-  tracks_.refuse_if_missing();
-  settle(begin_, std::nextafter(tracks_.now(), std::numeric_limits<double>::infinity()));
-  tracks_.finish_clocks();
-  hand_out(std::numeric_limits<double>::infinity());
-  return tracks_.report();
+  if (report_.devices.empty()) tracks_.refuse_if_missing();
+  end_recording();
+  return report_;
 }
 
 }  // namespace crisp

@@ -13,6 +13,9 @@ namespace crisp {
 /// recording shorter than one and a half windows has one line and is handed out in one piece. The automatic
 /// window is 60 s, and doubles, up to 240 s, while delays are so rough that they leave a line less certain
 /// than the drift over the window.
+///
+/// After a pause of all devices (kPause) another recording begins, which has nothing in common with the one
+/// before it but the epoch.
 class ClockAligner final : public Aligner {
  public:
   ClockAligner(const Rig& rig, const AlignmentSettings& settings, AlignmentSink sink);
@@ -23,6 +26,7 @@ class ClockAligner final : public Aligner {
 
  private:
   double arrive(std::int64_t receipt_ns);
+  void end_recording();
   void advance_windows();
   bool is_too_short() const;
   void settle(double begin, double end);
@@ -32,8 +36,9 @@ class ClockAligner final : public Aligner {
   AlignmentSettings settings_;
   AlignmentSink sink_;
   HubTracks tracks_;
-  double begin_ = 0;  ///< [s since the epoch] of the window that is being filled
-  double length_;     ///< [s] of it
+  AlignmentReport report_;  ///< of recordings that have ended
+  double begin_ = 0;        ///< [s since the epoch] of the window that is being filled
+  double length_;           ///< [s] of it
 };
 
 }  // namespace crisp

@@ -33,8 +33,14 @@ nlohmann::json to_json(const DeviceReport& device) {
 std::string table_of(const std::vector<DeviceReport>& devices) {
   std::string text = fmt::format("{:10} {:>9} {:>9} {:>8} {:>11} {:>11} {:>6} {:>6}", "device", "stamps",
                                  "skew/ppm", "+-", "median/us", "95 %/us", "lost", "resets");
+  const auto recordings = std::ranges::count(devices, devices.front().clock.device,
+                                             [](const auto& device) { return device.clock.device; });
+  int recording = 0;
   for (const auto& device : devices) {
     const auto& clock = device.clock;
+    if (recordings > 1 && clock.device == devices.front().clock.device) {
+      text += fmt::format("\nrecording {} of {}", ++recording, recordings);
+    }
     if (clock.stamps == 0) {
       text += fmt::format("\n{:10} {:>9}", clock.device, 0);
       continue;
@@ -99,7 +105,9 @@ void ConvexHullStage::describe(StageDescription<ConvexHullStage>& d) {
       "Long "
       "recordings have a line a window; the map between the windows' middles is straight, so that it follows "
       "a "
-      "clock that drifts. A reset of a device begins a new line.\n\n"
+      "clock that drifts. A reset of a device begins a new line. After a pause of 5 s, in which nothing came "
+      "from any device, another "
+      "recording begins, which has nothing in common with the one before it.\n\n"
       "Each beam gets the time at which it was fired: the mirror's motion is taken from the scans' own "
       "stamps, "
       "since mirrors turn up to 0.6 % slower than they should, and wander.");

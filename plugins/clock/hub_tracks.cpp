@@ -23,8 +23,23 @@ std::vector<LaserTrack> tracks_of(const Rig& rig, const AlignmentSettings& setti
 }  // namespace
 
 HubTracks::HubTracks(const Rig& rig, const AlignmentSettings& settings)
-    : lasers_(tracks_of(rig, settings)),
+    : rig_(rig),
+      settings_(settings),
+      lasers_(tracks_of(rig, settings)),
       plate_(rig.plate, stamps_of(rig.plate.name, settings), settings.source) {}
+
+double HubTracks::pause_before(std::int64_t receipt_ns) const {
+  return begun_ ? 1e-9 * static_cast<double>(receipt_ns - epoch_ns_) - now_ : 0;
+}
+
+void HubTracks::begin_anew() {
+  lasers_ = tracks_of(rig_, settings_);
+  const auto before = plate_.latest_reading();
+  plate_ = PlateTrack(rig_.plate, stamps_of(rig_.plate.name, settings_), settings_.source);
+  if (before) plate_.follow_on(*before);
+  unknown_lasers_ = 0;
+  back_in_time_ = 0;
+}
 
 double HubTracks::arrive(std::int64_t receipt_ns) {
   if (!begun_) epoch_ns_ = epoch_of_run(receipt_ns);
@@ -48,13 +63,18 @@ std::shared_ptr<const Measurements> HubTracks::measurements_of(const TimedScan& 
   return measurements;
 }
 
+bool HubTracks::has_scans() const {
+  return std::ranges::any_of(lasers_, [](const auto& l) { return l.report().clock.stamps > 0; });
+}
+
+bool HubTracks::has_readings() const { return plate_.report().clock.stamps > 0; }
+
 void HubTracks::refuse_if_missing() const {
-  if (std::all_of(lasers_.begin(), lasers_.end(),
-                  [](const auto& l) { return l.report().clock.stamps == 0; })) {
+  if (!has_scans()) {
     throw Error("there is no scan of any laser of the rig",
                 "check the addresses in the rig, or what was recorded");
   }
-  if (plate_.report().clock.stamps == 0) {
+  if (!has_readings()) {
     throw Error("there is no reading of the plate (" + plate_.report().clock.device + ")",
                 "check the plate's address in the rig, or what was recorded: without its angle nothing can "
                 "be placed");

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "pipeline/clocks/clock_line.hpp"
+#include "pipeline/clocks/unwrap.hpp"
 #include "pipeline/data/error.hpp"
 
 namespace crisp {
@@ -28,7 +31,20 @@ PlateTrack::PlateTrack(const RigPlate& plate, DeviceStamps stamps, TimeSource so
   }
 }
 
+bool PlateTrack::goes_on(const Latest& from, const PlateReading& reading) {
+  constexpr double kMostDelay = 1;   // [s]
+  constexpr double kMostDoubt = 60;  // [s] beyond which a wrap of the clock could be mistaken for chance
+  const double hub_s = 1e-9 * static_cast<double>(reading.receipt_ns - from.receipt_ns);
+  const double doubt = kMostDelay + kMostSkew * std::abs(hub_s);
+  const auto device_us =
+      nearest_congruent(std::int64_t{reading.device_us} - from.device_us, std::int64_t{1} << 32, 1e6 * hub_s);
+  return doubt < kMostDoubt && std::abs(1e-6 * static_cast<double>(device_us) - hub_s) < doubt;
+}
+
 bool PlateTrack::add(const PlateReading& reading, double hub) {
+  if (before_) zero_is_new_ = !goes_on(*before_, reading);
+  before_.reset();
+  latest_ = {.device_us = reading.device_us, .receipt_ns = reading.receipt_ns};
   const auto arrival = stamps_.accept(reading.sequence, reading.device_us, reading.receipt_ns, hub);
   if (arrival.kind == StampKind::repeated) return false;
   if (arrival.kind == StampKind::reset) {
@@ -135,7 +151,9 @@ PlateTrajectory PlateTrack::piece(double begin, double end, std::int64_t epoch_n
     angles.push_back(static_cast<double>(reading->count) * step);
   }
   angles = between_steps(times, angles, step, settings.smoothing);
-  return {epoch_ns, std::move(times), std::move(angles), settings.max_gap};
+  std::vector<double> new_zeros;
+  if (std::exchange(zero_is_new_, false) && !times.empty()) new_zeros.push_back(times.front());
+  return {epoch_ns, std::move(times), std::move(angles), settings.max_gap, std::move(new_zeros)};
 }
 
 void PlateTrack::forget_before(double hub) {

@@ -28,6 +28,15 @@ class PlateTrack {
   /// @return whether the clock has another stamp
   /// @throws Error as DeviceStamps::accept
   bool add(const PlateReading& reading, double hub);
+  /// What a later track needs to tell whether the encoder went on counting.
+  struct Latest {
+    std::uint32_t device_us = 0;
+    std::int64_t receipt_ns = 0;
+  };
+  std::optional<Latest> latest_reading() const { return latest_; }
+  /// To be called before the first reading, if there was another recording of this plate before.
+  void follow_on(const Latest& before) { before_ = before; }
+
   /// The plate from the last reading at or before `begin` to the first at or after `end` [s since the epoch],
   /// as far as there are readings.
   PlateTrajectory piece(double begin, double end, std::int64_t epoch_ns, const PlateMotionSettings& settings);
@@ -63,6 +72,7 @@ class PlateTrack {
   void judge_jump(const Reading& next);
   bool has_jumped(const Reading& from, const Reading& to) const;
   bool has_lost_zero(const PlateReading& reading, double hub) const;
+  static bool goes_on(const Latest& from, const PlateReading& reading);
 
   double counts_per_revolution_;
   DeviceStamps stamps_;
@@ -74,6 +84,9 @@ class PlateTrack {
   std::uint64_t taken_ = 0;
   bool zero_is_lost_ = false;
   Before before_reset_;  ///< for a reset that turns out to be none
+  std::optional<Latest> latest_;
+  std::optional<Latest> before_;  ///< of another recording, until there is a first reading
+  bool zero_is_new_ = false;      ///< and no piece has said so
   Reading jumped_;
   std::uint64_t jumps_ = 0;  ///< in a row, each from the place of the one before it
   std::uint64_t impossible_ = 0;

@@ -71,6 +71,7 @@ std::vector<Candidate> candidates(const TermRegistry& terms, const Calibration& 
   std::vector<Candidate> all;
   for (const std::string& name : terms.names()) {
     const auto term = terms.get(name);
+    if (!lasting.shares(term->info().counts_from)) continue;
     if (term->info().scope == Scope::kPlate) {
       append(all, {.owner = calibration.lasers.size(), .name = name}, calibration.plate_terms, *term,
              lasting);
@@ -82,6 +83,15 @@ std::vector<Candidate> candidates(const TermRegistry& terms, const Calibration& 
     }
   }
   return all;
+}
+
+std::vector<std::string> unshared_causes(const TermRegistry& terms, const Lasting& lasting) {
+  std::vector<std::string> causes;
+  for (const std::string& name : terms.names()) {
+    const TermInfo& info = terms.get(name)->info();
+    if (info.covariate.empty() && !lasting.shares(info.counts_from)) causes.push_back(name);
+  }
+  return causes;
 }
 
 Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, const Lasting& lasting) {

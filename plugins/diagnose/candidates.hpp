@@ -25,17 +25,27 @@ struct Candidate {
   bool is_form_of(const Candidate& other) const { return name == other.name; }
 };
 
-/// When a recording's first and last beams were fired [s since the run's epoch].
+/// When the first and last beams were fired [s since the run's epoch], and what recordings have in common.
 struct Lasting {
   double first = 0;
   double last = 0;
+  bool one_begin = true;  ///< there is but one recording
+  bool one_zero = true;   ///< all angles of the plate count from one zero of the encoder
+
+  /// Whether one set of a term's parameters can hold for all.
+  bool shares(CountsFrom from) const {
+    return from == CountsFrom::kNothing || (from == CountsFrom::kRunsEpoch ? one_begin : one_zero);
+  }
 };
 
 /// Every term for each owner and in each form that its parameters ask to be tried (one parameter of form a
-/// term; further ones are left at their neutral values). Those that the calibration has come in the form that
-/// they have there, and with their values.
+/// term; further ones are left at their neutral values), but for those that recordings cannot share. Those
+/// that the calibration has come in the form that they have there, and with their values.
 std::vector<Candidate> candidates(const TermRegistry& terms, const Calibration& calibration,
                                   const Lasting& lasting);
+
+/// The causes that are left out because recordings cannot share them.
+std::vector<std::string> unshared_causes(const TermRegistry& terms, const Lasting& lasting);
 
 /// The same with another form.
 ///

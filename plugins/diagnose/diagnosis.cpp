@@ -133,6 +133,7 @@ void look(const Evidence& evidence, const TermRegistry& terms, const SelectionSe
   result.unobservable =
       hidden(looks_beside(taken, dictionary, equations), dictionary, settings, equations.beams);
   result.looks = names_of(dictionary.candidates()).size();
+  result.unshared = unshared_causes(terms, evidence.lasting());
 }
 
 class Diagnoser {

@@ -43,8 +43,9 @@ struct Diagnosis {
         0;  ///< RMS change of ranges that would not be seen, in units of their noise; may be infinite
   };
   std::vector<Limit> unobservable;
-  std::size_t looks = 0;  ///< different things that were looked for
-  bool settled = false;   ///< whether a last look at the extended model asked for nothing else
+  std::vector<std::string> unshared;  ///< terms that were not looked for: recordings cannot share them
+  std::size_t looks = 0;              ///< different things that were looked for
+  bool settled = false;               ///< whether a last look at the extended model asked for nothing else
   SideBySide left_before;
   SideBySide left_after;
 };

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/incidence.hpp"
 #include "pipeline/estimate/recording_blocks.hpp"
@@ -51,7 +52,11 @@ Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings
   placed_ = PlacedBeams(model, sample_);  // by terms that ask for it, too
   surfels_ = thinned(all, most);
   const auto [first, last] = std::ranges::minmax(sample_.beams.time);
-  lasting_ = {.first = first, .last = last};
+  const auto recordings = recordings_of(*sample_.plate);
+  lasting_ = {.first = first,
+              .last = last,
+              .one_begin = recordings.size() < 2,
+              .one_zero = recordings.empty() || recordings.front().zero == recordings.back().zero};
   blocks_ = recording_blocks(sample_.beams);
 }
 

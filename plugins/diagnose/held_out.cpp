@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/quality/rqe.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
@@ -21,26 +22,40 @@ using Turn = HeldOut::Score::Turn;
 
 constexpr std::size_t kLeastTurns = 4;
 
-/// A number for each beam that grows with the plate's turns, from 0.
-std::vector<std::uint32_t> turns_of(const Sample& sample) {
+/// Which turn of the plate, and which recording, each beam is of.
+struct Pieces {
+  std::vector<std::uint32_t> turn;  ///< grows with the plate's turns, from 0; no turn is of two recordings
+  std::vector<std::uint32_t> recording;
+  bool are_several = false;  ///< recordings
+
+  bool is_held_out(std::size_t i) const { return (are_several ? recording[i] : turn[i]) % 2 == 1; }
+};
+
+Pieces pieces_of(const Sample& sample) {
+  const RecordingNumbers number(*sample.plate);
+  Pieces pieces{.turn = {}, .recording = {}, .are_several = number.count() > 1};
   std::vector<double> turned;
   PlateTrajectory::Cursor plate(*sample.plate);
   double way = 0;
   double last = 0;
-  for (std::size_t i = 0; i < sample.beams.size(); ++i) {
-    const auto state = plate.at(sample.beams.time[i]);
+  for (const double time : sample.beams.time) {
+    const auto recording = static_cast<std::uint32_t>(number.of(time));
+    const auto state = plate.at(time);
     const double angle = state ? state->angle : last;
-    if (i > 0) way += std::abs(angle - last);
+    const bool goes_on = !turned.empty() && recording == pieces.recording.back();
+    if (goes_on) way += std::abs(angle - last);
     last = angle;
     turned.push_back(way);
+    pieces.recording.push_back(recording);
   }
   double piece = 2 * std::numbers::pi;
   if (way < static_cast<double>(kLeastTurns) * piece) piece = way / (2 * kLeastTurns) * (1 + 1e-9);
-  std::vector<std::uint32_t> turns;
-  for (const double angle : turned) {
-    turns.push_back(piece > 0 ? static_cast<std::uint32_t>(angle / piece) : 0);
+  std::uint32_t before = 0;  // borders of recordings so far, each of which ends a turn
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    if (i > 0 && pieces.recording[i] != pieces.recording[i - 1]) ++before;
+    pieces.turn.push_back(before + (piece > 0 ? static_cast<std::uint32_t>(turned[i] / piece) : 0));
   }
-  return turns;
+  return pieces;
 }
 
 /// Means of some beams about a mean.
@@ -116,12 +131,12 @@ double value_of(const Metric& metric, const std::vector<Turn>& turns, const std:
 }  // namespace
 
 Halves halves_of(const Sample& sample) {
-  const auto turns = turns_of(sample);
+  const Pieces pieces = pieces_of(sample);
   Halves halves;
-  halves.fitted = select(sample, [&](std::size_t i) { return turns[i] % 2 == 0; });
-  halves.held_out = select(sample, [&](std::size_t i) { return turns[i] % 2 == 1; });
-  for (const std::uint32_t turn : turns) {
-    if (turn % 2 == 1) halves.turn.push_back(turn / 2);
+  halves.fitted = select(sample, [&](std::size_t i) { return !pieces.is_held_out(i); });
+  halves.held_out = select(sample, [&](std::size_t i) { return pieces.is_held_out(i); });
+  for (std::size_t i = 0; i < pieces.turn.size(); ++i) {
+    if (pieces.is_held_out(i)) halves.turn.push_back(pieces.turn[i]);
   }
   return halves;
 }

@@ -10,14 +10,16 @@
 
 namespace crisp {
 
-/// Every other turn of the plate: what a model is fitted to, and what it is then judged by.
+/// Every other turn of the plate, or every other recording: what a model is fitted to, and what it is then
+/// judged by.
 struct Halves {
   Sample fitted;
   Sample held_out;
   std::vector<std::uint32_t> turn;  ///< of each held-out beam, from 0
 };
 
-/// Splits by turns of the plate; where there are fewer than four, by eighths of the recording.
+/// Splits by recordings where there are several, and else by turns of the plate; where there are fewer than
+/// four, by eighths of the recording.
 Halves halves_of(const Sample& sample);
 
 /// How well models place beams that they were not fitted to. Which beams count, and on which surfaces they

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/model_stage.hpp"
 
+#include "pipeline/data/recordings.hpp"
+#include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/plot/write_plot.hpp"
 #include "pipeline/stage/registry.hpp"
+#include "plugins/diagnose/artefacts.hpp"
 #include "plugins/diagnose/report.hpp"
 #include "plugins/diagnose/residual_plots.hpp"
 
@@ -24,7 +27,10 @@ void DiagnoseModelStage::describe(StageDescription<DiagnoseModelStage>& d) {
   d.details(
       "Looks for every effect of the catalogue in the distances of all beams to the flat surfaces that they "
       "meet, takes into the model what is needed, and says what that brings on turns of the plate that it "
-      "was not fitted to. It needs a calibration that is right to some centimetres: calibrate.refine.");
+      "was not fitted to. Of several recordings (what pauses of 5 s divide) every other one is held out "
+      "instead, "
+      "and what goes by time, or by angles that count from another zero, is not looked for. It needs a "
+      "calibration that is right to some centimetres: calibrate.refine.");
   d.takes<Measurements>()
       .takes<Findings>(Need::optional)
       .holds<PlateTrajectory>()
@@ -50,15 +56,21 @@ void DiagnoseModelStage::process(const Inputs& in, Outputs&, Context&) {
 }
 
 void DiagnoseModelStage::finish(Outputs& out, Context& context) {
-  const Sample sample = collected_.sample();
+  Sample sample = collected_.sample();
   context.count("beams left out of the diagnosis of a long recording", collected_.left_out());
   settings_.refinement.surfels.noise = noise_;
   const auto& terms = context.run().registrar->get<TermRegistry>();
-  const Diagnosis diagnosis = diagnose(SensorModel(*start_, terms), sample, terms, settings_,
-                                       [&](double fraction, const std::string& what) {
-                                         context.progress(fraction, what);
-                                         return !context.interrupted();
-                                       });
+  const SensorModel start(*start_, terms);
+  if (RecordingNumbers(*sample.plate).count() > 1) {
+    context.progress(0, "finding each recording's lags");
+    const RecordingLags lags = lags_of_recordings(start, sample, settings_.refinement);
+    sample = with_common_lags(std::move(sample), lags);
+  }
+  const Diagnosis diagnosis =
+      diagnose(start, sample, terms, settings_, [&](double fraction, const std::string& what) {
+        context.progress(fraction, what);
+        return !context.interrupted();
+      });
   if (context.interrupted()) return;
   if (!diagnosis.settled) {
     context.distrust("the extended model still asked for something else after the last round");
@@ -70,6 +82,9 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
   calibration.quality = start_->quality;
   calibration.quality["chi2"] = diagnosis.after.chi2;
   Findings findings = findings_of(diagnosis, calibration, terms, settings_.selection, noise_);
+  for (const auto& artefact : {aliasing(sample), density_bias(*start_, diagnosis.before.outcome)}) {
+    if (artefact) findings.artefacts.push_back(*artefact);
+  }
   context.say(in_words(diagnosis, findings));
   if (folder_) draw(*folder_, diagnosis, context);
   context.report({{"findings", findings.findings.size()},

@@ -145,6 +145,15 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
                                 .reason = reason_of(limit, told_by(limit.name, terms), noise),
                                 .combination = {}});
   }
+  for (const std::string& cause : diagnosis.unshared) {
+    all.unobservable.push_back(
+        {.parameter = cause,
+         .reason = terms.get(cause)->info().counts_from == CountsFrom::kRunsEpoch
+                       ? "it goes by the time since a recording began: diagnose one by itself"
+                       : "it goes by the plate's angle, whose zero was lost between the recordings: diagnose "
+                         "one by itself",
+         .combination = {}});
+  }
   return all;
 }
 
@@ -185,6 +194,10 @@ std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
   for (const Finding& finding : findings.findings) words += in_words(finding);
   for (const UnnamedFinding& finding : findings.unnamed) {
     words += in_words(finding);
+  }
+  for (const Artefact& artefact : findings.artefacts) {
+    words += fmt::format("the estimator's own ({}): {}\n", artefact.name, artefact.reason);
+    for (const Parameter& parameter : artefact.parameters) words += "  " + with_unit(parameter) + "\n";
   }
   words += fmt::format("measured and simulated residuals: p = {:.3f} before, {:.3f} after", findings.before_p,
                        findings.after_p);

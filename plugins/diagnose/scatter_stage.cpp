@@ -50,7 +50,7 @@ void DiagnoseScatterStage::process(const Inputs& in, Outputs&, Context&) {
 }
 
 void DiagnoseScatterStage::finish(Outputs& out, Context& context) {
-  const Sample sample = collected_.sample();
+  const Sample sample = longest_recording(collected_.sample());
   context.count("beams left out of the diagnosis of a long recording", collected_.left_out());
   const SensorModel model(*calibration_, context.run().registrar->get<TermRegistry>());
   const LagRange lag = lag_range(model, 0);

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
-#include <limits>
 
 #include "pipeline/clocks/unwrap.hpp"
+#include "pipeline/data/recordings.hpp"
 #include "pipeline/data/scan.hpp"
 #include "plugins/diagnose/report.hpp"
 
@@ -79,7 +79,9 @@ void DiagnoseStampsStage::describe(StageDescription<DiagnoseStampsStage>& d) {
       "link whose shortest delay becomes another (`latency.step`). Significance is by permutations of the "
       "least delays, the gain by every other one of them. It also lists what is usual: skews, delays, and "
       "how "
-      "mirrors turn against their nominal rate.");
+      "mirrors turn against their nominal rate. Of several recordings (what pauses of 5 s divide) the one "
+      "with most "
+      "stamps is looked at.");
   d.takes<Scan>().takes<PlateReading>().takes<Findings>(Need::optional).gives<Findings>();
   d.option(
       "nominal_mirrors", &DiagnoseStampsStage::nominal_mirrors_,
@@ -96,15 +98,35 @@ DiagnoseStampsStage::Device& DiagnoseStampsStage::device(std::size_t index, cons
   return devices_.at(index);
 }
 
+/// Clocks of different recordings have nothing in common: the one with most stamps is looked at.
+void DiagnoseStampsStage::arrive(std::int64_t receipt_ns) {
+  if (!first_ns_) first_ns_ = last_ns_ = receipt_ns;
+  if (1e-9 * static_cast<double>(receipt_ns - last_ns_) > kPause) end_recording();
+  first_ns_ = std::min(*first_ns_, receipt_ns);
+  last_ns_ = std::max(last_ns_, receipt_ns);
+}
+
+void DiagnoseStampsStage::end_recording() {
+  const auto stamps = [](const std::vector<Device>& devices) {
+    std::size_t sum = 0;
+    for (const Device& device : devices) sum += device.telegrams.stamps().size();
+    return sum;
+  };
+  if (stamps(devices_) > stamps(longest_)) longest_ = std::move(devices_);
+  devices_.clear();
+}
+
 void DiagnoseStampsStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const Findings* before = in.find<Findings>()) all_.append(*before);
   if (const Scan* scan = in.find<Scan>()) {
+    arrive(scan->receipt_ns);
     Device& laser = device(scan->laser, context.rig());
     laser.telegrams.add(scan->telegram_counter, scan->transmission_time_us, scan->receipt_ns);
     laser.passes.add(scan->scan_counter, scan->scan_time_us, scan->receipt_ns);
     if (scan->scan_frequency > 0) laser.nominal_period = 1 / scan->scan_frequency;
   }
   if (const PlateReading* reading = in.find<PlateReading>()) {
+    arrive(reading->receipt_ns);
     device(context.rig().lasers.size(), context.rig())
         .telegrams.add(reading->sequence, reading->device_us, reading->receipt_ns);
   }
@@ -129,24 +151,16 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, std
   }
   all.devices.push_back(facts);
   if (auto departure = clock_departure(stamps, looks, seed)) {
-    departure->at += 1e-9 * static_cast<double>(device.telegrams.first_ns() - epoch_ns());
+    departure->at += 1e-9 * static_cast<double>(device.telegrams.first_ns() - epoch_of_run(*first_ns_));
     all.findings.push_back(finding_of(*departure, device.name));
   }
-}
-
-std::int64_t DiagnoseStampsStage::epoch_ns() const {
-  std::int64_t first = std::numeric_limits<std::int64_t>::max();
-  for (const Device& device : devices_) {
-    if (!device.telegrams.stamps().empty()) first = std::min(first, device.telegrams.first_ns());
-  }
-  return epoch_of_run(first);
 }
 
 void DiagnoseStampsStage::add_mirror(const Device& device, const MirrorFacts& facts, Findings& all) const {
   constexpr double kSignificant = 0.002;
   const double excess = facts.period - device.nominal_period;
   const double z = std::abs(excess) / facts.period_std_error;
-  const double p = 2 * cdf(complement(boost::math::normal(), z)) * static_cast<double>(devices_.size());
+  const double p = 2 * cdf(complement(boost::math::normal(), z)) * static_cast<double>(longest_.size());
   if (!(p < kSignificant)) return;
   all.findings.push_back({.cause = "mirror.period",
                           .scope = device.name,
@@ -159,10 +173,11 @@ void DiagnoseStampsStage::add_mirror(const Device& device, const MirrorFacts& fa
 }
 
 void DiagnoseStampsStage::finish(Outputs& out, Context& context) {
+  end_recording();
   Findings all;
   std::size_t looks = 0;
-  for (const Device& device : devices_) looks += device.telegrams.stamps().empty() ? 0 : 1;
-  for (const Device& device : devices_) {
+  for (const Device& device : longest_) looks += device.telegrams.stamps().empty() ? 0 : 1;
+  for (const Device& device : longest_) {
     if (!device.telegrams.stamps().empty()) add_clock(device, looks, context.seed(), all);
   }
   context.say(facts_in_words(all.devices));

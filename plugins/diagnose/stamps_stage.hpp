@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,13 +28,17 @@ class DiagnoseStampsStage final : public Stage {
     double nominal_period = 0;  // [s]
   };
   Device& device(std::size_t index, const Rig& rig);
-  std::int64_t epoch_ns() const;
+  void arrive(std::int64_t receipt_ns);
+  void end_recording();
   void add_clock(const Device& device, std::size_t looks, std::uint64_t seed, Findings& all) const;
   void add_mirror(const Device& device, const MirrorFacts& facts, Findings& all) const;
 
   bool nominal_mirrors_ = false;
-  std::vector<Device> devices_;  // the lasers of the rig, then the plate
-  Findings all_;                 // what other diagnoses said before
+  std::vector<Device> devices_;           // the lasers of the rig, then the plate, in the present recording
+  std::vector<Device> longest_;           // in that of most stamps so far
+  std::optional<std::int64_t> first_ns_;  // receipt of all
+  std::int64_t last_ns_ = 0;
+  Findings all_;  // what other diagnoses said before
 };
 
 }  // namespace crisp

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "pipeline/data/recordings.hpp"
 #include "pipeline/pcd/cloud_table.hpp"
 
 namespace crisp {
@@ -17,7 +18,9 @@ void WritePcdStage::describe(StageDescription<WritePcdStage>& d) {
       "double, since the epoch that the comment `# crisp epoch_ns` in the header gives in nanoseconds since "
       "1970. PCL and CloudCompare read it. A recording that is too long for one file becomes several, so "
       "that "
-      "memory does not grow with it. The files appear when all of them are complete.");
+      "memory does not grow with it; and what comes after a pause of 5 s, maybe of another place, is in a "
+      "file of "
+      "its own. The files appear when all of them are complete.");
   d.takes<Cloud>();
   describe_parts(d, &WritePcdStage::options_);
 }
@@ -41,7 +44,8 @@ void WritePcdStage::process(const Inputs& in, Outputs&, Context& context) {
 }
 
 void WritePcdStage::add(const Point& point) {
-  if (!pending_.empty() && options_.is_full(pending_.size(), pending_.front().time, point.time)) {
+  if (!pending_.empty() && (options_.is_full(pending_.size(), pending_.front().time, point.time) ||
+                            point.time - pending_.back().time > kPause)) {
     writer_->write(to_table(pending_), true);
     written_ += pending_.size();
     pending_.clear();

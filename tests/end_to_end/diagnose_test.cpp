@@ -32,5 +32,32 @@ TEST(Configs, DiagnoseNamesTheCauseAndExtendsTheCalibration) {
   EXPECT_NEAR(calibration.lasers[1].terms[0].parameters.at(0).value, 0.02, 0.001);
 }
 
+TEST(Configs, DiagnoseTakesAFolderOfCapturesOfOneScanner) {
+  const test::Workshop workshop;
+  workshop.simulate("first", {"duration=4s", "effects={laser2.range.offset: {c: 2cm}}"});
+  const std::string truth = (workshop / "first/truth.yaml").string();
+  workshop.simulate("second",
+                    {"duration=4s", "scene=hall", "seed=7", "start=1767229200s", "calibration=" + truth});
+  const auto captures = workshop / "captures";
+  std::filesystem::create_directory(captures);
+  std::filesystem::rename(workshop / "first/hub.pcap", captures / "office.pcap");
+  std::filesystem::rename(workshop / "second/hub.pcap", captures / "hall.pcap");
+  const auto outcome = workshop.run("diagnose.yaml", captures, "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  EXPECT_EQ(outcome.stage("calibrate.refine")["recordings"].size(), 2U);
+  EXPECT_THAT(outcome.files, testing::IsSupersetOf({"cloud_0001.pcd", "cloud_0002.pcd"})) << "a place each";
+  const auto diagnosis = nlohmann::json::parse(test::bytes_of(workshop / "out/diagnosis.json"));
+  ASSERT_EQ(diagnosis["findings"].size(), 1U);
+  EXPECT_EQ(diagnosis["findings"][0]["cause"], "range.offset");
+  EXPECT_EQ(diagnosis["findings"][0]["scope"], "laser2");
+  const auto& unobservable = diagnosis["unobservable"];
+  EXPECT_TRUE(std::ranges::any_of(unobservable, [](const auto& one) {
+    return one["cause"] == "encoder.eccentricity";
+  })) << "the encoders of two simulations count from different zeros";
+  const Calibration calibration = read_calibration(workshop / "out/calibration.yaml");
+  ASSERT_EQ(calibration.lasers.at(1).terms.size(), 1U);
+  EXPECT_NEAR(calibration.lasers[1].terms[0].parameters.at(0).value, 0.02, 0.001);
+}
+
 }  // namespace
 }  // namespace crisp

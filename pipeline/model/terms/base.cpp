@@ -36,7 +36,8 @@ struct BaseMotion final : DifferentiableTerm<BaseMotion> {
             "`origin += (vx t + ax cos 2πft + bx sin 2πft, vy t + ay cos 2πft + by sin 2πft, vz t)` in the "
             "base's frame, t on the plate's clock since the run's epoch. A sway at the plate's own rate "
             "looks like wobble or rocking: another speed tells them apart.",
-        .told_by = "a rate of the plate that changes"};
+        .told_by = "a rate of the plate that changes",
+        .counts_from = CountsFrom::kRunsEpoch};
     return kInfo;
   }
   template <class T>

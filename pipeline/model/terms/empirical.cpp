@@ -167,6 +167,9 @@ EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape) : on_(on), over_(ove
                 : over == Over::kPlateRate ? " [rad/s]"
                                            : " [rad]") +
                ".",
+           .counts_from = over == Over::kTime         ? CountsFrom::kRunsEpoch
+                          : over == Over::kPlateAngle ? CountsFrom::kEncodersZero
+                                                      : CountsFrom::kNothing,
            .covariate = of};
 }
 

@@ -20,7 +20,8 @@ struct EncoderEccentricity final : DifferentiableTerm<EncoderEccentricity> {
         .details =
             "`φ + a cos φ + b sin φ`. A disk of 20 mm radius that is 20 µm off its axis errs by up to "
             "0.06°.",
-        .told_by = "lasers at other azimuths; other rates of the plate"};
+        .told_by = "lasers at other azimuths; other rates of the plate",
+        .counts_from = CountsFrom::kEncodersZero};
     return kInfo;
   }
   template <class T>
@@ -44,7 +45,8 @@ struct EncoderSecondHarmonic final : DifferentiableTerm<EncoderSecondHarmonic> {
         .details =
             "`φ + a cos 2φ + b sin 2φ`. Typically 0.02° to 0.2°. A laser's front and back, half a turn "
             "apart, err alike: only lasers at other azimuths show it.",
-        .told_by = "lasers that are not a third of a turn apart"};
+        .told_by = "lasers that are not a third of a turn apart",
+        .counts_from = CountsFrom::kEncodersZero};
     return kInfo;
   }
   template <class T>

@@ -34,7 +34,8 @@ struct Wobble final : DifferentiableTerm<Wobble> {
             "`x = Rx(a cos φ + b sin φ) Ry(c cos φ + d sin φ) x` in the base's frame, about the scanner's "
             "centre. Typically 0.006° to 0.2°. The part with a = d, b = −c turns with the plate: it is a "
             "tilt of the plate on its axis, which all lasers share.",
-        .told_by = "floor and ceiling as well as walls on all sides"};
+        .told_by = "floor and ceiling as well as walls on all sides",
+        .counts_from = CountsFrom::kEncodersZero};
     return kInfo;
   }
   template <class T>
@@ -72,7 +73,8 @@ struct Rocking final : DifferentiableTerm<Rocking> {
             "`origin += ω² (a cos φ + b sin φ, c cos φ + d sin φ, 0)` in the base's frame, ω in rad/s: "
             "1e-5 m s² are 1.6 mm at 2 Hz. Typically mm. At one speed the part with a = d, b = −c is a "
             "common shift of the lasers on the plate.",
-        .told_by = "two rates of the plate"};
+        .told_by = "two rates of the plate",
+        .counts_from = CountsFrom::kEncodersZero};
     return kInfo;
   }
   template <class T>

@@ -27,7 +27,8 @@ struct RangeWarmup final : DifferentiableTerm<RangeWarmup> {
         .details =
             "`r + c (1 − exp(−t/T))`, t since the run's epoch. Millimetres to centimetres over minutes to "
             "hours. In a short run it is a range.offset and a constant growth.",
-        .told_by = "a longer recording, from a cold start"};
+        .told_by = "a longer recording, from a cold start",
+        .counts_from = CountsFrom::kRunsEpoch};
     return kInfo;
   }
   template <class T>
@@ -58,7 +59,8 @@ struct RangeStep final : DifferentiableTerm<RangeStep> {
         .details =
             "`r + h (1 + tanh((t − at) / 5 ms)) / 2`: a jump. A real LMS111 reported 2.05 mm more from "
             "2.4 s after its start on: h is −2.05 mm then.",
-        .told_by = "a longer recording, before it and after it"};
+        .told_by = "a longer recording, before it and after it",
+        .counts_from = CountsFrom::kRunsEpoch};
     return kInfo;
   }
   template <class T>

@@ -83,7 +83,8 @@ struct ClockDrift final : DifferentiableTerm<ClockDrift> {
             "`t + skew t + drift t²/2`, t since the run's epoch: as the cloud sees it, a lag that varies "
             "with time. 20 ppm over 0 to 50 °C; Sheehan, Harrison and Newman lost 90 s in 5 days, 208 ppm. "
             "Simulated telegrams carry the stamps of a clock that does run so.",
-        .told_by = "a longer recording"};
+        .told_by = "a longer recording",
+        .counts_from = CountsFrom::kRunsEpoch};
     return kInfo;
   }
   template <class T>

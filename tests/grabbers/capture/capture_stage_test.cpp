@@ -132,6 +132,46 @@ TEST_F(CaptureStageTest, WarnsOfDevicesThatTheRigDoesNotKnow) {
             10U);
 }
 
+class CaptureFolder : public CaptureStageTest {
+ protected:
+  CaptureFolder() {
+    std::filesystem::create_directory(captures());
+    write_file(captures() / "notes.txt", Bytes{'r', 'o', 'o', 'm'});
+  }
+  std::filesystem::path captures() const { return folder_ / "captures"; }
+  std::string file() const { return "file: " + captures().string(); }
+  /// The scenario's frames, some seconds later.
+  Bytes later(std::int64_t seconds) const {
+    auto frames = scenario_.frames();
+    for (auto& frame : frames) frame.time_ns += seconds * 1'000'000'000;
+    return pcap_file(frames);
+  }
+};
+
+TEST_F(CaptureFolder, ItsCapturesComeInTheOrderOfTheirPackets) {
+  write_file(captures() / "a.pcap", later(100));
+  write_file(captures() / "b.pcap", later(0));
+  const auto result = run(file());
+  const auto items = scenario_.items();
+  ASSERT_EQ(Taker::items.size(), 2 * items.size());
+  EXPECT_EQ(
+      std::vector(Taker::items.begin(), Taker::items.begin() + static_cast<std::ptrdiff_t>(items.size())),
+      describe(items));
+  EXPECT_THAT(result.report.read, testing::ElementsAre(captures() / "b.pcap", captures() / "a.pcap"));
+  ASSERT_EQ(result.report.section["captures"].size(), 2U);
+  EXPECT_EQ(result.report.section["captures"][1]["file"], (captures() / "a.pcap").string());
+}
+
+TEST_F(CaptureFolder, CapturesOfTheSameTimeAreRefused) {
+  write_file(captures() / "a.pcap", later(0));
+  write_file(captures() / "b.pcap", later(0));
+  EXPECT_THAT(complaint(file()), HasSubstr("begins before a.pcap ends"));
+}
+
+TEST_F(CaptureFolder, OneWithoutCapturesIsRefused) {
+  EXPECT_THAT(complaint(file()), HasSubstr("is a folder without any capture"));
+}
+
 TEST_F(CaptureStageTest, SaysThatTheFileIsMissing) {
   EXPECT_THAT(complaint("file: nowhere.pcap"), HasSubstr("nowhere.pcap: No such file or directory"));
   EXPECT_THAT(complaint(""), HasSubstr("file"));

@@ -36,6 +36,9 @@ Findings some_findings() {
                               .unit = "m",
                               .p_value = 1e-4});
   findings.unobservable.push_back({.parameter = "encoder.backlash", .reason = "no reversal"});
+  findings.artefacts.push_back({.name = "density",
+                                .parameters = {{"laser2.tau", "m", 0.002, 1e-4, true}},
+                                .reason = "an entropy's optimum shifts"});
   findings.devices.push_back({.device = "laser1", .stamps = 172, .skew = 7e-6});
   findings.noise.push_back({.laser = "laser1", .ranges = 31'000, .sigma = 4.6e-3});
   return findings;
@@ -49,8 +52,9 @@ std::vector<std::string> keys_of(const nlohmann::json& object) {
 
 TEST(FindingsFile, HoldsWhatProgramsAreToldToExpect) {
   const auto json = nlohmann::json::parse(findings_json(some_findings()));
-  EXPECT_THAT(keys_of(json), testing::UnorderedElementsAre("crisp", "findings", "unnamed", "unobservable",
-                                                           "devices", "noise", "indistinguishable"));
+  EXPECT_THAT(keys_of(json),
+              testing::UnorderedElementsAre("crisp", "findings", "unnamed", "unobservable", "artefacts",
+                                            "devices", "noise", "indistinguishable"));
   const auto& finding = json["findings"][0];
   EXPECT_THAT(keys_of(finding), testing::UnorderedElementsAre(
                                     "cause", "scope", "parameters", "explained_fraction", "log10_odds",
@@ -71,7 +75,7 @@ TEST(FindingsFile, HoldsWhatSeveralDiagnosesSay) {
   all.append(some_findings());
   all.append({.before_p = 0.5, .after_p = 0.1});
   const auto json = nlohmann::json::parse(findings_json(all));
-  for (const char* list : {"findings", "unnamed", "unobservable", "devices", "noise"}) {
+  for (const char* list : {"findings", "unnamed", "unobservable", "artefacts", "devices", "noise"}) {
     EXPECT_EQ(json[list].size(), 2U) << list;
   }
   EXPECT_EQ(json["indistinguishable"]["before_p"], 0.005) << "the smallest";
@@ -89,6 +93,7 @@ TEST(FindingsFile, IsDocumentedKeyByKey) {
                                          json["findings"][0]["gain"][0],
                                          json["unnamed"][0],
                                          json["unobservable"][0],
+                                         json["artefacts"][0],
                                          json["devices"][0],
                                          json["noise"][0],
                                          json["indistinguishable"]};
@@ -116,6 +121,7 @@ TEST(FindingsFile, IsReadAsItWasWritten) {
   EXPECT_TRUE(finding.accepted);
   EXPECT_EQ(read.unnamed.at(0).quantity, "range");
   EXPECT_EQ(read.unobservable.at(0).parameter, "encoder.backlash");
+  EXPECT_EQ(read.artefacts.at(0).parameters.at(0).value, 0.002);
   EXPECT_EQ(read.devices.at(0).stamps, 172U);
   EXPECT_EQ(read.noise.at(0).sigma, 4.6e-3);
   EXPECT_EQ(read.before_p, 0.005);

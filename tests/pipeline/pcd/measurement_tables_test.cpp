@@ -53,6 +53,14 @@ TEST_P(MeasurementFormats, ATrajectoryComesBackExactly) {
   }
 }
 
+TEST_P(MeasurementFormats, NewZerosOfTheEncoderComeBack) {
+  const PlateTrajectory plate(5, {0, 1, 2, 3}, {0, 1, 0, 1}, 1, {1.5, 3});
+  const auto read = trajectory_of(through_a_file(to_table(plate), GetParam()));
+  ASSERT_EQ(read.new_zeros().size(), 2U);
+  EXPECT_EQ(read.new_zeros()[0], 2) << "the first reading that counts from it";
+  EXPECT_EQ(read.new_zeros()[1], 3);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, MeasurementFormats,
                          testing::Values(PcdFormat::ascii, PcdFormat::binary, PcdFormat::binary_compressed));
 

@@ -177,5 +177,60 @@ TEST(ClockAligner, ByTheLinearProgrammeGivesTheSameTimes) {
   }
 }
 
+/// Twenty seconds of which some in the middle were not recorded.
+class PausedRecording : public ::testing::Test {
+ protected:
+  static bool is_paused(double t) { return t >= 7 && t < 14; }
+  PausedRecording() {
+    laser_.is_lost = plate_.is_lost = is_paused;
+    laser_.beams = 9;
+    // The clock's rate changes by far more than a line would stand, while nobody looks.
+    laser_.clock.skew = [](double t) { return t < 10 ? -30e-6 : 120e-6; };
+  }
+  Aligned aligned() const { return align({laser_.turns(1, 0, 20)}, plate_.readings(1, 20)); }
+
+  SimulatedLaser laser_;
+  SimulatedPlate plate_;
+};
+
+TEST_F(PausedRecording, EachPartHasClocksOfItsOwn) {
+  const auto turns = laser_.turns(1, 0, 20);
+  const auto result = aligned();
+  ASSERT_EQ(result.stretches.size(), 2U);
+  const auto errors = beam_time_errors(result, 0, laser_, turns);
+  EXPECT_LT(errors.median, 6e-6);
+  EXPECT_LT(errors.worst, 25e-6);
+  ASSERT_EQ(result.report.devices.size(), 4U) << "laser and plate, twice";
+  EXPECT_NEAR(result.report.devices[0].clock.skew_ppm(), -30, 3);
+  EXPECT_NEAR(result.report.devices[2].clock.skew_ppm(), 120, 3);
+  for (const auto& device : result.report.devices) EXPECT_EQ(device.lost, 0U) << device.clock.device;
+}
+
+TEST_F(PausedRecording, AnEncoderThatWentOnCountingKeepsItsZero) {
+  const auto result = aligned();
+  EXPECT_TRUE(result.stretches.at(1).plate.new_zeros().empty());
+  const auto before = result.stretches[0].plate.at(kStart + 5);
+  const auto after = result.stretches[1].plate.at(kStart + 17);
+  ASSERT_TRUE(before && after);
+  EXPECT_NEAR(after->angle - before->angle, 12 * 2 * std::numbers::pi, 0.01);
+}
+
+TEST_F(PausedRecording, AnEncoderThatBeganAnewHasANewZero) {
+  plate_.clock.reset_at = 10;
+  plate_.forgets_count_at_reset = true;
+  const auto result = aligned();
+  ASSERT_EQ(result.stretches.size(), 2U);
+  EXPECT_THAT(result.stretches[1].plate.new_zeros(), ::testing::SizeIs(1));
+  EXPECT_EQ(result.report.counts.at("plate: readings after its zero was lost"), 0U);
+  EXPECT_FALSE(result.stretches[1].scans.empty());
+}
+
+TEST_F(PausedRecording, APartWithoutThePlateIsCountedAndTheOtherUsed) {
+  plate_.is_lost = [](double t) { return t < 14; };
+  const auto result = aligned();
+  EXPECT_EQ(result.stretches.size(), 1U);
+  EXPECT_EQ(result.report.counts.at("recordings without any scan, or without any reading of the plate"), 1U);
+}
+
 }  // namespace
 }  // namespace crisp

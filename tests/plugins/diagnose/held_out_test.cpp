@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/plugins/diagnose/hidden.hpp"
+#include "tests/support/several_recordings.hpp"
 
 namespace crisp {
 namespace {
@@ -17,6 +18,18 @@ TEST(HeldOut, HalvesShareNoTurnAndNoBeamIsLost) {
   EXPECT_GT(halves.held_out.beams.size(), all.beams.size() / 4);
   EXPECT_EQ(halves.turn.size(), halves.held_out.beams.size());
   EXPECT_GE(*std::ranges::max_element(halves.turn), 1U);
+}
+
+TEST(HeldOut, OfSeveralRecordingsEveryOtherIsHeldOut) {
+  const auto recording = test::hidden(1, 6, office(), {}).made;
+  const test::Several three = test::several({recording, recording, recording});
+  const Halves halves = halves_of(three.sample());
+  EXPECT_EQ(halves.fitted.beams.size(), 2 * recording.beams.size());
+  EXPECT_EQ(halves.held_out.beams.range, recording.beams.range) << "the second";
+  std::vector<std::uint32_t> turns = halves.turn;
+  std::ranges::sort(turns);
+  turns.erase(std::ranges::unique(turns).begin(), turns.end());
+  EXPECT_GE(turns.size(), 4U);
 }
 
 TEST(HeldOut, SaysWhatAChangePutInByHandBrings) {

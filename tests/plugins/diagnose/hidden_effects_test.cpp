@@ -2,9 +2,13 @@
 // Effects that hide in recordings are named, and nothing else is.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <functional>
+#include <utility>
 
+#include "plugins/diagnose/held_out.hpp"
 #include "tests/plugins/diagnose/hidden.hpp"
+#include "tests/support/several_recordings.hpp"
 
 namespace crisp {
 namespace {
@@ -73,6 +77,46 @@ TEST(HiddenEffects, TwoAtOnceAreBothNamedAndEachPays) {
   }
 }
 
+double thickness_of(const HeldOut& held_out, const SensorModel& model) {
+  const auto score = held_out.score(model);
+  return HeldOut::gains(score, score).at(0).after;
+}
+
+/// Effects of about 8 mm RMS.
+class GainOnHeldOutTurns : public testing::TestWithParam<std::pair<const char*, std::vector<double>>> {};
+
+TEST_P(GainOnHeldOutTurns, IsTheTrueOneAndLeavesACloudAsThinAsWithoutTheEffect) {
+  const auto& [name, values] = GetParam();
+  const auto recording = test::hidden(41, 10, office(), {{name, values}});
+  const Diagnosis diagnosis = test::diagnosed(recording);
+  ASSERT_THAT(test::names_in(diagnosis), ElementsAre(name));
+  const Gain gain = diagnosis.departures.at(0).gains.at(0);
+  ASSERT_EQ(gain.metric, "cloud thickness");
+
+  const auto halves = [](const test::Recording& of) { return halves_of(covered(of.sample(), -0.05, 0.05)); };
+  const HeldOut with_effect(halves(recording), diagnosis.before.outcome.model, {});
+  const double truly_after =
+      thickness_of(with_effect, SensorModel(recording.scanner.truth, built_in_terms()));
+  EXPECT_GT(truly_after, gain.before + gain.ci95[0]);
+  EXPECT_LT(truly_after, gain.before + gain.ci95[1]);
+
+  const auto clean = test::hidden(41, 10, office(), {});
+  const SensorModel clean_truth(clean.scanner.truth, built_in_terms());
+  const double without_effect = thickness_of(HeldOut(halves(clean), clean_truth, {}), clean_truth);
+  EXPECT_NEAR(gain.after, without_effect, 0.03 * without_effect);
+  EXPECT_GT(gain.before, gain.after);
+}
+
+INSTANTIATE_TEST_SUITE_P(HiddenEffects, GainOnHeldOutTurns,
+                         testing::Values(std::pair("encoder.eccentricity", std::vector{0.003, -0.002}),
+                                         std::pair("laser2.mirror.cone", std::vector{0.005}),
+                                         std::pair("laser1.range.offset", std::vector{0.008})),
+                         [](const auto& effect) {
+                           std::string name = effect.param.first;
+                           std::ranges::replace(name, '.', '_');
+                           return name;
+                         });
+
 TEST(HiddenEffects, ATimeBetweenBeamsIsOneOfAClass) {
   const auto recording = test::hidden(24, 10, office(), {{"laser1.timing.intra_scan", {2e-6}}});
   const Diagnosis diagnosis = test::diagnosed(recording);
@@ -82,6 +126,31 @@ TEST(HiddenEffects, ATimeBetweenBeamsIsOneOfAClass) {
   EXPECT_TRUE(name == "laser1.timing.intra_scan" || name == "laser1.mirror.period") << name;
   ASSERT_FALSE(diagnosis.departures[0].rivals.empty());
   EXPECT_LT(diagnosis.departures[0].rivals[0].behind, SelectionSettings{}.odds);
+}
+
+/// Of the same scanner in office and hall.
+Diagnosis diagnosed_in_two_places(const std::map<std::string, std::vector<double>>& effects, bool new_zeros) {
+  const auto first = test::hidden(31, 6, office(), effects);
+  const auto second = test::hidden(32, 6, hall(), effects);
+  const test::Several both = test::several({first.made, second.made}, new_zeros);
+  return diagnose(SensorModel(nominal_calibration(default_rig()), built_in_terms()), both.sample(),
+                  built_in_terms(), {});
+}
+
+TEST(HiddenEffects, RecordingsOfTwoPlacesShowOneCauseAndJudgeEachOther) {
+  const std::map<std::string, std::vector<double>> effects = {{"encoder.eccentricity", {0.002, -0.0015}}};
+  const Diagnosis diagnosis = diagnosed_in_two_places(effects, false);
+  EXPECT_THAT(test::names_in(diagnosis), ElementsAre("encoder.eccentricity"));
+  expect_within_errors(diagnosis, test::hidden(31, 1, office(), effects), "encoder.eccentricity", 2);
+  ASSERT_FALSE(diagnosis.departures.at(0).gains.empty());
+  EXPECT_LT(diagnosis.departures[0].gains[0].after, diagnosis.departures[0].gains[0].before)
+      << "the hall's cloud is thinner by what the office told";
+}
+
+TEST(HiddenEffects, RecordingsWithoutACommonZeroTellWhatDoesNotDependOnIt) {
+  const Diagnosis diagnosis = diagnosed_in_two_places({{"laser2.mirror.cone", {0.0035}}}, true);
+  EXPECT_THAT(test::names_in(diagnosis), ElementsAre("laser2.mirror.cone"));
+  EXPECT_THAT(diagnosis.unshared, testing::Contains("encoder.eccentricity"));
 }
 
 /// Errors made by a formula of the test's own, as no term of the catalogue describes them.

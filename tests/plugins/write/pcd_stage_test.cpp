@@ -50,6 +50,17 @@ Cloud cloud_of_times(std::initializer_list<double> times) {
   return cloud;
 }
 
+TEST_F(WritePcd, WhatComesAfterAPauseIsInAFileOfItsOwn) {
+  auto stage = writer();
+  stage.feed(cloud_of_times({0, 1, 2}));
+  stage.feed(cloud_of_times({5, 30}));
+  stage.finish();
+  const auto clouds = read("cloud.pcd");
+  ASSERT_EQ(clouds.size(), 2U);
+  EXPECT_THAT(times(clouds[0]), ElementsAre(0, 1, 2, 5));
+  EXPECT_THAT(times(clouds[1]), ElementsAre(30));
+}
+
 TEST_F(WritePcd, CloudsThatComeInPiecesBecomeOneFile) {
   auto stage = writer();
   stage.feed(sample_cloud(10));

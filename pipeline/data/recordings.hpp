@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pipeline/data/plate_trajectory.hpp"
+
+namespace crisp {
+
+/// [s] A silence after which what comes is another recording: the scanner may have been carried elsewhere,
+/// and its clocks have nothing in common with those before. One recording too many costs little.
+inline constexpr double kPause = 5;
+
+/// A stretch of time in which the scanner stood in one place.
+struct Recording {
+  double begin = 0;      ///< [s since epoch] first reading of the plate
+  double end = 0;        ///< [s since epoch] last one
+  std::size_t zero = 0;  ///< of the encoder: recordings with the same one have angles in common
+};
+
+/// What pauses of the plate's readings divide a trajectory into, in the order of time.
+std::vector<Recording> recordings_of(const PlateTrajectory& plate);
+
+/// Which recording a time belongs to.
+class RecordingNumbers {
+ public:
+  explicit RecordingNumbers(const PlateTrajectory& plate);
+  /// @return from 0; times in a pause belong to the nearer recording
+  std::size_t of(double time) const;
+  std::size_t count() const { return borders_.size() + 1; }
+
+ private:
+  std::vector<double> borders_;  // [s since epoch] the middles of the pauses
+};
+
+}  // namespace crisp
