@@ -44,7 +44,7 @@ TEST(Configs, DiagnoseTakesAFolderOfCapturesOfOneScanner) {
   std::filesystem::rename(workshop / "second/hub.pcap", captures / "hall.pcap");
   const auto outcome = workshop.run("diagnose.yaml", captures, "out");
   EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  EXPECT_EQ(outcome.stage("calibrate.refine")["recordings"].size(), 2U);
+  EXPECT_EQ(outcome.stage("calibrate.refine")["report"]["recordings"].size(), 2U);
   EXPECT_THAT(outcome.files, testing::IsSupersetOf({"cloud_0001.pcd", "cloud_0002.pcd"})) << "a place each";
   const auto diagnosis = nlohmann::json::parse(test::bytes_of(workshop / "out/diagnosis.json"));
   ASSERT_EQ(diagnosis["findings"].size(), 1U);
