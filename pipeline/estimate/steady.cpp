@@ -3,13 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace crisp {
 namespace {
 
 /// How far apart a surfel's views lie.
 struct Spread {
-  double squares = 0;    // [m²] mean square over its beams
+  double weight = 0;     // of its beams
+  double squares = 0;    // [m²] mean square over them
   double by_chance = 0;  // [σ²] what of that the noise of ranges makes
 };
 Spread spread_of_views(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams,
@@ -32,13 +34,26 @@ Spread spread_of_views(const Surfel& surfel, const Surfels& surfels, const Beams
     all.sum += moment;
   }
   if (!(all.weight > 0)) return {};
-  Spread spread{.squares = 0, .by_chance = -1 / all.weight};
+  Spread spread{.weight = all.weight, .squares = 0, .by_chance = -1 / all.weight};
   for (const View& view : parts) {
     if (!(view.weight > 0)) continue;
     spread.squares += view.weight * std::pow(view.sum / view.weight - all.sum / all.weight, 2) / all.weight;
     spread.by_chance += 1 / all.weight;
   }
   return spread;
+}
+
+/// [m] How far apart views lie where few beams are on surfels whose views lie farther apart still.
+double far_for_most_beams(std::vector<Spread> spreads) {
+  constexpr double kFew = 0.1;
+  double few = 0;
+  for (const Spread& spread : spreads) few += kFew * spread.weight;
+  std::ranges::sort(spreads, std::greater(), &Spread::squares);
+  for (const Spread& spread : spreads) {
+    few -= spread.weight;
+    if (few < 0) return std::sqrt(spread.squares);
+  }
+  return 0;
 }
 
 double median(std::vector<double> values) {
@@ -61,7 +76,7 @@ std::vector<bool> steady(const Surfels& surfels, const BeamsView& beams, double 
     spreads.push_back(spread_of_views(surfel, surfels, beams, views));
     sizes.push_back(std::sqrt(spreads.back().squares));
   }
-  const double most = std::max(kLeast * noise, kMuchMore * median(sizes));
+  const double most = std::max({kLeast * noise, kMuchMore * median(sizes), far_for_most_beams(spreads)});
   std::vector<bool> result;
   for (const Spread& spread : spreads) {
     result.push_back(spread.squares <= most * most + kChance * noise * noise * spread.by_chance);

@@ -12,7 +12,9 @@ namespace crisp {
 /// Where somebody walked by, views that looked at different times found pieces at different places. Within a
 /// view nothing tells them from a wall, but between views they lie decimetres apart and would pull with all
 /// of it. A surfel counts as steady if the root mean square distance between its views' means and their
-/// common one is at most 5 times that of the median surfel, or one standard deviation of a range.
+/// common one is at most 5 times that of the median surfel, or a quarter of a standard deviation of a range.
+/// Those that are not hold a tenth of the beams at most: where views disagree on more than that, it is the
+/// scanner's model that is wrong (floor and ceiling, say, by a laser that sits too low).
 ///
 /// @param noise  [m] standard deviation of a range
 /// @return  for each surfel whether it is steady

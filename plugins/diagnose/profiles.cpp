@@ -66,6 +66,32 @@ Residuals residuals_in(const Evidence& evidence, const SurfelSettings& settings)
   return all;
 }
 
+/// [m] Standard deviation of ranges, from differences of neighbours: beams of one scan on one surface. Lasers
+/// that disagree, and whatever else changes slowly, are not in it. Where there are hardly any neighbours,
+/// from all residuals.
+double noise_of(const Residuals& residuals, const Measurements& beams) {
+  constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
+  constexpr double kFewPairs = 1000;
+  double squares = 0;
+  double weight = 0;
+  for (std::size_t s = 0; s + 1 < residuals.first.size(); ++s) {
+    for (std::size_t k = residuals.first[s] + 1; k < residuals.first[s + 1]; ++k) {
+      const std::uint32_t one = residuals.beam[k - 1];
+      const std::uint32_t other = residuals.beam[k];
+      if (beams.laser[one] != beams.laser[other] || beams.time[other] - beams.time[one] > kOneScan) continue;
+      const double both = residuals.weight[k - 1] * residuals.weight[k];
+      squares += both * std::pow(residuals.value[k] - residuals.value[k - 1], 2) / 2;
+      weight += both;
+    }
+  }
+  if (weight > kFewPairs) return std::sqrt(squares / weight);
+  for (std::size_t k = 0; k < residuals.value.size(); ++k) {
+    squares += residuals.weight[k] * std::pow(residuals.value[k], 2);
+    weight += residuals.weight[k];
+  }
+  return std::sqrt(squares / std::max(1.0, weight));
+}
+
 /// What noise leaves of a simulated recording, once planes have been fitted to it.
 std::vector<double> simulated(const Residuals& measured, double noise, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -191,13 +217,7 @@ SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings
   const Residuals residuals = residuals_in(evidence, settings);
   const auto& weights = residuals.weight;
   SideBySide result;
-  double squares = 0;
-  double weight = 0;
-  for (std::size_t k = 0; k < residuals.value.size(); ++k) {
-    squares += weights[k] * std::pow(residuals.value[k], 2);
-    weight += weights[k];
-  }
-  result.noise = std::sqrt(squares / std::max(1.0, weight));
+  result.noise = noise_of(residuals, evidence.sample().beams);
   const auto all = layouts(evidence, residuals);
 
   std::vector<double> greatest(kSimulations);

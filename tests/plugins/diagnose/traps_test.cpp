@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ways in which a diagnosis of this kind deceives itself, each on a recording in which it would.
+#include <gmock/gmock.h>
+
+#include "plugins/diagnose/evidence.hpp"
+#include "plugins/diagnose/held_out.hpp"
+#include "plugins/diagnose/profiles.hpp"
+#include "plugins/diagnose/selection.hpp"
+#include "tests/plugins/diagnose/hidden.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::size_t kBeams = 100'000;
+
+/// λ, τ, α, η of three lasers but λ₁.
+std::vector<std::size_t> base() { return {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}; }
+
+/// All candidates around the plain truth of a recording.
+class Looked {
+ public:
+  explicit Looked(const test::Recording& recording)
+      : model_(nominal_calibration(default_rig()), built_in_terms()),
+        evidence_(model_, covered(recording.sample(), -0.05, 0.05), {}, kBeams),
+        dictionary_(model_, base(), candidates(built_in_terms(), model_.calibration(), evidence_.lasting()),
+                    built_in_terms()),
+        equations_(evidence_.equations(dictionary_)) {}
+
+  const Evidence& evidence() const { return evidence_; }
+  Look of(const std::string& name) const {
+    const auto looks = looks_beside({}, dictionary_, equations_);
+    const auto& all = dictionary_.candidates();
+    const auto found = std::ranges::find(all, name, &Candidate::name) - all.begin();
+    return looks.at(static_cast<std::size_t>(found)).value();
+  }
+  std::vector<std::string> chosen() const {
+    std::vector<std::string> names;
+    for (const Choice& choice : choose(dictionary_, equations_, {})) {
+      names.push_back(dictionary_.candidates()[choice.candidate].name);
+    }
+    return names;
+  }
+
+ private:
+  SensorModel model_;
+  Evidence evidence_;
+  Dictionary dictionary_;
+  NormalEquations equations_;
+};
+
+TEST(Traps, NoiseOfRangesIsNotTakenForARangeOffset) {
+  // Where derivatives are taken at the measured points, a clean recording shows one of half a metre.
+  const Looked clean(test::hidden(51, 4, office(), {}));
+  for (const char* name : {"laser1.range.offset", "laser2.range.offset", "laser3.range.offset"}) {
+    const Look look = clean.of(name);
+    EXPECT_LT(std::abs(look.value[0]), 4 * std::sqrt(look.covariance(0, 0))) << name;
+    EXPECT_LT(std::abs(look.value[0]), 0.01) << name;
+  }
+  EXPECT_THAT(clean.chosen(), testing::IsEmpty());
+}
+
+TEST(Traps, BeamsThatAStrongEffectMovesStillCount) {
+  // Surfaces that are left out because views disagree take the very evidence with them: of 770 000 beams
+  // 126 000 were left, and the wrong name was on top.
+  const auto strong = test::hidden(52, 4, office(), {{"laser2.mount.axial_offset", {0.02}}});
+  const auto count = [](const test::Recording& recording) {
+    const SensorModel plain(nominal_calibration(default_rig()), built_in_terms());
+    const Evidence all(plain, covered(recording.sample(), -0.05, 0.05), {}, 10'000'000);
+    return static_cast<double>(all.surfels().members.size());
+  };
+  EXPECT_GT(count(strong), 0.9 * count(test::hidden(52, 4, office(), {})));
+  const auto chosen = Looked(strong).chosen();
+  ASSERT_THAT(chosen, testing::Not(testing::IsEmpty()));
+  EXPECT_EQ(chosen.front(), "laser2.mount.axial_offset");
+}
+
+TEST(Traps, WhatOtherParametersTakeNearlyAllOfIsNoCause) {
+  // λ, τ and α do what a tangential offset does, but for a thousandth.
+  const Looked looked(test::hidden(53, 4, office(), {{"laser2.mount.tangential_offset", {0.02}}}));
+  EXPECT_LT(looked.of("laser2.mount.tangential_offset").identifiability(), 1e-3);
+  EXPECT_THAT(looked.chosen(), testing::Not(testing::Contains(testing::HasSubstr("tangential_offset"))));
+}
+
+TEST(Traps, LasersThatDisagreeAreNotTakenForNoise) {
+  const auto noise = [](const std::map<std::string, std::vector<double>>& effects) {
+    const Looked looked(test::hidden(54, 4, office(), effects));
+    return side_by_side(looked.evidence(), {}, 1).noise;
+  };
+  EXPECT_NEAR(noise({{"laser2.range.offset", {0.03}}}), noise({}), 0.05 * noise({}));
+}
+
+TEST(Traps, PointsAreNotChosenByTheModelThatIsJudged) {
+  // Each model makes the cloud thin that its own points were chosen in. Here a wrong one is judged by points
+  // chosen without it: it does not gain.
+  const auto recording = test::hidden(55, 4, office(), {});
+  const SensorModel plain(nominal_calibration(default_rig()), built_in_terms());
+  Calibration wrong = nominal_calibration(default_rig());
+  add_wanted_terms(wrong, {"laser2.range.offset"}, built_in_terms());
+  test::term_of(wrong, "laser2.range.offset").parameters.at(0).value = 0.01;
+  const HeldOut held_out(halves_of(covered(recording.sample(), -0.05, 0.05)), plain, {});
+  const auto gains =
+      HeldOut::gains(held_out.score(plain), held_out.score(SensorModel(wrong, built_in_terms())));
+  EXPECT_GT(gains.at(0).ci95[0], 0) << "thickness";
+  const auto likelihood = std::ranges::find(gains, HeldOut::kLikelihood, &Gain::metric);
+  EXPECT_LT(likelihood->ci95[1], 0);
+}
+
+}  // namespace
+}  // namespace crisp
