@@ -9,6 +9,7 @@
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/estimate/plate_moments.hpp"
 #include "pipeline/estimate/surfel_rows.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
 
@@ -53,13 +54,18 @@ Surfels surfels_of_truth(const BeamsView& beams, std::span<const std::uint32_t> 
 Eigen::MatrixXd calibration_information(const SensorModel& truth, const Sample& beams,
                                         std::span<const std::uint32_t> surface,
                                         std::span<const Eigen::Vector3d> normals,
-                                        const std::vector<std::size_t>& free, double noise) {
+                                        const std::vector<std::size_t>& free, const BoundNoise& noise) {
   if (surface.size() != beams.beams.size()) throw Error("each beam must have the surface that it meets");
-  if (!(noise > 0)) throw Error("without noise of the ranges there is no bound");
+  if (!(noise.range > 0)) throw Error("without noise of the ranges there is no bound");
   const PlacedBeams placed(truth, beams);
   const Surfels surfels = surfels_of_truth(placed.view(), surface, normals);
-  const SurfelSettings exact{.noise = noise, .floor = 1e-6 * noise};
-  return normal_equations(surfels, placed.view(), free.size(), surfel_rows(truth, beams, free), exact).matrix;
+  const DerivativeRows rows = surfel_rows(truth, beams, free);
+  const SurfelSettings exact{.noise = noise.range, .floor = 1e-6 * noise.range};
+  if (noise.encoder_step <= 0) {
+    return normal_equations(surfels, placed.view(), free.size(), rows, exact).matrix;
+  }
+  const PlateMoments moments = plate_moments(truth, beams, noise.encoder_step);
+  return information_with_turns(surfels, placed.view(), free.size(), rows, exact, moments.turns());
 }
 
 Eigen::VectorXd least_std_errors(const Eigen::MatrixXd& information) {

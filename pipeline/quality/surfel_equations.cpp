@@ -7,12 +7,12 @@
 
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
+#include "pipeline/quality/surfel_sums.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr std::size_t kChunk = 1024;   // beams whose rows are in memory at once
-constexpr std::size_t kBatch = 16384;  // beams of surfels that are
+constexpr std::size_t kBatch = 16384;  // beams of surfels that are summed in a row
 
 /// The pseudo-inverse's effect: X with A X = B, where A is symmetric and may be singular.
 Eigen::MatrixXd solve_semidefinite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -32,86 +32,6 @@ Eigen::MatrixXd solve_in_any_units(const Eigen::MatrixXd& a, const Eigen::Matrix
   return scale.asDiagonal() *
          solve_semidefinite(scale.asDiagonal() * a * scale.asDiagonal(), scale.asDiagonal() * b);
 }
-
-/// Some beams' rows. Column 0, 1, 2: the plane's parameters; 3: the distance; from 4 on: the derivatives.
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-Rows weighted_rows(const Surfel& surfel, std::span<const std::uint32_t> members,
-                   std::span<const SurfelResidual> residuals, std::size_t parameters,
-                   const DerivativeRows& derivatives) {
-  std::vector<double> range_change;
-  for (const SurfelResidual& r : residuals) range_change.push_back(r.range_change);
-  std::vector<double> rows(members.size() * parameters, 0);
-  derivatives(surfel, members, range_change, rows);
-  const auto n = static_cast<Eigen::Index>(members.size());
-  const auto m = static_cast<Eigen::Index>(parameters);
-  Rows all(n, m + 4);
-  all.rightCols(m) = Eigen::Map<const Rows>(rows.data(), n, m);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const SurfelResidual& r = residuals[static_cast<std::size_t>(i)];
-    all.row(i).head<4>() = Eigen::RowVector4d(1, r.u / surfel.radius, r.v / surfel.radius, r.distance);
-    all.row(i) *= std::sqrt(r.weight) / r.spread;
-  }
-  return all;
-}
-
-/// Sums over a surfel's beams.
-struct SurfelSums {
-  Eigen::MatrixXd gram;   // (m + 4)²: Σ rowᵀ row, its upper half
-  Eigen::MatrixXd pulls;  // (m + 4) × blocks: Σ rowᵀ distance
-};
-
-class SurfelRows {
- public:
-  SurfelRows(const Surfel& surfel, std::size_t parameters, const DerivativeRows& derivatives,
-             std::span<const std::uint32_t> block_of, std::size_t blocks)
-      : surfel_(surfel),
-        parameters_(parameters),
-        derivatives_(derivatives),
-        block_of_(block_of),
-        blocks_(static_cast<Eigen::Index>(blocks)) {}
-
-  SurfelSums sums(std::span<const std::uint32_t> members, std::span<const SurfelResidual> residuals) const {
-    constexpr std::size_t kBlock = 8192;  // beams that are summed in a row
-    std::vector<SurfelSums> parts(blocks_of(members.size(), kBlock));
-    for_blocks(members.size(), kBlock, [&](std::size_t part, std::size_t begin, std::size_t end) {
-      parts[part] = none();
-      for (std::size_t k = begin; k < end; k += kChunk) {
-        const auto some = members.subspan(k, std::min(kChunk, end - k));
-        add(some, weighted_rows(surfel_, some, residuals.subspan(k, some.size()), parameters_, derivatives_),
-            parts[part]);
-      }
-    });
-    SurfelSums sum = none();
-    for (const SurfelSums& part : parts) {
-      sum.gram += part.gram;
-      sum.pulls += part.pulls;
-    }
-    sum.gram = Eigen::MatrixXd(sum.gram.selfadjointView<Eigen::Upper>());
-    return sum;
-  }
-
- private:
-  SurfelSums none() const {
-    const auto columns = static_cast<Eigen::Index>(parameters_ + 4);
-    return {.gram = Eigen::MatrixXd::Zero(columns, columns),
-            .pulls = Eigen::MatrixXd::Zero(columns, blocks_)};
-  }
-  void add(std::span<const std::uint32_t> members, const Rows& rows, SurfelSums& sums) const {
-    sums.gram.selfadjointView<Eigen::Upper>().rankUpdate(rows.transpose());
-    if (blocks_ == 0) return;
-    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-      const auto block = block_of_[members[static_cast<std::size_t>(i)]];
-      sums.pulls.col(static_cast<Eigen::Index>(block)) += rows(i, 3) * rows.row(i).transpose();
-    }
-  }
-
-  const Surfel& surfel_;
-  std::size_t parameters_;
-  const DerivativeRows& derivatives_;
-  std::span<const std::uint32_t> block_of_;
-  Eigen::Index blocks_;
-};
 
 NormalEquations without_plane(const SurfelSums& sums, std::span<const SurfelResidual> residuals) {
   const Eigen::Index rest = sums.gram.cols() - 3;
@@ -208,14 +128,15 @@ NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams,
                                  const DerivativeRows& derivatives, const SurfelSettings& settings,
                                  std::span<const std::uint32_t> blocks) {
   const std::size_t count = blocks.empty() ? 0 : std::ranges::max(blocks) + std::size_t{1};
+  const SurfelSummands summands{
+      .parameters = parameters, .derivatives = derivatives, .block_of = blocks, .blocks = count};
   const auto first = batches(surfels);
   std::vector<NormalEquations> sums(first.size() - 1, NormalEquations(parameters, count));
   for_each_index(sums.size(), [&](std::size_t b) {
     for (std::size_t s = first[b]; s < first[b + 1]; ++s) {
       const Surfel& surfel = surfels.surfels[s];
       const auto residuals = residuals_of(surfel, surfels, beams, settings);
-      const SurfelRows rows(surfel, parameters, derivatives, blocks, count);
-      sums[b] += without_plane(rows.sums(surfels.beams_of(surfel), residuals), residuals);
+      sums[b] += without_plane(sums_of(surfel, surfels.beams_of(surfel), residuals, summands), residuals);
     }
   });
   NormalEquations total(parameters, count);

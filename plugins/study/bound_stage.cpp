@@ -19,7 +19,10 @@ nlohmann::json parameters_json(const SceneBound& bound, const std::optional<Reac
   for (std::size_t k = 0; k < bound.parameters.size(); ++k) {
     const double error = bound.std_errors[static_cast<Eigen::Index>(k)];
     auto& entry = json[bound.parameters[k]] = {{"unit", kind_of(bound.parameters[k]).si}};
-    if (std::isfinite(error)) entry["std_error"] = error;
+    if (std::isfinite(error)) {
+      entry["std_error"] = error;
+      entry["std_error_with_steps"] = bound.with_steps[static_cast<Eigen::Index>(k)];
+    }
     if (!reached || !reached->failure.empty()) continue;
     const double claimed = reached->std_errors[static_cast<Eigen::Index>(k)];
     if (std::isfinite(claimed)) entry["refined_std_error"] = claimed;
@@ -60,6 +63,8 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
       "(`refine`): what the method reaches.\n\n"
       "The scanner is the run's rig, as it nominally is, or that of `calibration`. The plate's encoder and "
       "the clocks count as exact, and the effects of the model beyond lambda, tau, alpha and eta as known. "
+      "A second figure counts the steps of the rig's encoder as well, as normal noise of the plate's "
+      "angle.\n\n"
       "What is known before a recording, against which a parameter counts as determined, is what "
       "calibrate.refine takes for known: lambda and alpha to 0.05 rad, tau to 3 cm, eta to 10 ms.");
   describe_scene(d, &BoundStage::scene_);

@@ -27,15 +27,16 @@ std::optional<double> reached_error(const std::optional<Reached>& reached, std::
 }  // namespace
 
 std::string bound_text(const SceneBound& bound, const std::optional<Reached>& reached) {
-  std::string text = fmt::format("{:<14}{:>20}{}", "parameter", "least standard error",
-                                 reached ? "   calibrate.refine" : "");
+  std::string text = fmt::format("{:<14}{:>20}{:>20}{}", "parameter", "least standard error",
+                                 "with encoder steps", reached ? "   calibrate.refine" : "");
   for (std::size_t k = 0; k < bound.parameters.size(); ++k) {
     const std::string& parameter = bound.parameters[k];
     const ParameterKind& kind = kind_of(parameter);
     const double error = bound.std_errors[static_cast<Eigen::Index>(k)] / kind.in_si;
     text += fmt::format("\n{:<14}", parameter);
     if (std::isfinite(error)) {
-      text += fmt::format("{:>16.4f} {:<3}", error, kind.unit);
+      const double with_steps = bound.with_steps[static_cast<Eigen::Index>(k)] / kind.in_si;
+      text += fmt::format("{:>16.4f} {:<3}{:>16.4f} {:<3}", error, kind.unit, with_steps, kind.unit);
       if (const auto claimed = reached_error(reached, k)) {
         text += fmt::format("{:>15.4f} {}", *claimed / kind.in_si, kind.unit);
       }
@@ -50,13 +51,15 @@ std::string bound_text(const SceneBound& bound, const std::optional<Reached>& re
 }
 
 std::string bound_csv(const SceneBound& bound, const std::optional<Reached>& reached) {
-  std::string text = "parameter,unit,std_error,refined_std_error,known_instead\n";
+  std::string text = "parameter,unit,std_error,std_error_with_steps,refined_std_error,known_instead\n";
   for (std::size_t k = 0; k < bound.parameters.size(); ++k) {
     const std::string& parameter = bound.parameters[k];
     const double error = bound.std_errors[static_cast<Eigen::Index>(k)];
     const auto claimed = reached_error(reached, k);
     text += fmt::format("{},{},", parameter, kind_of(parameter).si);
-    text += (std::isfinite(error) ? fmt::format("{:.6g},", error) : ",") +
+    text += (std::isfinite(error)
+                 ? fmt::format("{:.6g},{:.6g},", error, bound.with_steps[static_cast<Eigen::Index>(k)])
+                 : ",,") +
             (claimed ? fmt::format("{:.6g},", *claimed) : ",");
     text += std::isfinite(error) ? "\n" : fmt::format("\"{}\"\n", known_instead(bound, parameter));
   }

@@ -26,6 +26,7 @@ nlohmann::json json_of(const Table& table) {
   for (const TableRow& row : table.rows) {
     nlohmann::json entry = {{"unit", row.unit},
                             {"bound", row.bound},
+                            {"bound_with_steps", row.bound_with_steps},
                             {"refined", json_of(row.refined)},
                             {"std_error", row.refined.claimed},
                             {"within_68", row.refined.one},

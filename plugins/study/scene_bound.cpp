@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <numbers>
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/bound.hpp"
@@ -78,13 +79,18 @@ SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const
   const SensorModel truth(exact.truth, terms);
   const FreeParameters parameters = free_parameters(truth, exact.beams, {});
   const auto& free = parameters.free;
-  const Eigen::MatrixXd information =
-      calibration_information(truth, met.sample, met.surface, normals, free, scanner.range.sigma);
+  const auto information_with = [&](double encoder_step) {
+    return calibration_information(truth, met.sample, met.surface, normals, free,
+                                   {.range = scanner.range.sigma, .encoder_step = encoder_step});
+  };
+  const Eigen::MatrixXd information = information_with(0);
+  const double step = 2 * std::numbers::pi / scanner.rig.plate.counts_per_revolution;
   const Observability told =
       observability(information, free, truth.names(), ranges_of(RefinementSettings{}.prior, truth, free));
 
   SceneBound bound{.parameters = {},
                    .std_errors = errors_of_known(information, free, told.known),
+                   .with_steps = errors_of_known(information_with(step), free, told.known),
                    .unobservable = parameters.unobservable,
                    .beams_on = std::vector<std::size_t>(scene.things(), 0),
                    .beams = exact.beams.size(),

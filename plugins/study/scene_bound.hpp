@@ -15,6 +15,8 @@ struct SceneBound {
   /// m [SI]: the least standard errors of an unbiased estimator that is not told the scene (Cramér–Rao), the
   /// unobservable parameters being known; infinite for these.
   Eigen::VectorXd std_errors;
+  /// m [SI]: the same where the plate's angle is known but by the steps of its encoder, counted as noise.
+  Eigen::VectorXd with_steps;
   std::vector<Unobservable> unobservable;  ///< not told better than is known before a recording
   std::vector<std::size_t> beams_on;       ///< by surface of the scene
   std::size_t beams = 0;                   ///< of which something came back
@@ -25,8 +27,9 @@ struct SceneBound {
 ScannerSettings without_noise(ScannerSettings scanner);
 
 /// The bound for a scanner at a scene: each of its surfaces counts as a plane of its own, as unknown as the
-/// parameters. The ranges' noise is `scanner.range.sigma`; the encoder and the ranges' steps count as exact.
-/// Terms beyond equation (2) are taken as known.
+/// parameters. The ranges' noise is `scanner.range.sigma`; their steps count as exact, and so does the
+/// encoder, but for `with_steps`, where it has the counts of the scanner's rig. Terms beyond equation (2) are
+/// taken as known.
 ///
 /// @param motion   of the plate, in place of `scanner.motion`
 /// @param terms    that `scanner.truth` names

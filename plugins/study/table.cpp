@@ -78,6 +78,18 @@ Scatter scatter_of(const ParameterKind& kind, const std::vector<Trial>& trials, 
   return scatter;
 }
 
+/// RMS over trials and lasers, in the kind's unit; NaN if there are none.
+double mean_size(const ParameterKind& kind, const std::vector<Trial>& trials,
+                 Eigen::VectorXd Trial::*values) {
+  double squares = 0;
+  double n = 0;
+  for_each_of(kind, trials, [&](const Trial& trial, Eigen::Index k) {
+    squares += std::pow((trial.*values)[k] / kind.in_si, 2);
+    n += 1;
+  });
+  return std::sqrt(squares / n);
+}
+
 bool ran_rqe(const std::vector<Trial>& trials) {
   return std::ranges::any_of(trials, [](const Trial& trial) { return trial.rqe.has_value(); });
 }
@@ -101,20 +113,16 @@ Table table_of(const std::vector<Trial>& trials, bool papers) {
   const bool with_rqe = ran_rqe(trials);
   Table table{.runs = trials.size()};
   for (const ParameterKind& kind : parameter_kinds()) {
-    double squares = 0;
-    double n = 0;
-    for_each_of(kind, trials, [&](const Trial& trial, Eigen::Index k) {
-      squares += std::pow(trial.bound[k] / kind.in_si, 2);
-      n += 1;
-    });
-    if (n == 0) continue;
+    const double bound = mean_size(kind, trials, &Trial::bound);
+    if (std::isnan(bound)) continue;
     TableRow& row = table.rows.emplace_back(TableRow{
         .parameter = kind.name,
         .unit = kind.unit,
         .paper = papers ? in_the_paper(kind.name) : std::nullopt,
         .rqe = {},
         .refined = scatter_of(kind, trials, [](const Trial& t) -> const Estimate& { return t.refined; }),
-        .bound = std::sqrt(squares / n)});
+        .bound = bound,
+        .bound_with_steps = mean_size(kind, trials, &Trial::bound_with_steps)});
     if (with_rqe) {
       row.rqe = scatter_of(kind, trials, [](const Trial& t) -> const Estimate& { return *t.rqe; });
     }
@@ -134,17 +142,17 @@ std::string table_text(const Table& table) {
   std::string text = fmt::format("{:<16}", "error, mean ± sd");
   if (paper) text += fmt::format("{:^18}  ", "paper, Table 1");
   if (rqe) text += fmt::format("{:^18}  ", "RQE");
-  text += fmt::format("{:^18}{:>8}  {:>8}  {:>8}  {:>10}  {:>12}\n", "refined", "bound", "mean/sd",
-                      "sd/bound", "s.e./bound", "in 1, 2 s.e.");
+  text += fmt::format("{:^18}{:>8}  {:>8}  {:>8}  {:>10}  {:>12}  {:>10}\n", "refined", "bound", "mean/sd",
+                      "sd/bound", "s.e./bound", "in 1, 2 s.e.", "with steps");
   for (const TableRow& row : table.rows) {
     const Scatter& refined = row.refined;
     text += fmt::format("{:<7}{:<9}", row.parameter, row.unit);
     if (paper) text += cell(row.paper) + "  ";
     if (rqe) text += cell(row.rqe) + "  ";
-    text += fmt::format("{}{:>8.4f}  {:>8.2f}  {:>8.2f}  {:>10.2f}  {:>5.1f} {:>4.1f} %\n", cell(refined),
-                        row.bound, refined.std_dev > 0 ? refined.mean / refined.std_dev : 0,
+    text += fmt::format("{}{:>8.4f}  {:>8.2f}  {:>8.2f}  {:>10.2f}  {:>5.1f} {:>4.1f} %  {:>10.4f}\n",
+                        cell(refined), row.bound, refined.std_dev > 0 ? refined.mean / refined.std_dev : 0,
                         refined.std_dev / row.bound, refined.claimed / row.bound, 100 * refined.one,
-                        100 * refined.two);
+                        100 * refined.two, row.bound_with_steps);
   }
   text += fmt::format("{} runs; ended in another valley and left out: ", table.runs);
   if (rqe) text += fmt::format("{} (RQE), ", table.rqe_astray);
@@ -154,13 +162,14 @@ std::string table_text(const Table& table) {
 }
 
 std::string runs_csv(const std::vector<Trial>& trials) {
-  std::string text = "seed,parameter,unit,bound,rqe_error,error,std_error,failure\n";
+  std::string text = "seed,parameter,unit,bound,bound_with_steps,rqe_error,error,std_error,failure\n";
   for (const Trial& trial : trials) {
     const Estimate& refined = trial.refined;
     for (std::size_t k = 0; k < trial.parameters.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       const std::string& parameter = trial.parameters[k];
-      text += fmt::format("{},{},{},{:.6g},{},", trial.seed, parameter, kind_of(parameter).si, trial.bound[i],
+      text += fmt::format("{},{},{},{:.6g},{:.6g},{},", trial.seed, parameter, kind_of(parameter).si,
+                          trial.bound[i], trial.bound_with_steps[i],
                           trial.rqe ? fmt::format("{:.6g}", trial.rqe->error[i]) : "");
       if (refined.failure.empty()) {
         text += fmt::format("{:.6g},{:.6g},\n", refined.error[i], refined.std_error[i]);

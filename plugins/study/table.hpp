@@ -25,7 +25,8 @@ struct TableRow {
   std::optional<Scatter> paper;  ///< Table 1 of the paper, where it is known
   std::optional<Scatter> rqe;    ///< where it was run
   Scatter refined;
-  double bound = 0;  ///< Cramér–Rao: RMS over runs and lasers
+  double bound = 0;             ///< Cramér–Rao: RMS over runs and lasers
+  double bound_with_steps = 0;  ///< likewise, the steps of the encoder counted as noise
 };
 
 /// Table 1 of Sheehan, Harrison and Newman, made anew.
@@ -43,7 +44,8 @@ Table table_of(const std::vector<Trial>& trials, bool papers = true);
 /// For people.
 std::string table_text(const Table& table);
 
-/// Every run, a line a parameter: "seed,parameter,unit,bound,rqe_error,error,std_error,failure", SI.
+/// Every run, a line a parameter:
+/// "seed,parameter,unit,bound,bound_with_steps,rqe_error,error,std_error,failure", SI.
 std::string runs_csv(const std::vector<Trial>& trials);
 
 }  // namespace crisp

@@ -44,10 +44,10 @@ Calibration start_of(const TrialSettings& settings, const Calibration& truth, st
 }
 
 /// The least standard errors for exactly this recording's geometry.
-Eigen::VectorXd bound_of(const TrialSettings& settings, std::uint64_t seed) {
+SceneBound bound_of(const TrialSettings& settings, std::uint64_t seed) {
   ScannerSettings scanner = scanner_of(settings, seed);
   scanner.range.sigma = counted_noise(settings);
-  return scene_bound(scanner, settings.scene, motion_of(settings, seed), settings.beams).std_errors;
+  return scene_bound(scanner, settings.scene, motion_of(settings, seed), settings.beams);
 }
 
 Eigen::VectorXd errors(const SensorModel& found, const SensorModel& truth,
@@ -136,7 +136,8 @@ Trial run_trial(const TrialSettings& settings, std::uint64_t seed, const MakeMea
   const Sample sample = recording.sample();
   SensorModel model(recording.start);
   const auto free = free_parameters(model, sample.beams, {}).free;
-  Trial trial{.seed = seed, .bound = bound_of(settings, seed)};
+  const SceneBound bound = bound_of(settings, seed);
+  Trial trial{.seed = seed, .bound = bound.std_errors, .bound_with_steps = bound.with_steps};
   for (const auto parameter : free) trial.parameters.push_back(truth.names()[parameter]);
 
   if (settings.estimators == Estimators::kBoth) {

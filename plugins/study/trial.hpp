@@ -73,6 +73,7 @@ struct Trial {
   std::uint64_t seed = 0;
   std::vector<std::string> parameters;  ///< m: "laser1.tau", …
   Eigen::VectorXd bound;                ///< [SI] their Cramér–Rao bounds, see scene_bound()
+  Eigen::VectorXd bound_with_steps;     ///< [SI] and where the steps of the encoder count as noise
   std::optional<Estimate> rqe;          ///< the paper's: the optimum of RQE
   Estimate refined;                     ///< the default: RQE, then least squares against flat surfaces
 };

@@ -109,7 +109,7 @@ TEST(Bound, IsThatOfOneGreatProblemWithAllPlanesUnknown) {
   const Eigen::MatrixXd dense = jacobian(room, all_free()) / kNoise;
   const Eigen::MatrixXd covariance = (dense.transpose() * dense).inverse().topLeftCorner(11, 11);
   const Eigen::MatrixXd information =
-      calibration_information(truth, room.sample(), room.surface, room.normals, all_free(), kNoise);
+      calibration_information(truth, room.sample(), room.surface, room.normals, all_free(), {kNoise});
   // Ranges are stored as floats: a part in 10⁷; differences are good to 10⁻⁸ / step².
   EXPECT_LT((information.inverse() - covariance).norm(), 1e-4 * covariance.norm());
   const Eigen::VectorXd least = least_std_errors(information);
@@ -121,9 +121,23 @@ TEST(Bound, GrowsWithTheNoise) {
   const SensorModel truth(room.simulated.truth);
   const auto bound = [&](double noise) {
     return least_std_errors(
-        calibration_information(truth, room.sample(), room.surface, room.normals, all_free(), noise));
+        calibration_information(truth, room.sample(), room.surface, room.normals, all_free(), {noise}));
   };
   EXPECT_LT((bound(2 * kNoise) - 2 * bound(kNoise)).norm(), 1e-4 * bound(kNoise).norm());
+}
+
+TEST(Bound, GrowsWithTheStepsOfTheEncoder) {
+  const RoomBeams room = room_beams();
+  const SensorModel truth(room.simulated.truth);
+  const auto bound = [&](double step) {
+    return least_std_errors(calibration_information(truth, room.sample(), room.surface, room.normals,
+                                                    all_free(), {.range = kNoise, .encoder_step = step}));
+  };
+  const Eigen::VectorXd exact = bound(0);
+  EXPECT_LT((bound(1e-12) - exact).norm(), 1e-6 * exact.norm());
+  const Eigen::VectorXd coarse = bound(0.1);
+  EXPECT_GT((coarse.array() / exact.array()).minCoeff(), 1);
+  for (const Eigen::Index eta : {2, 6, 10}) EXPECT_GT(coarse[eta], 1.2 * exact[eta]);
 }
 
 TEST(Bound, OfWhatIsNotToldIsInfinite) {
@@ -139,9 +153,9 @@ TEST(Bound, OfWhatIsNotToldIsInfinite) {
 TEST(Bound, RefusesBeamsWithoutASurface) {
   const RoomBeams room = room_beams();
   const SensorModel truth(room.simulated.truth);
-  EXPECT_THROW(calibration_information(truth, room.sample(), {}, room.normals, all_free(), kNoise), Error);
-  EXPECT_THROW(calibration_information(truth, room.sample(), room.surface, {}, all_free(), kNoise), Error);
-  EXPECT_THROW(calibration_information(truth, room.sample(), room.surface, room.normals, all_free(), 0),
+  EXPECT_THROW(calibration_information(truth, room.sample(), {}, room.normals, all_free(), {kNoise}), Error);
+  EXPECT_THROW(calibration_information(truth, room.sample(), room.surface, {}, all_free(), {kNoise}), Error);
+  EXPECT_THROW(calibration_information(truth, room.sample(), room.surface, room.normals, all_free(), {0}),
                Error);
 }
 

@@ -5,10 +5,12 @@
 #include <tbb/global_control.h>
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <random>
 
 #include "pipeline/quality/surfel_residuals.hpp"
+#include "pipeline/quality/surfel_turns.hpp"
 #include "tests/pipeline/quality/room.hpp"
 
 namespace crisp {
@@ -211,6 +213,66 @@ TEST(ScatterOfBlocks, KnowsOfErrorsThatBeamsShare) {
   EXPECT_GT(by_beams, 2 * 60);
 }
 
+/// By how much a turn about the z axis moves the place where a beam meets a surfel across it [m/rad], by
+/// differences.
+double moved_by_turn(const Surfel& surfel, const SurfelResidual& r) {
+  constexpr double kStep = 1e-6;
+  const Eigen::Vector3d foot = surfel.middle + r.u * surfel.u + r.v * surfel.v;
+  const auto turned = [&](double angle) {
+    return surfel.normal.dot(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * foot);
+  };
+  return (turned(kStep) - turned(-kStep)) / (2 * kStep);
+}
+
+TEST(SharedTurns, AreUnknownsLikeOthersOfWhichSomethingIsKnown) {
+  // One great least-squares problem once more, planes and turns among its unknowns.
+  const auto scan = test::scan_room(1500, {{0, 0}, {0, 0}, {0, 0}}, 0.012, 1);
+  const auto moments = pieces_of(scan);
+  std::vector<double> variances;
+  for (int moment = 0; moment < 150; ++moment) variances.push_back(1e-6 * (1 + moment % 7));
+  const SurfelSettings settings{.outlier = 0};
+  const auto surfels = find_surfels(scan.beams(), settings);
+  const Eigen::Index planes = 3 * static_cast<Eigen::Index>(surfels.surfels.size());
+  const Eigen::Index unknowns = 5 + planes + 150;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  for (Eigen::Index moment = 0; moment < 150; ++moment) {
+    matrix(5 + planes + moment, 5 + planes + moment) = 1 / variances[static_cast<std::size_t>(moment)];
+  }
+  for (std::size_t s = 0; s < surfels.surfels.size(); ++s) {
+    const Surfel& surfel = surfels.surfels[s];
+    const auto residuals = residuals_of(surfel, surfels, scan.beams(), settings);
+    for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
+      const SurfelResidual& r = residuals[k - surfel.begin];
+      if (r.weight == 0) continue;
+      Eigen::VectorXd row = Eigen::VectorXd::Zero(unknowns);
+      std::vector<double> own(kParameters, 0);
+      derivatives_of(scan)(surfel, std::span(&surfels.members[k], 1), std::span(&r.range_change, 1), own);
+      row.head(5) = Eigen::Map<const Eigen::VectorXd>(own.data(), 5);
+      row.segment<3>(5 + 3 * static_cast<Eigen::Index>(s)) = Eigen::Vector3d(1, r.u, r.v);
+      row[5 + planes + moments[surfels.members[k]]] = moved_by_turn(surfel, r);
+      matrix += row * row.transpose() / (r.spread * r.spread);
+    }
+  }
+  const Eigen::MatrixXd covariance = matrix.inverse().topLeftCorner(5, 5);
+  const Eigen::MatrixXd information =
+      information_with_turns(surfels, scan.beams(), kParameters, derivatives_of(scan), settings,
+                             {.moments = moments, .variances = variances});
+  // Differences know a turn to 10⁻¹⁰ of a metre; the rest is rounding.
+  EXPECT_LT((information.inverse() - covariance).norm(), 1e-6 * covariance.norm());
+}
+
+TEST(SharedTurns, SayNothingWhereTheyAreNone) {
+  const auto scan = test::scan_room(3000, {{0, 0}, {0, 0}, {0, 0}}, 0.012, 2);
+  const auto moments = pieces_of(scan);
+  const std::vector<double> none(150, 1e-20);
+  const auto surfels = find_surfels(scan.beams(), {});
+  const auto rows = derivatives_of(scan);
+  const Eigen::MatrixXd without = normal_equations(surfels, scan.beams(), kParameters, rows, {}).matrix;
+  const Eigen::MatrixXd with = information_with_turns(surfels, scan.beams(), kParameters, rows, {},
+                                                      {.moments = moments, .variances = none});
+  EXPECT_LT((with - without).norm(), 1e-6 * without.norm());
+}
+
 TEST(SurfelEquations, AreTheSameToTheLastBitOnAnyNumberOfThreads) {
   const auto scan = test::scan_room(10000, {{0, 0}, {0.01, 0}, {0, 0.01}}, 0.012, 8);
   const auto many = equations_of(scan, {});
@@ -219,6 +281,20 @@ TEST(SurfelEquations, AreTheSameToTheLastBitOnAnyNumberOfThreads) {
   EXPECT_EQ(one.matrix, many.matrix);
   EXPECT_EQ(one.vector, many.vector);
   EXPECT_EQ(one.chi2, many.chi2);
+}
+
+TEST(SharedTurns, AreTheSameToTheLastBitOnAnyNumberOfThreads) {
+  const auto scan = test::scan_room(10000, {{0, 0}, {0.01, 0}, {0, 0.01}}, 0.012, 8);
+  const auto moments = pieces_of(scan);
+  const std::vector<double> variances(150, 1e-6);
+  const auto surfels = find_surfels(scan.beams(), {});
+  const auto information = [&] {
+    return information_with_turns(surfels, scan.beams(), kParameters, derivatives_of(scan), {},
+                                  {.moments = moments, .variances = variances});
+  };
+  const auto many = information();
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  EXPECT_EQ(information(), many);
 }
 
 }  // namespace

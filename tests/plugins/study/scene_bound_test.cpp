@@ -153,7 +153,7 @@ TEST(SceneBound, AtConstantSpeedKnowsEtaOnlyWithLambda) {
   EXPECT_THAT(bound_text(bound),
               AllOf(HasSubstr("\nlaser2.eta          not determined; what is known [SI] is laser2.lambda + "),
                     HasSubstr("\nlaser2.tau ")));
-  EXPECT_THAT(bound_csv(bound), HasSubstr("\nlaser2.eta,s,,,\"laser2.lambda + 9.425 * laser2.eta\"\n"));
+  EXPECT_THAT(bound_csv(bound), HasSubstr("\nlaser2.eta,s,,,,\"laser2.lambda + 9.425 * laser2.eta\"\n"));
 }
 
 TEST(Reached, IsNoBetterThanTheBoundAndNotFarFromIt) {

@@ -17,6 +17,7 @@ Trial trial(double rqe_tau, double tau, double alpha_degrees) {
   return {.seed = 7,
           .parameters = {"laser1.tau", "laser1.alpha"},
           .bound = Eigen::Vector2d(0.003, 0.1 * kDegree),
+          .bound_with_steps = Eigen::Vector2d(0.004, 0.2 * kDegree),
           .rqe = Estimate{.error = Eigen::Vector2d(rqe_tau, 0), .std_error = {}, .failure = {}},
           .refined = {.error = Eigen::Vector2d(tau, alpha_degrees * kDegree),
                       .std_error = Eigen::Vector2d(0.0015, 0.05 * kDegree),
@@ -35,6 +36,7 @@ TEST(Table, HoldsMeansAndStandardDeviationsInMillimetresAndDegrees) {
   EXPECT_NEAR(tau.refined.mean, 2, 1e-12);
   EXPECT_NEAR(tau.refined.std_dev, 1, 1e-12);
   EXPECT_NEAR(tau.bound, 3, 1e-12);
+  EXPECT_NEAR(tau.bound_with_steps, 4, 1e-12);
   EXPECT_NEAR(tau.refined.one, 1.0 / 3, 1e-12);  // 1 of 1, 2 and 3 mm is within 1.5 mm
   EXPECT_NEAR(tau.refined.two, 2.0 / 3, 1e-12);  // and 2 within 2.94 mm
   EXPECT_NEAR(tau.refined.claimed, 1.5, 1e-12);
@@ -67,16 +69,16 @@ TEST(Table, ComparesOnlyWithWhatWasRunAndWithThePaperWhereItTellsOfTheSame) {
   EXPECT_FALSE(table.rows[0].rqe);
   EXPECT_FALSE(table.rows[0].paper);
   EXPECT_THAT(table_text(table), Not(AnyOf(HasSubstr("paper"), HasSubstr("RQE"))));
-  EXPECT_THAT(runs_csv(trials), HasSubstr("\n7,laser1.tau,m,0.003,,0.001,0.0015,\n"));
+  EXPECT_THAT(runs_csv(trials), HasSubstr("\n7,laser1.tau,m,0.003,0.004,,0.001,0.0015,\n"));
 }
 
 TEST(Table, WritesEveryRunAsALineAParameter) {
   Trial failed = trial(0.001, 0, 0);
   failed.refined = {.error = {}, .std_error = {}, .failure = "no walls"};
   const std::string csv = runs_csv({trial(-0.002, 0.001, 0), failed});
-  EXPECT_THAT(csv, HasSubstr("seed,parameter,unit,bound,rqe_error,error,std_error,failure\n"
-                             "7,laser1.tau,m,0.003,-0.002,0.001,0.0015,\n"));
-  EXPECT_THAT(csv, HasSubstr("7,laser1.tau,m,0.003,0.001,,,\"no walls\"\n"));
+  EXPECT_THAT(csv, HasSubstr("seed,parameter,unit,bound,bound_with_steps,rqe_error,error,std_error,failure\n"
+                             "7,laser1.tau,m,0.003,0.004,-0.002,0.001,0.0015,\n"));
+  EXPECT_THAT(csv, HasSubstr("7,laser1.tau,m,0.003,0.004,0.001,,,\"no walls\"\n"));
 }
 
 TEST(Table, OfNoRunsIsEmpty) { EXPECT_TRUE(table_of({}).rows.empty()); }
