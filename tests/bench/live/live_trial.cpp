@@ -15,12 +15,20 @@
 #include <iostream>
 #include <thread>
 
+#include "grabbers/capture/register.hpp"
 #include "grabbers/live/live_source.hpp"
+#include "grabbers/live/live_stage.hpp"
+#include "grabbers/record/record_stage.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/app/builtin.hpp"
 #include "pipeline/files/calibration_file.hpp"
+#include "pipeline/model/catalogue.hpp"
 #include "pipeline/stage/pipeline_file.hpp"
 #include "pipeline/stage/runner.hpp"
+#include "plugins/assemble/register.hpp"
+#include "plugins/calibrate/register.hpp"
+#include "plugins/clock/register.hpp"
+#include "plugins/watch/register.hpp"
+#include "plugins/write/register.hpp"
 #include "tests/bench/live/emulated_scanner.hpp"
 #include "tests/bench/live/watch.hpp"
 #include "tests/end_to_end/scene_distance.hpp"
@@ -57,11 +65,33 @@ pipeline:
   - stage: assemble.deskew
 )";
 
+/// Those of the two pipelines: the fewer, the sooner it is built with sanitizers.
+class Stages {
+ public:
+  Stages() {
+    registrar_.attach(terms_);
+    register_built_in(terms_);
+    register_capture(registrar_);
+    register_live(registrar_);
+    register_record(registrar_);
+    register_clock(registrar_);
+    register_assemble(registrar_);
+    register_calibrate(registrar_);
+    register_watch(registrar_);
+    register_write(registrar_);
+  }
+  const Registrar& registrar() const { return registrar_; }
+
+ private:
+  TermRegistry terms_;
+  Registrar registrar_;
+};
+
 std::vector<NodeResult> run(std::string_view text, const char* name, const fs::path& folder, const Rig& rig,
                             Watch& watch, const std::atomic<bool>* stop = nullptr) {
-  Builtin builtin;
+  const Stages stages;
   RunSettings settings;
-  settings.registrar = &builtin.registrar();
+  settings.registrar = &stages.registrar();
   PipelineArguments arguments;
   arguments.output = folder;
   auto loaded = load_pipeline(text, name, arguments, settings);
