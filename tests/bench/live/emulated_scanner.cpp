@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/bench/live/emulated_scanner.hpp"
 
+#include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,8 +25,8 @@
 namespace crisp {
 namespace {
 
-/// What the scanner's process does. What is sent faster than in real time is simulated beforehand.
-[[noreturn]] void be_the_scanner(const Trial& trial, const Rig& rig, int tell) {
+/// What is sent faster than in real time is simulated beforehand.
+[[noreturn]] void send_all(const Trial& trial, const Rig& rig, int tell) {
   RecordingSimulator simulator(recording_of(trial), office());
   const auto next = [&]() -> std::optional<HubItem> {
     const auto event = simulator.next();
@@ -91,12 +93,34 @@ Rig rig_with_free_ports() {
   return rig;
 }
 
-ScannerProcess::ScannerProcess(const Trial& trial, const Rig& rig) {
+void be_the_scanner(const std::vector<std::string>& words) {
+  Rig rig = default_rig();
+  for (std::size_t i = 0; i < rig.lasers.size(); ++i) {
+    rig.lasers[i].address = {"127.0.0.1", static_cast<std::uint16_t>(std::stoul(words.at(5 + i)))};
+  }
+  rig.plate.address = {"127.0.0.1", static_cast<std::uint16_t>(std::stoul(words.back()))};
+  send_all({std::stod(words.at(2)), std::stod(words.at(3)), std::stod(words.at(4))}, rig,
+           std::stoi(words.at(1)));
+}
+
+ScannerProcess::ScannerProcess(const Trial& trial, const Rig& rig, const std::string& program) {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) throw Error(std::string("no pipe to the scanner: ") + std::strerror(errno));
+  std::vector<std::string> words{program, kBeTheScanner, std::to_string(ends[1])};
+  for (const double number : {trial.seconds, trial.speed, trial.faults})
+    words.push_back(fmt::format("{}", number));
+  for (const auto& laser : rig.lasers) words.push_back(std::to_string(laser.address.port));
+  words.push_back(std::to_string(rig.plate.address.port));
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   process_ = fork();
   if (process_ < 0) throw Error(std::string("no process for the scanner: ") + std::strerror(errno));
-  if (process_ == 0) be_the_scanner(trial, rig, ends[1]);
+  if (process_ == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody is left behind
+    execv(program.c_str(), arguments.data());
+    std::_Exit(EXIT_FAILURE);
+  }
   close(ends[1]);
   told_ = ends[0];
 }

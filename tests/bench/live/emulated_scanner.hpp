@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "grabbers/emulate/emulated_faults.hpp"
 #include "grabbers/simulate/recording.hpp"
@@ -28,12 +30,13 @@ EmulatedFaults faults_of(const Trial& trial);
 /// The default rig at 127.0.0.1, at ports that nobody uses just now.
 Rig rig_with_free_ports();
 
-/// An emulated scanner in a process of its own, so that what it costs is not counted as what is tried. To be
-/// made before there are threads.
+/// An emulated scanner in a process of its own, so that what it costs is not counted as what is tried.
 class ScannerProcess {
  public:
+  /// @param program  that calls be_the_scanner(), as this one does: one without sanitizers is as fast as a
+  /// scanner
   /// @throws Error if the process cannot be made
-  ScannerProcess(const Trial& trial, const Rig& rig);
+  ScannerProcess(const Trial& trial, const Rig& rig, const std::string& program);
   ~ScannerProcess();  ///< ends the devices
   ScannerProcess(const ScannerProcess&) = delete;
   ScannerProcess& operator=(const ScannerProcess&) = delete;
@@ -45,5 +48,9 @@ class ScannerProcess {
   int told_ = -1;  ///< where it tells what it has sent
   pid_t process_ = -1;
 };
+
+/// What a program does that a ScannerProcess began, with the words that it was given. Does not return.
+[[noreturn]] void be_the_scanner(const std::vector<std::string>& words);
+inline constexpr const char* kBeTheScanner = "scanner";  ///< the first of these words
 
 }  // namespace crisp

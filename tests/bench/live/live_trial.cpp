@@ -4,7 +4,10 @@
 // how far from the scene's surfaces, and whether the recording gives the same measurements again, byte for
 // byte.
 //
-//     live_trial [SECONDS [SPEED [FAULTS]]]
+//     live_trial [SECONDS [SPEED [FAULTS [SCANNER]]]]
+//
+// SCANNER: the program whose scanner is emulated, if it is another live_trial than this. With sanitizers the
+// simulator is too slow for real time, so that one without them is needed.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -155,11 +158,11 @@ void print_clocks(const std::vector<NodeResult>& results, const RecordingTruth& 
   }
 }
 
-int attempt(const Trial& trial, const fs::path& folder) {
+int attempt(const Trial& trial, const std::string& scanner_program, const fs::path& folder) {
   const Rig rig = rig_with_free_ports();
   const RecordingTruth truth = RecordingSimulator(recording_of(trial), office()).truth();
   write_calibration(folder / "truth.yaml", truth.calibration);
-  const ScannerProcess scanner(trial, rig);
+  const ScannerProcess scanner(trial, rig, scanner_program);
 
   Watch live;
   Sleeper sleeper;
@@ -208,17 +211,19 @@ int attempt(const Trial& trial, const fs::path& folder) {
 }  // namespace
 }  // namespace crisp
 
-int main(int count, char** words) {
-  crisp::Trial trial;
-  if (count > 1) trial.seconds = std::atof(words[1]);
-  if (count > 2) trial.speed = std::atof(words[2]);
-  if (count > 3) trial.faults = std::atof(words[3]);
+int main(int count, char** arguments) {
+  const std::vector<std::string> words(arguments + 1, arguments + count);
+  const auto number = [&](std::size_t i, double otherwise) {
+    return i < words.size() ? std::stod(words[i]) : otherwise;
+  };
   const auto folder =
       std::filesystem::temp_directory_path() / ("crisp-live-trial-" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
   int status = EXIT_FAILURE;
   try {
-    status = crisp::attempt(trial, folder);
+    if (!words.empty() && words[0] == crisp::kBeTheScanner) crisp::be_the_scanner(words);
+    std::filesystem::create_directories(folder);
+    status = crisp::attempt({number(0, 60), number(1, 1), number(2, 0)},
+                            words.size() > 3 ? words[3] : "/proc/self/exe", folder);
   } catch (const std::exception& error) {
     std::cerr << "error: " << error.what() << "\n";
   }
