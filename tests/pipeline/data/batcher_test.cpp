@@ -52,9 +52,8 @@ TEST(Batcher, WorksAfterAPauseOnWhatThereIsAndOnNothing) {
   int batches = 0;
   Batcher<int> batcher({.enough = 1000, .most = 1000, .pause = 0.02}, [&](Numbers batch) {
     if (batch.empty() && batches == 0) return;  // the machine was busy before the push
-    ++batches;
-    if (batches == 1) first.set_value(std::move(batch));
-    if (batches == 2) second.set_value(std::move(batch));
+    if (++batches > 2) return;
+    (batches == 1 ? first : second).set_value(std::move(batch));
   });
   batcher.push(7);
   EXPECT_EQ(first.get_future().get(), Numbers{7});
