@@ -26,14 +26,6 @@ struct Free {
 };
 using Pcap = std::unique_ptr<pcap_t, Free>;
 
-struct Descriptor {
-  explicit Descriptor(int open) : number(open) {}
-  ~Descriptor() { ::close(number); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number;
-};
-
 Error cannot_write(const std::filesystem::path& path, int error) {
   return Error(fmt::format("cannot write the capture {}: {}", path.string(), std::strerror(error)),
                "check the folder, its permissions and the space on the disk");
@@ -132,25 +124,17 @@ void PcapWriter::write(std::int64_t time_ns, ByteView frame) {
   f.length += kRecordHeader + frame.size();
 }
 
-void PcapWriter::flush(bool durable) {
+void PcapWriter::flush() {
   auto& f = *file_;
   if (!f.dump) return;
   if (pcap_dump_flush(f.dump.get()) != 0 || std::ferror(f.stream()) != 0) f.fail();
-  if (durable && fdatasync(fileno(f.stream())) != 0 && errno != EINVAL) f.fail();  // EINVAL: a pipe
-}
-
-std::function<void()> PcapWriter::syncer() const {
-  const auto duplicate = std::make_shared<const Descriptor>(dup(fileno(file_->stream())));
-  return [duplicate, path = file_->path] {
-    if (fdatasync(duplicate->number) != 0 && errno != EINVAL)
-      throw cannot_write(path, errno);  // EINVAL: a pipe
-  };
+  if (fdatasync(fileno(f.stream())) != 0 && errno != EINVAL) f.fail();  // EINVAL: a pipe
 }
 
 void PcapWriter::close() {
   auto& f = *file_;
   if (!f.dump) return;
-  flush(true);
+  flush();
   f.dump.reset();
   if (f.replaced) f.replaced->commit();
 }

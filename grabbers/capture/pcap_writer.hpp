@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 
 #include "grabbers/wire/bytes.hpp"
@@ -34,12 +33,8 @@ class PcapWriter {
   /// @throws Error if the disk is full; the file then ends with the last whole record
   void write(std::int64_t time_ns, ByteView frame);
 
-  /// Hands everything to the operating system, and to the disk if `durable`. @throws Error as write()
-  void flush(bool durable = false);
-
-  /// What puts on the disk all that flush() has handed to the operating system. May be called from another
-  /// thread, while this one writes on, and as long as one likes. @throws Error as write()
-  std::function<void()> syncer() const;
+  /// Puts everything on the disk. @throws Error as write()
+  void flush();
 
   /// Flushes, closes, and gives a replacing file its name. @throws Error as write()
   void close();

@@ -16,6 +16,9 @@ namespace {
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kHold = 20 * kMillisecond;  // longer than any frame lies before or behind its item
 constexpr std::int64_t kHandshake = 5 * kMillisecond;
+constexpr std::size_t kAtOnce = 4096;  // items that are written before the pause is over
+constexpr std::size_t kMostWaiting =
+    40000;  // items: a minute's of three lasers at 50 Hz and a plate at 500 Hz
 
 }  // namespace
 
@@ -44,54 +47,34 @@ struct CaptureRecorder::File {
   }
 
   PcapWriter pcap;
-  std::function<void()> sync = pcap.syncer();
   FrameSorter sorter;
   HubTraffic hub;
   std::vector<bool> connected;
-  /// Hands to the operating system what was written. Of what is held for its order, only once nothing more
-  /// seems to come.
-  void flush() {
-    if (!written) sorter.finish();
-    written = false;
-    pcap.flush();
-  }
-
   std::optional<std::int64_t> first_ns, latest_ns;  ///< of the items
-  bool written = false;                             ///< since it was made safe
 };
 
 CaptureRecorder::CaptureRecorder(std::filesystem::path file, Rig rig, const RecorderSettings& settings)
     : first_(std::move(file)), rig_(std::move(rig)), settings_(settings) {
   open();
-  if (settings_.safe_after > 0)
-    keeper_ = std::jthread([this](const std::stop_token& stop) { keep_safe(stop); });
+  BatchSettings batches{.enough = kAtOnce, .most = kMostWaiting, .pause = settings_.safe_after / 2};
+  if (settings_.safe_after == 0) batches = {};
+  writer_.emplace(batches, [this](const std::vector<HubItem>& items) { record(items); });
 }
 
 CaptureRecorder::~CaptureRecorder() {
   try {
     close();
   } catch (const Error&) {  // close() tells it to those who ask; what is on the disk is whole all the same
-    file_.reset();
   }
 }
 
-void CaptureRecorder::keep_safe(const std::stop_token& stop) {
-  const std::chrono::duration<double> pause(settings_.safe_after / 2);
-  std::unique_lock lock(mutex_);
-  while (!ended_.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); })) {
-    if (!file_) continue;
-    try {
-      file_->flush();
-      const auto sync = file_->sync;
-      lock.unlock();  // the disk may take its time
-      sync();
-      lock.lock();
-    } catch (const Error&) {
-      if (!lock.owns_lock()) lock.lock();
-      failure_ = std::current_exception();
-      return;
-    }
-  }
+void CaptureRecorder::record(const std::vector<HubItem>& items) {
+  for (const HubItem& item : items) record(item);
+  if (items.empty()) file_->sorter.finish();  // nothing more seems to come
+  const auto now = Clock::now();
+  if (now - safe_until_ < std::chrono::duration<double>(settings_.safe_after / 2)) return;
+  file_->pcap.flush();
+  safe_until_ = now;
 }
 
 void CaptureRecorder::open() {
@@ -101,6 +84,7 @@ void CaptureRecorder::open() {
                           first_.extension().string());
   }
   file_ = std::make_unique<File>(path, rig_);
+  file_->pcap.flush();  // readable from the beginning on
   files_.push_back(std::move(path));
 }
 
@@ -113,10 +97,7 @@ void CaptureRecorder::rotate(std::int64_t now_ns) {
   open();
 }
 
-void CaptureRecorder::write(const HubItem& item) {
-  const std::lock_guard lock(mutex_);
-  if (failure_) std::rethrow_exception(failure_);
-  if (!file_) throw Error("a capture that was closed cannot be written to");
+void CaptureRecorder::record(const HubItem& item) {
   const std::int64_t now_ns = receipt_ns(item);
   rotate(now_ns);
   File& file = *file_;
@@ -127,10 +108,13 @@ void CaptureRecorder::write(const HubItem& item) {
   } else {
     file.write(std::get<PlateReading>(item));
   }
-  file.written = true;
-  if (settings_.safe_after > 0) return;
-  file.flush();
-  file.sync();
+  ++recorded_;
+}
+
+void CaptureRecorder::write(HubItem item) {
+  if (closed_) throw Error("a capture that was closed cannot be written to");
+  writer_->push(std::move(item));
+  if (settings_.safe_after == 0) writer_->drain();
 }
 
 void CaptureRecorder::end_file() {
@@ -138,9 +122,9 @@ void CaptureRecorder::end_file() {
 }
 
 void CaptureRecorder::close() {
-  keeper_.request_stop();
-  if (keeper_.joinable()) keeper_.join();
-  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  if (std::exchange(closed_, true)) return;
+  writer_->drain();
+  writer_.reset();
   end_file();
 }
 

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <condition_variable>
+#include <chrono>
 #include <cstdint>
-#include <exception>
 #include <filesystem>
 #include <memory>
-#include <mutex>
-#include <thread>
+#include <optional>
 #include <vector>
 
 #include "grabbers/capture/hub_traffic.hpp"
 #include "grabbers/capture/pcap_writer.hpp"
 #include "grabbers/wire/hub_item.hpp"
+#include "pipeline/data/batcher.hpp"
 #include "pipeline/data/rig.hpp"
 
 namespace crisp {
@@ -26,8 +25,8 @@ struct RecorderSettings {
 
 /// Writes scans and readings as the capture that the hub's network interface would have made of them: a
 /// reader gives them back as they are, times of receipt included. The file grows in place and holds whole
-/// records only, so that it can be read whenever and however the writing ends. A thread of its own puts it on
-/// the disk, whether anything more comes or not.
+/// records only, so that it can be read whenever and however the writing ends. A thread of its own writes, so
+/// that nobody waits for the disk, and what came is on it soon, whether anything more comes or not.
 class CaptureRecorder {
  public:
   /// @param file  the first one; the next are name-2.pcap, name-3.pcap … A file that exists is written on.
@@ -37,30 +36,36 @@ class CaptureRecorder {
   CaptureRecorder(const CaptureRecorder&) = delete;
   CaptureRecorder& operator=(const CaptureRecorder&) = delete;
 
-  /// @throws Error  if the disk is full; what was written before is safe
-  void write(const HubItem& item);
+  /// Waits for the disk only if a minute's items of three lasers wait for it already, or safe_after is 0.
+  /// @throws Error  if the disk turned out to be full; what was written before is safe
+  void write(HubItem item);
   /// Ends the file. @throws Error  likewise
   void close();
 
+  // Once it is closed, or has thrown:
   const std::vector<std::filesystem::path>& files() const { return files_; }
+  std::uint64_t recorded() const { return recorded_; }  ///< items
 
  private:
   struct File;
+  using Clock = std::chrono::steady_clock;
+  void record(const std::vector<HubItem>& items);
+  void record(const HubItem& item);
   void open();
   void rotate(std::int64_t now_ns);
   void end_file();
-  void keep_safe(const std::stop_token& stop);
 
   std::filesystem::path first_;
   Rig rig_;
   RecorderSettings settings_;
-  std::vector<std::filesystem::path> files_;
+  bool closed_ = false;
 
-  std::mutex mutex_;  ///< of what follows
-  std::condition_variable_any ended_;
+  // of the thread that writes, until it has nothing left to do
+  std::vector<std::filesystem::path> files_;
+  std::uint64_t recorded_ = 0;
   std::unique_ptr<File> file_;
-  std::exception_ptr failure_;  ///< of the thread
-  std::jthread keeper_;
+  Clock::time_point safe_until_;  ///< what came before is on the disk
+  std::optional<Batcher<HubItem>> writer_;
 };
 
 }  // namespace crisp

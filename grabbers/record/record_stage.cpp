@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/record/record_stage.hpp"
 
-#include "pipeline/data/error.hpp"
+#include <utility>
 
 namespace crisp {
 
@@ -33,17 +33,23 @@ void RecordStage::describe(StageDescription<RecordStage>& d) {
       .range(0, 60);
 }
 
-void RecordStage::write(const HubItem& item, Context& context) {
-  if (failed_) return context.count("items that were not recorded");
+void RecordStage::write(HubItem item, Context& context) {
+  ++given_;
+  if (failed_) return;
   try {
     if (!recorder_) recorder_ = std::make_unique<CaptureRecorder>(file_, context.rig(), settings_);
-    recorder_->write(item);
+    recorder_->write(std::move(item));
   } catch (const Error& error) {
-    failed_ = true;
-    end();
-    context.distrust("the recording ended early: " + error.message());
-    context.count("items that were not recorded");
+    fail(error, context);
   }
+}
+
+void RecordStage::fail(const Error& error, Context& context) {
+  failed_ = true;
+  const std::string what = "the recording ended early: " + error.message();
+  context.distrust(what);
+  context.tell({.line = "the recording has ended", .events = {what}});
+  end();
 }
 
 void RecordStage::process(const Inputs& in, Outputs&, Context& context) {
@@ -55,7 +61,9 @@ void RecordStage::process(const Inputs& in, Outputs&, Context& context) {
 }
 
 void RecordStage::end() {
-  if (recorder_) files_ = recorder_->files();
+  if (!recorder_) return;
+  files_ = recorder_->files();
+  recorded_ = recorder_->recorded();
   recorder_.reset();
 }
 
@@ -63,9 +71,10 @@ void RecordStage::finish(Outputs&, Context& context) {
   try {
     if (recorder_) recorder_->close();
   } catch (const Error& error) {
-    context.distrust("the recording ended early: " + error.message());
+    fail(error, context);
   }
   end();
+  context.count("items that were not recorded", given_ - recorded_);
   for (const auto& file : files_) context.wrote(file);
 }
 

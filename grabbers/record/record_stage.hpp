@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "grabbers/record/capture_recorder.hpp"
+#include "pipeline/data/error.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "pipeline/stage/registry.hpp"
@@ -21,14 +22,17 @@ class RecordStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
-  void write(const HubItem& item, Context& context);
+  void write(HubItem item, Context& context);
+  void fail(const Error& error, Context& context);
   void end();
 
   std::filesystem::path file_;
   RecorderSettings settings_;
   std::unique_ptr<CaptureRecorder> recorder_;
-  std::vector<std::filesystem::path> files_;  ///< once it has ended
   bool failed_ = false;
+  std::uint64_t given_ = 0;                   ///< items
+  std::uint64_t recorded_ = 0;                ///< of them, once it has ended
+  std::vector<std::filesystem::path> files_;  ///< likewise
 };
 
 /// The recorder's stage.

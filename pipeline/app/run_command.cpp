@@ -53,6 +53,12 @@ RunRecord begin_record(const LoadedPipeline& loaded, const RunSettings& run) {
   return record;
 }
 
+std::vector<std::string> tags_of(const Pipeline& pipeline) {
+  std::vector<std::string> tags;
+  for (const auto& node : pipeline.nodes) tags.push_back(node.tag);
+  return tags;
+}
+
 /// Columns of the terminal; 0 if there is none.
 std::size_t terminal_width() {
   winsize size{};
@@ -61,7 +67,7 @@ std::size_t terminal_width() {
 
 std::vector<NodeResult> run_with_progress(Pipeline& pipeline, const RunSettings& run,
                                           const RunRequest& request, RunRecord& record) {
-  StatusBoard board;
+  StatusBoard board(tags_of(pipeline));
   std::optional<MetricsServer> metrics;
   if (request.metrics) metrics.emplace(*request.metrics, [&board] { return board.prometheus(); });
   ProgressPrinter printer(std::cerr, isatty(STDERR_FILENO) == 1, seconds_now, terminal_width());
@@ -87,9 +93,6 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
   const double began = seconds_now();
   try {
     record.nodes = run_with_progress(loaded.pipeline, run, request, record);
-    record.seconds = seconds_now() - began;
-    record.inputs = hash_inputs(record);
-    write_records(record, run.output);
   } catch (const Interrupted&) {
     std::cerr << "interrupted: files that were not complete were not written\n";
     return StopOnSignal::signal() == SIGTERM ? ExitStatus::terminated : ExitStatus::interrupted;
@@ -98,10 +101,19 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
     print_errors(error);
     return ExitStatus::failed;
   }
+  record.seconds = seconds_now() - began;
+  // Before the records, for which a disk that became full has no room.
   if (request.quiet)
     std::cerr << warnings_text(record);
   else
     std::cout << summary_text(record, request.verbose) << std::flush;
+  try {
+    record.inputs = hash_inputs(record);
+    write_records(record, run.output);
+  } catch (const Error& error) {
+    print_errors(error);
+    return ExitStatus::failed;
+  }
   return record.is_trusted() ? ExitStatus::done : ExitStatus::not_trusted;
 }
 

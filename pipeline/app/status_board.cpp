@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
-
 namespace crisp {
 namespace {
 
@@ -27,20 +24,16 @@ std::string label(const std::string& text) {
 
 void StatusBoard::tell(const std::string& tag, const StageStatus& status) {
   const std::lock_guard lock(mutex_);
-  const auto known = std::ranges::find(stages_, tag, &std::pair<std::string, StageStatus>::first);
-  if (known == stages_.end()) {
-    stages_.emplace_back(tag, status);
-  } else {
-    known->second = status;
-  }
+  told_[tag] = status;
 }
 
 std::string StatusBoard::line() const {
   const std::lock_guard lock(mutex_);
   std::string line;
-  for (const auto& [tag, status] : stages_) {
-    if (status.line.empty()) continue;
-    line += (line.empty() ? "" : " | ") + status.line;
+  for (const auto& tag : tags_) {
+    const auto told = told_.find(tag);
+    if (told == told_.end() || told->second.line.empty()) continue;
+    line += (line.empty() ? "" : " | ") + told->second.line;
   }
   return line;
 }
@@ -48,7 +41,7 @@ std::string StatusBoard::line() const {
 std::string StatusBoard::prometheus() const {
   const std::lock_guard lock(mutex_);
   std::map<std::string, std::string> metrics;  // the samples of a metric stand together
-  for (const auto& [tag, status] : stages_) {
+  for (const auto& [tag, status] : told_) {
     for (const Gauge& gauge : status.gauges) {
       const std::string device =
           gauge.device.empty() ? "" : fmt::format(",device=\"{}\"", label(gauge.device));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -13,16 +14,20 @@ namespace crisp {
 /// What the stages of a run last told of themselves. May be used from several threads.
 class StatusBoard {
  public:
+  /// @param tags  of the stages, in the pipeline's order
+  explicit StatusBoard(std::vector<std::string> tags) : tags_(std::move(tags)) {}
+
   void tell(const std::string& tag, const StageStatus& status);
 
-  /// All in one line, in the order in which the stages first told something.
+  /// All in one line, in the pipeline's order.
   std::string line() const;
   /// The gauges in Prometheus' text format 0.0.4, as crisp_NAME{stage="TAG",device="DEVICE"}.
   std::string prometheus() const;
 
  private:
+  const std::vector<std::string> tags_;
   mutable std::mutex mutex_;
-  std::vector<std::pair<std::string, StageStatus>> stages_;
+  std::map<std::string, StageStatus> told_;  ///< by tag
 };
 
 }  // namespace crisp

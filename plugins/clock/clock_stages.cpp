@@ -180,7 +180,8 @@ void OnlineStage::process(const Inputs& in, Outputs& out, Context& context) {
 void OnlineStage::tell(Context& context) {
   constexpr double kTellEvery = 0.5;  // [s]
   const auto& aligner = static_cast<const OnlineAligner&>(*aligner_);
-  if (aligner.now() - told_ < kTellEvery) return;
+  if (!told_) told_ = aligner.now();  // the first stamps say nothing of a skew
+  if (aligner.now() - *told_ < kTellEvery) return;
   told_ = aligner.now();
   StageStatus status{.line = "skew"};
   for (const DeviceReport& device : aligner.devices()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "pipeline/data/calibration.hpp"
 #include "pipeline/stage/context.hpp"
@@ -63,7 +64,7 @@ class OnlineStage final : public AlignStage {
 
   OnlineSettings online_;
   std::shared_ptr<const Calibration> calibration_;
-  double told_ = 0;  ///< [s since the epoch]
+  std::optional<double> told_;  ///< [s since the epoch]
 };
 
 /// `clock.receipt`

@@ -20,7 +20,7 @@ constexpr std::size_t kToChooseFrom = 2;  // times the beams that are looked at,
 
 /// Where nothing that has to keep up with the devices has to wait for it.
 template <class Work>
-auto in_background(const Work& work) {
+auto in_background(Work& work) {
   constexpr int kNicer = 10;
   setpriority(PRIO_PROCESS, 0, kNicer);  // of this thread, which ends with the work
   tbb::task_arena alone(1);
@@ -125,14 +125,16 @@ Renewing WatchStage::renewing() const {
 
 void WatchStage::begin_check(Context& context) {
   due_ = recent_->latest() + every_;
-  const auto check = [this, batches = recent_->batches(), calibration = calibration_, rig = context.rig(),
-                      terms = context.run().registrar->get<TermRegistry>(), renewing = renewing()] {
+  auto check = [this, batches = recent_->batches(), calibration = calibration_, rig = context.rig(),
+                terms = context.run().registrar->get<TermRegistry>(), renewing = renewing()]() mutable {
     PlateTrajectory plate;
-    const Sample sample = sample_of(batches, kToChooseFrom * settings_.beams, plate);
+    // What a check does not look at is free to be filled anew, while it runs.
+    const Sample sample = sample_of(std::exchange(batches, {}), kToChooseFrom * settings_.beams, plate);
     return check_calibration(*calibration, sample, rig, terms, settings_, renewing,
                              [this] { return !stop_; });
   };
-  running_ = std::async(std::launch::async, [check] { return in_background(check); });
+  running_ =
+      std::async(std::launch::async, [check = std::move(check)]() mutable { return in_background(check); });
 }
 
 void WatchStage::end_check(Outputs& out, Context& context) {

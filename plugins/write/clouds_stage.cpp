@@ -18,8 +18,9 @@ void WriteCloudsStage::describe(StageDescription<WriteCloudsStage>& d) {
       "file is whole from the moment at which it has its name. With `keep`, the oldest are removed, so that "
       "the "
       "disk does not fill. A disk that is full ends the writing, and the run's summary says so; the other "
-      "stages "
-      "go on.");
+      "stages go on. Clouds are written beside the other stages' work; one that comes while two still wait "
+      "for "
+      "the disk waits as well, and with it the stages above.");
   d.takes<Cloud>();
   d.option("file", &WriteCloudsStage::file_, "where to write them, NAME.pcd").required();
   d.option("format", &WriteCloudsStage::format_, "how the points follow the header")
@@ -29,30 +30,48 @@ void WriteCloudsStage::describe(StageDescription<WriteCloudsStage>& d) {
   d.option("keep", &WriteCloudsStage::keep_, "how many of the last are kept; 0: all").range(0, 1e9);
 }
 
-std::filesystem::path WriteCloudsStage::write(const Cloud& cloud) {
+void WriteCloudsStage::write(const Cloud& cloud) {
   AtomicFile file(part_path(file_, written_ + 1));
   write_pcd(file, to_table(cloud), format_);
   file.commit();
-  return file.path();
-}
-
-void WriteCloudsStage::process(const Inputs& in, Outputs&, Context& context) {
-  if (failed_) return context.count("clouds that were not written");
-  try {
-    kept_.push_back(write(in.get<Cloud>()));
-    ++written_;
-  } catch (const Error& error) {
-    failed_ = true;
-    context.distrust("no more clouds were written: " + error.message());
-    return context.count("clouds that were not written");
-  }
+  kept_.push_back(file.path());
+  ++written_;
   if (keep_ == 0 || kept_.size() <= keep_) return;
   std::error_code ignored;
   std::filesystem::remove(kept_.front(), ignored);
   kept_.pop_front();
 }
 
+void WriteCloudsStage::process(const Inputs& in, Outputs&, Context& context) {
+  ++given_;
+  if (failed_) return;
+  if (!writer_) {
+    writer_.emplace(BatchSettings{}, [this](const Clouds& clouds) {
+      for (const auto& cloud : clouds) write(*cloud);
+    });
+  }
+  try {
+    writer_->push(in.share<Cloud>());
+  } catch (const Error& error) {
+    fail(error, context);
+  }
+}
+
+void WriteCloudsStage::fail(const Error& error, Context& context) {
+  failed_ = true;
+  const std::string what = "no more clouds were written: " + error.message();
+  context.distrust(what);
+  context.tell({.line = "no more clouds are written", .events = {what}});
+}
+
 void WriteCloudsStage::finish(Outputs&, Context& context) {
+  try {
+    if (writer_ && !failed_) writer_->drain();
+  } catch (const Error& error) {
+    fail(error, context);
+  }
+  writer_.reset();
+  context.count("clouds that were not written", given_ - written_);
   for (const auto& file : kept_) context.wrote(file);
   context.report({{"clouds", written_}});
   context.say(fmt::format("{} clouds written, {} of them kept", written_, kept_.size()));

@@ -3,15 +3,21 @@
 
 #include <deque>
 #include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
 
+#include "pipeline/data/batcher.hpp"
 #include "pipeline/data/cloud.hpp"
+#include "pipeline/data/error.hpp"
 #include "pipeline/pcd/pcd_table.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 
 namespace crisp {
 
-/// `write.clouds`: each cloud as a PCD file of its own, as soon as it comes.
+/// `write.clouds`: each cloud as a PCD file of its own, as soon as it comes. A thread of its own writes, so
+/// that the scans behind a cloud do not wait for the disk.
 class WriteCloudsStage final : public Stage {
  public:
   static void describe(StageDescription<WriteCloudsStage>& d);
@@ -19,14 +25,20 @@ class WriteCloudsStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
-  std::filesystem::path write(const Cloud& cloud);
+  using Clouds = std::vector<std::shared_ptr<const Cloud>>;
+  void write(const Cloud& cloud);
+  void fail(const Error& error, Context& context);
 
   std::filesystem::path file_;
   PcdFormat format_ = PcdFormat::binary_compressed;
   std::size_t keep_ = 0;
-  std::size_t written_ = 0;
-  std::deque<std::filesystem::path> kept_;
+  std::uint64_t given_ = 0;
   bool failed_ = false;
+
+  // of the thread that writes, until it has nothing left to do
+  std::uint64_t written_ = 0;
+  std::deque<std::filesystem::path> kept_;
+  std::optional<Batcher<std::shared_ptr<const Cloud>>> writer_;
 };
 
 }  // namespace crisp

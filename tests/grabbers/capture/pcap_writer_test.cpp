@@ -79,7 +79,7 @@ TEST(PcapWriter, GivesWhatWasFlushedToOtherReadersAtOnce) {
   const TemporaryFolder folder;
   PcapWriter writer(folder / "a.pcap", PcapMode::Grow);
   writer.write(kTime, Bytes(60, 1));
-  writer.flush(true);
+  writer.flush();
   EXPECT_THAT(records(folder / "a.pcap"), ElementsAre(Pair(kTime, 1)));
 }
 

@@ -118,6 +118,7 @@ TEST_F(CaptureRecorderTest, LeavesWholeRecordsOnAFullDisk) {
           for (int i = 0; i < 100; ++i) {
             for (const HubItem& item : items) recorder.write(item);
           }
+          recorder.close();
         },
         Error);
   }

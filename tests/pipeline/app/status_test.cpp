@@ -17,16 +17,16 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-TEST(StatusBoard, ShowsWhatEachStageToldLast) {
-  StatusBoard board;
-  board.tell("grabber.live", {.line = "laser1 50.0 Hz", .gauges = {{"rate_hertz", 50, "laser1"}}});
+TEST(StatusBoard, ShowsWhatEachStageToldLastInThePipelinesOrder) {
+  StatusBoard board({"grabber.live", "clock.online", "calibrate.watch"});
   board.tell("clock.online", {.line = "skew +4.5 ppm", .gauges = {{"rate_hertz", 1}, {"resets_total", 2}}});
+  board.tell("grabber.live", {.line = "laser1 50.0 Hz", .gauges = {{"rate_hertz", 50, "laser1"}}});
   board.tell("grabber.live", {.line = "laser1 49.9 Hz", .gauges = {{"rate_hertz", 49.9, "laser1"}}});
   EXPECT_EQ(board.line(), "laser1 49.9 Hz | skew +4.5 ppm");
   EXPECT_EQ(board.prometheus(),
             "# TYPE crisp_rate_hertz gauge\n"
-            "crisp_rate_hertz{stage=\"grabber.live\",device=\"laser1\"} 49.9\n"
             "crisp_rate_hertz{stage=\"clock.online\"} 1\n"
+            "crisp_rate_hertz{stage=\"grabber.live\",device=\"laser1\"} 49.9\n"
             "# TYPE crisp_resets_total counter\n"
             "crisp_resets_total{stage=\"clock.online\"} 2\n");
 }
