@@ -7,7 +7,8 @@
 
 namespace crisp {
 std::int64_t SequenceTracker::steps_to(std::uint16_t counter, std::int64_t time_ns) const {
-  const double expected = interval_ns_ > 0 ? static_cast<double>(time_ns - last_ns_) / interval_ns_ : 1;
+  const double expected =
+      elapsed_ns_ > 0 ? static_cast<double>(time_ns - last_ns_) * steps_ / elapsed_ns_ : 1;
   return std::llround(nearest_congruent(static_cast<std::uint16_t>(counter - last_), 65536, expected));
 }
 
@@ -40,9 +41,10 @@ SequenceTracker::Verdict SequenceTracker::take(std::uint16_t counter, std::uint3
   seen_ = steps < kRemembered ? (seen_ << steps) | 1 : 1;
   remembered = stamp;
   if (steps < kRemembered) {
-    constexpr double kWeight = 1.0 / 16;
-    const double interval = static_cast<double>(time_ns - last_ns_) / static_cast<double>(steps);
-    interval_ns_ = interval_ns_ > 0 ? interval_ns_ + kWeight * (interval - interval_ns_) : interval;
+    // Over many items: those that waited for a busy machine come all at once, which is not their rate.
+    constexpr double kKept = 1 - 1.0 / 4096;
+    elapsed_ns_ = kKept * elapsed_ns_ + static_cast<double>(time_ns - last_ns_);
+    steps_ = kKept * steps_ + static_cast<double>(steps);
   }
   last_ = counter;
   last_ns_ = time_ns;

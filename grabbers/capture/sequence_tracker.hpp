@@ -31,8 +31,8 @@ class SequenceTracker {
   bool begun_ = false;
   std::uint16_t last_ = 0;
   std::int64_t last_ns_ = 0;
-  double interval_ns_ = 0;  ///< usual time between two counts; 0 as long as it is unknown
-  std::uint64_t seen_ = 0;  ///< bit k: counter last − k has come
+  double elapsed_ns_ = 0, steps_ = 0;  ///< of the last items: their ratio is the time from one to the next
+  std::uint64_t seen_ = 0;             ///< bit k: counter last − k has come
   std::array<std::uint32_t, kRemembered> stamps_{};
   std::uint64_t lost_ = 0;
 };

@@ -39,6 +39,21 @@ TEST(SequenceTracker, CountsASilenceOfManyWrapsByItsTime) {
   EXPECT_EQ(tracker.lost(), 300'000U);
 }
 
+TEST(SequenceTracker, TakesABurstBehindAPauseForNoHigherRate) {
+  SequenceTracker tracker;
+  std::int64_t now = 0;
+  std::uint16_t counter = 0;
+  const auto come = [&](int items, std::int64_t interval_ns) {
+    for (int i = 0; i < items; ++i, ++counter) tracker.take(counter, counter, now += interval_ns);
+  };
+  come(5000, 2'000'000);
+  now += 800'000'000;  // the machine is busy; what came meanwhile is handed over all at once
+  come(400, 10'000);
+  now += 800'000'000;
+  come(400, 10'000);
+  EXPECT_EQ(tracker.lost(), 0U);
+}
+
 TEST(SequenceTracker, TellsLateItemsFromRepeatedOnes) {
   SequenceTracker tracker;
   for (const std::int64_t k : {0, 1, 2, 5, 6}) send(tracker, k);
