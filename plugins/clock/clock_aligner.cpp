@@ -32,7 +32,8 @@ double ClockAligner::arrive(std::int64_t receipt_ns) {
 void ClockAligner::add(std::shared_ptr<const Scan> scan) {
   if (tracks_.track_of(*scan) == nullptr) return;
   const double hub = arrive(scan->receipt_ns);
-  tracks_.lasers()[scan->laser].add(std::move(scan), hub);
+  LaserTrack& laser = tracks_.lasers()[scan->laser];
+  laser.add(std::move(scan), hub);
 }
 
 void ClockAligner::add(const PlateReading& reading) {
