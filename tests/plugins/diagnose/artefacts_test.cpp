@@ -35,8 +35,7 @@ TEST(Artefacts, OtherRatesAndChangingOnesShowManyDirections) {
 
 class DensityBias : public testing::Test {
  protected:
-  DensityBias() : recording_(test::hidden(3, 4, office(), {})) {
-    came_ = recording_.scanner.truth;
+  DensityBias() : recording_(test::hidden(3, 4, office(), {})), came_(recording_.scanner.truth) {
     came_.lasers[1].tau.value += 0.002;
     came_.provenance["calibration"] = "calibrate.rqe";
     plain_ = refine_by_surfels(SensorModel(came_), recording_.sample(), {}).outcome;
