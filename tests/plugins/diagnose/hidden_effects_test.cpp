@@ -87,7 +87,7 @@ class GainOnHeldOutTurns : public testing::TestWithParam<std::pair<const char*, 
 
 TEST_P(GainOnHeldOutTurns, IsTheTrueOneAndLeavesACloudAsThinAsWithoutTheEffect) {
   const auto& [name, values] = GetParam();
-  const auto recording = test::hidden(41, 10, office(), {{name, values}});
+  const auto recording = test::hidden(41, 6, office(), {{name, values}});
   const Diagnosis diagnosis = test::diagnosed(recording);
   ASSERT_THAT(test::names_in(diagnosis), ElementsAre(name));
   const Gain gain = diagnosis.departures.at(0).gains.at(0);
@@ -100,7 +100,7 @@ TEST_P(GainOnHeldOutTurns, IsTheTrueOneAndLeavesACloudAsThinAsWithoutTheEffect) 
   EXPECT_GT(truly_after, gain.before + gain.ci95[0]);
   EXPECT_LT(truly_after, gain.before + gain.ci95[1]);
 
-  const auto clean = test::hidden(41, 10, office(), {});
+  const auto clean = test::hidden(41, 6, office(), {});
   const SensorModel clean_truth(clean.scanner.truth, built_in_terms());
   const double without_effect = thickness_of(HeldOut(halves(clean), clean_truth, {}), clean_truth);
   EXPECT_NEAR(gain.after, without_effect, 0.03 * without_effect);
@@ -130,8 +130,8 @@ TEST(HiddenEffects, ATimeBetweenBeamsIsOneOfAClass) {
 
 /// Of the same scanner in office and hall.
 Diagnosis diagnosed_in_two_places(const std::map<std::string, std::vector<double>>& effects, bool new_zeros) {
-  const auto first = test::hidden(31, 6, office(), effects);
-  const auto second = test::hidden(32, 6, hall(), effects);
+  const auto first = test::hidden(31, 4, office(), effects);
+  const auto second = test::hidden(32, 4, hall(), effects);
   const test::Several both = test::several({first.made, second.made}, new_zeros);
   return diagnose(SensorModel(nominal_calibration(default_rig()), built_in_terms()), both.sample(),
                   built_in_terms(), {});

@@ -30,7 +30,7 @@ TEST(AnOwnTerm, IsNamedLikeTheBuiltInOnes) {
   TermRegistry terms;
   register_built_in(terms);
   terms.add(std::make_shared<Ripple>());
-  ScannerSettings scanner = test::scanner_of(61, 6);
+  ScannerSettings scanner = test::scanner_of(61, 4);
   add_wanted_terms(scanner.truth, {"laser3.mine.ripple"}, terms);
   test::term_of(scanner.truth, "laser3.mine.ripple").parameters.at(0).value = 0.011;
   const auto made = simulate_measurements(scanner, office(), terms);
