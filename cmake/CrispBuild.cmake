@@ -27,14 +27,18 @@ target_compile_options(crisp_settings INTERFACE
   # 105651 and 107852); the sanitizers see those that are.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow>
   $<$<CXX_COMPILER_ID:Clang>:-Wno-gnu-anonymous-struct -Wno-nested-anon-types>  # PCL's macro for x, y, z
-  # Where many sources are compiled as one, to be fast, they see each other's names. The presets dev and tsan
-  # compile each alone.
+  # Where many sources are compiled as one, to be fast, they see each other's names. The preset dev
+  # compiles each alone.
   $<$<BOOL:${CMAKE_UNITY_BUILD}>:-Wno-shadow>
   $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
   $<$<BOOL:${CRISP_WARNINGS_AS_ERRORS}>:-Werror>)
 if(CRISP_SANITIZE)
   add_compile_options(-fsanitize=${CRISP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${CRISP_SANITIZE})
+  if(CRISP_SANITIZE MATCHES "address.*undefined")
+    # A tenth to a fifth of the time to compile, for what the address sanitizer sees itself.
+    add_compile_options(-fno-sanitize=null,object-size)
+  endif()
   if(CRISP_SANITIZE STREQUAL "thread")
     # The thread sanitizer knows no fences; Asio's are beside its mutexes, which it knows.
     add_compile_definitions(BOOST_ASIO_DISABLE_FENCED_BLOCK)

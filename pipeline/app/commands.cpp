@@ -9,6 +9,7 @@
 
 #include "pipeline/app/effect_reference.hpp"
 #include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/json_text.hpp"
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/rig_file.hpp"
 #include "pipeline/model/catalogue.hpp"
@@ -84,7 +85,7 @@ ExitStatus validate_command(const fs::path& file, PipelineArguments arguments, c
 ExitStatus stages_command(const StagesRequest& request, const Registrar& registrar) {
   const StageRegistry& stages = registrar.stages();
   if (request.json_schema) {
-    std::cout << pipeline_schema(stages).dump(2) << "\n";
+    std::cout << json_text(pipeline_schema(stages), 2) << "\n";
   } else if (!request.name.empty()) {
     return print_one_stage(request, stages);
   } else if (request.names) {
@@ -149,7 +150,7 @@ ExitStatus info_command(const fs::path& file, const std::optional<fs::path>& rig
       if (!inspector.recognises(head)) continue;
       const Inspection inspection = inspector.inspect(file, rig);
       if (json)
-        std::cout << inspection.data.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+        std::cout << json_text(inspection.data, 2) << "\n";
       else
         std::cout << file.string() << ": " << inspector.kind << "\n" << inspection.text << "\n";
       return ExitStatus::done;

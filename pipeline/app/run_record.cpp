@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/json_text.hpp"
 #include "pipeline/stage/reference.hpp"
 
 namespace crisp {
@@ -49,7 +50,7 @@ Json outputs_json(const StageReport& report) {
 
 std::string dump(const Json& json) {
   // Texts from files may hold anything; what is no UTF-8 is replaced instead of throwing.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/app/format.hpp"
+#include "pipeline/files/json_text.hpp"
 
 namespace crisp {
 namespace {
@@ -29,7 +30,8 @@ std::string stage_summary(const NodeResult& node, const nlohmann::ordered_json& 
   std::string text;
   if (verbose) {
     text += flow_text(node);
-    for (const auto& [name, value] : options.items()) text += fmt::format("  {} = {}\n", name, value.dump());
+    for (const auto& [name, value] : options.items())
+      text += fmt::format("  {} = {}\n", name, json_text(value));
   }
   for (const auto& line : node.report.lines) text += indented(line, "  ");
   for (const auto& [name, count] : node.report.counts) {

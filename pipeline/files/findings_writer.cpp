@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <nlohmann/json.hpp>
-
 #include "pipeline/files/findings_file.hpp"
+#include "pipeline/files/json_text.hpp"
 
 namespace crisp {
 namespace {
@@ -93,7 +92,7 @@ std::string findings_json(const Findings& findings) {
                     {"devices", list_of(findings.devices)},
                     {"noise", list_of(findings.noise)},
                     {"indistinguishable", {{"before_p", findings.before_p}, {"after_p", findings.after_p}}}};
-  return all.dump(2) + "\n";
+  return json_text(all, 2) + "\n";
 }
 
 }  // namespace crisp

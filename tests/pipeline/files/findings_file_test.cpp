@@ -127,6 +127,13 @@ TEST(FindingsFile, IsReadAsItWasWritten) {
   EXPECT_EQ(read.before_p, 0.005);
 }
 
+TEST(FindingsFile, ReplacesBytesThatAreNoUtf8) {
+  Findings written = some_findings();
+  written.devices[0].device = "caf\xe9";
+  EXPECT_EQ(parse_findings(parse_yaml(findings_json(written), "diagnosis.json")).devices.at(0).device,
+            "caf\xef\xbf\xbd");
+}
+
 std::vector<std::string> complaints(const std::string& text) {
   return errors_of([&] { parse_findings(parse_yaml(text, "diagnosis.json")); });
 }
