@@ -4,14 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 
 #include "pipeline/app/effect_reference.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/nearest.hpp"
-#include "pipeline/files/rig_file.hpp"
 #include "pipeline/model/catalogue.hpp"
 #include "pipeline/stage/reference.hpp"
 
@@ -44,15 +42,6 @@ ExitStatus print_one_stage(const StagesRequest& request, const StageRegistry& st
   }
   std::cout << (request.markdown ? stage_markdown(*type) : stage_text(*type));
   return ExitStatus::done;
-}
-
-std::string head_of(const fs::path& file) {
-  constexpr std::size_t kEnough = 4096;
-  std::ifstream stream(file, std::ios::binary);
-  std::string head(kEnough, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(stream.gcount()));
-  return head;
 }
 
 }  // namespace
@@ -135,31 +124,6 @@ ExitStatus plugins_command(const PluginLoader& loader) {
     for (const auto& stage : plugin.stages) std::cout << fmt::format("  stage {}\n", stage);
   }
   return ExitStatus::done;
-}
-
-ExitStatus info_command(const fs::path& file, const std::optional<fs::path>& rig_file, bool json,
-                        const Registrar& registrar) {
-  try {
-    if (!fs::exists(file)) throw Error("there is no file " + file.string());
-    if (!fs::is_regular_file(file)) throw Error(file.string() + " is not a file");
-    const Rig rig = rig_file ? read_rig(*rig_file) : default_rig();
-    const std::string head = head_of(file);
-    std::string known;
-    for (const auto& inspector : registrar.inspectors()) {
-      known += (known.empty() ? "" : ", ") + inspector.kind;
-      if (!inspector.recognises(head)) continue;
-      const Inspection inspection = inspector.inspect(file, rig);
-      if (json)
-        std::cout << json_text(inspection.data, 2) << "\n";
-      else
-        std::cout << file.string() << ": " << inspector.kind << "\n" << inspection.text << "\n";
-      return ExitStatus::done;
-    }
-    throw Error(file.string() + " is none of the kinds of files that are known", "known are " + known);
-  } catch (const Error& error) {
-    print_errors(error);
-    return ExitStatus::failed;
-  }
 }
 
 }  // namespace crisp

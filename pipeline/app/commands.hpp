@@ -63,8 +63,8 @@ ExitStatus effects_command(const EffectsRequest& request, const Registrar& regis
 /// `crisp plugins`: every file that was tried, and the reason of each refusal.
 ExitStatus plugins_command(const PluginLoader& loader);
 
-/// `crisp info`: what a file holds.
-ExitStatus info_command(const std::filesystem::path& file, const std::optional<std::filesystem::path>& rig,
+/// `crisp info`: what a file holds, or each file of a known kind in a folder.
+ExitStatus info_command(const std::filesystem::path& path, const std::optional<std::filesystem::path>& rig,
                         bool json, const Registrar& registrar);
 
 /// Prints what is wrong, all of it, to stderr.

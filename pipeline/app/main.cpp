@@ -268,8 +268,8 @@ struct CommandLine {
   }
 
   void add_info() {
-    info_app = command("info", "Say what a file holds: a capture, a cloud, a calibration");
-    info_app->add_option("file", info_file, "The file")->required()->type_name("FILE");
+    info_app = command("info", "Say what a file, or a folder of them, holds: captures, clouds, calibrations");
+    info_app->add_option("file", info_file, "The file or folder")->required()->type_name("FILE");
     info_app->add_option("--rig", info_rig, "The rig whose devices are to be named")->type_name("FILE");
     info_app->add_flag("--json", info_json, "For programs");
   }

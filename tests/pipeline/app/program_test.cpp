@@ -243,6 +243,13 @@ TEST_F(ProgramTest, SaysWhatACalibrationHolds) {
   EXPECT_EQ(unknown.status, 1);
   EXPECT_THAT(unknown.error, HasSubstr("is none of the kinds of files that are known"));
   EXPECT_EQ(crisp({"info", path("nowhere")}).status, 1);
+
+  const auto folder = nlohmann::json::parse(crisp({"info", folder_.string(), "--json"}).out);
+  EXPECT_EQ(folder.size(), 1U) << "noise is not counted";
+  EXPECT_EQ(folder[path("c.yaml")], data);
+  EXPECT_THAT(crisp({"info", folder_.string()}).out, HasSubstr("c.yaml: a calibration\n"));
+  fs::create_directory(folder_ / "empty");
+  EXPECT_THAT(crisp({"info", path("empty")}).error, HasSubstr("holds no file of a kind that is known"));
 }
 
 TEST_F(ProgramTest, SaysBeforeARecordingWhatItWouldDetermine) {
