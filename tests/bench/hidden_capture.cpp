@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How often the whole pipeline names what hides in a capture and is no term of the sensor's model: clocks,
+// links, the scatter of ranges, things that move. Beside hidden_trial, which hides terms in measurements.
+// Each capture is simulated from a seed, and configs/diagnose.yaml is given it alone. Prints a line for each
+// capture, and a table in the end.
+//
+//     hidden_capture [SEEDS [FIRST [EFFECT]]]       EFFECT: one of them, or `none`
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <random>
+#include <span>
+
+#include "pipeline/files/findings_file.hpp"
+#include "tests/end_to_end/workshop.hpp"
+
+namespace crisp {
+namespace {
+
+using Scenes = std::vector<std::string>;
+
+/// One effect as it is hidden: its own parameters and what it needs beside it.
+struct Hidden {
+  std::string cause;
+  std::string scope;                    ///< whose it is
+  std::map<std::string, double> truth;  ///< in SI
+  std::string beside;                   ///< further effects in YAML
+  Scenes scenes = {"office", "hall", "street"};
+  double duration = 10;  ///< [s]
+};
+
+class Drawer {
+ public:
+  explicit Drawer(std::uint64_t seed) : random_(seed) {}
+
+  double uniform(double from, double to) { return std::uniform_real_distribution(from, to)(random_); }
+  double signed_between(double from, double to) { return (below(2) == 0 ? 1 : -1) * uniform(from, to); }
+  std::size_t below(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random_); }
+  std::string laser() { return "laser" + std::to_string(1 + below(3)); }
+  std::string device() { return below(4) == 0 ? "plate" : laser(); }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+/// How each is drawn; sizes are those of real devices (docs/effects.md).
+using Draw = std::function<Hidden(Drawer&)>;
+const std::map<std::string, Draw>& draws() {
+  static const std::map<std::string, Draw> all = {
+      {"none", [](Drawer&) { return Hidden{}; }},
+      {"clock.drift",
+       [](Drawer& d) {
+         return Hidden{.scope = d.laser(),
+                       .truth = {{"drift", d.signed_between(0.3e-6, 3e-6)}},
+                       .scenes = {"office"},
+                       .duration = 60};
+       }},
+      {"clock.step",
+       [](Drawer& d) {
+         return Hidden{.scope = d.laser(),
+                       .truth = {{"by", d.signed_between(0.5e-3, 50e-3)}, {"at", d.uniform(3, 7)}}};
+       }},
+      {"latency.step",
+       [](Drawer& d) {
+         return Hidden{.scope = d.device(),
+                       .truth = {{"by", d.uniform(0.5e-3, 5e-3)}, {"at", d.uniform(3, 7)}}};
+       }},
+      {"noise.heavy_tail",
+       [](Drawer& d) {
+         return Hidden{.scope = d.laser(),
+                       .truth = {{"share", d.uniform(0.015, 0.05)}, {"scale", d.uniform(4, 7)}}};
+       }},
+      {"noise.range_dependent",
+       [](Drawer& d) {
+         return Hidden{.scope = d.laser(),
+                       .truth = {{"slope", d.uniform(0.0015, 0.004)}},
+                       .scenes = {"hall", "street"}};
+       }},
+      {"noise.two_peaks",
+       [](Drawer& d) {
+         const std::string laser = d.laser();
+         return Hidden{
+             .scope = laser,
+             .truth = {{"separation", d.uniform(0.0135, 0.0167)}},
+             .beside = fmt::format(", {}.noise.normal: {{sigma: {}}}", laser, d.uniform(4e-3, 6e-3))};
+       }},
+      {"noise.quantisation",
+       [](Drawer& d) {
+         return Hidden{.scope = d.laser(), .truth = {{"step", 1e-3 * (4 + d.below(12))}}};
+       }},
+      {"noise.mixed_pixels",
+       [](Drawer& d) {
+         return Hidden{.scope = d.laser(),
+                       .truth = {{"divergence", d.uniform(0.012, 0.016)}, {"aperture", 0.008}},
+                       .scenes = {"office", "workshop"}};
+       }},
+      {"scene.moving", [](Drawer&) { return Hidden{.scope = "scene", .scenes = {"people"}}; }},
+  };
+  return all;
+}
+
+std::string effects_of(const Hidden& hidden) {
+  if (hidden.truth.empty()) return "effects={}";
+  std::string parameters;
+  for (const auto& [name, value] : hidden.truth) {
+    parameters += fmt::format("{}{}: {}", parameters.empty() ? "" : ", ", name, value);
+  }
+  return fmt::format("effects={{{}.{}: {{{}}}{}}}", hidden.scope, hidden.cause, parameters, hidden.beside);
+}
+
+struct Row {
+  int captures = 0, named = 0, wrong = 0, parameters = 0, within_three = 0;
+};
+
+class Trial {
+ public:
+  void run(const std::string& cause, std::uint64_t seed) {
+    Drawer drawer(seed);
+    Hidden hidden = draws().at(cause)(drawer);
+    hidden.cause = cause;
+    const std::string scene = hidden.scenes[drawer.below(hidden.scenes.size())];
+    const test::Workshop workshop;
+    workshop.simulate("made", {fmt::format("seed={}", seed), "scene=" + scene,
+                               fmt::format("duration={}s", hidden.duration), effects_of(hidden)});
+    const auto outcome = workshop.run("diagnose.yaml", workshop / "made/hub.pcap", "out");
+    if (outcome.status != ExitStatus::done) throw Error(cause + ": " + outcome.told);
+    fmt::print("{:<22} seed {:<4} {:<8} {}; found:", cause, seed, scene, effects_of(hidden));
+    count(hidden, read_findings(workshop / "out/diagnosis.json"));
+    fmt::print("\n");
+    std::fflush(stdout);
+  }
+
+  void print() const {
+    fmt::print(
+        "\n| what hides | captures | named | wrong names | parameters within 3 s.e. "
+        "|\n|---|---|---|---|---|\n");
+    for (const auto& [cause, row] : rows_) {
+      fmt::print("| {} | {} | {} | {} | {} of {} |\n", cause, row.captures, row.named, row.wrong,
+                 row.within_three, row.parameters);
+    }
+  }
+
+ private:
+  void count(const Hidden& hidden, const Findings& findings) {
+    Row& row = rows_[hidden.cause];
+    ++row.captures;
+    bool named = false;
+    for (const Finding& finding : findings.findings) {
+      fmt::print(" {}.{}{}", finding.scope, finding.cause, finding.accepted ? "" : "(refused)");
+      if (!finding.accepted) continue;
+      const bool right =
+          finding.cause == hidden.cause && (finding.scope == hidden.scope || hidden.cause == "scene.moving");
+      row.wrong += right ? 0 : 1;
+      if (right && !named) count_parameters(hidden, finding, row);
+      named = named || right;
+    }
+    for (const auto& unnamed : findings.unnamed) fmt::print(" unnamed over {}", unnamed.covariate);
+    row.named += named ? 1 : 0;
+  }
+
+  static void count_parameters(const Hidden& hidden, const Finding& finding, Row& row) {
+    for (const Parameter& told : finding.parameters) {
+      const auto truth = hidden.truth.find(told.name);
+      if (truth == hidden.truth.end() || !(told.std_error > 0)) continue;
+      const double error = (told.value - truth->second) / told.std_error;
+      fmt::print(" {} {:+.1f} s.e.", told.name, error);
+      ++row.parameters;
+      row.within_three += std::abs(error) < 3 ? 1 : 0;
+    }
+  }
+
+  std::map<std::string, Row> rows_;
+};
+
+void run(std::uint64_t seeds, std::uint64_t first, const std::string& effect) {
+  Trial trial;
+  for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
+    std::uint64_t k = 0;
+    for (const auto& [cause, draw] : draws()) {
+      const std::uint64_t own = seed + 1000 * ++k;
+      if (effect.empty() ? cause != "none" : cause == effect) trial.run(cause, own);
+    }
+  }
+  trial.print();
+}
+
+}  // namespace
+}  // namespace crisp
+
+int main(int argc, char** argv) {
+  const std::span<char*> arguments(argv, static_cast<std::size_t>(argc));
+  const auto number = [&](std::size_t at, std::uint64_t otherwise) {
+    return arguments.size() > at ? std::strtoull(arguments[at], nullptr, 10) : otherwise;
+  };
+  try {
+    crisp::run(number(1, 10), number(2, 1), arguments.size() > 3 ? arguments[3] : "");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+  return 0;
+}
