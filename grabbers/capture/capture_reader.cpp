@@ -11,6 +11,7 @@
 #include "grabbers/capture/dissect.hpp"
 #include "grabbers/capture/fragments.hpp"
 #include "grabbers/capture/item_merge.hpp"
+#include "pipeline/data/middle.hpp"
 
 namespace crisp {
 namespace {
@@ -100,9 +101,8 @@ Flow* CaptureReader::Traffic::find_flow(const TransportPacket& packet) {
 void CaptureReader::Traffic::forget_flows() {
   std::vector<std::int64_t> ages;
   for (const auto& [key, flow] : flows) ages.push_back(flow->last_ns());
-  const auto middle = ages.begin() + static_cast<std::ptrdiff_t>(ages.size() / 2);
-  std::nth_element(ages.begin(), middle, ages.end());
-  const auto old = [&](const Flow& flow) { return flow.last_ns() <= *middle; };
+  const std::int64_t middle = middle_of(ages);
+  const auto old = [&](const Flow& flow) { return flow.last_ns() <= middle; };
   std::erase_if(rig_flows, [&](const Flow* flow) { return old(*flow); });
   for (auto& [key, flow] : flows) {
     if (old(*flow)) flow->finish();

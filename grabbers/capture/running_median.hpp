@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
+
+#include "pipeline/data/middle.hpp"
 
 namespace crisp {
 
@@ -26,9 +27,7 @@ class RunningMedian {
   std::optional<double> value() const {
     if (values_.empty()) return {};
     auto sorted = values_;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    return *middle;
+    return middle_of(sorted);
   }
 
  private:

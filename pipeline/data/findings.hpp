@@ -16,6 +16,11 @@ struct Gain {
   double before = 0;
   double after = 0;
   std::array<double, 2> ci95{};  ///< of after − before
+
+  bool surely_falls() const { return ci95[1] < 0; }
+  bool surely_rises() const { return ci95[0] > 0; }
+  /// Of an RMS: the share of its squares that is gone; 0 where there was nothing.
+  double explained() const { return before > 0 ? 1 - after * after / (before * before) : 0; }
 };
 
 /// A departure of the measured data from the model, with its physical cause.

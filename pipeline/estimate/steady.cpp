@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "pipeline/data/middle.hpp"
+
 namespace crisp {
 namespace {
 
@@ -56,12 +58,6 @@ double far_for_most_beams(std::vector<Spread> spreads) {
   return 0;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 }  // namespace
 
 std::vector<bool> steady(const Surfels& surfels, const BeamsView& beams, double noise) {
@@ -76,7 +72,7 @@ std::vector<bool> steady(const Surfels& surfels, const BeamsView& beams, double 
     spreads.push_back(spread_of_views(surfel, surfels, beams, views));
     sizes.push_back(std::sqrt(spreads.back().squares));
   }
-  const double most = std::max({kLeast * noise, kMuchMore * median(sizes), far_for_most_beams(spreads)});
+  const double most = std::max({kLeast * noise, kMuchMore * middle_of(sizes), far_for_most_beams(spreads)});
   std::vector<bool> result;
   for (const Spread& spread : spreads) {
     result.push_back(spread.squares <= most * most + kChance * noise * noise * spread.by_chance);

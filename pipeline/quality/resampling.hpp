@@ -12,14 +12,6 @@
 
 namespace crisp {
 
-/// The middle of the values, which are put into another order; NaN where there are none.
-inline double middle_of(std::vector<double>& values) {
-  if (values.empty()) return std::nan("");
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Draws blocks of `block` neighbours, with replacement, as many as there are: what neighbours share (a
 /// surface, a burst) they then share in every draw (moving block bootstrap, Künsch 1989).
 class BlockDraws {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/middle.hpp"
 #include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
@@ -21,9 +22,7 @@ double median_of_a_sample(std::span<const double> values) {
   const std::size_t stride = values.size() / 1024 + 1;
   std::vector<double> sample;
   for (std::size_t i = 0; i < values.size(); i += stride) sample.push_back(values[i]);
-  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-  std::ranges::nth_element(sample, middle);
-  return *middle;
+  return middle_of(sample);
 }
 
 /// A coordinate's 21 bits, two zeros after each.

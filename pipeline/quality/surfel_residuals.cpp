@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/data/middle.hpp"
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/plane.hpp"
 
@@ -109,9 +110,7 @@ std::vector<double> within_views(const std::vector<SurfelResidual>& residuals, c
 
 double median_size(std::vector<double> values) {
   for (double& value : values) value = std::abs(value);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+  return middle_of(values);
 }
 
 /// Sets the weights by Tukey's biweight; wider where the noise is.

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "pipeline/data/middle.hpp"
+
 namespace crisp {
 namespace {
 
@@ -16,13 +18,6 @@ constexpr int kRounds = 3;
 constexpr double kRobust = 3 * 1.4826;  // three standard deviations, in medians of the absolute error
 
 using Stamps = std::span<const MirrorStamp>;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// A parabola fitted about one stamp.
 struct LocalFit {
@@ -77,7 +72,7 @@ std::vector<double> foretelling_errors(Stamps run, std::size_t half_width) {
 double scatter(const std::vector<double>& errors) {
   std::vector<double> sizes(errors.size());
   std::transform(errors.begin(), errors.end(), sizes.begin(), [](double e) { return std::abs(e); });
-  return median(std::move(sizes));
+  return sizes.empty() ? 0 : middle_of(sizes);
 }
 
 /// Stamps without large gaps between them.
@@ -86,7 +81,8 @@ std::vector<Stamps> runs_of(Stamps stamps) {
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     steps.push_back(static_cast<double>(stamps[i].turn - stamps[i - 1].turn));
   }
-  const double largest = kLargestGap * median(steps);
+  auto ordered = steps;
+  const double largest = kLargestGap * middle_of(ordered);
   std::vector<Stamps> runs;
   std::size_t begin = 0;
   for (std::size_t i = 1; i <= stamps.size(); ++i) {
@@ -151,7 +147,7 @@ std::vector<MirrorTurn> smooth_mirror(Stamps stamps, const MirrorSmoothing& smoo
   for (const auto& turn : turns) {
     if (turn.period > 0) periods.push_back(turn.period);
   }
-  const double usual = periods.empty() ? smoothing.nominal_period : median(std::move(periods));
+  const double usual = periods.empty() ? smoothing.nominal_period : middle_of(periods);
   for (auto& turn : turns) {
     if (std::abs(turn.period - usual) > kImplausible * usual) turn.period = usual;
   }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "pipeline/data/middle.hpp"
 #include "plugins/diagnose/series.hpp"
 
 namespace crisp {
@@ -70,9 +71,8 @@ std::optional<RangeErrors> AtRest::errors() const {
     std::vector<double> off;
     for (const std::size_t scan : shots)
       off.push_back(std::abs(double{ranges_[scan * beams_ + beam]} - mean));
-    std::ranges::nth_element(off, off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2));
     constexpr double kOfNormal = 1.4826;
-    if (kOfNormal * off[off.size() / 2] > kMostSpread) continue;
+    if (kOfNormal * middle_of(off) > kMostSpread) continue;
     ++steady;
     for (const std::size_t scan : shots) {
       all.value.push_back(static_cast<float>(double{ranges_[scan * beams_ + beam]} - mean));
@@ -88,7 +88,6 @@ std::optional<RangeErrors> AtRest::errors() const {
 
 std::optional<CommonChange> common_change(const RangeErrors& errors, const std::vector<double>& seconds,
                                           std::size_t looks, std::uint64_t seed) {
-  constexpr double kSignificant = 0.002;
   constexpr Eigen::Index kMargin = 4;
   const auto n = static_cast<Eigen::Index>(seconds.size());
   if (n < 4 * kMargin) return std::nullopt;
@@ -109,7 +108,7 @@ std::optional<CommonChange> common_change(const RangeErrors& errors, const std::
                       .gain = look.gain};
   change.gain.metric = "mean error of a scan";
   change.gain.unit = "m";
-  if (change.p_value > kSignificant) return std::nullopt;
+  if (change.p_value > kSignificantInSeries) return std::nullopt;
   if (change.is_step) {
     const auto first = static_cast<std::size_t>(before_step(columns.col(look.column)));
     change.shape = seconds[first];

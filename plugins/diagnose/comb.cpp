@@ -119,7 +119,7 @@ std::optional<Finding> quantisation(const std::string& scope, std::span<const fl
       .p_value = std::min(1.0, static_cast<double>(last - first) * std::exp(-count * strongest * strongest)),
       .confounded_with = {},
       .gain = {gain},
-      .accepted = gain.ci95[0] > 0};
+      .accepted = gain.surely_rises()};
   return finding;
 }
 

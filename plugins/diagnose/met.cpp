@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/data/middle.hpp"
 #include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
@@ -139,9 +140,7 @@ double usual_error(const Met& met) {
     if (met.ahead[i] != kNothing) sizes.push_back(std::abs(met.error[i]));
   }
   if (sizes.empty()) return 0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::ranges::nth_element(sizes, middle);
-  return kOfNormal * double{*middle};
+  return kOfNormal * double{middle_of(sizes)};
 }
 
 }  // namespace crisp

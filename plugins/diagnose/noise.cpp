@@ -183,7 +183,7 @@ Finding finding_of(const std::string& scope, const Way& way, const Tried& tried,
                   .p_value = p_value_of(before, tried.law, errors),
                   .confounded_with = {},
                   .gain = {gain_of(before, tried.law, errors, seed)}};
-  finding.accepted = finding.gain[0].ci95[0] > 0;
+  finding.accepted = finding.gain[0].surely_rises();
   add_errors(tried.law, errors, way, finding.parameters);
   return finding;
 }

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "pipeline/clocks/unwrap.hpp"
 #include "plugins/diagnose/report.hpp"
 
@@ -18,11 +16,11 @@ Finding finding_of(const CommonChange& change, const std::string& laser) {
   Finding finding{.cause = change.is_step ? "range.step" : "range.warmup",
                   .scope = laser,
                   .parameters = {},
-                  .explained_fraction = 1 - std::pow(change.gain.after / change.gain.before, 2),
+                  .explained_fraction = change.gain.explained(),
                   .p_value = change.p_value,
                   .confounded_with = {},
                   .gain = {change.gain},
-                  .accepted = change.gain.ci95[1] < 0};
+                  .accepted = change.gain.surely_falls()};
   // The catalogue has what is to be added to a range.
   finding.parameters = {parameter(change.is_step ? "h" : "c", "m", -change.size, change.std_error),
                         parameter(change.is_step ? "at" : "T", "s", change.shape, change.shape_error)};

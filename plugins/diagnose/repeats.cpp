@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "pipeline/data/middle.hpp"
+
 namespace crisp {
 namespace {
 
@@ -38,9 +40,9 @@ class Grid {
       before->second = state->angle;
     }
     if (turned.empty()) return;
-    const double side = std::max(kNarrowest, middle(turned));
+    const double side = std::max(kNarrowest, middle_of(turned));
     columns_ = std::max<std::size_t>(1, static_cast<std::size_t>(kTurn / side));
-    half_turn_ = std::numbers::pi / std::max(1e-3, middle(rates));
+    half_turn_ = std::numbers::pi / std::max(1e-3, middle_of(rates));
     start_ = std::ranges::min(beams.time);
     whens_ = 1 + static_cast<std::size_t>((std::ranges::max(beams.time) - start_) / half_turn_);
     lasers_ = std::size_t{std::ranges::max(beams.laser)} + 1;
@@ -78,11 +80,6 @@ class Grid {
 
  private:
   static constexpr std::size_t kRows = 180;
-  static double middle(std::vector<double>& values) {
-    const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, half);
-    return *half;
-  }
 
   const PlateTrajectory& plate_;
   std::size_t lasers_ = 0;

@@ -179,7 +179,7 @@ std::optional<UnnamedFinding> noise_by(const std::string& name, const std::vecto
                         .unit = "m",
                         .p_value = all.p_value,
                         .gain = {gain},
-                        .accepted = gain.ci95[0] > 0};
+                        .accepted = gain.surely_rises()};
 }
 
 }  // namespace crisp

@@ -8,6 +8,9 @@
 
 namespace crisp {
 
+/// Below this p-value, corrected for the number of looks, what a series shows is given a name.
+constexpr double kSignificantInSeries = 0.002;
+
 /// What a short series of values shows beside what is expected of it.
 struct SeriesLook {
   Eigen::Index column = 0;  ///< the one that does best

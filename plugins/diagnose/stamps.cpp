@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pipeline/clocks/unwrap.hpp"
+#include "pipeline/data/middle.hpp"
 #include "plugins/diagnose/series.hpp"
 
 namespace crisp {
@@ -98,9 +99,8 @@ double jump_of_device(std::span<const CountedStamp> stamps, std::size_t at) {
       rates.push_back((stamps[i].stamp.device - stamps[i - 1].stamp.device) / counts);
   }
   if (rates.empty()) return 0;
-  std::ranges::nth_element(rates, rates.begin() + static_cast<std::ptrdiff_t>(rates.size() / 2));
   const auto counts = static_cast<double>(std::max<std::int64_t>(1, stamps[at].count - stamps[at - 1].count));
-  return stamps[at].stamp.device - stamps[at - 1].stamp.device - rates[rates.size() / 2] * counts;
+  return stamps[at].stamp.device - stamps[at - 1].stamp.device - middle_of(rates) * counts;
 }
 
 /// Where in a stretch of stamps the device's time jumps most.
@@ -174,7 +174,6 @@ ClockFacts clock_facts(std::span<const CountedStamp> stamps) {
 
 std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stamps, std::size_t looks,
                                               std::uint64_t seed) {
-  constexpr double kSignificant = 0.002;
   if (stamps.size() < kFewest) return std::nullopt;
   const Envelope envelope = envelope_of(stamps);
   const Eigen::MatrixXd columns = bends_and_steps(envelope.time);
@@ -187,7 +186,7 @@ std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stam
                            .gain = look.gain};
   departure.gain.metric = "least delays about the clock";
   departure.gain.unit = "s";
-  if (departure.p_value > kSignificant) return std::nullopt;
+  if (departure.p_value > kSignificantInSeries) return std::nullopt;
   if (look.column == 0) {
     // lead = skew t + drift t²/2
     departure.size *= 2;

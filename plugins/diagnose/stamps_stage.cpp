@@ -11,6 +11,7 @@
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/data/scan.hpp"
 #include "plugins/diagnose/report.hpp"
+#include "plugins/diagnose/series.hpp"
 
 namespace crisp {
 namespace {
@@ -35,11 +36,11 @@ Finding finding_of(const ClockDeparture& departure, const std::string& device) {
   Finding finding{.cause = cause_of(departure.kind),
                   .scope = device,
                   .parameters = {},
-                  .explained_fraction = 1 - std::pow(departure.gain.after / departure.gain.before, 2),
+                  .explained_fraction = departure.gain.explained(),
                   .p_value = departure.p_value,
                   .confounded_with = {},
                   .gain = {departure.gain},
-                  .accepted = departure.gain.ci95[1] < 0};
+                  .accepted = departure.gain.surely_falls()};
   if (departure.kind == ClockDeparture::Kind::drift) {
     finding.parameters = {parameter("skew", "1", departure.skew, departure.skew_std_error),
                           parameter("drift", "1/s", departure.size, departure.std_error)};
@@ -157,11 +158,10 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, std
 }
 
 void DiagnoseStampsStage::add_mirror(const Device& device, const MirrorFacts& facts, Findings& all) const {
-  constexpr double kSignificant = 0.002;
   const double excess = facts.period - device.nominal_period;
   const double z = std::abs(excess) / facts.period_std_error;
   const double p = 2 * cdf(complement(boost::math::normal(), z)) * static_cast<double>(longest_.size());
-  if (!(p < kSignificant)) return;
+  if (!(p < kSignificantInSeries)) return;
   all.findings.push_back({.cause = "mirror.period",
                           .scope = device.name,
                           .parameters = {parameter("excess", "s", excess, facts.period_std_error)},

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/quality/resampling.hpp"
+#include "pipeline/data/middle.hpp"
 
 namespace crisp {
 namespace {

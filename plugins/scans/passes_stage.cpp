@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "pipeline/data/degree.hpp"
@@ -84,7 +83,7 @@ void add_findings(const std::string& laser, const PassShift& found, Findings& fi
   }
   if (std::abs(found.shift) < kStandsOut * found.std_error) return;
   const double p = std::erfc(std::abs(found.shift) / found.std_error / std::sqrt(2.0));
-  const bool pays = found.gain.ci95[1] < 0;
+  const bool pays = found.gain.surely_falls();
   if (found.constant_p < kSureOfParts) {
     findings.unnamed.push_back({.covariate = "direction of the actuator, not the same at all its angles",
                                 .quantity = "plate angle",
@@ -98,7 +97,7 @@ void add_findings(const std::string& laser, const PassShift& found, Findings& fi
   }
   Finding finding{.cause = "encoder.backlash", .scope = "plate"};
   finding.parameters = {{"delta", "rad", -found.shift / 2, found.std_error / 2, true}};
-  finding.explained_fraction = 1 - std::pow(found.gain.after / found.gain.before, 2);
+  finding.explained_fraction = found.gain.explained();
   finding.p_value = p;
   finding.confounded_with = {laser + ".eta"};
   finding.gain = {found.gain};
@@ -201,7 +200,7 @@ double DiagnosePassesStage::diagnose(Findings& findings, Context& context) const
        "both ways see the same surfaces from the same angles: that says nothing of the mounting", ""});
   if (folder_) draw(*folder_, name, comparison, context);
   const bool pays =
-      is_believed(found) && std::abs(found.shift) > kStandsOut * found.std_error && found.gain.ci95[1] < 0;
+      is_believed(found) && std::abs(found.shift) > kStandsOut * found.std_error && found.gain.surely_falls();
   return pays && mend_ ? found.shift : 0;
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/quality/resampling.hpp"
+#include "pipeline/data/middle.hpp"
 
 namespace crisp {
 

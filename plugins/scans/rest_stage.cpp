@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "pipeline/data/degree.hpp"
@@ -22,7 +21,7 @@ constexpr double kStands = 3;              // standard errors
 /// in.
 bool is_shift(const KindDeparture& departure) {
   return departure.log10_odds > kSureOdds && std::abs(departure.shift) > kStands * departure.shift_error &&
-         departure.gain.ci95[1] < 0;
+         departure.gain.surely_falls();
 }
 
 Gain gain_in_sweep(const ScanSeries& series, const std::vector<double>& shifts, std::size_t period,
@@ -45,7 +44,7 @@ Finding finding_of(const std::string& laser, const KindDeparture& departure, con
       {"shift", "rad", departure.shift * angle_step, departure.shift_error * std::abs(angle_step), true},
       {"period", "1", static_cast<double>(alternation.period)},
       {"kind", "1", static_cast<double>(departure.kind)}};
-  finding.explained_fraction = 1 - std::pow(departure.gain.after / std::max(departure.gain.before, 1e-12), 2);
+  finding.explained_fraction = departure.gain.explained();
   finding.log10_odds = departure.log10_odds;
   finding.p_value = alternation.p_value;
   finding.gain = {departure.gain};

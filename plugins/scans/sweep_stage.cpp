@@ -62,9 +62,9 @@ Finding burst_finding(const std::string& laser, const Bursts& bursts, const Gain
                         {"interval", "s", bursts.interval},
                         {"wait", "s", bursts.wait}};
   finding.p_value = bursts.p_value;
-  finding.explained_fraction = 1 - std::pow(gain.after / std::max(gain.before, 1e-12), 2);
+  finding.explained_fraction = gain.explained();
   finding.gain = {gain};
-  finding.accepted = gain.ci95[1] < 0;
+  finding.accepted = gain.surely_falls();
   return finding;
 }
 
@@ -79,7 +79,7 @@ void judge_common_lag(const Sweep& sweep, const std::vector<double>& times, cons
     const Gain change = neighbour_gain(here, sweep.errors(Sweep::moved(times, by, by)), seed);
     text += fmt::format("{}{:+.0f} ms changes {:.1f} mm by {:.1f} .. {:.1f} mm", text.empty() ? "" : ", ",
                         1e3 * by, 1e3 * change.before, 1e3 * change.ci95[0], 1e3 * change.ci95[1]);
-    seen = seen && change.ci95[0] > 0;
+    seen = seen && change.surely_rises();
   }
   context.say("  a lag put in by hand that is common to all scans: " + text);
   if (seen) return;
