@@ -23,7 +23,8 @@ constexpr std::uint8_t kMeasuring = 7, kIdle = 3;
 std::uint8_t byte(unsigned value) { return static_cast<std::uint8_t>(value); }
 std::uint16_t word(unsigned value) { return static_cast<std::uint16_t>(value); }
 
-/// The variables that can be read, with their values.
+/// The variables that can be read, with their values. (In a generic lambda clang 14 takes a list of one
+/// number for a size.)
 const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, std::less<>>& variables() {
   static const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, std::less<>> kAll{
       {"DeviceIdent",
@@ -44,8 +45,8 @@ const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, s
                        word(0),
                        word(0)};
        }},
-      {"ODoprh", [](const auto&) { return Values{std::uint32_t{0}}; }},
-      {"ODpwrc", [](const auto&) { return Values{std::uint32_t{1}}; }},
+      {"ODoprh", [](const EmulatedDevice&) { return Values{std::uint32_t{0}}; }},
+      {"ODpwrc", [](const EmulatedDevice&) { return Values{std::uint32_t{1}}; }},
       {"LMPscancfg", [](const auto& device) { return to_values(device.settings()); }},
       {"LMPoutputRange", [](const auto& device) { return to_values(device.output_range()); }},
       {"LMDscandatacfg",

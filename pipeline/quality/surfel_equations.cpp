@@ -47,7 +47,10 @@ NormalEquations without_plane(const SurfelSums& sums, std::span<const SurfelResi
   result.vector = left.col(0).tail(m);
   result.matrix = left.bottomRightCorner(m, m);
   result.squares = sums.gram.diagonal().tail(m);
-  result.pulls = sums.pulls.bottomRows(m) - share.rightCols(m).transpose() * sums.pulls.topRows<3>();
+  result.pulls.setZero(m, sums.pulls.cols());
+  if (sums.pulls.size() > 0) {  // an empty matrix has no address to count rows from
+    result.pulls = sums.pulls.bottomRows(m) - share.rightCols(m).transpose() * sums.pulls.topRows<3>();
+  }
   for (const SurfelResidual& r : residuals) {
     if (r.weight == 0) continue;
     ++result.beams;

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector3d;
 
 Vector3d random_direction(RandomStream& random) {
-  return Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+  return Vector3d{random.normal(), random.normal(), random.normal()}.normalized();
 }
 
 /// Möller and Trumbore's ray against a triangle; infinity for a miss.
@@ -51,7 +51,7 @@ TEST(RayCaster, AgreesWithEveryTriangleTriedInTurn) {
     const RayCaster caster(scene);
     RandomStream random(1, scene.name);
     for (int i = 0; i < 5000; ++i) {
-      const Ray ray{Vector3d(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3)),
+      const Ray ray{Vector3d{random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3)},
                     random_direction(random)};
       const double expected = hit_all(ray, scene);
       const auto hit = caster.cast(ray, 1000);
@@ -101,7 +101,7 @@ TEST(RayCaster, FindsTheNearestOfAllSurfaces) {
     const RayCaster all(scene);
     RandomStream random(2, scene.name);
     for (int i = 0; i < 100; ++i) {
-      const Vector3d point(random.uniform(-6, 6), random.uniform(-6, 6), random.uniform(-2, 4));
+      const Vector3d point{random.uniform(-6, 6), random.uniform(-6, 6), random.uniform(-2, 4)};
       double nearest = std::numeric_limits<double>::infinity();
       for (const auto& surface : scene.surfaces) {
         nearest = std::min(nearest, RayCaster(Scene{"one", {surface}}).distance(point));
