@@ -230,11 +230,14 @@ struct CommandLine {
     add_own_pipeline(monte_carlo_app, "monte_carlo.yaml", kMonteCarloPipeline, "out", "-j,--threads",
                      monte_carlo);
     add_rig(monte_carlo_app, monte_carlo.arguments);
-    add_stage_options(monte_carlo_app, "study.monte_carlo", monte_carlo,
-                      {{"scene", "What stands around: paper, office, hall, street"},
-                       {"scene_file", "A scene of your own in YAML"},
-                       {"beams", "in_plane: of each laser the two in the plate's plane; or all"},
-                       {"estimators", "both; or refined: the refinement alone, from where RQE would end"}});
+    add_stage_options(
+        monte_carlo_app, "study.monte_carlo", monte_carlo,
+        {{"scene", "What stands around: paper, office, hall, street"},
+         {"scene_file", "A scene of your own in YAML"},
+         {"beams", "in_plane: of each laser the two in the plate's plane; or all"},
+         {"estimators", "both; or refined: the refinement alone, from where RQE would end"},
+         {"outliers", "Share of the ranges that are replaced at random: 5%"},
+         {"effects", "What befalls the lasers, untold to the estimators: {noise.mixed_pixels: {…}}"}});
     monte_carlo_app->add_option("--only", monte_carlo_only, "Repeat the run of this seed alone")
         ->excludes(runs)
         ->excludes(monte_carlo_app->get_option("--seed"));

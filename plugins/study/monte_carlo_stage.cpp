@@ -75,6 +75,15 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
       .unit("m")
       .range(1e-5, 1);
   describe_findings(d, &MonteCarloStage::findings_file_);
+  d.option("effects", &MonteCarloStage::effects_,
+           "what befalls the lasers besides, untold to the estimators: `{noise.mixed_pixels: {divergence: "
+           "15mrad, aperture: 8mm}}`, by the names that `crisp effects` lists");
+  d.option(
+       "outliers", &MonteCarloStage::trial, &TrialSettings::outliers,
+       "share of the ranges that are replaced at random: four fifths of them by nearer ones, the others by "
+       "some up to 5 m farther")
+      .unit("1")
+      .range(0, 1);
   d.option("eta", &MonteCarloStage::trial, &TrialSettings::truth, &Departures::eta,
            "the true lags are drawn up to this from 0, where RQE starts")
       .unit("s")
@@ -113,6 +122,9 @@ void MonteCarloStage::check(const RunSettings& run) const {
                 "let max_rate be larger than min_rate, or choose another motion");
   }
   make_motion(motion, settings_.trial.duration, 1);
+  TrialSettings trial = settings_.trial;
+  trial.rig = run.rig;
+  use_effects(trial, run);
 }
 
 void MonteCarloStage::use_findings(TrialSettings& trial, Context& context) const {
@@ -127,6 +139,13 @@ void MonteCarloStage::use_findings(TrialSettings& trial, Context& context) const
   context.report({{"noise", *trial.counted_noise}});
 }
 
+void MonteCarloStage::use_effects(TrialSettings& trial, const RunSettings& run) const {
+  if (effects_.empty()) return;
+  RecordingSettings recording{.scanner = {.rig = trial.rig, .laser_effects = trial.laser_effects}};
+  apply_device_effects(read_effects(effects_, trial.rig, laser_catalogue(known_terms(run))), recording);
+  trial.laser_effects = recording.scanner.laser_effects;
+}
+
 void MonteCarloStage::process(const Inputs&, Outputs&, Context& context) {
   MonteCarloSettings settings = settings_;
   settings.first_seed = context.seed();
@@ -134,6 +153,7 @@ void MonteCarloStage::process(const Inputs&, Outputs&, Context& context) {
   settings.trial.rig = context.rig();
   settings.trial.scene = scene_.load(context);
   use_findings(settings.trial, context);
+  use_effects(settings.trial, context.run());
   settings.trial.rqe.in_plane.sigma_from = sigma_[0];
   settings.trial.rqe.in_plane.sigma_to = sigma_[1];
   trials_ = run_trials(settings, rqe_maker(context.run()),

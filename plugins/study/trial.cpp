@@ -11,6 +11,7 @@
 #include "pipeline/data/encoder_smoothing.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
+#include "plugins/study/outliers.hpp"
 #include "plugins/study/scene_bound.hpp"
 
 namespace crisp {
@@ -106,6 +107,7 @@ Recording record(const TrialSettings& settings, std::uint64_t seed) {
   Recording recording{
       .simulated = simulate_beams(settings.beams, scanner, settings.scene, motion_of(settings, seed)),
       .start = start_of(settings, scanner.truth, seed)};
+  if (settings.outliers > 0) strew_outliers(recording.simulated.beams, settings.outliers, seed);
   recording.simulated.plate = as_aligned(recording.simulated.plate, scanner.rig.plate);
   return recording;
 }

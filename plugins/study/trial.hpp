@@ -36,6 +36,7 @@ struct TrialSettings {
   double quantum = 0.001;                    ///< [m] ranges are multiples of it
   std::vector<LaserEffects> laser_effects;   ///< one a laser of the rig: noise of its own; empty: none
   std::optional<double> counted_noise;       ///< [m] that estimators and bound count on; none: `noise`
+  double outliers = 0;                       ///< share of the ranges that are: see strew_outliers()
   Departures truth{.eta = 0.04};             ///< how far the truth lies off the rig at most
   Estimators estimators = Estimators::kBoth;
   Departures start;  ///< how far off the start of RQE is at most; its η is 0

@@ -75,6 +75,25 @@ TEST(MonteCarlo, CountsOnTheNoiseThatItsLasersHave) {
   }
 }
 
+TEST(MonteCarlo, StrewsOutliersBeforeAndBehindWhatWasMet) {
+  TrialSettings settings = small(1).trial;
+  const auto clean = record(settings, 3).simulated.beams;
+  settings.outliers = 0.05;
+  const auto spoilt = record(settings, 3).simulated.beams;
+  ASSERT_EQ(spoilt.size(), clean.size());
+  double before = 0;
+  double behind = 0;
+  for (std::size_t i = 0; i < clean.size(); ++i) {
+    before += spoilt.range[i] < clean.range[i] ? 1 : 0;
+    behind += spoilt.range[i] > clean.range[i] ? 1 : 0;
+    EXPECT_GE(spoilt.range[i], 0.3F);
+    EXPECT_LE(spoilt.range[i], clean.range[i] + 5);
+  }
+  const auto n = static_cast<double>(clean.size());
+  EXPECT_NEAR(before / n, 0.04, 5 * std::sqrt(0.04 / n));
+  EXPECT_NEAR(behind / n, 0.01, 5 * std::sqrt(0.01 / n));
+}
+
 TEST(MonteCarlo, StartsWithLambdaAnywhereAndTheTruthWhereThePaperHasIt) {
   TrialSettings settings;
   double farthest = 0;
