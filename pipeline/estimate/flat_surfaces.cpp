@@ -21,7 +21,8 @@ class Patches final : public FlatSurfaces {
     if (!is_searching_) return surfels_;
     // Beams that join and leave surfaces at their rims would keep the steps from getting any smaller.
     constexpr double kSmallStep = 0.5;
-    constexpr int kSearches = 6;
+    // From a degree off, walls that lie apart come together one after the other.
+    constexpr int kSearches = 12;
     is_searching_ = last_step > kSmallStep && round_++ < kSearches;
     if (is_searching_) {
       // Cells along edges are no surfaces' own, but what was met there tells much.

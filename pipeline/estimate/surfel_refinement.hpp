@@ -18,7 +18,7 @@ struct RefinementSettings {
   bool forms = false;  ///< whether the terms' forms are to be found as well, from about the right ones
   SurfelSettings surfels;
   SearchRange prior{.lambda = 0.05, .tau = 0.03, .alpha = 0.05, .eta = 0.01, .other = 0.05};  ///< see below
-  int max_rounds = 15;
+  int max_rounds = 20;
   double tolerance = 0.02;  ///< [standard errors] steps below which the refinement has converged
 };
 
