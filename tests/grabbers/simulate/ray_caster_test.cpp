@@ -11,15 +11,12 @@
 #include "grabbers/simulate/scenes.hpp"
 #include "grabbers/simulate/shapes.hpp"
 #include "pipeline/data/error.hpp"
+#include "tests/grabbers/simulate/random_direction.hpp"
 
 namespace crisp {
 namespace {
 
 using Eigen::Vector3d;
-
-Vector3d random_direction(RandomStream& random) {
-  return Vector3d{random.normal(), random.normal(), random.normal()}.normalized();
-}
 
 /// Möller and Trumbore's ray against a triangle; infinity for a miss.
 double hit_triangle(const Ray& ray, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
@@ -52,7 +49,7 @@ TEST(RayCaster, AgreesWithEveryTriangleTriedInTurn) {
     RandomStream random(1, scene.name);
     for (int i = 0; i < 5000; ++i) {
       const Ray ray{Vector3d{random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3)},
-                    random_direction(random)};
+                    test::random_direction(random)};
       const double expected = hit_all(ray, scene);
       const auto hit = caster.cast(ray, 1000);
       ASSERT_EQ(hit.has_value(), std::isfinite(expected)) << scene.name << " " << ray.direction.transpose();

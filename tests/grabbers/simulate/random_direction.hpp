@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "grabbers/simulate/random.hpp"
+
+namespace crisp::test {
+
+/// A direction, all equally likely; one number after the other, since arguments are evaluated in any order.
+inline Eigen::Vector3d random_direction(RandomStream& random) {
+  const double z = random.normal();
+  const double y = random.normal();
+  const double x = random.normal();
+  return Eigen::Vector3d(x, y, z).normalized();
+}
+
+}  // namespace crisp::test
