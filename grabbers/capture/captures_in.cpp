@@ -8,6 +8,7 @@
 
 #include "grabbers/capture/capture_file.hpp"
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/folder.hpp"
 
 namespace crisp {
 namespace {
@@ -22,20 +23,6 @@ std::optional<std::int64_t> first_packet(const std::filesystem::path& file) {
     // Notes, rigs and results may lie beside captures.
   }
   return {};
-}
-
-std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
-  std::error_code failure;
-  std::vector<std::filesystem::path> files;
-  std::filesystem::directory_iterator entry(folder, failure);
-  for (; !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure)) {
-    std::error_code unknown;
-    if (entry->is_regular_file(unknown)) files.push_back(entry->path());
-  }
-  if (failure) {
-    throw Error(folder.string() + " cannot be read: " + failure.message(), "check its name and its rights");
-  }
-  return files;
 }
 
 }  // namespace

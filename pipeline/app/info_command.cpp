@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pipeline/app/commands.hpp"
+#include "pipeline/files/folder.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/rig_file.hpp"
 
@@ -30,18 +31,6 @@ std::string head_of(const fs::path& file) {
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(stream.gcount()));
   return head;
-}
-
-/// A file itself, or the files in a folder by their names.
-std::vector<fs::path> files_at(const fs::path& path) {
-  if (!fs::exists(path)) throw Error("there is no file " + path.string());
-  if (!fs::is_directory(path)) return {path};
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(path)) {
-    if (entry.is_regular_file()) files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
-  return files;
 }
 
 std::optional<KnownFile> known_by(const Inspectors& inspectors, const fs::path& file, const Rig& rig) {
@@ -73,14 +62,16 @@ nlohmann::json json_of(const std::vector<KnownFile>& files) {
 ExitStatus info_command(const fs::path& path, const std::optional<fs::path>& rig_file, bool json,
                         const Registrar& registrar) {
   try {
+    if (!fs::exists(path)) throw Error("there is no file " + path.string());
+    const bool is_folder = fs::is_directory(path);
     const Rig rig = rig_file ? read_rig(*rig_file) : default_rig();
     std::vector<KnownFile> files;
-    for (const auto& file : files_at(path)) {
+    for (const auto& file : is_folder ? files_in(path) : std::vector<fs::path>{path}) {
       if (auto known = known_by(registrar.inspectors(), file, rig)) files.push_back(std::move(*known));
     }
     if (files.empty()) throw none_known(path, registrar.inspectors());
     if (json) {
-      std::cout << json_text(fs::is_directory(path) ? json_of(files) : files[0].inspection.data, 2) << "\n";
+      std::cout << json_text(is_folder ? json_of(files) : files[0].inspection.data, 2) << "\n";
     } else {
       for (const auto& file : files) {
         std::cout << file.name << ": " << file.kind << "\n" << file.inspection.text << "\n";
