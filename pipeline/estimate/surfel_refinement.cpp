@@ -19,7 +19,7 @@
 #include "pipeline/estimate/incidence.hpp"
 #include "pipeline/estimate/observability.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
-#include "pipeline/estimate/recording_blocks.hpp"
+#include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/estimate/steady.hpp"
 #include "pipeline/estimate/surfel_rows.hpp"
 #include "pipeline/estimate/upright.hpp"
@@ -80,24 +80,14 @@ class Refiner {
     return told.unobservable;
   }
 
-  /// Widens the standard errors to what the recording's pieces disagree by, where that is more than the noise
-  /// of single beams makes.
+  /// Widens the standard errors to what pieces of the recording, or directions of the mirrors, disagree by.
   void widen_by_shared_errors() {
     if (found_.surfels.empty()) return;
     const PlacedBeams placed(model_, sample_);
-    const auto pieces = recording_blocks(sample_.beams);
-    const auto rows = surfel_rows(model_, sample_, free_);
-    const double count = 1.0 + std::ranges::max(pieces);
-    const auto spent = static_cast<double>(free_.size());
-    if (count <= 2 * spent) return;
     const auto equations =
-        normal_equations(found_, placed.view(), free_.size(), rows, settings_.surfels, pieces);
-    const auto m = static_cast<Eigen::Index>(free_.size());
-    const Eigen::MatrixXd inverse = equations.matrix.ldlt().solve(Eigen::MatrixXd::Identity(m, m));
-    const Eigen::VectorXd shared =
-        (inverse * equations.scatter_of_blocks() * inverse).diagonal() * count / (count - spent);
-    const Eigen::VectorXd alone = inverse.diagonal() * equations.covariance_factor();
-    const Eigen::VectorXd wider = (shared.array() / alone.array()).max(1.0).sqrt();
+        normal_equations(found_, placed.view(), free_.size(), surfel_rows(model_, sample_, free_),
+                         settings_.surfels, shared_errors(sample_.beams));
+    const Eigen::VectorXd wider = widening(equations);
     covariance_ = wider.asDiagonal() * covariance_ * wider.asDiagonal();
   }
 

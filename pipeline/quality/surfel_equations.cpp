@@ -47,9 +47,8 @@ NormalEquations without_plane(const SurfelSums& sums, std::span<const SurfelResi
   result.vector = left.col(0).tail(m);
   result.matrix = left.bottomRightCorner(m, m);
   result.squares = sums.gram.diagonal().tail(m);
-  result.pulls.setZero(m, sums.pulls.cols());
-  if (sums.pulls.size() > 0) {  // an empty matrix has no address to count rows from
-    result.pulls = sums.pulls.bottomRows(m) - share.rightCols(m).transpose() * sums.pulls.topRows<3>();
+  for (const Eigen::MatrixXd& pulls : sums.pulls) {
+    result.pulls.emplace_back(pulls.bottomRows(m) - share.rightCols(m).transpose() * pulls.topRows<3>());
   }
   for (const SurfelResidual& r : residuals) {
     if (r.weight == 0) continue;
@@ -60,6 +59,12 @@ NormalEquations without_plane(const SurfelSums& sums, std::span<const SurfelResi
   }
   result.freedom = static_cast<double>(result.beams) - 3;
   return result;
+}
+
+std::vector<std::size_t> counts(std::span<const Division> divisions) {
+  std::vector<std::size_t> blocks;
+  for (const Division& division : divisions) blocks.push_back(std::ranges::max(division) + std::size_t{1});
+  return blocks;
 }
 
 /// First surfel of each batch; and one past the last.
@@ -78,12 +83,14 @@ std::vector<std::size_t> batches(const Surfels& surfels) {
 
 }  // namespace
 
-NormalEquations::NormalEquations(std::size_t parameters, std::size_t blocks) {
+NormalEquations::NormalEquations(std::size_t parameters, const std::vector<std::size_t>& blocks) {
   const auto m = static_cast<Eigen::Index>(parameters);
   matrix.setZero(m, m);
   vector.setZero(m);
   squares.setZero(m);
-  pulls.setZero(m, static_cast<Eigen::Index>(blocks));
+  for (const std::size_t count : blocks) {
+    pulls.emplace_back(Eigen::MatrixXd::Zero(m, static_cast<Eigen::Index>(count)));
+  }
 }
 
 NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
@@ -96,7 +103,7 @@ NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   influence += other.influence;
   stiffness += other.stiffness;
   squares += other.squares;
-  pulls += other.pulls;
+  for (std::size_t d = 0; d < pulls.size(); ++d) pulls[d] += other.pulls[d];
   return *this;
 }
 
@@ -105,9 +112,9 @@ double NormalEquations::covariance_factor() const {
   return weight * influence * spent / (stiffness * stiffness);
 }
 
-Eigen::MatrixXd NormalEquations::scatter_of_blocks() const {
-  const double stiffer = weight / stiffness;
-  return pulls * pulls.transpose() * stiffer * stiffer;
+Eigen::MatrixXd NormalEquations::pulls_along(std::size_t division, const std::vector<std::size_t>& of,
+                                             const Eigen::MatrixXd& directions) const {
+  return weight / stiffness * (directions.transpose() * pulls[division](of, Eigen::all));
 }
 
 NormalEquations NormalEquations::reduced(const std::vector<std::size_t>& kept,
@@ -122,19 +129,22 @@ NormalEquations NormalEquations::reduced(const std::vector<std::size_t>& kept,
   result.chi2 = chi2 - gone.dot(solve_in_any_units(inner, gone).col(0));
   result.freedom = freedom - static_cast<double>(eliminated.size());
   result.squares = squares(kept);
-  result.pulls =
-      pulls(kept, Eigen::all) - by_cross.transpose() * Eigen::MatrixXd(pulls(eliminated, Eigen::all));
+  for (Eigen::MatrixXd& of_division : result.pulls) {
+    of_division = Eigen::MatrixXd(of_division(kept, Eigen::all)) -
+                  by_cross.transpose() * Eigen::MatrixXd(of_division(eliminated, Eigen::all));
+  }
   return result;
 }
 
 NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
                                  const DerivativeRows& derivatives, const SurfelSettings& settings,
-                                 std::span<const std::uint32_t> blocks) {
-  const std::size_t count = blocks.empty() ? 0 : std::ranges::max(blocks) + std::size_t{1};
-  const SurfelSummands summands{
-      .parameters = parameters, .derivatives = derivatives, .block_of = blocks, .blocks = count};
+                                 std::span<const Division> divisions) {
+  const SurfelSummands summands{.parameters = parameters,
+                                .derivatives = derivatives,
+                                .divisions = divisions,
+                                .blocks = counts(divisions)};
   const auto first = batches(surfels);
-  std::vector<NormalEquations> sums(first.size() - 1, NormalEquations(parameters, count));
+  std::vector<NormalEquations> sums(first.size() - 1, NormalEquations(parameters, summands.blocks));
   for_each_index(sums.size(), [&](std::size_t b) {
     for (std::size_t s = first[b]; s < first[b + 1]; ++s) {
       const Surfel& surfel = surfels.surfels[s];
@@ -142,7 +152,7 @@ NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams,
       sums[b] += without_plane(sums_of(surfel, surfels.beams_of(surfel), residuals, summands), residuals);
     }
   });
-  NormalEquations total(parameters, count);
+  NormalEquations total(parameters, summands.blocks);
   for (const NormalEquations& sum : sums) total += sum;
   return total;
 }

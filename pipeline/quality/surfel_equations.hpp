@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -10,6 +11,10 @@
 #include "pipeline/quality/surfels.hpp"
 
 namespace crisp {
+
+/// A way to divide n beams: the block of each, numbered from 0. Beams of one block may share an error, those
+/// of different blocks do not.
+using Division = std::vector<std::uint32_t>;
 
 /// Least squares in m parameters θ, after the planes of all surfels have been projected out (variable
 /// projection): near the present values the weighted sum of squared residuals is
@@ -27,21 +32,25 @@ struct NormalEquations {
   /// m: Σ of the squares of each parameter's derivatives, weighted as in `matrix`, but before the planes were
   /// projected out.
   Eigen::VectorXd squares;
-  /// m × blocks: what the beams of each block contribute to `vector`. Beams of one block may share an error,
-  /// those of different blocks do not; so the blocks tell by how much `vector` really scatters. Its columns
-  /// are none if no blocks were named.
-  Eigen::MatrixXd pulls;
+  /// Of each division m × blocks: what the beams of each block contribute to `vector`. So the blocks tell by
+  /// how much `vector` really scatters. None if no divisions were named.
+  std::vector<Eigen::MatrixXd> pulls;
 
-  explicit NormalEquations(std::size_t parameters = 0, std::size_t blocks = 0);
+  explicit NormalEquations(std::size_t parameters = 0, const std::vector<std::size_t>& blocks = {});
   NormalEquations& operator+=(const NormalEquations& other);
 
   /// By what the inverse of `matrix` is to be multiplied to be the covariance of θ (Huber): it holds for
   /// whatever noise the residuals show, and for the beams that count less.
   double covariance_factor() const;
 
-  /// m × m: the covariance of `vector` as the blocks show it (Σ of their pulls times its transpose), in units
-  /// in which it has the expectation covariance_factor() · matrix if all errors are independent.
-  Eigen::MatrixXd scatter_of_blocks() const;
+  /// q × blocks: what the blocks of a division contribute to `vector` along q directions of some parameters,
+  /// in units in which the Σ of the products over the blocks has the expectation
+  /// covariance_factor() · directionsᵀ matrix directions if all errors are independent.
+  ///
+  /// @param of          p parameters
+  /// @param directions  p × q
+  Eigen::MatrixXd pulls_along(std::size_t division, const std::vector<std::size_t>& of,
+                              const Eigen::MatrixXd& directions) const;
 
   /// The equations of the parameters `kept`, in this order, after those in `eliminated` have been projected
   /// out in turn, so that what they could explain no longer counts. The others are held as they are. What
@@ -64,9 +73,9 @@ using DerivativeRows = std::function<void(const Surfel& surfel, std::span<const 
 
 /// Adds up the equations of all surfels. Deterministic, on any number of threads.
 ///
-/// @param blocks  for each beam, its block (n numbers from 0); or none: see NormalEquations::pulls
+/// @param divisions  what errors beams may share; or none: see NormalEquations::pulls
 NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
                                  const DerivativeRows& derivatives, const SurfelSettings& settings,
-                                 std::span<const std::uint32_t> blocks = {});
+                                 std::span<const Division> divisions = {});
 
 }  // namespace crisp

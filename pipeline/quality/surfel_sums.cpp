@@ -46,9 +46,10 @@ class SurfelSummer {
       : surfel_(surfel), summands_(summands), columns_(static_cast<Eigen::Index>(summands.parameters + 4)) {}
 
   SurfelSums none(std::span<const std::uint32_t> members) const {
-    SurfelSums sums{.gram = Eigen::MatrixXd::Zero(columns_, columns_),
-                    .pulls = Eigen::MatrixXd::Zero(columns_, static_cast<Eigen::Index>(summands_.blocks)),
-                    .turns = {}};
+    SurfelSums sums{.gram = Eigen::MatrixXd::Zero(columns_, columns_), .pulls = {}, .turns = {}};
+    for (const std::size_t blocks : summands_.blocks) {
+      sums.pulls.emplace_back(Eigen::MatrixXd::Zero(columns_, static_cast<Eigen::Index>(blocks)));
+    }
     if (summands_.moment_of.empty() || members.empty()) return sums;
     std::uint32_t first = summands_.moment_of[members[0]];
     std::uint32_t last = first;
@@ -66,9 +67,9 @@ class SurfelSummer {
     sums.gram.selfadjointView<Eigen::Upper>().rankUpdate(rows.transpose());
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
       const auto k = static_cast<std::size_t>(i);
-      if (summands_.blocks > 0) {
-        const auto block = static_cast<Eigen::Index>(summands_.block_of[members[k]]);
-        sums.pulls.col(block) += rows(i, 3) * rows.row(i).transpose();
+      for (std::size_t d = 0; d < sums.pulls.size(); ++d) {
+        const auto block = static_cast<Eigen::Index>(summands_.divisions[d][members[k]]);
+        sums.pulls[d].col(block) += rows(i, 3) * rows.row(i).transpose();
       }
       if (!summands_.moment_of.empty()) {
         const double turn = weight_of(residuals[k]) * moved_by_turn(surfel_, residuals[k]);
@@ -110,7 +111,7 @@ SurfelSums sums_of(const Surfel& surfel, std::span<const std::uint32_t> members,
   SurfelSums sum = summer.none(members);
   for (const SurfelSums& part : parts) {
     sum.gram += part.gram;
-    sum.pulls += part.pulls;
+    for (std::size_t d = 0; d < sum.pulls.size(); ++d) sum.pulls[d] += part.pulls[d];
     if (part.turns.sums.size() > 0) sum.turns += part.turns;
   }
   sum.gram = Eigen::MatrixXd(sum.gram.selfadjointView<Eigen::Upper>());

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "pipeline/quality/surfel_equations.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
@@ -26,17 +27,17 @@ struct SumsByMoment {
 /// Each beam has a row: the three parameters of the surfel's plane, the distance, and the derivatives by the
 /// m parameters, all by √weight / spread; and what a turn about the z axis moves it by, likewise.
 struct SurfelSums {
-  Eigen::MatrixXd gram;   ///< (m + 4)²: Σ rowᵀ row
-  Eigen::MatrixXd pulls;  ///< (m + 4) × blocks: Σ rowᵀ distance
-  SumsByMoment turns;     ///< m + 5 a moment: Σ rowᵀ turn, and Σ turn² at last
+  Eigen::MatrixXd gram;                ///< (m + 4)²: Σ rowᵀ row
+  std::vector<Eigen::MatrixXd> pulls;  ///< of each division (m + 4) × blocks: Σ rowᵀ distance
+  SumsByMoment turns;                  ///< m + 5 a moment: Σ rowᵀ turn, and Σ turn² at last
 };
 
 /// What the beams of a surfel are summed by.
 struct SurfelSummands {
   std::size_t parameters = 0;
   const DerivativeRows& derivatives;
-  std::span<const std::uint32_t> block_of = {};  ///< for each beam; or none
-  std::size_t blocks = 0;
+  std::span<const Division> divisions = {};
+  std::vector<std::size_t> blocks = {};           ///< of each division
   std::span<const std::uint32_t> moment_of = {};  ///< for each beam; or none
 };
 

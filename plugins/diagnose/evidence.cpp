@@ -9,7 +9,7 @@
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/incidence.hpp"
-#include "pipeline/estimate/recording_blocks.hpp"
+#include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/estimate/steady.hpp"
 
 namespace crisp {
@@ -57,12 +57,12 @@ Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings
               .last = last,
               .one_begin = recordings.size() < 2,
               .one_zero = recordings.empty() || recordings.front().zero == recordings.back().zero};
-  blocks_ = recording_blocks(sample_.beams);
+  shared_ = shared_errors(sample_.beams);
 }
 
 NormalEquations Evidence::equations(const Dictionary& dictionary) const {
   return normal_equations(surfels_, placed_.view(), dictionary.parameters(), dictionary.rows(sample_),
-                          settings_, blocks_);
+                          settings_, shared_);
 }
 
 }  // namespace crisp

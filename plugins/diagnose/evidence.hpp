@@ -23,8 +23,7 @@ class Evidence {
   BeamsView beams() const { return placed_.view(); }
   Lasting lasting() const { return lasting_; }
 
-  /// Near the model, in the dictionary's parameters; with the recording in a hundred blocks, or in blocks of
-  /// a tenth of a second where that makes more.
+  /// Near the model, in the dictionary's parameters; with what errors beams may share.
   NormalEquations equations(const Dictionary& dictionary) const;
 
  private:
@@ -33,7 +32,7 @@ class Evidence {
   SurfelSettings settings_;
   Surfels surfels_;
   Lasting lasting_;
-  std::vector<std::uint32_t> blocks_;
+  std::vector<Division> shared_;
 };
 
 }  // namespace crisp

@@ -22,6 +22,26 @@ Eigen::MatrixXd seen_directions(const Eigen::MatrixXd& matrix, const Eigen::Vect
          solver.eigenvalues().tail(seen).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
+/// By how much steps along some directions scatter, and how far they are beyond that.
+struct Spread {
+  Eigen::MatrixXd covariance;
+  double wald = std::numeric_limits<double>::infinity();
+};
+
+/// By the division into blocks by which the steps are the most ordinary.
+Spread widest(const NormalEquations& equations, const std::vector<std::size_t>& of,
+              const Eigen::MatrixXd& directions, const Eigen::VectorXd& steps) {
+  Spread widest;
+  for (std::size_t division = 0; division < equations.pulls.size(); ++division) {
+    const Eigen::MatrixXd pulls = equations.pulls_along(division, of, directions);
+    const Eigen::MatrixXd covariance = pulls * pulls.transpose();
+    const double wald =
+        steps.size() > 0 ? steps.dot(covariance.completeOrthogonalDecomposition().solve(steps)) : 0;
+    if (wald < widest.wald) widest = {.covariance = covariance, .wald = wald};
+  }
+  return widest;
+}
+
 }  // namespace
 
 Look look_at(const NormalEquations& equations, const std::vector<std::size_t>& of) {
@@ -29,13 +49,11 @@ Look look_at(const NormalEquations& equations, const std::vector<std::size_t>& o
   const Eigen::VectorXd squares = equations.squares(of);
   const Eigen::MatrixXd seen = seen_directions(matrix, squares);
   const Eigen::VectorXd steps = -seen.transpose() * equations.vector(of);
-  const Eigen::MatrixXd pulls = seen.transpose() * equations.pulls(of, Eigen::all);
-  const double stiffer = equations.weight / equations.stiffness;
-  const Eigen::MatrixXd scatter = pulls * pulls.transpose() * stiffer * stiffer;
+  const Spread spread = widest(equations, of, seen, steps);
 
   Look look;
   look.value = seen * steps;
-  look.covariance = seen * scatter * seen.transpose();
+  look.covariance = seen * spread.covariance * seen.transpose();
   look.gain = steps.squaredNorm() / equations.covariance_factor();
   const auto count = static_cast<double>(seen.cols());
   look.bic = look.gain - count * std::log(static_cast<double>(equations.beams));
@@ -44,10 +62,8 @@ Look look_at(const NormalEquations& equations, const std::vector<std::size_t>& o
   look.whole_error = seen.cols() < matrix.cols()
                          ? std::numeric_limits<double>::infinity()
                          : std::sqrt(squares.dot(look.covariance.diagonal()) / equations.weight);
-  if (seen.cols() > 0) {
-    look.wald = steps.dot(scatter.completeOrthogonalDecomposition().solve(steps));
-    look.p_value = cdf(complement(boost::math::chi_squared(count), look.wald));
-  }
+  look.wald = spread.wald;
+  if (seen.cols() > 0) look.p_value = cdf(complement(boost::math::chi_squared(count), look.wald));
   return look;
 }
 

@@ -12,10 +12,11 @@ namespace crisp {
 /// What data say of p parameters that could be added to a model, without adding them: the score test.
 struct Look {
   Eigen::VectorXd value;       ///< p: what they would be
-  Eigen::MatrixXd covariance;  ///< p × p: of these, by the scatter of the recording's blocks
+  Eigen::MatrixXd covariance;  ///< p × p: of these, by the scatter of blocks that may share an error
   double gain = 0;  ///< by how much the squares fall, in units of the residuals' variance: 2 ln(likelihood)
   double bic = 0;   ///< gain − p ln n: what is left of that after the price of parameters (Schwarz)
-  double wald = 0;  ///< valueᵀ covariance⁻¹ value: of χ² with p degrees of freedom, where nothing is there
+  double wald = 0;  ///< valueᵀ covariance⁻¹ value: of χ² with p degrees of freedom, where nothing is there;
+                    ///< of several divisions into blocks, by the one by which it is least
   double p_value = 1;  ///< of that
   double visible =
       0;  ///< [σ] RMS over the beams by which ranges change, after planes and the other parameters
@@ -27,7 +28,7 @@ struct Look {
   double identifiability() const { return whole > 0 ? visible * visible / (whole * whole) : 0; }
 };
 
-/// @param equations  with blocks, after whatever is to be estimated as well was projected out
+/// @param equations  with divisions into blocks, after whatever is to be estimated as well was projected out
 /// @param of         the parameters to look at
 /// Directions that nothing is left of are held at zero.
 Look look_at(const NormalEquations& equations, const std::vector<std::size_t>& of);

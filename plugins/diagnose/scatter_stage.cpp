@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "pipeline/estimate/free_parameters.hpp"
-#include "pipeline/estimate/recording_blocks.hpp"
+#include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/diagnose/comb.hpp"
 #include "plugins/diagnose/edges.hpp"

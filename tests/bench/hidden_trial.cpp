@@ -208,6 +208,7 @@ void run(const Wanted& wanted) {
       }
     } else if (wanted.what == "else") {
       for (std::size_t k = 0; k < Drawer::kSomethingElse; ++k) {
+        if (!wanted.effect.empty() && wanted.effect != std::to_string(k)) continue;
         trial.run(fmt::format("else {}", k), Drawer(seed + 1000 * k).with_something_else(k, wanted.size),
                   wanted.size);
       }

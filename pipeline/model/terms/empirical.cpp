@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/model/terms/empirical.hpp"
 
+#include <fmt/format.h>
+
 #include <numbers>
 
 #include "pipeline/data/degree.hpp"
@@ -102,6 +104,7 @@ std::vector<double> evenly(double from, double to, int count) {
 
 Shape Shape::fourier(int first, int last) { return {Kind::kFourier, first, last, {}}; }
 Shape Shape::hats(std::vector<double> knots) { return {Kind::kHats, 0, 0, std::move(knots)}; }
+Shape Shape::splines(int n) { return {Kind::kSplines, 0, n, {}}; }
 Shape Shape::powers() { return {Kind::kPowers, 0, 0, {}}; }
 
 std::size_t Shape::coefficients() const {
@@ -110,6 +113,8 @@ std::size_t Shape::coefficients() const {
       return 2 * static_cast<std::size_t>(last_ - first_ + 1);
     case Kind::kHats:
       return knots_.size();
+    case Kind::kSplines:
+      return static_cast<std::size_t>(last_);
     case Kind::kPowers:
       return 3;
   }
@@ -127,6 +132,7 @@ std::string Shape::name(std::size_t coefficient) const {
     case Kind::kFourier:
       return (coefficient % 2 == 0 ? "cos" : "sin") + order;
     case Kind::kHats:
+    case Kind::kSplines:
       return "at" + std::to_string(coefficient);
     case Kind::kPowers:
       return std::string(1, static_cast<char>('a' + coefficient));
@@ -139,10 +145,11 @@ std::string Shape::summary(std::size_t coefficient) const {
     case Kind::kFourier:
       return (coefficient % 2 == 0 ? "of cos " : "of sin ") +
              std::to_string(first_ + static_cast<int>(coefficient / 2)) + "x";
-    case Kind::kHats: {
-      std::string knot = std::to_string(knots_[coefficient]);
-      return "at x = " + knot.erase(knot.find('.') + 3);
-    }
+    case Kind::kHats:
+      return fmt::format("at x = {:.2f}", knots_[coefficient]);
+    case Kind::kSplines:
+      return fmt::format("of the B-spline about x = {:.2f}",
+                         (static_cast<double>(coefficient) - 1) / (last_ - 3));
     case Kind::kPowers:
       return std::vector<std::string>{"of x²", "of x abs(x)", "of x³"}.at(coefficient);
   }
@@ -177,8 +184,7 @@ void register_empirical_terms(TermRegistry& terms) {
   const auto add = [&](On on, Over over, Shape shape) {
     terms.add(std::make_shared<EmpiricalTerm>(on, over, std::move(shape)));
   };
-  constexpr int kKnots = 7;
-  const Shape in_time = Shape::hats(evenly(0, 1, kKnots));
+  const Shape in_time = Shape::splines(9);
   add(On::kRange, Over::kMirrorAngle, Shape::fourier(1, 4));
   add(On::kRange, Over::kPlateAngle, Shape::fourier(1, 4));
   add(On::kRange, Over::kRange, Shape::hats({1, 2, 3, 4, 6, 8, 12, 20}));

@@ -20,6 +20,8 @@ class Shape {
   static Shape fourier(int first, int last);
   /// Straight between knots (ascending), where it is as high as the coefficients say; level beyond them.
   static Shape hats(std::vector<double> knots);
+  /// A smooth function for x from 0 to 1: n ≥ 4 cubic B-splines at even distances. Level beyond.
+  static Shape splines(int n);
   /// a x² + b x abs(x) + c x³
   static Shape powers();
 
@@ -35,6 +37,8 @@ class Shape {
         return fourier_at(x, coefficients);
       case Kind::kHats:
         return hats_at(x, coefficients);
+      case Kind::kSplines:
+        return splines_at(x, coefficients);
       case Kind::kPowers:
         return coefficients[0] * (x * x) + coefficients[1] * (x * abs_of(x)) + coefficients[2] * (x * x * x);
     }
@@ -42,7 +46,7 @@ class Shape {
   }
 
  private:
-  enum class Kind { kFourier, kHats, kPowers };
+  enum class Kind { kFourier, kHats, kSplines, kPowers };
   Shape(Kind kind, int first, int last, std::vector<double> knots)
       : kind_(kind), first_(first), last_(last), knots_(std::move(knots)) {}
 
@@ -71,10 +75,22 @@ class Shape {
     const T share = (x - knots_[k - 1]) / (knots_[k] - knots_[k - 1]);
     return coefficients[k - 1] * (1.0 - share) + coefficients[k] * share;
   }
+  template <class T>
+  T splines_at(const T& x, std::span<const T> coefficients) const {
+    const double pieces = last_ - 3;
+    const T inside = scalar(x) < 0 ? T(0) : scalar(x) > 1 ? T(1) : x;
+    const double piece = std::min(std::floor(scalar(inside) * pieces), pieces - 1);
+    const T t = inside * pieces - piece;
+    const T s = 1.0 - t;
+    const auto c = coefficients.subspan(static_cast<std::size_t>(piece), 4);
+    return (c[0] * (s * s * s) + c[1] * (4.0 - 6.0 * t * t + 3.0 * t * t * t) +
+            c[2] * (4.0 - 6.0 * s * s + 3.0 * s * s * s) + c[3] * (t * t * t)) /
+           6.0;
+  }
 
   Kind kind_;
-  int first_;
-  int last_;
+  int first_;  // order
+  int last_;   // order, or how many B-splines
   std::vector<double> knots_;
 };
 

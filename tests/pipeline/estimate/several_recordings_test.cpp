@@ -10,8 +10,8 @@
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/base_slots.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
-#include "pipeline/estimate/recording_blocks.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
+#include "pipeline/estimate/shared_errors.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -155,9 +156,9 @@ TEST(SurfelEquations, ReduceToWhatOtherParametersCannotExplain) {
 }
 
 /// Beams of a scan in the order of firing, in pieces: 50 of each laser.
-std::vector<std::uint32_t> pieces_of(const test::RoomScan& scan) {
+Division pieces_of(const test::RoomScan& scan) {
   const std::size_t beams = scan.laser.size() / 3;
-  std::vector<std::uint32_t> pieces(scan.laser.size());
+  Division pieces(scan.laser.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     pieces[i] = static_cast<std::uint32_t>(50 * (i % beams) / beams + 50 * scan.laser[i]);
   }
@@ -169,10 +170,14 @@ TEST(ScatterOfBlocks, IsThatOfTheirBeamsWhereErrorsAreTheirOwn) {
   const SurfelSettings settings{.floor = 1e-4};
   const auto surfels = find_surfels(scan.beams(), settings);
   const auto rows = derivatives_of(scan);
-  const auto equations =
-      normal_equations(surfels, scan.beams(), kParameters, rows, settings, pieces_of(scan));
-  EXPECT_NEAR((equations.pulls.rowwise().sum() - equations.vector).norm(), 0, 1e-9 * equations.vector.norm());
-  const Eigen::MatrixXd scatter = equations.scatter_of_blocks();
+  const std::vector<Division> divisions{Division(scan.laser.size(), 0), pieces_of(scan)};
+  const auto equations = normal_equations(surfels, scan.beams(), kParameters, rows, settings, divisions);
+  for (const Eigen::MatrixXd& pulls : equations.pulls) {
+    EXPECT_NEAR((pulls.rowwise().sum() - equations.vector).norm(), 0, 1e-9 * equations.vector.norm());
+  }
+  const Eigen::MatrixXd pulls =
+      equations.pulls_along(1, {0, 1, 2, 3, 4}, Eigen::MatrixXd::Identity(kParameters, kParameters));
+  const Eigen::MatrixXd scatter = pulls * pulls.transpose();
   const Eigen::MatrixXd expected = equations.covariance_factor() * equations.matrix;
   // Of k independent pulls the sum of squares has a relative standard deviation of √(2/k); each of the
   // lasers' own parameters has 50, the common one 150.
@@ -200,9 +205,11 @@ TEST(ScatterOfBlocks, KnowsOfErrorsThatBeamsShare) {
     const SurfelSettings settings{.floor = 1e-4};
     const auto surfels = find_surfels(scan.beams(), settings);
     const auto rows = derivatives_of(scan);
-    const auto equations = normal_equations(surfels, scan.beams(), kParameters, rows, settings, pieces);
+    const std::array divisions{pieces};
+    const auto equations = normal_equations(surfels, scan.beams(), kParameters, rows, settings, divisions);
     const Eigen::MatrixXd inverse = equations.matrix.inverse();
-    const Eigen::VectorXd variance = (inverse * equations.scatter_of_blocks() * inverse).diagonal();
+    const Eigen::VectorXd variance =
+        equations.pulls_along(0, {0, 1, 2, 3, 4}, inverse).rowwise().squaredNorm();
     const auto found = estimate(equations);
     for (const Eigen::Index k : {1, 3}) {
       by_pieces += found.value[k] * found.value[k] / variance[k];

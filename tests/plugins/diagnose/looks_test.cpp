@@ -15,7 +15,7 @@ NormalEquations random_problem(const Eigen::VectorXd& truth, Eigen::Index n, uns
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   const Eigen::Index m = truth.size();
-  NormalEquations equations(static_cast<std::size_t>(m), static_cast<std::size_t>(n / 10));
+  NormalEquations equations(static_cast<std::size_t>(m), {static_cast<std::size_t>(n / 10)});
   for (Eigen::Index i = 0; i < n; ++i) {
     Eigen::VectorXd row(m);
     for (double& value : row) value = normal(random);
@@ -24,7 +24,7 @@ NormalEquations random_problem(const Eigen::VectorXd& truth, Eigen::Index n, uns
     equations.matrix += row * row.transpose();
     equations.vector += row * residual;
     equations.squares += row.cwiseAbs2();
-    equations.pulls.col(i / 10) += row * noise;
+    equations.pulls[0].col(i / 10) += row * noise;
     equations.influence += noise * noise;
   }
   equations.beams = static_cast<std::size_t>(n);
@@ -52,6 +52,23 @@ TEST(Look, HasAnEvenPValueWhereNothingIs) {
     small += look_at(equations, {0, 1}).p_value < 0.1 ? 1 : 0;
   }
   EXPECT_NEAR(small, 40, 4 * 6);  // binomial: √(400 · 0.1 · 0.9) = 6
+}
+
+TEST(Look, IsAsSureAsTheDivisionByWhichItIsLeastSure) {
+  // Ten blocks after another share an error, which another division shows: errors are √10 times as large.
+  auto equations = random_problem(Eigen::Vector2d(0.3, 0), 20000, 5);
+  const Look alone = look_at(equations, {0, 1});
+  Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(2, 200);
+  for (Eigen::Index block = 0; block < 2000; ++block) {
+    shared.col(block / 10) += std::sqrt(10) * equations.pulls[0].col(block);
+  }
+  equations.pulls.push_back(shared);
+  const Look look = look_at(equations, {0, 1});
+  EXPECT_EQ(look.value, alone.value);
+  EXPECT_NEAR(alone.wald / look.wald, 10, 4) << "of 200 and 2000 squares";
+  EXPECT_NEAR(look.covariance(0, 0) / alone.covariance(0, 0), 10, 4);
+  std::swap(equations.pulls[0], equations.pulls[1]);
+  EXPECT_EQ(look_at(equations, {0, 1}).wald, look.wald);
 }
 
 TEST(Look, HoldsHiddenDirectionsAtZero) {

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/shared_errors.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace crisp {
+namespace {
+
+constexpr std::uint32_t kFewest = 100;  // blocks, to see by how much their pulls scatter
+
+/// Of each laser how many beams a scan has, as far as any was met.
+std::vector<std::uint32_t> beams_of_scans(const Measurements& beams) {
+  std::vector<std::uint32_t> most;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (beams.laser[i] >= most.size()) most.resize(beams.laser[i] + std::size_t{1}, 0);
+    most[beams.laser[i]] = std::max<std::uint32_t>(most[beams.laser[i]], beams.beam[i] + 1U);
+  }
+  return most;
+}
+
+}  // namespace
+
+Division recording_blocks(const Measurements& beams) {
+  constexpr double kLong = 0.1;  // [s]
+  const auto [first, last] = std::ranges::minmax(beams.time);
+  const double length = std::max(1e-9, std::min(kLong, (last - first) / kFewest));
+  const auto piece = [&, first = first](double time) {
+    return static_cast<std::int64_t>((time - first) / length);
+  };
+  std::map<std::int64_t, std::uint32_t> numbers;  // without the pieces of pauses
+  for (const double time : beams.time) numbers.try_emplace(numbers.end(), piece(time), 0);
+  std::uint32_t next = 0;
+  for (auto& [at, number] : numbers) number = next++;
+  Division blocks;
+  blocks.reserve(beams.size());
+  auto at = numbers.begin();
+  for (const double time : beams.time) {
+    if (at->first != piece(time)) at = numbers.find(piece(time));
+    blocks.push_back(at->second);
+  }
+  return blocks;
+}
+
+Division scan_blocks(const Measurements& beams) {
+  const auto of_scan = beams_of_scans(beams);
+  Division blocks = recording_blocks(beams);
+  const bool has_pieces = std::ranges::any_of(of_scan, [](std::uint32_t n) { return n > 0 && n < kFewest; });
+  const std::uint32_t first = has_pieces ? std::ranges::max(blocks) + 1 : 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const std::uint32_t laser = beams.laser[i];
+    if (of_scan[laser] < kFewest) continue;
+    blocks[i] = first + kFewest * laser + kFewest * beams.beam[i] / of_scan[laser];
+  }
+  return blocks;
+}
+
+Eigen::VectorXd widening(const NormalEquations& equations) {
+  constexpr double kSure = 2;  // [standard errors]
+  const Eigen::Index m = equations.matrix.cols();
+  std::vector<std::size_t> all(static_cast<std::size_t>(m));
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const Eigen::MatrixXd inverse = equations.matrix.ldlt().solve(Eigen::MatrixXd::Identity(m, m));
+  const Eigen::ArrayXd alone = inverse.diagonal() * equations.covariance_factor();
+  Eigen::ArrayXd wider = Eigen::ArrayXd::Ones(m);
+  for (std::size_t division = 0; division < equations.pulls.size(); ++division) {
+    const Eigen::ArrayXXd squares = equations.pulls_along(division, all, inverse).array().square();
+    const auto count = static_cast<double>(squares.cols());
+    const auto spent = static_cast<double>(m);
+    if (count <= 2 * spent) continue;
+    const double unbiased = count / (count - spent);
+    const Eigen::ArrayXd sum = squares.rowwise().sum() * unbiased;
+    const Eigen::ArrayXd error =
+        (squares.square().rowwise().sum() * unbiased * unbiased - sum.square() / count).sqrt();
+    wider = (sum - kSure * error > alone).select(wider.max(sum / alone), wider);
+  }
+  return wider.sqrt();
+}
+
+std::vector<Division> shared_errors(const Measurements& beams) {
+  return {recording_blocks(beams), scan_blocks(beams)};
+}
+
+}  // namespace crisp

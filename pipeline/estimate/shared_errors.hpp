@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Which beams may be off by a common error, so that they count for less than their number.
+
+#include <vector>
+
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/quality/surfel_equations.hpp"
+
+namespace crisp {
+
+/// For each beam the piece of the recording that it is of. Pieces share no error: what is left of the
+/// encoder's steps is gone after a tenth of a second; and they are many enough (a hundred, at least) to see
+/// by how much their pulls scatter. Nothing is a piece in which no beam was fired.
+Division recording_blocks(const Measurements& beams);
+
+/// For each beam the hundredth of its laser's scan that it is of: what each direction of a mirror is off by
+/// for good, as where it has a weight of its own between two peaks of noise, no piece of the recording shows.
+/// A laser of fewer directions has pieces of the recording in their place.
+Division scan_blocks(const Measurements& beams);
+
+/// Both.
+std::vector<Division> shared_errors(const Measurements& beams);
+
+/// @param equations  of m parameters, at their optimum, with divisions
+/// @return  m: by how much larger their standard errors are than the noise of single beams makes them, as the
+///          blocks disagree. 1 where that may be chance.
+Eigen::VectorXd widening(const NormalEquations& equations);
+
+}  // namespace crisp
