@@ -44,6 +44,12 @@ Spread widest(const NormalEquations& equations, const std::vector<std::size_t>& 
 
 }  // namespace
 
+double Look::sharing() const {
+  constexpr double kChance = 1.5;  // 3.5 standard errors of what a hundred blocks show
+  const double ratio = wald > 0 ? gain / wald : 1;
+  return ratio > kChance ? ratio : 1;
+}
+
 Look look_at(const NormalEquations& equations, const std::vector<std::size_t>& of) {
   const Eigen::MatrixXd matrix = equations.matrix(of, of);
   const Eigen::VectorXd squares = equations.squares(of);

@@ -18,6 +18,10 @@ struct Look {
   double wald = 0;  ///< valueᵀ covariance⁻¹ value: of χ² with p degrees of freedom, where nothing is there;
                     ///< of several divisions into blocks, by the one by which it is least
   double p_value = 1;  ///< of that
+  /// By how much errors that beams share make the value's variance larger than independent ones would, along
+  /// the value. It holds where the model has the value: elsewhere blocks share what is missing. 1 where it
+  /// may be chance.
+  double sharing() const;
   double visible =
       0;  ///< [σ] RMS over the beams by which ranges change, after planes and the other parameters
           ///< have taken what they can; σ is the noise of ranges that the surfels were told

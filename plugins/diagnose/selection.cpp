@@ -72,9 +72,11 @@ class Chooser {
     const auto looks = beside(without(taken, one));
     const auto& candidates = dictionary_.candidates();
     Choice choice{.candidate = one, .look = *looks[one], .alternatives = {}};
+    // Beams that share an error count for less, for one candidate as for another.
+    const double sharing = candidates[one].in_model ? choice.look.sharing() : 1;
     for (std::size_t c = 0; c < looks.size(); ++c) {
       if (!looks[c] || candidates[c].is_form_of(candidates[one]) || !candidates[c].is_cause()) continue;
-      const double behind = choice.look.bic - looks[c]->bic;
+      const double behind = (choice.look.bic - looks[c]->bic) / sharing;
       const auto other = std::ranges::find_if(choice.alternatives, [&](const Alternative& a) {
         return candidates[a.candidate].is_form_of(candidates[c]);
       });

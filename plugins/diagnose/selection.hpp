@@ -22,7 +22,7 @@ struct SelectionSettings {
 /// Another candidate that could stand in the place of one that was taken.
 struct Alternative {
   std::size_t candidate = 0;
-  double behind = 0;  ///< by how much its BIC is less
+  double behind = 0;  ///< by how much its BIC is less, in units in which beams' errors are independent
 };
 
 /// A candidate that the data ask for.

@@ -50,7 +50,9 @@ TEST(ScanBlocks, ArePiecesOfTheRecordingForALaserOfFewDirections) {
   std::set<std::uint32_t> of_many;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     (beams.laser[i] == 0 ? of_one : of_many).insert(blocks[i]);
-    if (beams.laser[i] == 0) EXPECT_EQ(blocks[i], pieces[i]);
+    if (beams.laser[i] == 0) {
+      EXPECT_EQ(blocks[i], pieces[i]);
+    }
   }
   EXPECT_GE(of_one.size(), 100U);
   EXPECT_EQ(of_many.size(), 100U);

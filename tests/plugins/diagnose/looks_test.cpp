@@ -67,6 +67,8 @@ TEST(Look, IsAsSureAsTheDivisionByWhichItIsLeastSure) {
   EXPECT_EQ(look.value, alone.value);
   EXPECT_NEAR(alone.wald / look.wald, 10, 4) << "of 200 and 2000 squares";
   EXPECT_NEAR(look.covariance(0, 0) / alone.covariance(0, 0), 10, 4);
+  EXPECT_NEAR(look.sharing(), 10, 4);
+  EXPECT_EQ(alone.sharing(), 1);
   std::swap(equations.pulls[0], equations.pulls[1]);
   EXPECT_EQ(look_at(equations, {0, 1}).wald, look.wald);
 }
