@@ -9,7 +9,9 @@ namespace {
 
 using namespace testing;  // NOLINT(google-build-using-namespace)
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 TEST(ClockAligner, FindsWhenEachBeamWasFired) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -151,6 +153,22 @@ TEST(ClockAligner, GivesWayToAStepOfTheLatencyOnlyAsFastAsAClockCouldDrift) {
     }
     EXPECT_GT(late, -15e-6);
     EXPECT_LT(late, 0.52e-3);
+  }
+}
+
+TEST(ClockAligner, DoubtsAClockWhoseTimeOrDelaySteppedWithinItsLine) {
+  const auto doubts_with_step = [](double step) {
+    SimulatedLaser laser;
+    laser.beams = 2;
+    int sent = 0;
+    laser.delays = [=](Random& random) mutable {
+      return (0.0201145 * sent++ > 4 ? step : 0) + exponential_delays(1e-4)(random);
+    };
+    return align({laser.turns(2, 0, 10)}, SimulatedPlate{}.readings(2, 10)).report.doubts;
+  };
+  EXPECT_THAT(doubts_with_step(0), IsEmpty());
+  for (const double step : {0.6e-3, 3e-3, -0.8e-3}) {
+    EXPECT_THAT(doubts_with_step(step), ElementsAre(HasSubstr("laser1: its clock is known to"))) << step;
   }
 }
 
