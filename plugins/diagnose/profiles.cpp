@@ -66,38 +66,55 @@ Residuals residuals_in(const Evidence& evidence, const SurfelSettings& settings)
   return all;
 }
 
-/// [m] Standard deviation of ranges, from differences of neighbours: beams of one scan on one surface. Lasers
-/// that disagree, and whatever else changes slowly, are not in it. Where there are hardly any neighbours,
-/// from all residuals.
-double noise_of(const Residuals& residuals, const Measurements& beams) {
-  constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
-  constexpr double kFewPairs = 1000;
+/// A weighted mean of squares.
+struct MeanSquare {
   double squares = 0;
   double weight = 0;
+
+  void add(double value, double w) {
+    squares += w * value * value;
+    weight += w;
+  }
+  double root() const { return std::sqrt(squares / std::max(1.0, weight)); }
+};
+
+/// [m] Standard deviation of each laser's ranges, from differences of neighbours: beams of one scan on one
+/// surface. Lasers that disagree, and whatever else changes slowly, are not in it. Where there are hardly any
+/// neighbours, from all residuals.
+std::vector<double> noise_of(const Residuals& residuals, const Measurements& beams) {
+  constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
+  constexpr double kFewPairs = 1000;
+  const std::size_t lasers = beams.laser.empty() ? 0 : std::ranges::max(beams.laser) + std::size_t{1};
+  std::vector<MeanSquare> pairs(lasers);
+  std::vector<MeanSquare> alone(lasers);
   for (std::size_t s = 0; s + 1 < residuals.first.size(); ++s) {
-    for (std::size_t k = residuals.first[s] + 1; k < residuals.first[s + 1]; ++k) {
-      const std::uint32_t one = residuals.beam[k - 1];
-      const std::uint32_t other = residuals.beam[k];
-      if (beams.laser[one] != beams.laser[other] || beams.time[other] - beams.time[one] > kOneScan) continue;
-      const double both = residuals.weight[k - 1] * residuals.weight[k];
-      squares += both * std::pow(residuals.value[k] - residuals.value[k - 1], 2) / 2;
-      weight += both;
+    for (std::size_t k = residuals.first[s]; k < residuals.first[s + 1]; ++k) {
+      const std::uint32_t own = residuals.beam[k];
+      alone[beams.laser[own]].add(residuals.value[k], residuals.weight[k]);
+      if (k == residuals.first[s]) continue;
+      const std::uint32_t before = residuals.beam[k - 1];
+      if (beams.laser[before] != beams.laser[own] || beams.time[own] - beams.time[before] > kOneScan)
+        continue;
+      pairs[beams.laser[own]].add((residuals.value[k] - residuals.value[k - 1]) / std::numbers::sqrt2,
+                                  residuals.weight[k - 1] * residuals.weight[k]);
     }
   }
-  if (weight > kFewPairs) return std::sqrt(squares / weight);
-  for (std::size_t k = 0; k < residuals.value.size(); ++k) {
-    squares += residuals.weight[k] * std::pow(residuals.value[k], 2);
-    weight += residuals.weight[k];
+  std::vector<double> noise;
+  for (std::size_t laser = 0; laser < lasers; ++laser) {
+    noise.push_back(pairs[laser].weight > kFewPairs ? pairs[laser].root() : alone[laser].root());
   }
-  return std::sqrt(squares / std::max(1.0, weight));
+  return noise;
 }
 
 /// What noise leaves of a simulated recording, once planes have been fitted to it.
-std::vector<double> simulated(const Residuals& measured, double noise, std::uint64_t seed) {
+///
+/// @param noise  [m] of each residual
+std::vector<double> simulated(const Residuals& measured, const std::vector<double>& noise,
+                              std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal(0, noise);
+  std::normal_distribution<double> normal;
   std::vector<double> values(measured.value.size());
-  for (double& value : values) value = normal(random);
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = noise[k] * normal(random);
   for (std::size_t s = 0; s < measured.planes.size(); ++s) {
     const auto n = static_cast<Eigen::Index>(measured.first[s + 1] - measured.first[s]);
     if (n == 0) continue;
@@ -217,17 +234,21 @@ SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings
   const Residuals residuals = residuals_in(evidence, settings);
   const auto& weights = residuals.weight;
   SideBySide result;
-  result.noise = noise_of(residuals, evidence.sample().beams);
+  const Measurements& beams = evidence.sample().beams;
+  result.noise = noise_of(residuals, beams);
+  std::vector<double> noise;
+  for (const std::uint32_t beam : residuals.beam) noise.push_back(result.noise[beams.laser[beam]]);
   const auto all = layouts(evidence, residuals);
 
   std::vector<double> greatest(kSimulations);
   for_each_index(kSimulations, [&](std::size_t s) {
-    const auto values = simulated(residuals, result.noise, seed + s);
+    const auto values = simulated(residuals, noise, seed + s);
     for (const Layout& layout : all) {
-      greatest[s] = std::max(greatest[s], departure(layout, values, weights, result.noise));
+      greatest[s] =
+          std::max(greatest[s], departure(layout, values, weights, result.noise[layout.profile.laser]));
     }
   });
-  const auto shown = simulated(residuals, result.noise, seed + kSimulations);
+  const auto shown = simulated(residuals, noise, seed + kSimulations);
   for (const Layout& layout : all) {
     Profile profile = layout.profile;
     double square = 0;
@@ -235,12 +256,12 @@ SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings
       const BinMean mean = mean_in(layout, b, residuals.value, weights);
       Profile::Bin& bin = profile.bins[b];
       bin.measured = mean.value;
-      bin.error = mean.error * result.noise;
+      bin.error = mean.error * result.noise[profile.laser];
       bin.simulated = mean_in(layout, b, shown, weights).value;
       square += (std::pow(bin.measured, 2) - std::pow(bin.error, 2)) / kBins;
     }
     profile.rms = std::sqrt(std::max(0.0, square));
-    const double own = departure(layout, residuals.value, weights, result.noise);
+    const double own = departure(layout, residuals.value, weights, result.noise[profile.laser]);
     const auto above = std::ranges::count_if(greatest, [&](double other) { return other >= own; });
     profile.p_value = (1.0 + static_cast<double>(above)) / (1.0 + kSimulations);
     result.p_value = std::min(result.p_value, profile.p_value);

@@ -27,13 +27,14 @@ struct Profile {
 /// The measured data beside what the model expects of them.
 struct SideBySide {
   std::vector<Profile> profiles;
-  double noise = 0;    ///< [m] standard deviation of ranges that the residuals show
-  double p_value = 1;  ///< that nothing but noise is in the residuals: the least of the profiles'
+  std::vector<double> noise;  ///< [m] standard deviation of each laser's ranges that the residuals show
+  double p_value = 1;         ///< that nothing but noise is in the residuals: the least of the profiles'
 };
 
 /// Lays the residuals of the measured data beside those of the scanner simulated again, measurement by
 /// measurement, in the scene that the data show: each beam where it meets its surface, with noise of the size
-/// that the residuals have. The simulation is repeated to see how far from nothing noise takes a profile.
+/// that its laser's residuals have. The simulation is repeated to see how far from nothing noise takes a
+/// profile.
 SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings, std::uint64_t seed);
 
 }  // namespace crisp

@@ -112,14 +112,15 @@ std::string reason_of(const Diagnosis::Limit& limit, const std::string& told_by,
       1e3 * limit.size * noise, needs);
 }
 
-/// The profiles that depart most from the simulation.
-std::string profiles_in_words(const SideBySide& left) {
+/// The profiles that depart from the simulation.
+std::string profiles_in_words(const SideBySide& left, const Calibration& calibration) {
   constexpr double kSignificant = 0.05;
   std::string words;
   for (const Profile& profile : left.profiles) {
     if (profile.p_value > kSignificant) continue;
-    words += fmt::format("  laser {} against {:<14}{:>8.3f} mm   p = {:.3f}\n", profile.laser + 1,
-                         profile.covariate, profile.rms * 1e3, profile.p_value);
+    words +=
+        fmt::format("  {} against {:<14}{:>8.3f} mm   p = {:.3f}\n", calibration.lasers[profile.laser].name,
+                    profile.covariate, profile.rms * 1e3, profile.p_value);
   }
   return words;
 }
@@ -188,7 +189,8 @@ std::string in_words(const UnnamedFinding& finding) {
 std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
   std::string words =
       fmt::format("what is wrong: residuals against what the scanner simulated again shows\n");
-  const std::string departing = profiles_in_words(diagnosis.left_before);
+  const Calibration& calibration = diagnosis.after.outcome.model.calibration();
+  const std::string departing = profiles_in_words(diagnosis.left_before, calibration);
   words += departing.empty() ? "  nothing departs from the simulation\n" : departing;
   if (findings.findings.empty() && findings.unnamed.empty()) words += "no cause is found\n";
   for (const Finding& finding : findings.findings) words += in_words(finding);
@@ -201,6 +203,11 @@ std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
   }
   words += fmt::format("measured and simulated residuals: p = {:.3f} before, {:.3f} after", findings.before_p,
                        findings.after_p);
+  const std::string left = profiles_in_words(diagnosis.left_after, calibration);
+  if (!left.empty() && !(findings.findings.empty() && findings.unnamed.empty())) {
+    words += "\nwhat is left with these terms in the model still departs from the simulation:\n" + left;
+    words.pop_back();
+  }
   if (!findings.unobservable.empty()) {
     std::vector<std::string> names;
     for (const auto& one : findings.unobservable) names.push_back(one.parameter);

@@ -145,8 +145,9 @@ class Trial {
         "noise {:.3f} {:.3f} mm; {:.0f} s{}\n",
         what, drawn.recording.scanner.seed, drawn.scene, drawn.recording.scanner.rig.lasers.size(),
         drawn.motion, hidden, found_by(diagnosis), errors, diagnosis.left_before.p_value,
-        diagnosis.left_after.p_value, diagnosis.left_before.noise * 1e3, diagnosis.left_after.noise * 1e3,
-        seconds.count(), diagnosis.settled ? "" : "; NOT SETTLED");
+        diagnosis.left_after.p_value, 1e3 * std::ranges::max(diagnosis.left_before.noise),
+        1e3 * std::ranges::max(diagnosis.left_after.noise), seconds.count(),
+        diagnosis.settled ? "" : "; NOT SETTLED");
     for (const auto& limit : diagnosis.unobservable) {
       if (std::ranges::count(drawn.names, limit.name) > 0) {
         fmt::print("    {} would not show below {:.2f} of the noise\n", limit.name, limit.size);

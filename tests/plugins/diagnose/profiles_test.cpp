@@ -20,8 +20,18 @@ TEST(SideBySide, TellsNothingApartWhereTheModelIsTheTruth) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const SideBySide left = beside(test::hidden(seed, 3, office(), {}));
     EXPECT_GT(left.p_value, 0.01) << seed;
-    EXPECT_NEAR(left.noise, 0.012, 0.0015);
+    for (const double noise : left.noise) EXPECT_NEAR(noise, 0.012, 0.0015);
   }
+}
+
+TEST(SideBySide, SimulatesEachLaserWithNoiseOfItsOwn) {
+  ScannerSettings scanner = test::scanner_of(5, 3);
+  scanner.laser_effects.resize(3);
+  scanner.laser_effects[1].noise.sigma = 0.005;
+  const SideBySide left = beside(test::recorded(scanner, office()));
+  EXPECT_GT(left.p_value, 0.01) << "of one size for all, laser 1 departs as soon as it scatters more";
+  EXPECT_NEAR(left.noise.at(0), 0.012, 0.0015);
+  EXPECT_NEAR(left.noise.at(1), 0.005, 0.0007);
 }
 
 TEST(SideBySide, ShowsADepartureOverItsCovariate) {
