@@ -16,6 +16,10 @@ class ItemMerge {
  public:
   void push(HubItem item) {
     const auto time = receipt_ns(item);
+    if (items_.empty() || receipt_ns(items_.back()) <= time) {  // as nearly all do
+      items_.push_back(std::move(item));
+      return;
+    }
     const auto later = [](std::int64_t t, const HubItem& other) { return t < receipt_ns(other); };
     items_.insert(std::upper_bound(items_.begin(), items_.end(), time, later), std::move(item));
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/wire/scan_conversion.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "pipeline/data/degree.hpp"
@@ -22,19 +23,16 @@ std::size_t echo_number(const ChannelBlock& channel, std::string_view kind) {
 /// What gathers the channels of one telegram into one scan.
 class Gathering {
  public:
-  explicit Gathering(Scan& scan) : scan_(scan) {
-    for (auto& echo : scan_.echoes) {
-      echo.ranges.clear();
-      echo.remissions.clear();
-    }
-  }
+  explicit Gathering(Scan& scan) : scan_(scan) {}
 
   void take(const ChannelBlock& channel) {
     if (const auto n = echo_number(channel, "DIST")) {
       if (agrees(channel)) ranges(channel, echo(n).ranges);
+      has_ranges_[n - 1] = true;
       echoes_ = std::max(echoes_, n);
     } else if (const auto m = echo_number(channel, "RSSI")) {
       if (agrees(channel)) values(channel, echo(m).remissions);
+      has_remissions_[m - 1] = true;
     }
   }
 
@@ -42,7 +40,10 @@ class Gathering {
     if (failure_ != ScanFailure::None) return failure_;
     if (echoes_ == 0) return ScanFailure::NoDistances;
     scan_.echoes.resize(echoes_);
-    for (auto& echo : scan_.echoes) echo.ranges.resize(first_->raw.size());  // an echo that was not sent
+    for (std::size_t n = 0; n < echoes_; ++n) {  // what was not sent
+      if (!has_ranges_[n]) scan_.echoes[n].ranges.assign(first_->raw.size(), 0);
+      if (!has_remissions_[n]) scan_.echoes[n].remissions.clear();
+    }
     scan_.start_angle = first_->start_angle / kUnitsPerDegree * kDegree;
     scan_.angle_step = exact_angle_step(first_->angle_step);
     return ScanFailure::None;
@@ -86,6 +87,7 @@ class Gathering {
   Scan& scan_;
   const ChannelBlock* first_ = nullptr;
   std::size_t echoes_ = 0;
+  std::array<bool, kMostEchoes> has_ranges_{}, has_remissions_{};
   ScanFailure failure_ = ScanFailure::None;
 };
 

@@ -2,7 +2,6 @@
 // How measurements go through their lasers' chains: equation (2) alone by vectors, every other chain in
 // blocks.
 #include <cmath>
-#include <numeric>
 
 #include "pipeline/model/sensor_model.hpp"
 #include "pipeline/model/strewn_beams.hpp"
@@ -11,16 +10,16 @@
 namespace crisp {
 namespace {
 
-/// Gathers placed points and hands them on, many at a time.
+/// Gathers placed points and hands them on, many at a time, of measurements that follow one another.
 class Gathering {
  public:
   explicit Gathering(const TakePlaced& take) : take_(take) {}
 
   void add(std::size_t measurement, const Vector3<double>& point) {
+    go_on_at(measurement);
     x_[size_] = point.x();
     y_[size_] = point.y();
     z_[size_] = point.z();
-    index_[size_] = static_cast<std::uint32_t>(measurement);
     if (++size_ == kCapacity) hand_on();
   }
 
@@ -43,9 +42,9 @@ class Gathering {
         ++i;
         continue;
       }
+      go_on_at(i);
       const simd::BareBeams rest{&beams.range[i], &beams.mirror_angle[i], &beams.time[i], end - i};
       const std::size_t placed = simd::place_bare(rest, laser, *arc, &x_[size_], &y_[size_], &z_[size_]);
-      std::iota(&index_[size_], &index_[size_] + placed, static_cast<std::uint32_t>(i));
       size_ += placed;
       i += placed;
     }
@@ -54,18 +53,24 @@ class Gathering {
   }
 
   void hand_on() {
-    take_({.x = {x_, size_}, .y = {y_, size_}, .z = {z_, size_}, .index = {index_, size_}});
+    if (size_ > 0) take_({.first = first_, .x = {x_, size_}, .y = {y_, size_}, .z = {z_, size_}});
     size_ = 0;
   }
 
  private:
+  /// What is added next is of this measurement.
+  void go_on_at(std::size_t measurement) {
+    if (measurement != first_ + size_) hand_on();
+    if (size_ == 0) first_ = measurement;
+  }
+
   static constexpr std::size_t kCapacity = 1024;
 
   const TakePlaced& take_;
   double x_[kCapacity + simd::kBeyond];
   double y_[kCapacity + simd::kBeyond];
   double z_[kCapacity + simd::kBeyond];
-  std::uint32_t index_[kCapacity];
+  std::size_t first_ = 0;  ///< measurement
   std::size_t size_ = 0;
 };
 
@@ -118,11 +123,10 @@ Placed SensorModel::place(const Measurements& beams, const PlateTrajectory& plat
   result.points.resize(3, static_cast<Eigen::Index>(beams.size()));
   result.index.reserve(beams.size());
   place(beams, plate, [&](const PlacedRun& run) {
-    auto column = static_cast<Eigen::Index>(result.index.size());
-    for (std::size_t i = 0; i < run.index.size(); ++i) {
-      result.points.col(column++) << run.x[i], run.y[i], run.z[i];
+    for (std::size_t i = 0; i < run.x.size(); ++i) {
+      result.points.col(static_cast<Eigen::Index>(result.index.size())) << run.x[i], run.y[i], run.z[i];
+      result.index.push_back(static_cast<std::uint32_t>(run.first + i));
     }
-    result.index.insert(result.index.end(), run.index.begin(), run.index.end());
   });
   result.points.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(result.index.size()));
   return result;

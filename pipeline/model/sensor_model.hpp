@@ -38,12 +38,12 @@ struct Placed {
                                      ///< cover are left out
 };
 
-/// A run of placed measurements.
+/// Placed measurements that follow one another.
 struct PlacedRun {
-  std::span<const double> x;             ///< [m] in the base's frame, as are y and z
-  std::span<const double> y;             ///< [m]
-  std::span<const double> z;             ///< [m]
-  std::span<const std::uint32_t> index;  ///< the measurement of each
+  std::size_t first;          ///< index of the measurement that the first point is of
+  std::span<const double> x;  ///< [m] in the base's frame, as are y and z
+  std::span<const double> y;  ///< [m]
+  std::span<const double> z;  ///< [m]
 };
 using TakePlaced = std::function<void(const PlacedRun&)>;
 

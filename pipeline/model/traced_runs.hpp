@@ -36,12 +36,14 @@ inline const LaserChain& chain_of(const std::vector<LaserChain>& chains, const M
 
 /// End of the run of measurements of one laser that starts at `begin`, at most `most` long.
 inline std::size_t run_end(const Measurements& beams, std::size_t begin, std::size_t most) {
-  constexpr std::size_t kStep = 16;  // compared without a branch
-  const unsigned laser = beams.laser[begin];
+  constexpr std::size_t kStep = 32;  // compared without a branch
+  const std::uint16_t laser = beams.laser[begin];
   const std::size_t limit = std::min(beams.size(), begin + most);
   std::size_t end = begin + 1;
-  for (unsigned others = 0; end + kStep <= limit; end += kStep) {
-    for (std::size_t k = 0; k < kStep; ++k) others |= beams.laser[end + k] ^ laser;
+  for (std::uint16_t others = 0; end + kStep <= limit; end += kStep) {
+    for (std::size_t k = 0; k < kStep; ++k) {
+      others = static_cast<std::uint16_t>(others | (beams.laser[end + k] ^ laser));  // no wider: by vectors
+    }
     if (others != 0) break;
   }
   while (end < limit && beams.laser[end] == laser) ++end;

@@ -28,6 +28,8 @@ struct Worker {
     std::size_t input;
   };
   std::vector<Edge> edges;
+  std::optional<Outputs> out;  ///< what each call is given, as is the context
+  std::optional<Context> context;
 };
 
 class Runner {
@@ -66,8 +68,7 @@ class Runner {
   }
 
   void pull(std::size_t source) {
-    call(source,
-         [](Worker& w, Outputs& out, Context& context) { w.node->stage->process(Inputs({}), out, context); });
+    call(source, [](Worker& w) { w.node->stage->process(Inputs({}), *w.out, *w.context); });
   }
 
   /// Each in a thread of its own. What they give runs through the stages below one item after the other.
@@ -116,6 +117,10 @@ class Runner {
     worker.result.stage = node.type->name;
     worker.taken.resize(node.type->inputs.size());
     worker.given.resize(node.type->outputs.size());
+    worker.out.emplace([this, index](const Item& item) { give(index, item); });
+    worker.context.emplace(run_, worker.result.report,
+                           !ends_gently_ || node.type->endless ? hooks_.stop : nullptr, progress_of(worker));
+    worker.context->watch(status_of(worker), &abandoned_);
     for (std::size_t i = 0; i < node.type->inputs.size(); ++i) {
       const Kind kind = node.type->inputs[i].kind;
       worker.slots.push_back({kind, nullptr});
@@ -168,9 +173,7 @@ class Runner {
     Worker& worker = workers_[to];
     worker.slots[input] = std::move(item);
     if (worker.node->type->inputs[input].held) return;
-    call(to, [](Worker& w, Outputs& out, Context& context) {
-      w.node->stage->process(Inputs(w.slots), out, context);
-    });
+    call(to, [](Worker& w) { w.node->stage->process(Inputs(w.slots), *w.out, *w.context); });
     worker.slots[input].value = nullptr;
   }
 
@@ -185,7 +188,7 @@ class Runner {
 
   void finish(std::size_t index) {
     if (!workers_[index].waiting.empty()) throw never_came(workers_[index]);
-    call(index, [](Worker& w, Outputs& out, Context& context) { w.node->stage->finish(out, context); });
+    call(index, [](Worker& w) { w.node->stage->finish(*w.out, *w.context); });
     for (const auto& edge : workers_[index].edges) {
       Worker& fed = workers_[edge.to];
       if (--fed.open[edge.input] == 0 && is_ready(fed)) replay(edge.to);
@@ -225,17 +228,13 @@ class Runner {
   void call(std::size_t index, Call&& body) {
     if (is_stopped()) throw Interrupted();
     Worker& worker = workers_[index];
-    Outputs out([this, index](const Item& item) { give(index, item); });
-    const bool endless = worker.node->type->endless;
-    Context context(run_, worker.result.report, !ends_gently_ || endless ? hooks_.stop : nullptr,
-                    progress_of(worker));
-    context.watch(status_of(worker), &abandoned_);
     try {
-      if (together_ && endless) {  // it mostly waits, and the stopwatch is for what takes turns
-        body(worker, out, context);
+      const bool waits = together_ && worker.node->type->endless;
+      if (waits) {  // the stopwatch is for what takes turns
+        body(worker);
       } else {
         const Stopwatch::Turn turn(stopwatch_, worker.result.seconds);
-        body(worker, out, context);
+        body(worker);
       }
     } catch (const Interrupted&) {
       throw;

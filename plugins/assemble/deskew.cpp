@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/assemble/deskew.hpp"
 
+#include "plugins/assemble/pack_points.hpp"
+
 namespace crisp {
 
 Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model,
@@ -9,20 +11,20 @@ Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const S
   cloud->header.frame_id = "base";
   cloud->header.stamp = static_cast<std::uint64_t>(beams.epoch_ns / 1000);  // PCL's stamps are microseconds
   cloud->points.resize(beams.size());
-  std::size_t placed = 0;
+  Point* points = cloud->points.data();
   model.place(beams, plate, [&](const PlacedRun& run) {
-    for (std::size_t i = 0; i < run.index.size(); ++i) {
-      const auto measurement = run.index[i];
-      Point& point = cloud->points[placed++];
-      point.x = static_cast<float>(run.x[i]);
-      point.y = static_cast<float>(run.y[i]);
-      point.z = static_cast<float>(run.z[i]);
-      point.intensity = beams.remission[measurement];
-      point.laser = beams.laser[measurement];
-      point.beam = beams.beam[measurement];
-      point.time = beams.time[measurement];
-    }
+    simd::pack_points({.x = run.x.data(),
+                       .y = run.y.data(),
+                       .z = run.z.data(),
+                       .intensity = &beams.remission[run.first],
+                       .laser = &beams.laser[run.first],
+                       .beam = &beams.beam[run.first],
+                       .time = &beams.time[run.first],
+                       .size = run.x.size()},
+                      points);
+    points += run.x.size();
   });
+  const auto placed = static_cast<std::size_t>(points - cloud->points.data());
   cloud->points.resize(placed);
   cloud->width = static_cast<std::uint32_t>(placed);
   cloud->height = 1;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <span>
 
 namespace crisp {
 namespace {
@@ -13,7 +14,19 @@ constexpr double kFirstPossible =
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::size_t kMostBeams = std::numeric_limits<std::uint16_t>::max() + std::size_t{1};
 
-bool came_back(float range) { return range > 0 && range < std::numeric_limits<float>::infinity(); }
+bool came_back(float range) { return (range > 0) & (range < std::numeric_limits<float>::infinity()); }
+
+/// Up to where all beams from k on came back.
+std::size_t run_end(std::span<const float> ranges, std::size_t k) {
+  constexpr std::size_t kStep = 32;  // looked at without a branch: by vectors
+  for (; k + kStep <= ranges.size(); k += kStep) {
+    unsigned back = 1;
+    for (std::size_t i = k; i < k + kStep; ++i) back &= static_cast<unsigned>(came_back(ranges[i]));
+    if (back == 0) break;
+  }
+  while (k < ranges.size() && came_back(ranges[k])) ++k;
+  return k;
+}
 
 void resize(Measurements& measurements, std::size_t n) {
   measurements.range.resize(n);
@@ -39,9 +52,10 @@ double TimedScan::beam_time(std::size_t k) const {
 void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64_t epoch_ns,
                        Measurements& out) {
   const Scan& scan = *timed.scan;
-  const auto& ranges = scan.echoes.front().ranges;
   const auto& remissions = scan.echoes.front().remissions;
-  const std::size_t beams = std::min(ranges.size(), kMostBeams);
+  const auto& all = scan.echoes.front().ranges;
+  const std::size_t beams = std::min(all.size(), kMostBeams);
+  const std::span ranges(all.data(), beams);
   const bool has_remissions = remissions.size() >= beams;
   const double first_time = timed.beam_time(0);
   const double time_step = scan.angle_step / kTurn * timed.period;
@@ -53,8 +67,7 @@ void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64
   std::size_t n = 0;
   for (std::size_t k = 0; k < beams; ++k) {
     if (!came_back(ranges[k])) continue;
-    std::size_t end = k + 1;
-    while (end < beams && came_back(ranges[end])) ++end;
+    const std::size_t end = run_end(ranges, k);
     // all that came back one after the other go together: array by array, as vectors
     const auto first = static_cast<std::int32_t>(k);
     const auto count = static_cast<std::int32_t>(end - k);
