@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The pipelines that come with crisp, run as they are.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -31,10 +32,23 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml",
-                                              "diagnose.yaml", "emulate.yaml", "figures.yaml",
-                                              "like_real.yaml", "live.yaml", "monte_carlo.yaml",
-                                              "picture.yaml", "record.yaml", "simulate.yaml"));
+  EXPECT_THAT(
+      pipelines,
+      UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml", "diagnose.yaml",
+                           "emulate.yaml", "figures.yaml", "like_real.yaml", "live.yaml", "monte_carlo.yaml",
+                           "picture.yaml", "record.yaml", "simulate.yaml", "simulate_lms111.yaml"));
+}
+
+TEST(Configs, SimulateLms111IsAScannerOfSuchLasers) {
+  const test::Workshop workshop;
+  const auto simulated = workshop.run("simulate_lms111.yaml", {}, "made", {"grabber.simulate.duration=1s"});
+  EXPECT_EQ(simulated.status, ExitStatus::done) << simulated.told;
+  const std::string truth = test::bytes_of(workshop / "made/truth.yaml");
+  for (const char* laser : {"laser1", "laser2", "laser3"}) {
+    for (const char* effect : {"noise.two_peaks.separation", "mirror.period.excess", "latency.jitter.mean"}) {
+      EXPECT_THAT(truth, testing::HasSubstr(fmt::format("effect {}.{}", laser, effect)));
+    }
+  }
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
