@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/data/findings.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 namespace crisp {
 
@@ -13,8 +13,8 @@ void Findings::append(const Findings& other) {
   add(artefacts, other.artefacts);
   add(devices, other.devices);
   add(noise, other.noise);
-  before_p = std::min(before_p, other.before_p);
-  after_p = std::min(after_p, other.after_p);
+  before_p = std::fmin(before_p, other.before_p);  // the one that was asked for
+  after_p = std::fmin(after_p, other.after_p);
 }
 
 }  // namespace crisp

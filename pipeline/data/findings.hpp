@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -23,13 +24,16 @@ struct Gain {
   double explained() const { return before > 0 ? 1 - after * after / (before * before) : 0; }
 };
 
+/// Stands for a number that a diagnosis did not look for; null in diagnosis.json.
+inline constexpr double kUnasked = std::numeric_limits<double>::quiet_NaN();
+
 /// A departure of the measured data from the model, with its physical cause.
 struct Finding {
   std::string cause;                  ///< "mirror.cone": see docs/effects.md
   std::string scope;                  ///< "plate", "laser3"
   std::vector<Parameter> parameters;  ///< in SI, with standard errors
   double explained_fraction = 0;      ///< share of all that was found (in squared residuals)
-  double log10_odds = 0;              ///< against the likeliest other cause
+  double log10_odds = kUnasked;       ///< against the likeliest other cause
   double p_value = 1;                 ///< that noise alone makes as much, corrected for the number of looks
   std::vector<std::string> confounded_with;     ///< causes that these data cannot tell from it
   std::vector<std::string> told_apart_by = {};  ///< what a recording needs to tell them from it
@@ -85,8 +89,8 @@ struct Findings {
   std::vector<Artefact> artefacts;
   std::vector<DeviceFacts> devices;
   std::vector<NoiseFacts> noise;
-  double before_p = 1;  ///< that what is left of the residuals is noise: with the model that came …
-  double after_p = 1;   ///< … and with the extended one
+  double before_p = kUnasked;  ///< that what is left of the residuals is noise: with the model that came …
+  double after_p = kUnasked;   ///< … and with the extended one
 
   /// Adds what another diagnosis says of the same recording.
   void append(const Findings& other);

@@ -167,7 +167,7 @@ std::string in_words(const Finding& finding) {
   if (finding.explained_fraction > 0) {
     words += fmt::format("\n  explains {:.0f} % of what was found", 100 * finding.explained_fraction);
   }
-  if (finding.log10_odds != 0) {
+  if (std::isfinite(finding.log10_odds)) {
     words += fmt::format("\n  odds against the next cause 10^{:.0f}", finding.log10_odds);
   }
   if (!finding.confounded_with.empty()) {
