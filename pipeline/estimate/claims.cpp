@@ -4,7 +4,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <span>
 
 #include "pipeline/quality/blocks.hpp"
 
@@ -21,9 +23,17 @@ Eigen::Vector3d at(const PointsView& points, std::uint32_t i) {
 class Claimant {
  public:
   Claimant(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams) : surfel_(surfel) {
-    for (const std::uint32_t i : surfels.beams_of(surfel)) {
-      box_.extend(in_plane(at(beams.points, i) - surfel.middle));
-    }
+    for (const std::uint32_t i : surfels.beams_of(surfel)) take(at(beams.points, i));
+  }
+
+  void take(const Eigen::Vector3d& end) {
+    box_.extend(in_plane(end - surfel_.middle));
+    beams_ += 1;
+  }
+
+  /// How far beyond the borders beams are claimed [m].
+  double reach(const ClaimSettings& claims) const {
+    return std::max(claims.margin, claims.spacings * std::sqrt(box_.volume() / beams_));
   }
 
   /// By how much a beam's range would have to grow to end on the plane [m], and how far beyond the borders
@@ -62,6 +72,7 @@ class Claimant {
 
   const Surfel& surfel_;
   Eigen::AlignedBox2d box_;
+  double beams_ = 0;
 };
 
 /// The surface that the beam met. Where it might be either of two it is decided by where the beam meets their
@@ -74,7 +85,7 @@ std::uint32_t owner(const std::vector<Claimant>& claimants, const BeamsView& bea
   for (std::uint32_t s = 0; s < claimants.size(); ++s) {
     const auto met =
         claimants[s].meeting(at(beams.points, beam), at(beams.directions, beam), settings, claims);
-    if (!met || met->beyond > claims.margin) continue;
+    if (!met || met->beyond > claimants[s].reach(claims)) continue;
     const auto is_better = [&] {
       if (best == kNone) return true;
       if (claimants[s].continues(claimants[best])) return met->beyond < least.beyond;
@@ -87,27 +98,35 @@ std::uint32_t owner(const std::vector<Claimant>& claimants, const BeamsView& bea
   return best;
 }
 
-}  // namespace
-
-Surfels claimed(const Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
-                const ClaimSettings& claims) {
-  std::vector<Claimant> claimants;
-  for (const Surfel& surfel : found.surfels) claimants.emplace_back(surfel, found, beams);
+/// The owner of each of `some` beams, or kNone.
+std::vector<std::uint32_t> owners(const std::vector<Claimant>& claimants, const BeamsView& beams,
+                                  std::span<const std::uint32_t> some, const SurfelSettings& settings,
+                                  const ClaimSettings& claims) {
   constexpr std::size_t kBlock = 4096;  // beams
-  std::vector<std::uint32_t> owners(beams.points.size());
-  for_blocks(owners.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      owners[i] = owner(claimants, beams, static_cast<std::uint32_t>(i), settings, claims);
-    }
+  std::vector<std::uint32_t> result(some.size());
+  for_blocks(some.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) result[k] = owner(claimants, beams, some[k], settings, claims);
   });
-  std::vector<std::vector<std::uint32_t>> members(claimants.size());
-  for (std::uint32_t i = 0; i < owners.size(); ++i) {
-    if (owners[i] != kNone) members[owners[i]].push_back(i);
+  return result;
+}
+
+std::vector<Claimant> claimants_of(const Surfels& surfels, const BeamsView& beams) {
+  std::vector<Claimant> claimants;
+  for (const Surfel& surfel : surfels.surfels) claimants.emplace_back(surfel, surfels, beams);
+  return claimants;
+}
+
+/// The surfels that own enough of the beams, with what they own.
+Surfels sorted_by_owner(const std::vector<Surfel>& surfels, const std::vector<std::uint32_t>& owner_of,
+                        const SurfelSettings& settings) {
+  std::vector<std::vector<std::uint32_t>> members(surfels.size());
+  for (std::uint32_t i = 0; i < owner_of.size(); ++i) {
+    if (owner_of[i] != kNone) members[owner_of[i]].push_back(i);
   }
   Surfels result;
-  for (std::size_t s = 0; s < claimants.size(); ++s) {
+  for (std::size_t s = 0; s < surfels.size(); ++s) {
     if (members[s].size() < settings.min_points) continue;
-    Surfel surfel = found.surfels[s];
+    Surfel surfel = surfels[s];
     surfel.begin = static_cast<std::uint32_t>(result.members.size());
     result.members.insert(result.members.end(), members[s].begin(), members[s].end());
     surfel.end = static_cast<std::uint32_t>(result.members.size());
@@ -115,6 +134,41 @@ Surfels claimed(const Surfels& found, const BeamsView& beams, const SurfelSettin
   }
   result.weights.assign(result.members.size(), 1);
   return result;
+}
+
+}  // namespace
+
+Surfels claimed(const Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
+                const ClaimSettings& claims) {
+  std::vector<std::uint32_t> all(beams.points.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return sorted_by_owner(found.surfels, owners(claimants_of(found, beams), beams, all, settings, claims),
+                         settings);
+}
+
+Surfels grown(const Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings,
+              const ClaimSettings& claims) {
+  std::vector<std::uint32_t> owner_of(beams.points.size(), kNone);
+  for (std::uint32_t s = 0; s < surfels.surfels.size(); ++s) {
+    for (const std::uint32_t i : surfels.beams_of(surfels.surfels[s])) owner_of[i] = s;
+  }
+  auto claimants = claimants_of(surfels, beams);
+  std::size_t before = 0;
+  std::vector<std::uint32_t> left;
+  do {
+    before = left.size();
+    left.clear();
+    for (std::uint32_t i = 0; i < owner_of.size(); ++i) {
+      if (owner_of[i] == kNone) left.push_back(i);
+    }
+    const auto takers = owners(claimants, beams, left, settings, claims);
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      if (takers[k] == kNone) continue;
+      owner_of[left[k]] = takers[k];
+      claimants[takers[k]].take(at(beams.points, left[k]));
+    }
+  } while (left.size() != before);
+  return sorted_by_owner(surfels.surfels, owner_of, settings);
 }
 
 }  // namespace crisp

@@ -7,6 +7,7 @@ namespace crisp {
 
 struct ClaimSettings {
   double margin = 0.35;  ///< [m] by which a surface may reach beyond the beams that it was found from
+  double spacings = 0;   ///< or by so many distances between its beams, where that is more
   double gate = 4.7;     ///< [standard deviations of the noise] farthest beam that is claimed
 };
 
@@ -19,5 +20,12 @@ struct ClaimSettings {
 ///          settings.min_points are gone. Planes are left as they are: see refine().
 Surfels claimed(const Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
                 const ClaimSettings& claims = {});
+
+/// Lets surfaces claim what is left, again and again while they grow: where beams are few, as on a house
+/// front that is far away, most of a surface lies beyond the beams that it was found from.
+///
+/// @return  the same surfaces with more beams, each of weight 1. Planes are left as they are: see refine().
+Surfels grown(const Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings,
+              const ClaimSettings& claims);
 
 }  // namespace crisp

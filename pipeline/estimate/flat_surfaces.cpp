@@ -3,6 +3,7 @@
 
 #include "pipeline/estimate/claims.hpp"
 #include "pipeline/quality/blocks.hpp"
+#include "pipeline/quality/surfel_ends.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 
 namespace crisp {
@@ -30,9 +31,7 @@ class Patches final : public FlatSurfaces {
       surfels_ = claimed(surfels_, beams, settings_, {.margin = settings_.smallest});
       refine_all(surfels_, beams, settings_);
     } else {
-      // Not earlier: as long as parameters are off, views disagree most on what is far away.
-      constexpr double kMore = 1.3;
-      leave_out_odd_ones(surfels_, beams, settings_, kMore);
+      complete(beams);
     }
     return surfels_;
   }
@@ -40,6 +39,18 @@ class Patches final : public FlatSurfaces {
   bool is_settled() const override { return !is_searching_; }
 
  private:
+  /// Settles how far surfaces go and which of them count. Not earlier: as long as parameters are off, views
+  /// disagree, and most on what is far away.
+  void complete(const BeamsView& beams) {
+    constexpr double kSpacings = 4;
+    constexpr double kMore = 1.3;
+    surfels_ = grown(surfels_, beams, settings_, {.margin = settings_.smallest, .spacings = kSpacings});
+    refine_all(surfels_, beams, settings_);
+    for_each_index(surfels_.surfels.size(),
+                   [&](std::size_t s) { cut_strange_ends(surfels_.surfels[s], surfels_, beams, settings_); });
+    leave_out_odd_ones(surfels_, beams, settings_, kMore);
+  }
+
   SurfelSettings settings_;
   Surfels surfels_;
   int round_ = 0;

@@ -89,7 +89,61 @@ TEST(Claims, LeaveBeamsThatEndElsewhereAlone) {
   EXPECT_GE(all.members.size(), 3590U);
 }
 
-TEST(Claims, OfNothingAreNothing) { EXPECT_TRUE(claimed({}, {}, {}).surfels.empty()); }
+/// Beams half a metre apart onto a front of 16 × 4 m that is 20 m away; from y = 4 on it stands back by 0.3
+/// m. A surfel was found in the 63 beams in its middle.
+struct Front {
+  Vectors points, directions;
+  Surfels found;
+  std::uint32_t forward = 0;  ///< beams on what does not stand back
+
+  Front() {
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> noise(0, 0.012);
+    for (double y = -8; y <= 8; y += 0.5) {
+      for (double z = -2; z <= 2; z += 0.5) {
+        const Eigen::Vector3d meets(y < 4 ? 20 : 20.3, y, z);
+        const Eigen::Vector3d end = meets + noise(random) * meets.normalized();
+        if (std::abs(y) < 1.6) found.members.push_back(static_cast<std::uint32_t>(points.x.size()));
+        if (y < 4) ++forward;
+        for (auto [to, from] :
+             {std::pair(&points, end), {&directions, Eigen::Vector3d(meets.normalized())}}) {
+          to->x.push_back(from.x());
+          to->y.push_back(from.y());
+          to->z.push_back(from.z());
+        }
+      }
+    }
+    found.surfels.push_back({.middle = {20, 0, 0},
+                             .normal = {-1, 0, 0},
+                             .u = {0, 1, 0},
+                             .v = {0, 0, 1},
+                             .radius = 1,
+                             .thickness = 0.012,
+                             .end = static_cast<std::uint32_t>(found.members.size())});
+    found.weights.assign(found.members.size(), 1);
+  }
+  BeamsView beams() const { return {.points = points.view(), .directions = directions.view(), .views = {}}; }
+};
+
+TEST(Claims, GrowOverAFrontOfFewBeamsToWhereItEnds) {
+  const Front front;
+  const Surfels all = grown(front.found, front.beams(), {}, {.margin = 0.25, .spacings = 4});
+  ASSERT_EQ(all.surfels.size(), 1U);
+  EXPECT_EQ(all.members.size(), front.forward);
+  EXPECT_TRUE(std::ranges::all_of(all.members, [&](auto i) { return front.points.y[i] < 4; }));
+  EXPECT_EQ(all.weights, std::vector<double>(all.members.size(), 1.0));
+}
+
+TEST(Claims, DoNotGrowWhereTheNextBeamIsTooFar) {
+  const Front front;
+  const Surfels all = grown(front.found, front.beams(), {}, {.margin = 0.25, .spacings = 0.5});
+  EXPECT_EQ(all.members, front.found.members);
+}
+
+TEST(Claims, OfNothingAreNothing) {
+  EXPECT_TRUE(claimed({}, {}, {}).surfels.empty());
+  EXPECT_TRUE(grown({}, {}, {}, {}).surfels.empty());
+}
 
 }  // namespace
 }  // namespace crisp
