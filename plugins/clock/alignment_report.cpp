@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+constexpr double kFar = 1e-3;  // [s] a plate at 1 Hz turns by 0.36° in that time: not to be trusted
+
 void count_losses(const DeviceReport& device, std::map<std::string, std::uint64_t>& counts) {
   const auto count = [&](const char* what, std::uint64_t n) {
     counts[device.clock.device + ": " + what] = n;
@@ -41,8 +43,7 @@ void warn_of_device(const DeviceReport& device, std::vector<std::string>& warnin
 
 /// A line that is as steep as any may be fits stamps that have no clock in common. Few stamps, or close ones,
 /// can make it steep by chance; but then they are not far from it.
-std::string doubt_of_clock(const DeviceReport& device) {
-  constexpr double kFar = 1e-3;  // [s] a plate at 1 Hz turns by 0.36° in that time
+std::string doubt_of(const DeviceReport& device) {
   if (device.clock.stamps == 0 || device.clock.residual_median < kFar) return {};
   if (std::abs(device.clock.skew_ppm()) < 0.99e6 * kMostSkew) return {};
   return fmt::format(
@@ -50,20 +51,26 @@ std::string doubt_of_clock(const DeviceReport& device) {
       device.clock.device, 1e6 * kMostSkew, 1e3 * device.clock.residual_median);
 }
 
-/// Where the shortest delay or the device's time stepped, or hardly any telegram came in without waiting,
-/// stamps lie far from their line but for a few, and its slope is the work of these.
-std::string doubt_of_skew(const DeviceReport& device) {
-  constexpr double kFar = 0.25e-3;  // [s] a plate at 1 Hz turns by 0.09° in that time
-  constexpr double kLong = 30;      // [s] longer recordings have more than one line
-  const ClockMap& clock = device.clock;
-  if (clock.pieces.empty()) return {};
-  const double half = std::min(kLong, 0.5 * (clock.device_end - clock.pieces.front().device_begin));
-  const double error = clock.skew_std_error * half;
-  if (error < kFar) return {};
-  return fmt::format(
-      "{}: its clock is known to {:.1f} ms only ({:.0f} ± {:.0f} ppm): too few telegrams came without delay, "
-      "or the delay or its time stepped, which diagnose.stamps tells",
-      clock.device, 1e3 * error, clock.skew_ppm(), 1e6 * clock.skew_std_error);
+/// How far a clock may be from its line [s] at the ends of half a minute about its middle; a longer recording
+/// has more than one line. Where the shortest delay or the device's time stepped, or hardly any telegram came
+/// in without waiting, stamps lie far from the line but for a few, and its slope is the work of these.
+double error_of_clock(const ClockMap& clock) {
+  constexpr double kLong = 30;  // [s]
+  if (clock.pieces.empty()) return 0;
+  const double span = clock.device_end - clock.pieces.front().device_begin;
+  return clock.skew_std_error * std::min(kLong, 0.5 * span);
+}
+
+/// Says where a clock is hardly known: so that it is a doubt, or only a warning.
+void tell_error_of_clock(const ClockMap& clock, AlignmentReport& report) {
+  constexpr double kMuch = 0.25e-3;  // [s] a plate at 1 Hz turns by 0.09° in that time
+  const double error = error_of_clock(clock);
+  if (error < kMuch) return;
+  (error < kFar ? report.warnings : report.doubts)
+      .push_back(fmt::format(
+          "{}: its clock is known to {:.1f} ms only ({:.0f} ± {:.0f} ppm): too few telegrams came without "
+          "delay, or the delay or its time stepped, which diagnose.stamps tells",
+          clock.device, 1e3 * error, clock.skew_ppm(), 1e6 * clock.skew_std_error));
 }
 
 }  // namespace
@@ -84,9 +91,8 @@ AlignmentReport HubTracks::report() const {
   for (const auto& device : report.devices) {
     count_losses(device, report.counts);
     warn_of_device(device, report.warnings);
-    for (auto doubt : {doubt_of_clock(device), doubt_of_skew(device)}) {
-      if (!doubt.empty()) report.doubts.push_back(std::move(doubt));
-    }
+    if (auto doubt = doubt_of(device); !doubt.empty()) report.doubts.push_back(std::move(doubt));
+    tell_error_of_clock(device.clock, report);
   }
   const std::string& plate = report.devices.back().clock.device;
   report.counts[plate + ": readings after its zero was lost"] = plate_.after_lost_zero();

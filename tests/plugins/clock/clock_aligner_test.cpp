@@ -157,18 +157,24 @@ TEST(ClockAligner, GivesWayToAStepOfTheLatencyOnlyAsFastAsAClockCouldDrift) {
 }
 
 TEST(ClockAligner, DoubtsAClockWhoseTimeOrDelaySteppedWithinItsLine) {
-  const auto doubts_with_step = [](double step) {
+  const auto report_with_step = [](double step) {
     SimulatedLaser laser;
     laser.beams = 2;
     int sent = 0;
     laser.delays = [=](Random& random) mutable {
       return (0.0201145 * sent++ > 4 ? step : 0) + exponential_delays(1e-4)(random);
     };
-    return align({laser.turns(2, 0, 10)}, SimulatedPlate{}.readings(2, 10)).report.doubts;
+    return align({laser.turns(2, 0, 10)}, SimulatedPlate{}.readings(2, 10)).report;
   };
-  EXPECT_THAT(doubts_with_step(0), IsEmpty());
-  for (const double step : {0.6e-3, 3e-3, -0.8e-3}) {
-    EXPECT_THAT(doubts_with_step(step), ElementsAre(HasSubstr("laser1: its clock is known to"))) << step;
+  EXPECT_THAT(report_with_step(0).warnings, IsEmpty());
+  for (const double step : {0.6e-3, -0.8e-3}) {
+    const AlignmentReport report = report_with_step(step);
+    EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("laser1: its clock is known to 0."))) << step;
+    EXPECT_THAT(report.doubts, IsEmpty()) << step;
+  }
+  for (const double step : {3e-3, -3e-3}) {
+    const AlignmentReport report = report_with_step(step);
+    EXPECT_THAT(report.doubts, ElementsAre(HasSubstr("laser1: its clock is known to"))) << step;
   }
 }
 
