@@ -18,12 +18,12 @@ namespace {
 Measurements scans_of(const std::vector<std::uint16_t>& beams) {
   Measurements all;
   for (int scan = 0; scan < 100; ++scan) {
-    for (std::uint16_t laser = 0; laser < beams.size(); ++laser) {
+    for (std::size_t laser = 0; laser < beams.size(); ++laser) {
       for (std::uint16_t beam = 0; beam < beams[laser]; ++beam) {
         all.range.push_back(1);
         all.mirror_angle.push_back(0);
         all.time.push_back(0.02 * scan + 1e-5 * beam);
-        all.laser.push_back(laser);
+        all.laser.push_back(static_cast<std::uint16_t>(laser));
         all.remission.push_back(0);
         all.beam.push_back(beam);
       }
