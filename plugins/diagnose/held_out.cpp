@@ -14,6 +14,7 @@
 #include "pipeline/quality/rqe.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "plugins/diagnose/evidence.hpp"
+#include "plugins/diagnose/mean.hpp"
 
 namespace crisp {
 namespace {
@@ -57,17 +58,6 @@ Pieces pieces_of(const Sample& sample) {
   }
   return pieces;
 }
-
-/// Means of some beams about a mean.
-struct Mean {
-  double weight = 0;
-  double sum = 0;
-  void add(double value, double w) {
-    weight += w;
-    sum += w * value;
-  }
-  double value() const { return weight > 0 ? sum / weight : 0; }
-};
 
 /// Where the lasers, and each one's front and back, see a surface.
 class ViewMeans {

@@ -13,6 +13,7 @@
 
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
+#include "plugins/diagnose/mean.hpp"
 
 namespace crisp {
 namespace {
@@ -66,18 +67,6 @@ Residuals residuals_in(const Evidence& evidence, const SurfelSettings& settings)
   return all;
 }
 
-/// A weighted mean of squares.
-struct MeanSquare {
-  double squares = 0;
-  double weight = 0;
-
-  void add(double value, double w) {
-    squares += w * value * value;
-    weight += w;
-  }
-  double root() const { return std::sqrt(squares / std::max(1.0, weight)); }
-};
-
 /// [m] Standard deviation of each laser's ranges, from differences of neighbours: beams of one scan on one
 /// surface. Lasers that disagree, and whatever else changes slowly, are not in it. Where there are hardly any
 /// neighbours, from all residuals.
@@ -85,23 +74,23 @@ std::vector<double> noise_of(const Residuals& residuals, const Measurements& bea
   constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
   constexpr double kFewPairs = 1000;
   const std::size_t lasers = beams.laser.empty() ? 0 : std::ranges::max(beams.laser) + std::size_t{1};
-  std::vector<MeanSquare> pairs(lasers);
-  std::vector<MeanSquare> alone(lasers);
+  std::vector<Mean> pairs(lasers);
+  std::vector<Mean> alone(lasers);
   for (std::size_t s = 0; s + 1 < residuals.first.size(); ++s) {
     for (std::size_t k = residuals.first[s]; k < residuals.first[s + 1]; ++k) {
       const std::uint32_t own = residuals.beam[k];
-      alone[beams.laser[own]].add(residuals.value[k], residuals.weight[k]);
+      alone[beams.laser[own]].add(std::pow(residuals.value[k], 2), residuals.weight[k]);
       if (k == residuals.first[s]) continue;
       const std::uint32_t before = residuals.beam[k - 1];
       if (beams.laser[before] != beams.laser[own] || beams.time[own] - beams.time[before] > kOneScan)
         continue;
-      pairs[beams.laser[own]].add((residuals.value[k] - residuals.value[k - 1]) / std::numbers::sqrt2,
+      pairs[beams.laser[own]].add(std::pow(residuals.value[k] - residuals.value[k - 1], 2) / 2,
                                   residuals.weight[k - 1] * residuals.weight[k]);
     }
   }
   std::vector<double> noise;
   for (std::size_t laser = 0; laser < lasers; ++laser) {
-    noise.push_back(pairs[laser].weight > kFewPairs ? pairs[laser].root() : alone[laser].root());
+    noise.push_back(std::sqrt(pairs[laser].weight > kFewPairs ? pairs[laser].value() : alone[laser].value()));
   }
   return noise;
 }
