@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "plugins/clock/aligner.hpp"
 
@@ -19,6 +20,16 @@ void count_losses(const DeviceReport& device, std::map<std::string, std::uint64_
   count("telegrams with impossible times", device.damaged);
   count("clock resets", device.resets);
   count("silences of a second or more", device.silences.size());
+}
+
+void warn_of_steps(const std::string& device, const char* what, const std::vector<StampStep>& steps,
+                   std::vector<std::string>& warnings) {
+  if (steps.empty()) return;
+  const StampStep& largest =
+      *std::ranges::max_element(steps, {}, [](const StampStep& step) { return std::abs(step.by); });
+  warnings.push_back(fmt::format("{}: {} {} time(s), by {:+.3f} ms at {:.2f} s{}; taken out", device, what,
+                                 steps.size(), 1e3 * largest.by, largest.at,
+                                 steps.size() > 1 ? ", and less elsewhere" : ""));
 }
 
 void warn_of_device(const DeviceReport& device, std::vector<std::string>& warnings) {
@@ -39,6 +50,8 @@ void warn_of_device(const DeviceReport& device, std::vector<std::string>& warnin
     warnings.push_back(fmt::format("{}: its clock was reset {} time(s); each stretch has a line of its own",
                                    name, device.resets));
   }
+  warn_of_steps(name, "its clock jumped", device.clock_steps, warnings);
+  warn_of_steps(name, "its shortest delay changed", device.delay_steps, warnings);
 }
 
 /// A line that is as steep as any may be fits stamps that have no clock in common. Few stamps, or close ones,

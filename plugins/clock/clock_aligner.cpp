@@ -45,7 +45,10 @@ void ClockAligner::advance_windows() {
   while (tracks_.now() >= begin_ + 1.5 * length_) {
     if (idle()) {
       begin_ = tracks_.now();
-    } else if (is_too_short()) {
+      continue;
+    }
+    take_out_steps();
+    if (is_too_short()) {
       length_ = std::min(2 * length_, kLongestWindow);
     } else {
       const double end = begin_ + length_;
@@ -54,6 +57,11 @@ void ClockAligner::advance_windows() {
       begin_ = end;
     }
   }
+}
+
+void ClockAligner::take_out_steps() {
+  for (auto& laser : tracks_.lasers()) laser.clock().take_out_steps();
+  tracks_.plate().clock().take_out_steps();
 }
 
 bool ClockAligner::is_too_short() const {
@@ -101,6 +109,7 @@ bool ClockAligner::idle() const {
 
 void ClockAligner::end_recording() {
   if (tracks_.has_scans() && tracks_.has_readings()) {
+    take_out_steps();
     settle(begin_, std::nextafter(tracks_.now(), std::numeric_limits<double>::infinity()));
     tracks_.finish_clocks();
     hand_out(std::numeric_limits<double>::infinity());

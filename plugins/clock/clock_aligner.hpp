@@ -28,6 +28,7 @@ class ClockAligner final : public Aligner {
   double arrive(std::int64_t receipt_ns);
   void end_recording();
   void advance_windows();
+  void take_out_steps();
   bool is_too_short() const;
   void settle(double begin, double end);
   void hand_out(double limit);

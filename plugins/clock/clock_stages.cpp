@@ -15,6 +15,11 @@ nlohmann::json to_json(const DeviceReport& device) {
   for (const auto& silence : device.silences) {
     silences.push_back({{"begin", silence.begin}, {"duration", silence.duration}});
   }
+  const auto all = [](const std::vector<StampStep>& steps) {
+    auto list = nlohmann::json::array();
+    for (const StampStep& step : steps) list.push_back({{"at", step.at}, {"by", step.by}});
+    return list;
+  };
   return {{"device", device.clock.device},
           {"received", device.received},
           {"stamps", device.clock.stamps},
@@ -27,7 +32,9 @@ nlohmann::json to_json(const DeviceReport& device) {
           {"repeated", device.repeated},
           {"damaged", device.damaged},
           {"resets", device.resets},
-          {"silences", silences}};
+          {"silences", silences},
+          {"clock_steps", all(device.clock_steps)},
+          {"delay_steps", all(device.delay_steps)}};
 }
 
 std::string table_of(const std::vector<DeviceReport>& devices) {

@@ -7,8 +7,8 @@
 namespace crisp {
 namespace {
 
-constexpr double kSilence = 1;  // [s]
-constexpr std::size_t kMostSilences = 1000;
+constexpr double kSilence = 1;            // [s]
+constexpr std::size_t kMostNoted = 1000;  // silences, and steps
 
 }  // namespace
 
@@ -16,7 +16,7 @@ DeviceStamps::DeviceStamps(std::string device, FittedClock clock, double period)
     : time_(std::move(device)), clock_(std::move(clock)), period_(period) {}
 
 DeviceStamps::Arrival DeviceStamps::accept(std::uint16_t counter, std::uint32_t raw_us,
-                                           std::int64_t receipt_ns, double hub) {
+                                           std::int64_t receipt_ns, double hub, std::int64_t handover_us) {
   ++report_.received;
   std::int64_t steps = 1;
   std::optional<double> counted_s;
@@ -26,6 +26,8 @@ DeviceStamps::Arrival DeviceStamps::accept(std::uint16_t counter, std::uint32_t 
     if (period_ > 0) counted_s = static_cast<double>(steps) * period_;
   }
   const auto [kind, device_us] = time_.add(raw_us, receipt_ns, counted_s);
+  Last now{.receipt_ns = receipt_ns, .device_us = device_us, .handover_us = handover_us};
+  now.counter.accept(counter);
   switch (kind) {
     case StampKind::repeated:
       ++report_.repeated;
@@ -34,25 +36,51 @@ DeviceStamps::Arrival DeviceStamps::accept(std::uint16_t counter, std::uint32_t 
       ++report_.resets;
       before_reset_ = last_;
       clock_.cut();
+      counted_.begin_anew();
+      now.even_us = even(now);
       steps = 1;
       break;
     case StampKind::returned:
       --report_.resets;
       ++report_.damaged;
       clock_.drop_last_segment();
+      counted_.begin_anew();
       last_ = before_reset_;
-      steps = count_steps(last_.counter.advance(counter, 1), device_us);
+      now.even_us = even(now);
+      steps = count_steps(last_.counter.advance(counter, 1), now.even_us);
       break;
     case StampKind::next:
-      if (any_) steps = count_steps(steps, device_us);
+      if (any_) watch_count(now, steps, hub);
+      now.even_us = even(now);
+      if (any_) steps = count_steps(steps, now.even_us);
   }
   note_silence(hub);
+  if (counted_.is_sure() && (!any_ || now.even_us > last_.even_us)) clock_.add(now.even_us, hub);
   any_ = true;
-  last_.receipt_ns = receipt_ns;
-  last_.device_us = device_us;
-  last_.counter.accept(counter);
-  clock_.add(device_us, hub);
-  return {kind, device_us, steps};
+  last_ = now;
+  return {kind, now.even_us, steps};
+}
+
+void DeviceStamps::watch_count(const Last& now, std::int64_t steps, double hub) {
+  if (steps <= 0) return;
+  const std::int64_t interval_us = (now.device_us - now.handover_us) - (last_.device_us - last_.handover_us);
+  const bool was_sure = counted_.is_sure();
+  counted_.add(1e-6 * static_cast<double>(interval_us), steps,
+               1e-9 * static_cast<double>(now.receipt_ns - last_.receipt_ns));
+  if (was_sure && !counted_.is_sure()) {
+    stepped_at_ = hub;
+    clock_.drop_last();  // what was counted before the step may have been sent after it
+  }
+  if (const auto by = counted_.confirmed(); by && report_.clock_steps.size() < kMostNoted) {
+    report_.clock_steps.push_back({.at = stepped_at_, .by = *by});
+  }
+}
+
+/// When it was sent, without the steps of the clock. What was counted is ascending, even where something that
+/// looked like a step turned out to be none.
+std::int64_t DeviceStamps::even(const Last& now) const {
+  const std::int64_t even_us = now.device_us - std::llround(1e6 * counted_.jumped());
+  return any_ ? std::max(even_us, last_.even_us - last_.handover_us + now.handover_us + 1) : even_us;
 }
 
 std::int64_t DeviceStamps::plausible_steps(std::int64_t steps, double device_s) const {
@@ -62,8 +90,8 @@ std::int64_t DeviceStamps::plausible_steps(std::int64_t steps, double device_s) 
   return std::max<std::int64_t>(1, std::llround(device_s / period_));
 }
 
-std::int64_t DeviceStamps::count_steps(std::int64_t steps, std::int64_t device_us) {
-  const double device_s = 1e-6 * static_cast<double>(device_us - last_.device_us);
+std::int64_t DeviceStamps::count_steps(std::int64_t steps, std::int64_t even_us) {
+  const double device_s = 1e-6 * static_cast<double>(even_us - last_.even_us);
   steps = plausible_steps(steps, device_s);
   counted_time_ += device_s;
   counted_steps_ += steps;
@@ -74,7 +102,7 @@ std::int64_t DeviceStamps::count_steps(std::int64_t steps, std::int64_t device_u
 }
 
 void DeviceStamps::note_silence(double hub) {
-  if (any_ && hub - last_hub_ >= kSilence && report_.silences.size() < kMostSilences) {
+  if (any_ && hub - last_hub_ >= kSilence && report_.silences.size() < kMostNoted) {
     report_.silences.push_back({.begin = last_hub_, .duration = hub - last_hub_});
   }
   last_hub_ = std::max(last_hub_, hub);
@@ -83,6 +111,7 @@ void DeviceStamps::note_silence(double hub) {
 DeviceReport DeviceStamps::report() const {
   DeviceReport report = report_;
   report.clock = clock_.map();
+  report.delay_steps = clock_.delay_steps();
   if (smallest_step_ > 0) {
     report.lost =
         static_cast<std::uint64_t>(std::max<std::int64_t>(0, counted_steps_ / smallest_step_ - pairs_));

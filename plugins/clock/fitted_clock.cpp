@@ -54,11 +54,21 @@ void FittedClock::add(std::int64_t device_us, double hub) {
   }
   Segment& segment = segments_.back();
   const double device = 1e-6 * static_cast<double>(device_us - segment.first_us);
-  const Stamp stamp{.device = device, .lead = hub - segment.first_hub - device};
+  const Stamp stamp{.device = device, .lead = hub - segment.first_hub - device - segment.later};
   segment.hull.add(stamp);
   segment.stamps.push_back(stamp);
   segment.last_device = device;
   ++map_.stamps;
+}
+
+void FittedClock::drop_last() {
+  if (segments_.empty() || segments_.back().stamps.size() < 2) return;
+  Segment& segment = segments_.back();
+  const double first = segment.stamps.front().device;
+  segment.stamps.pop_back();
+  segment.last_device = segment.stamps.back().device;
+  make_hull_anew(segment, first);
+  --map_.stamps;
 }
 
 void FittedClock::drop_last_segment() {
@@ -121,8 +131,49 @@ std::optional<FittedClock::WindowFit> FittedClock::fit(const Segment& segment, d
   }
   if (fit.stamps.empty()) return std::nullopt;
   fit.line = find_(with_bounds(fit.stamps, segment.hull.vertices(), bend_), mean_device(fit.stamps));
+  const double span = fit.stamps.back().device - fit.stamps.front().device;
   fit.errors = errors_of_line(fit.stamps, fit.line);
+  fit.errors.at_center = std::hypot(fit.errors.at_center, segment.later_error);
+  if (span > 0) fit.errors.slope = std::hypot(fit.errors.slope, segment.later_error / span);
   return fit;
+}
+
+void FittedClock::take_out_steps() {
+  constexpr int kMost = 8;  // a link that is so restless has no shortest delay
+  for (auto& segment : segments_) {
+    for (int n = 0; n < kMost; ++n) {
+      const auto step = step_of_delay(segment.stamps);
+      if (!step) break;
+      take_out(segment, *step);
+    }
+  }
+}
+
+/// What was usual stays as it is: of a segment that has no line yet, it is what lasted longer.
+void FittedClock::take_out(Segment& segment, const DelayStep& step) {
+  auto& stamps = segment.stamps;
+  const auto at = [&](std::size_t i) { return stamps.begin() + static_cast<std::ptrdiff_t>(i); };
+  const double first = stamps.front().device;
+  const bool at_first = !segment.first_knot && step.first < stamps.size() / 2;
+  delay_steps_.push_back({.at = segment.hub(stamps[step.first]) + segment.later, .by = step.by});
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (at_first && i < step.from) stamps[i].lead += step.by;
+    if (!at_first && i >= step.to) stamps[i].lead -= step.by;
+  }
+  if (!at_first) segment.later += step.by;
+  segment.later_error = std::hypot(segment.later_error, step.std_error);
+  stamps.erase(at(step.from), at(step.to));  // on which side of it they were sent is not known
+  make_hull_anew(segment, first);
+}
+
+/// From the stamps that are not settled, of which the first was at `first` [s], and what settled ones left.
+void FittedClock::make_hull_anew(Segment& segment, double first) const {
+  LowerHull hull(bend_);
+  for (const Stamp& vertex : segment.hull.vertices()) {
+    if (vertex.device < first) hull.add(vertex);
+  }
+  for (const Stamp& stamp : segment.stamps) hull.add(stamp);
+  segment.hull = std::move(hull);
 }
 
 double FittedClock::doubt(double begin, double end) const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipeline/clocks/clock_line.hpp"
+#include "pipeline/clocks/delay_step.hpp"
 #include "pipeline/clocks/lower_hull.hpp"
 #include "pipeline/data/clock_map.hpp"
 #include "plugins/clock/delay_histogram.hpp"
@@ -19,6 +20,12 @@ namespace crisp {
 /// Finds the line of a clock from its stamps, as line_by_convex_hull() does.
 using LineFinder = std::function<ClockLine(std::span<const Stamp> stamps, double center)>;
 
+/// A jump of a device's clock, or of its link's shortest delay.
+struct StampStep {
+  double at = 0;  ///< [s since the epoch] receipt of the first stamp after it
+  double by = 0;  ///< [s] forwards, or longer
+};
+
 /// One device's clock, fitted window by window while its stamps come in: the map from device time to hub
 /// time runs straight from the line of one window, at the window's middle, to that of the next.
 ///
@@ -26,7 +33,9 @@ using LineFinder = std::function<ClockLine(std::span<const Stamp> stamps, double
 /// drift cannot explain them: a stamp that lies u outside bounds the line with a slack of bend/2 · u². So a
 /// window that is full of late stamps does not lift the line.
 ///
-/// A reset of the device begins a new segment, which has nothing in common with the one before it.
+/// A reset of the device begins a new segment, which has nothing in common with the one before it. Where the
+/// shortest delay becomes another (see step_of_delay()), the clock goes on in one line, and what comes later
+/// is taken to be as late as what came before.
 class FittedClock {
  public:
   /// @param bend [1/s] largest change of the clock's rate in a second
@@ -37,8 +46,14 @@ class FittedClock {
   void add(std::int64_t device_us, double hub);
   /// The next stamp begins a new segment.
   void cut() { cut_ = true; }
+  /// Takes back the last stamp, unless it is settled.
+  void drop_last();
   /// Takes back the segment of the last stamp, which was its only one: it was damaged, not a reset.
   void drop_last_segment();
+
+  /// Takes out the steps of the shortest delay among the stamps that are not settled.
+  void take_out_steps();
+  const std::vector<StampStep>& delay_steps() const { return delay_steps_; }
 
   /// How far the line of a window is from being known [s]; 0 if there are too few stamps to say.
   double doubt(double begin, double end) const;
@@ -71,6 +86,8 @@ class FittedClock {
     std::int64_t first_us = 0;
     double first_hub = 0;
     double last_device = 0;  ///< [s] of the last stamp, since the first
+    double later = 0;        ///< [s] by which the shortest delay has grown: taken out of leads
+    double later_error = 0;  ///< [s] standard error of that
     LowerHull hull;
     std::vector<Stamp> stamps;  ///< of the windows that are not yet settled
     std::optional<Knot> first_knot;
@@ -88,6 +105,8 @@ class FittedClock {
 
   ClockLine line_of(const Segment& segment) const;
   static void forget_before(Segment& segment, double device);
+  void take_out(Segment& segment, const DelayStep& step);
+  void make_hull_anew(Segment& segment, double first) const;
   std::optional<WindowFit> fit(const Segment& segment, double begin, double end) const;
   void settle(Segment& segment, double begin, double end);
   void carry_on(Segment& segment, const Knot& knot);
@@ -99,6 +118,7 @@ class FittedClock {
   std::deque<Segment> segments_;
   ClockMap map_;
   DelayHistogram delays_;
+  std::vector<StampStep> delay_steps_;
   double fitted_time_ = 0;     ///< [s] spans of the closed segments
   double squared_errors_ = 0;  ///< [s²] sum of the squares of their skews' errors, times their spans
 };

@@ -34,7 +34,8 @@ bool LaserTrack::add(std::shared_ptr<const Scan> scan, double hub) {
     nominal_period_ = 1 / scan->scan_frequency;
     stamps_.set_period(nominal_period_);
   }
-  const auto arrival = stamps_.accept(scan->scan_counter, scan->transmission_time_us, scan->receipt_ns, hub);
+  const auto arrival =
+      stamps_.accept(scan->scan_counter, scan->transmission_time_us, scan->receipt_ns, hub, handover_us);
   if (arrival.kind == StampKind::repeated) return false;
   if (arrival.kind == StampKind::returned && !pending_.empty()) pending_.pop_back();
   turn_ += arrival.kind == StampKind::next ? arrival.steps : kNewRun;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "pipeline/clocks/series.hpp"
 #include "pipeline/data/middle.hpp"
 #include "plugins/diagnose/series.hpp"
 

@@ -7,32 +7,11 @@
 #include <numeric>
 #include <random>
 
+#include "pipeline/clocks/series.hpp"
 #include "pipeline/quality/resampling.hpp"
 
 namespace crisp {
 namespace {
-
-/// What the base leaves of each column.
-Eigen::MatrixXd off_base(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns) {
-  const Eigen::MatrixXd orthonormal =
-      base.householderQr().householderQ() * Eigen::MatrixXd::Identity(base.rows(), base.cols());
-  return columns - orthonormal * (orthonormal.transpose() * columns);
-}
-
-struct Fit {
-  Eigen::VectorXd values;
-  Eigen::VectorXd errors;
-};
-
-Fit least_squares(const Eigen::MatrixXd& design, const Eigen::VectorXd& values) {
-  const auto solver = design.colPivHouseholderQr();
-  Fit fit{.values = solver.solve(values), .errors = {}};
-  const double squares = (values - design * fit.values).squaredNorm();
-  const double variance =
-      squares / static_cast<double>(std::max<Eigen::Index>(1, design.rows() - design.cols()));
-  fit.errors = (variance * (design.transpose() * design).inverse().diagonal()).cwiseSqrt();
-  return fit;
-}
 
 Eigen::MatrixXd beside(const Eigen::MatrixXd& base, const Eigen::VectorXd& column) {
   Eigen::MatrixXd both(base.rows(), base.cols() + 1);
@@ -45,8 +24,9 @@ std::vector<double> left_of_others(const Eigen::MatrixXd& design, const Eigen::V
   std::vector<Eigen::Index> fitted;
   std::vector<Eigen::Index> rest;
   for (Eigen::Index w = 0; w < values.size(); ++w) (w % 2 == 0 ? fitted : rest).push_back(w);
-  const Fit fit = least_squares(design(fitted, Eigen::all), values(fitted));
-  const Eigen::VectorXd left = values(rest) - design(rest, Eigen::all) * fit.values;
+  const Eigen::MatrixXd some = design(fitted, Eigen::all);
+  const Eigen::VectorXd fit = some.colPivHouseholderQr().solve(Eigen::VectorXd(values(fitted)));
+  const Eigen::VectorXd left = values(rest) - design(rest, Eigen::all) * fit;
   return {left.begin(), left.end()};
 }
 
@@ -77,31 +57,22 @@ Gain gain_of(const Eigen::MatrixXd& base, const Eigen::VectorXd& column, const E
 SeriesLook look_at_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
                           const Eigen::VectorXd& values, std::uint64_t seed) {
   constexpr int kShuffles = 4999;
+  const SeriesFit fit = best_in_series(base, columns, values);
+  SeriesLook look{.column = fit.column,
+                  .values = fit.values,
+                  .errors = fit.errors,
+                  .gain = gain_of(base, columns.col(fit.column), values, seed)};
+  // All shuffles have the same sum of squares: the largest product alone says which does best.
   const Eigen::MatrixXd unit = off_base(base, columns).colwise().normalized();
   Eigen::VectorXd left = off_base(base, values);
-  SeriesLook look;
-  // All shuffles have the same sum of squares: the largest product alone says which does best.
-  const double best = (unit.transpose() * left).cwiseAbs().maxCoeff(&look.column);
-  const Fit fit = least_squares(beside(base, columns.col(look.column)), values);
-  look.values = fit.values;
-  look.errors = fit.errors;
-  look.gain = gain_of(base, columns.col(look.column), values, seed);
   std::mt19937_64 random(seed);
   int above = 0;
   for (int s = 0; s < kShuffles; ++s) {
     std::ranges::shuffle(left, random);
-    above += (unit.transpose() * left).cwiseAbs().maxCoeff() >= best ? 1 : 0;
+    above += (unit.transpose() * left).cwiseAbs().maxCoeff() >= fit.product ? 1 : 0;
   }
   look.p_value = (1.0 + above) / (1.0 + kShuffles);
   return look;
 }
-
-Eigen::MatrixXd steps(Eigen::Index n, Eigen::Index margin) {
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, std::max<Eigen::Index>(0, n - 2 * margin + 1));
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k).tail(n - margin - k).setOnes();
-  return columns;
-}
-
-Eigen::Index before_step(const Eigen::VectorXd& column) { return (column.array() == 0).count(); }
 
 }  // namespace crisp

@@ -28,10 +28,4 @@ struct SeriesLook {
 SeriesLook look_at_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
                           const Eigen::VectorXd& values, std::uint64_t seed);
 
-/// Steps before each of n values but the `margin` outermost at either end: a column each.
-Eigen::MatrixXd steps(Eigen::Index n, Eigen::Index margin);
-
-/// How many values are before the step that a column of steps() describes.
-Eigen::Index before_step(const Eigen::VectorXd& column);
-
 }  // namespace crisp

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/clocks/envelope.hpp"
+#include "pipeline/clocks/series.hpp"
 #include "pipeline/clocks/unwrap.hpp"
 #include "pipeline/data/middle.hpp"
 #include "plugins/diagnose/series.hpp"
@@ -14,78 +16,18 @@ namespace {
 constexpr std::int64_t kWrap_us = std::int64_t{1} << 32;
 constexpr std::size_t kFewest = 64;  // stamps that say anything
 
-/// The stamp with the least delay of each of some windows.
-struct Envelope {
-  std::vector<std::size_t> stamp;  // index of each window's least
-  std::vector<std::size_t> first;  // index of each window's first stamp; one more than there are windows
-  Eigen::VectorXd time;            // [s] receipt since the first stamp
-  Eigen::VectorXd lead;            // [s]
-  Eigen::Index size() const { return lead.size(); }
-};
-
-double receipt(const CountedStamp& s) { return s.stamp.device + s.stamp.lead; }
-
-ClockLine line_of(std::span<const CountedStamp> stamps) {
+std::vector<Stamp> bare(std::span<const CountedStamp> stamps) {
   std::vector<Stamp> bare;
+  bare.reserve(stamps.size());
   for (const auto& s : stamps) bare.push_back(s.stamp);
-  std::ranges::stable_sort(bare, {}, &Stamp::device);
+  return bare;
+}
+
+ClockLine line_of(std::vector<Stamp> stamps) {
+  std::ranges::stable_sort(stamps, {}, &Stamp::device);
   double sum = 0;
-  for (const Stamp& s : bare) sum += s.device;
-  return line_by_convex_hull(bare, sum / static_cast<double>(bare.size()));
-}
-
-Envelope envelope_of(std::span<const CountedStamp> stamps) {
-  constexpr std::size_t kOfWindow = 12;
-  const std::size_t windows = std::clamp<std::size_t>(stamps.size() / kOfWindow, 6, 64);
-  Envelope envelope;
-  envelope.time.resize(static_cast<Eigen::Index>(windows));
-  envelope.lead.resize(static_cast<Eigen::Index>(windows));
-  // Within a window the clock's own slope counts: by the line through all of them.
-  const double slope =
-      (stamps.back().stamp.lead - stamps.front().stamp.lead) / std::max(1e-9, receipt(stamps.back()));
-  for (std::size_t w = 0; w < windows; ++w) {
-    const std::size_t begin = w * stamps.size() / windows;
-    const std::size_t end = (w + 1) * stamps.size() / windows;
-    std::size_t least = begin;
-    const auto height = [&](std::size_t i) { return stamps[i].stamp.lead - slope * receipt(stamps[i]); };
-    for (std::size_t i = begin; i < end; ++i) {
-      if (height(i) < height(least)) least = i;
-    }
-    envelope.first.push_back(begin);
-    envelope.stamp.push_back(least);
-    envelope.time[static_cast<Eigen::Index>(w)] = receipt(stamps[least]);
-    envelope.lead[static_cast<Eigen::Index>(w)] = stamps[least].stamp.lead;
-  }
-  envelope.first.push_back(stamps.size());
-  return envelope;
-}
-
-/// What is tried beside a straight line: a parabola first, then a step before each window but the outermost.
-Eigen::MatrixXd bends_and_steps(const Eigen::VectorXd& time) {
-  constexpr Eigen::Index kMargin = 2;
-  const Eigen::MatrixXd all_steps = steps(time.size(), kMargin);
-  Eigen::MatrixXd columns(time.size(), 1 + all_steps.cols());
-  columns << (time.array() - time.mean()).square().matrix(), all_steps;
-  return columns;
-}
-
-Eigen::MatrixXd straight(const Eigen::VectorXd& time) {
-  Eigen::MatrixXd base(time.size(), 2);
-  base.col(0).setOnes();
-  base.col(1) = time.array() - time.mean();
-  return base;
-}
-
-/// The first stamp after a step of the shortest delay: all before a step up and all after a step down come in
-/// earlier than half-way between. `level` [s] is the envelope's line without the step.
-std::size_t first_after(std::span<const CountedStamp> stamps, double step, const auto& level) {
-  const auto early = [&](const CountedStamp& s) { return s.stamp.lead - level(receipt(s)) < step / 2; };
-  if (step < 0) {
-    return static_cast<std::size_t>(std::ranges::find_if(stamps, early) - stamps.begin());
-  }
-  std::size_t i = stamps.size();
-  while (i > 0 && !early(stamps[i - 1])) --i;
-  return i;
+  for (const Stamp& s : stamps) sum += s.device;
+  return line_by_convex_hull(stamps, sum / static_cast<double>(stamps.size()));
 }
 
 /// By how much the device's time since the stamp before is longer than its counter says [s].
@@ -123,12 +65,11 @@ void tell_step(std::span<const CountedStamp> stamps, const Envelope& envelope, s
     departure.kind = ClockDeparture::Kind::clock_step;
     departure.size = -departure.size;
   } else {
-    const double middle = envelope.time.mean();
-    const auto level = [&](double t) { return line[0] + line[1] * (t - middle); };
-    at = std::clamp<std::size_t>(first_after(stamps, departure.size, level), 1, stamps.size() - 1);
+    const auto level = [&](double t) { return envelope.line(line, t); };
+    at = std::clamp<std::size_t>(first_after(bare(stamps), departure.size, level), 1, stamps.size() - 1);
   }
-  departure.at = receipt(stamps[at]);
-  departure.at_std_error = departure.at - receipt(stamps[at - 1]);
+  departure.at = receipt_of(stamps[at].stamp);
+  departure.at_std_error = departure.at - receipt_of(stamps[at - 1].stamp);
 }
 
 }  // namespace
@@ -157,17 +98,14 @@ void StampTrack::add(std::uint16_t counter, std::uint32_t device_us, std::int64_
 
 ClockFacts clock_facts(std::span<const CountedStamp> stamps) {
   if (stamps.size() < 2) return {};
-  const ClockLine line = line_of(stamps);
-  std::vector<Stamp> bare;
+  const std::vector<Stamp> all = bare(stamps);
+  const ClockLine line = line_of(all);
   std::vector<double> delays;
-  for (const auto& s : stamps) {
-    bare.push_back(s.stamp);
-    delays.push_back(s.stamp.lead - line.lead(s.stamp.device));
-  }
+  for (const Stamp& s : all) delays.push_back(s.lead - line.lead(s.device));
   std::ranges::sort(delays);
   constexpr double kMost = 0.95;
   return {.skew = line.slope,
-          .skew_std_error = errors_of_line(bare, line).slope,
+          .skew_std_error = errors_of_line(all, line).slope,
           .delay_median = delays[delays.size() / 2],
           .delay_95 = delays[static_cast<std::size_t>(kMost * static_cast<double>(delays.size() - 1))]};
 }
@@ -175,9 +113,10 @@ ClockFacts clock_facts(std::span<const CountedStamp> stamps) {
 std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stamps, std::size_t looks,
                                               std::uint64_t seed) {
   if (stamps.size() < kFewest) return std::nullopt;
-  const Envelope envelope = envelope_of(stamps);
-  const Eigen::MatrixXd columns = bends_and_steps(envelope.time);
-  const SeriesLook look = look_at_series(straight(envelope.time), columns, envelope.lead, seed);
+  constexpr Eigen::Index kMargin = 2;  // stretches
+  const Envelope envelope = envelope_of(bare(stamps));
+  const Eigen::MatrixXd columns = bend_and_steps(envelope.time, kMargin);
+  const SeriesLook look = look_at_series(envelope.straight(), columns, envelope.lead, seed);
   ClockDeparture departure{.size = look.values[2],
                            .std_error = look.errors[2],
                            .skew = look.values[1],

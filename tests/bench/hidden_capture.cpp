@@ -65,12 +65,12 @@ const std::map<std::string, Draw>& draws() {
       {"clock.step",
        [](Drawer& d) {
          return Hidden{.scope = d.laser(),
-                       .truth = {{"by", d.signed_between(0.5e-3, 50e-3)}, {"at", d.uniform(3, 7)}}};
+                       .truth = {{"by", d.signed_between(0.5e-3, 50e-3)}, {"at", d.uniform(1.5, 8.5)}}};
        }},
       {"latency.step",
        [](Drawer& d) {
          return Hidden{.scope = d.device(),
-                       .truth = {{"by", d.uniform(0.5e-3, 5e-3)}, {"at", d.uniform(3, 7)}}};
+                       .truth = {{"by", d.signed_between(0.5e-3, 5e-3)}, {"at", d.uniform(1.5, 8.5)}}};
        }},
       {"noise.heavy_tail",
        [](Drawer& d) {

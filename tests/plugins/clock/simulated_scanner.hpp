@@ -21,6 +21,8 @@ struct SimulatedClock {
   double start = 1000;                                              ///< [s] at true time 0
   std::function<double(double)> skew = [](double) { return 0.0; };  ///< at a true time
   double reset_at = HUGE_VAL;                                       ///< [s] true time at which it begins anew
+  double step_at = HUGE_VAL;                                        ///< [s] true time at which it jumps
+  double step_by = 0;                                               ///< [s] forwards
 
   /// Shown times at a series of ascending true times: the integral of the skew, in small steps.
   class Reader {
@@ -33,7 +35,8 @@ struct SimulatedClock {
       }
       shown_ += (t - time_) / (1 + clock_->skew(0.5 * (t + time_)));
       time_ = t;
-      return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(1e6 * shown_)));
+      const double stepped = t >= clock_->step_at ? clock_->step_by : 0;
+      return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(1e6 * (shown_ + stepped))));
     }
 
    private:

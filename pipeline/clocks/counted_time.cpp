@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/clocks/counted_time.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/data/middle.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::size_t kKept = 16;   // intervals that foretell the next one
+constexpr std::size_t kEnough = 8;  // of them to say how much they differ
+constexpr std::size_t kSure = 4;    // even intervals after a jump
+constexpr double kLeast = 0.25e-3;  // [s] real mirrors' stamps are up to 0.17 ms off what foretells them
+constexpr double kManyTimes = 12;   // what intervals differ by (median)
+
+}  // namespace
+
+void CountedTime::add(double seconds, std::int64_t steps, double hub) {
+  confirmed_.reset();
+  const auto jump = excess(seconds, steps, hub);
+  if (!jump) remember(seconds / static_cast<double>(steps));
+  if (trial_) {
+    judge_trial(jump);
+  } else if (jump) {
+    trial_ = {.by = *jump};
+    jumped_ += *jump;
+  }
+}
+
+void CountedTime::begin_anew() {
+  latest_.clear();
+  next_ = 0;
+  trial_.reset();
+}
+
+void CountedTime::judge_trial(std::optional<double> jump) {
+  if (jump) {
+    // Back where it was, a stamp was off. Anything else, and the intervals are not what they were.
+    jumped_ -= trial_->by;
+    if (std::abs(trial_->by + *jump) > std::max(kLeast, 0.1 * std::abs(*jump))) latest_.clear();
+    trial_.reset();
+  } else if (++trial_->even == kSure) {
+    confirmed_ = trial_->by;
+    trial_.reset();
+  }
+}
+
+std::optional<double> CountedTime::excess(double seconds, std::int64_t steps, double hub) const {
+  if (latest_.size() < kEnough) return std::nullopt;
+  std::vector<double> values = latest_;
+  const double usual = middle_of(values);
+  for (double& value : values) value = std::abs(value - usual);
+  const auto n = static_cast<double>(steps);
+  const double excess = seconds - n * usual;
+  if (std::abs(excess) < n * std::max(kLeast, kManyTimes * middle_of(values))) return std::nullopt;
+  // Where nothing was sent for a while, and not counted either, receipts go with the device's clock.
+  constexpr double kNearlyAStep = 0.75;
+  const bool uncounted = std::abs(hub - seconds) < std::abs(hub - n * usual);
+  if (excess > kNearlyAStep * usual && uncounted) return std::nullopt;
+  return excess;
+}
+
+void CountedTime::remember(double step) {
+  if (latest_.size() < kKept) {
+    latest_.push_back(step);
+  } else {
+    latest_[next_] = step;
+    next_ = (next_ + 1) % kKept;
+  }
+}
+
+}  // namespace crisp
