@@ -36,17 +36,31 @@ Envelope envelope_of(std::span<const Stamp> stamps);
 /// @return n × (1 + n − 2 margin + 1)
 Eigen::MatrixXd bend_and_steps(const Eigen::VectorXd& time, Eigen::Index margin);
 
-/// The first stamp after a step of the envelope: all before a step up, and all after a step down, come in
-/// earlier than half-way between.
+/// Whether a stamp comes in earlier than half-way between the two levels of a step of the envelope: all
+/// before a step up, and all after a step down, of which the delay is small enough.
 /// @param step   [s]
 /// @param level  [s] → [s]: the envelope without the step, at a time of receipt
 template <class Level>
+bool is_early(const Stamp& stamp, double step, const Level& level) {
+  return stamp.lead - level(receipt_of(stamp)) < step / 2;
+}
+
+/// The first stamp after a step of the envelope, as far as early ones tell.
+template <class Level>
 std::size_t first_after(std::span<const Stamp> stamps, double step, const Level& level) {
-  const auto is_early = [&](const Stamp& s) { return s.lead - level(receipt_of(s)) < step / 2; };
-  if (step < 0) return static_cast<std::size_t>(std::ranges::find_if(stamps, is_early) - stamps.begin());
+  const auto early = [&](const Stamp& s) { return is_early(s, step, level); };
+  if (step < 0) return static_cast<std::size_t>(std::ranges::find_if(stamps, early) - stamps.begin());
   std::size_t i = stamps.size();
-  while (i > 0 && !is_early(stamps[i - 1])) --i;
+  while (i > 0 && !early(stamps[i - 1])) --i;
   return i;
+}
+
+/// Of stamps on the lower side of a step the share that is early; at least one of them.
+template <class Level>
+double early_share(std::span<const Stamp> stamps, double step, const Level& level) {
+  const auto early = std::ranges::count_if(stamps, [&](const Stamp& s) { return is_early(s, step, level); });
+  return static_cast<double>(std::max<std::ptrdiff_t>(1, early)) /
+         static_cast<double>(std::max<std::size_t>(1, stamps.size()));
 }
 
 }  // namespace crisp

@@ -58,18 +58,26 @@ void tell_step(std::span<const CountedStamp> stamps, const Envelope& envelope, s
                const Eigen::VectorXd& line, ClockDeparture& departure) {
   const std::size_t begin = envelope.first[window - 1];
   const std::size_t end = envelope.first[std::min(window + 1, envelope.stamp.size())];
+  const double step = departure.size;
+  const auto level = [&](double t) { return envelope.line(line, t); };
   std::size_t at = largest_jump(stamps, begin, end);
-  departure.kind = ClockDeparture::Kind::latency_step;
+  double waits = 1;  // telegrams until one shows on which side of the step it is
   // When a device's clock goes forwards, what it sends seems to have come in earlier.
-  if (std::abs(jump_of_device(stamps, at) + departure.size) < 0.5 * std::abs(departure.size)) {
+  if (std::abs(jump_of_device(stamps, at) + step) < 0.5 * std::abs(step)) {
     departure.kind = ClockDeparture::Kind::clock_step;
-    departure.size = -departure.size;
+    departure.size = -step;
   } else {
-    const auto level = [&](double t) { return envelope.line(line, t); };
-    at = std::clamp<std::size_t>(first_after(bare(stamps), departure.size, level), 1, stamps.size() - 1);
+    departure.kind = ClockDeparture::Kind::latency_step;
+    const std::vector<Stamp> all = bare(stamps);
+    at = std::clamp<std::size_t>(first_after(all, step, level), 1, stamps.size() - 1);
+    waits = 1 / early_share(step > 0 ? std::span(all).first(at) : std::span(all).subspan(at), step, level);
   }
-  departure.at = receipt_of(stamps[at].stamp);
-  departure.at_std_error = departure.at - receipt_of(stamps[at - 1].stamp);
+  // A stall would have the step come in as late as what waited.
+  const auto without_delay = [&](const Stamp& s, double beyond) {
+    return receipt_of(s) - std::max(0.0, s.lead - level(receipt_of(s)) - beyond);
+  };
+  departure.at = without_delay(stamps[at].stamp, step);
+  departure.at_std_error = waits * std::max(1e-6, departure.at - without_delay(stamps[at - 1].stamp, 0));
 }
 
 }  // namespace

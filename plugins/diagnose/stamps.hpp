@@ -44,7 +44,8 @@ struct ClockDeparture {
   double std_error = 0;  ///< of it
   double skew = 0;       ///< at the first stamp
   double skew_std_error = 0;
-  double at = 0;            ///< [s] of the steps: receipt of the first stamp after it, since the first of all
+  double at = 0;  ///< [s] of the steps: receipt of the first stamp after it, less what delayed it, since the
+                  ///< first of all
   double at_std_error = 0;  ///< [s]
   double p_value = 1;       ///< by permutations of the least delays
   Gain gain;                ///< RMS of held-out least delays about the clock
