@@ -31,7 +31,7 @@ bool ViewShape::is_flat(std::span<const std::uint32_t> members, const Plane& pla
     const double incidence = plane.normal.dot(Eigen::Vector3d(along.x[i], along.y[i], along.z[i]));
     const double variance = std::pow(settings_.noise * incidence, 2) + std::pow(settings_.floor, 2);
     ViewSums& sums = sums_[views_.of_beam[i]];
-    if (sums.count == 0) in_use_.push_back(views_.of_beam[i]);
+    if (sums.count() == 0) in_use_.push_back(views_.of_beam[i]);
     sums.add(plane.u.dot(offset), plane.v.dot(offset), plane.normal.dot(offset), 1 / variance);
   }
   double left = 0;
