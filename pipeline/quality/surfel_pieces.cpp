@@ -83,11 +83,17 @@ SurfelCells cells_of(const BeamsView& beams, const SurfelSettings& settings) {
     if (k == 0 || order.cell[k] != order.cell[k - 1]) {
       cells.key.push_back(order.cell[k]);
       cells.begin.push_back(k);
-      cells.moments.emplace_back();
     }
-    cells.moments.back().add(cells.point(beams, order.index[k]));
   }
   cells.begin.push_back(static_cast<std::uint32_t>(order.index.size()));
+  cells.moments.resize(cells.size());
+  for_each_index(cells.size(), [&](std::size_t c) {
+    Moments moments;
+    for (std::uint32_t k = cells.begin[c]; k < cells.begin[c + 1]; ++k) {
+      moments.add(cells.point(beams, order.index[k]));
+    }
+    cells.moments[c] = moments;
+  });
   return cells;
 }
 

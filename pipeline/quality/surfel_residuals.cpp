@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "pipeline/quality/blocks.hpp"
+#include "pipeline/quality/plane.hpp"
 #include "pipeline/quality/surfel_weights.hpp"
 
 namespace crisp {
@@ -18,7 +19,8 @@ SurfelResidual against(const Surfel& surfel, const Eigen::Vector3d& point, const
   const Eigen::Vector3d offset = point - surfel.middle;
   r.incidence = surfel.normal.dot(direction);
   r.distance = surfel.normal.dot(offset);
-  r.spread = std::hypot(settings.noise * r.incidence, settings.floor);
+  const double noise = settings.noise * r.incidence;
+  r.spread = std::sqrt(noise * noise + settings.floor * settings.floor);
   if (!r.grazes()) {
     r.weight = 1;
     r.range_change = -r.distance / r.incidence;
@@ -29,24 +31,23 @@ SurfelResidual against(const Surfel& surfel, const Eigen::Vector3d& point, const
   return r;
 }
 
-/// What a plane near the surfel's is made of: its distance is a multiple of each.
-Eigen::Vector3d basis(const Surfel& surfel, const SurfelResidual& r) {
-  return {1, r.u / surfel.radius, r.v / surfel.radius};
-}
-
+/// The plane that fits the residuals best: its distance [m] at the surfel's middle, and its slopes along u
+/// and v.
 Eigen::Vector3d fit(const Surfel& surfel, const std::vector<SurfelResidual>& residuals) {
-  using Sum = Eigen::Matrix<double, 3, 4>;  // the normal equations, right side last
-  const auto add = [&](Sum& block, std::size_t begin, std::size_t end) {
+  const auto add = [&](ViewSums& block, std::size_t begin, std::size_t end) {
+    ViewSums sums;
     for (std::size_t i = begin; i < end; ++i) {
       const SurfelResidual& r = residuals[i];
-      const Eigen::Vector3d row = basis(surfel, r);
-      Eigen::Vector4d with_distance;
-      with_distance << row, r.distance;
-      block += r.weight / (r.spread * r.spread) * row * with_distance.transpose();
+      sums.add(r.u, r.v, r.distance, r.weight / (r.spread * r.spread));
     }
+    block = sums;
   };
-  const Sum sum = sum_over_blocks(residuals.size(), kResidualBlock, Sum(Sum::Zero()), add);
-  return sum.leftCols<3>().completeOrthogonalDecomposition().solve(sum.col(3));
+  const ViewSums sums = sum_over_blocks(residuals.size(), kResidualBlock, ViewSums(), add);
+  // As much is made of a slope as of what it moves the surfel's beams by.
+  const Eigen::Vector3d scale(1, 1 / surfel.radius, 1 / surfel.radius);
+  const Eigen::Matrix3d matrix = scale.asDiagonal() * sums.matrix() * scale.asDiagonal();
+  const Eigen::Vector3d vector = scale.cwiseProduct(sums.vector());
+  return scale.cwiseProduct(matrix.completeOrthogonalDecomposition().solve(vector));
 }
 
 /// The residuals from the surfel's own plane.
@@ -72,7 +73,7 @@ std::vector<SurfelResidual> residuals_of(const Surfel& surfel, const Surfels& su
   for (std::size_t k = 0; k < residuals.size(); ++k) residuals[k].weight = surfels.weights[surfel.begin + k];
   const Eigen::Vector3d plane = fit(surfel, residuals);
   for (SurfelResidual& r : residuals) {
-    r.distance -= plane.dot(basis(surfel, r));
+    r.distance -= plane.dot(Eigen::Vector3d(1, r.u, r.v));
     if (!r.grazes()) r.range_change = -r.distance / r.incidence;
   }
   return residuals;
@@ -85,7 +86,7 @@ void refine(Surfel& surfel, Surfels& surfels, const BeamsView& beams, const Surf
   for (std::size_t k = 0; k < residuals.size(); ++k) surfels.weights[surfel.begin + k] = residuals[k].weight;
   const Eigen::Vector3d plane = fit(surfel, residuals);
   surfel.middle += plane[0] * surfel.normal;
-  surfel.normal = (surfel.normal - (plane[1] * surfel.u + plane[2] * surfel.v) / surfel.radius).normalized();
+  surfel.normal = (surfel.normal - plane[1] * surfel.u - plane[2] * surfel.v).normalized();
   surfel.v = surfel.normal.cross(surfel.u).normalized();
   surfel.u = surfel.v.cross(surfel.normal);
 }

@@ -14,7 +14,10 @@ constexpr double kMostTilt = 0.1;  // [rad] of a view against all: beyond, it se
 }  // namespace
 
 ViewNumbers::ViewNumbers(const BeamsView& beams) : of_beam(beams.points.size(), 0) {
-  std::vector<std::uint32_t> known(beams.views.begin(), beams.views.end());
+  std::vector<std::uint32_t> known;
+  for (std::size_t i = 0; i < beams.views.size(); ++i) {
+    if (i == 0 || beams.views[i] != beams.views[i - 1]) known.push_back(beams.views[i]);
+  }
   sort_once(known);
   for (std::size_t i = 0; i < beams.views.size(); ++i) {
     of_beam[i] = static_cast<std::uint32_t>(std::ranges::lower_bound(known, beams.views[i]) - known.begin());
