@@ -17,12 +17,6 @@ Eigen::LDLT<Eigen::Matrix3d> damped(Eigen::Matrix3d matrix) {
 
 }  // namespace
 
-void Moments::add(const Eigen::Vector3d& point) {
-  count += 1;
-  sum += point;
-  squares += point * point.transpose();
-}
-
 Moments& Moments::operator+=(const Moments& other) {
   count += other.count;
   sum += other.sum;

@@ -11,7 +11,11 @@ struct Moments {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
 
-  void add(const Eigen::Vector3d& point);
+  void add(const Eigen::Vector3d& point) {
+    count += 1;
+    sum += point;
+    squares += point * point.transpose();
+  }
   Moments& operator+=(const Moments& other);
 };
 

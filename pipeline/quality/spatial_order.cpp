@@ -113,7 +113,9 @@ void radix_sort(std::vector<Entry>& entries) {
 
 CellLattice::Cell CellLattice::cell(double x, double y, double z) const {
   const auto along = [this](double value, std::size_t axis) {
-    return static_cast<std::int64_t>(std::clamp(std::floor((value - low.at(axis)) / side), -1e9, 1e9));
+    const double sides = std::clamp((value - low.at(axis)) / side, -1e9, 1e9);
+    const auto whole = static_cast<std::int64_t>(sides);
+    return sides < static_cast<double>(whole) ? whole - 1 : whole;
   };
   return {along(x, 0), along(y, 1), along(z, 2)};
 }

@@ -68,10 +68,6 @@ class PieceFinder {
 
 }  // namespace
 
-Eigen::Vector3d SurfelCells::point(const BeamsView& beams, std::uint32_t beam) const {
-  return Eigen::Vector3d(beams.points.x[beam], beams.points.y[beam], beams.points.z[beam]) - origin;
-}
-
 SurfelCells cells_of(const BeamsView& beams, const SurfelSettings& settings) {
   SurfelCells cells;
   cells.order = spatial_order(beams.points, settings.smallest);
