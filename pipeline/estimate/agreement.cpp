@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+
+#include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
 namespace {
@@ -52,14 +53,17 @@ bool agrees(const std::vector<Part>& parts, std::size_t party, double apart) {
 
 Agreement agreement(const Surfels& surfels, const BeamsView& beams, std::size_t lasers, double noise) {
   constexpr double kApart = 3;  // [σ]
-  std::set<std::uint32_t> seen;
-  for (const auto view : beams.views) seen.insert(view / 2);
-  Agreement result{.shares = {}, .by_halves = seen.size() < 2};
+  const bool one_laser = std::ranges::all_of(
+      beams.views, [&](std::uint32_t view) { return view / 2 == beams.views.front() / 2; });
+  Agreement result{.shares = {}, .by_halves = one_laser};
   const std::size_t parties = result.by_halves ? 2 * lasers : lasers;
   std::vector<double> all(parties, 0);
   std::vector<double> agreed(parties, 0);
-  for (const Surfel& surfel : surfels.surfels) {
-    const auto parts = parts_of(surfel, surfels, beams, parties, result.by_halves ? 1 : 2);
+  std::vector<std::vector<Part>> of_surfels(surfels.surfels.size());
+  for_each_index(of_surfels.size(), [&](std::size_t s) {
+    of_surfels[s] = parts_of(surfels.surfels[s], surfels, beams, parties, result.by_halves ? 1 : 2);
+  });
+  for (const auto& parts : of_surfels) {
     for (std::size_t party = 0; party < parties; ++party) {
       if (parts[party].beams == 0) continue;
       all[party] += parts[party].beams;

@@ -14,6 +14,7 @@ namespace crisp {
 namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr double kGrazing = 0.05;  // as where surfels are fitted
 
 Eigen::Vector3d at(const PointsView& points, std::uint32_t i) {
   return {points.x[i], points.y[i], points.z[i]};
@@ -45,13 +46,23 @@ class Claimant {
   /// Nothing if the beam does not end near the plane.
   std::optional<Meeting> meeting(const Eigen::Vector3d& end, const Eigen::Vector3d& direction,
                                  const SurfelSettings& settings, const ClaimSettings& claims) const {
-    constexpr double kGrazing = 0.05;  // as where surfels are fitted
     const double incidence = surfel_.normal.dot(direction);
     const double distance = surfel_.normal.dot(end - surfel_.middle);
     const double spread = std::max(settings.noise * std::abs(incidence), surfel_.thickness);
     if (std::abs(incidence) < kGrazing || std::abs(distance) > claims.gate * spread) return std::nullopt;
     const Eigen::Vector3d foot = end - distance / incidence * direction;
     return Meeting{-distance / incidence, box_.exteriorDistance(in_plane(foot - surfel_.middle))};
+  }
+
+  /// Whether there may be a meeting within reach for any beam that ends in the box.
+  bool may_claim_in(const Eigen::AlignedBox3d& ends, const SurfelSettings& settings,
+                    const ClaimSettings& claims) const {
+    const double across = claims.gate * std::max(settings.noise, surfel_.thickness);
+    if (!is_met(ends, surfel_.normal, -across, across)) return false;
+    const double slide = claims.gate * std::max(settings.noise, surfel_.thickness / kGrazing);
+    const double beyond = reach(claims) + slide;
+    return is_met(ends, surfel_.u, box_.min().x() - beyond, box_.max().x() + beyond) &&
+           is_met(ends, surfel_.v, box_.min().y() - beyond, box_.max().y() + beyond);
   }
 
   /// Whether they are pieces of one plane.
@@ -66,6 +77,13 @@ class Claimant {
   }
 
  private:
+  /// Whether any point of the box is from `low` to `high` along the axis [m], from the surfel's middle.
+  bool is_met(const Eigen::AlignedBox3d& ends, const Eigen::Vector3d& axis, double low, double high) const {
+    const double middle = axis.dot(ends.center() - surfel_.middle);
+    const double half = axis.cwiseAbs().dot(ends.sizes()) / 2;
+    return middle + half >= low && middle - half <= high;
+  }
+
   Eigen::Vector2d in_plane(const Eigen::Vector3d& offset) const {
     return {surfel_.u.dot(offset), surfel_.v.dot(offset)};
   }
@@ -78,11 +96,14 @@ class Claimant {
 /// The surface that the beam met. Where it might be either of two it is decided by where the beam meets their
 /// planes, not by where its noise has put its end: that would tilt the planes. A beam into a corner ends on
 /// the plane that it meets first; one onto an edge on the one that it meets last.
-std::uint32_t owner(const std::vector<Claimant>& claimants, const BeamsView& beams, std::uint32_t beam,
-                    const SurfelSettings& settings, const ClaimSettings& claims) {
+///
+/// @param near  those of the claimants that may have met it
+std::uint32_t owner(const std::vector<Claimant>& claimants, const std::vector<std::uint32_t>& near,
+                    const BeamsView& beams, std::uint32_t beam, const SurfelSettings& settings,
+                    const ClaimSettings& claims) {
   std::uint32_t best = kNone;
   Claimant::Meeting least;
-  for (std::uint32_t s = 0; s < claimants.size(); ++s) {
+  for (const std::uint32_t s : near) {
     const auto met =
         claimants[s].meeting(at(beams.points, beam), at(beams.directions, beam), settings, claims);
     if (!met || met->beyond > claimants[s].reach(claims)) continue;
@@ -98,14 +119,31 @@ std::uint32_t owner(const std::vector<Claimant>& claimants, const BeamsView& bea
   return best;
 }
 
+/// The claimants that may have met any of `some` beams.
+std::vector<std::uint32_t> near_any(const std::vector<Claimant>& claimants, const BeamsView& beams,
+                                    std::span<const std::uint32_t> some, const SurfelSettings& settings,
+                                    const ClaimSettings& claims) {
+  Eigen::AlignedBox3d ends;
+  for (const std::uint32_t beam : some) ends.extend(at(beams.points, beam));
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t s = 0; s < claimants.size(); ++s) {
+    if (claimants[s].may_claim_in(ends, settings, claims)) near.push_back(s);
+  }
+  return near;
+}
+
 /// The owner of each of `some` beams, or kNone.
 std::vector<std::uint32_t> owners(const std::vector<Claimant>& claimants, const BeamsView& beams,
                                   std::span<const std::uint32_t> some, const SurfelSettings& settings,
                                   const ClaimSettings& claims) {
-  constexpr std::size_t kBlock = 4096;  // beams
+  constexpr std::size_t kBlock =
+      32;  // beams that were fired one after the other, and so end near one another
   std::vector<std::uint32_t> result(some.size());
   for_blocks(some.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) result[k] = owner(claimants, beams, some[k], settings, claims);
+    const auto near = near_any(claimants, beams, some.subspan(begin, end - begin), settings, claims);
+    for (std::size_t k = begin; k < end; ++k) {
+      result[k] = owner(claimants, near, beams, some[k], settings, claims);
+    }
   });
   return result;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "pipeline/data/recordings.hpp"
@@ -40,14 +41,32 @@ double inclusion_factor(const std::vector<double>& areas, double count) {
   return factor;
 }
 
+/// Whether a trajectory covers times that mostly ascend.
+class Coverage {
+ public:
+  explicit Coverage(const PlateTrajectory& plate) : cursor_(plate) {}
+  bool includes(double time) {
+    if (arc_ && time >= arc_->begin && time <= arc_->end) return true;
+    arc_ = cursor_.arc(time);
+    return arc_.has_value();
+  }
+
+ private:
+  PlateTrajectory::Cursor cursor_;
+  std::optional<PlateArc> arc_;
+};
+
 }  // namespace
 
 Sample select(const Sample& sample, const std::function<bool(std::size_t)>& keep) {
+  std::vector<std::uint32_t> which;
+  for (std::uint32_t i = 0; i < sample.beams.size(); ++i) {
+    if (keep(i)) which.push_back(i);
+  }
   Sample kept{.plate = sample.plate};
   kept.beams.epoch_ns = sample.beams.epoch_ns;
-  for (std::size_t i = 0; i < sample.beams.size(); ++i) {
-    if (keep(i)) kept.beams.append(sample.beams, i);
-  }
+  kept.beams.reserve(which.size());
+  for (const std::uint32_t i : which) kept.beams.append(sample.beams, i);
   return kept;
 }
 
@@ -65,12 +84,12 @@ Sample of_laser(const Sample& sample, std::size_t laser) {
 }
 
 Sample covered(const Sample& sample, double earliest, double latest) {
-  PlateTrajectory::Cursor early(*sample.plate);
-  PlateTrajectory::Cursor middle(*sample.plate);
-  PlateTrajectory::Cursor late(*sample.plate);
+  Coverage early(*sample.plate);
+  Coverage middle(*sample.plate);
+  Coverage late(*sample.plate);
   return select(sample, [&](std::size_t i) {
     const double t = sample.beams.time[i];
-    return early.at(t + earliest) && middle.at(t) && late.at(t + latest);
+    return early.includes(t + earliest) && middle.includes(t) && late.includes(t + latest);
   });
 }
 

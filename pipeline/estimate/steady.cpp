@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "pipeline/data/middle.hpp"
+#include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
 namespace {
@@ -66,12 +67,12 @@ std::vector<bool> steady(const Surfels& surfels, const BeamsView& beams, double 
   constexpr double kChance = 4;    // of what is expected by chance: χ² of five is beyond once in a thousand
   if (surfels.surfels.empty() || beams.views.empty()) return std::vector<bool>(surfels.surfels.size(), true);
   const std::size_t views = *std::ranges::max_element(beams.views) + 1;
-  std::vector<Spread> spreads;
+  std::vector<Spread> spreads(surfels.surfels.size());
+  for_each_index(spreads.size(), [&](std::size_t s) {
+    spreads[s] = spread_of_views(surfels.surfels[s], surfels, beams, views);
+  });
   std::vector<double> sizes;
-  for (const Surfel& surfel : surfels.surfels) {
-    spreads.push_back(spread_of_views(surfel, surfels, beams, views));
-    sizes.push_back(std::sqrt(spreads.back().squares));
-  }
+  for (const Spread& spread : spreads) sizes.push_back(std::sqrt(spread.squares));
   const double most = std::max({kLeast * noise, kMuchMore * middle_of(sizes), far_for_most_beams(spreads)});
   std::vector<bool> result;
   for (const Spread& spread : spreads) {

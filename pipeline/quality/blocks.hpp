@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -46,6 +47,17 @@ void for_blocks(std::size_t n, std::size_t size, const Work& work) {
   detail::to_workers.give();
   tbb::parallel_for(std::size_t{0}, blocks_of(n, size), one);
   detail::from_workers.take();
+}
+
+/// The sum of what add(sum, begin, end) adds up of each block, each beginning with `zero`, in their order.
+template <class Sum, class Add>
+Sum sum_over_blocks(std::size_t n, std::size_t size, const Sum& zero, const Add& add) {
+  std::vector<Sum> blocks(blocks_of(n, size), zero);
+  for_blocks(n, size,
+             [&](std::size_t block, std::size_t begin, std::size_t end) { add(blocks[block], begin, end); });
+  Sum total = zero;
+  for (const Sum& block : blocks) total += block;
+  return total;
 }
 
 /// Calls work(i) for i = 0 … n − 1, in parallel.

@@ -10,19 +10,12 @@ namespace {
 constexpr double kTilt = 0.05;  // [rad] of a view's own plane: what a wrong calibration may do
 
 /// The normal equations of a view's own plane, with a prior on its tilt.
-Eigen::LDLT<Eigen::Matrix3d> damped(const Eigen::Matrix4d& squares) {
-  Eigen::Matrix3d matrix = squares.topLeftCorner<3, 3>();
+Eigen::LDLT<Eigen::Matrix3d> damped(Eigen::Matrix3d matrix) {
   matrix.diagonal() += Eigen::Vector3d(1e-9 * matrix(0, 0), 1 / (kTilt * kTilt), 1 / (kTilt * kTilt));
   return matrix.ldlt();
 }
 
 }  // namespace
-
-void Moments::add(const Eigen::Vector3d& point) {
-  count += 1;
-  sum += point;
-  squares += point * point.transpose();
-}
 
 Moments& Moments::operator+=(const Moments& other) {
   count += other.count;
@@ -45,27 +38,36 @@ Plane plane_of(const Moments& moments) {
   return plane;
 }
 
-void ViewSums::add(double u, double v, double distance, double weight) {
-  const Eigen::Vector4d row(1, u, v, distance);
-  squares += weight * row * row.transpose();
-  count += 1;
-}
-
 ViewSums& ViewSums::operator+=(const ViewSums& other) {
-  squares += other.squares;
-  count += other.count;
+  count_ += other.count_;
+  weight_ += other.weight_;
+  u_ += other.u_;
+  v_ += other.v_;
+  distance_ += other.distance_;
+  uu_ += other.uu_;
+  uv_ += other.uv_;
+  vv_ += other.vv_;
+  u_distance_ += other.u_distance_;
+  v_distance_ += other.v_distance_;
+  squares_ += other.squares_;
   return *this;
 }
 
-Eigen::Vector3d ViewSums::fit() const { return damped(squares).solve(squares.topRightCorner<3, 1>()); }
+Eigen::Matrix3d ViewSums::matrix() const {
+  Eigen::Matrix3d matrix;
+  matrix << weight_, u_, v_, u_, uu_, uv_, v_, uv_, vv_;
+  return matrix;
+}
+
+Eigen::Vector3d ViewSums::vector() const { return {distance_, u_distance_, v_distance_}; }
+
+Eigen::Vector3d ViewSums::fit() const { return damped(matrix()).solve(vector()); }
 
 double ViewSums::squares_left(const Eigen::Vector3d& fit) const {
-  return squares(3, 3) - 2 * fit.dot(squares.topRightCorner<3, 1>()) +
-         fit.dot(squares.topLeftCorner<3, 3>() * fit) + fit.tail<2>().squaredNorm() / (kTilt * kTilt);
+  return squares_ - 2 * fit.dot(vector()) + fit.dot(matrix() * fit) +
+         fit.tail<2>().squaredNorm() / (kTilt * kTilt);
 }
 
-double ViewSums::freedom() const {
-  return count - damped(squares).solve(Eigen::Matrix3d(squares.topLeftCorner<3, 3>())).trace();
-}
+double ViewSums::freedom() const { return count_ - damped(matrix()).solve(matrix()).trace(); }
 
 }  // namespace crisp

@@ -11,7 +11,11 @@ struct Moments {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
 
-  void add(const Eigen::Vector3d& point);
+  void add(const Eigen::Vector3d& point) {
+    count += 1;
+    sum += point;
+    squares += point * point.transpose();
+  }
   Moments& operator+=(const Moments& other);
 };
 
@@ -30,21 +34,44 @@ struct Plane {
 Plane plane_of(const Moments& moments);
 
 /// What one view sees of a surface, as a plane of its own: sums over its beams.
-struct ViewSums {
-  double count = 0;
-  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();  ///< of 1, u, v and the distance; weighted
-
+class ViewSums {
+ public:
   /// @param u, v, distance  [m] from a common plane
-  /// @param weight          [1/m²]
-  void add(double u, double v, double distance, double weight);
+  /// @param weight          [1/m²]; beams of weight 0 are none
+  void add(double u, double v, double distance, double weight) {
+    const double by_u = weight * u;
+    const double by_v = weight * v;
+    const double by_distance = weight * distance;
+    count_ += weight > 0 ? 1 : 0;
+    weight_ += weight;
+    u_ += by_u;
+    v_ += by_v;
+    distance_ += by_distance;
+    uu_ += by_u * u;
+    uv_ += by_v * u;
+    vv_ += by_v * v;
+    u_distance_ += by_u * distance;
+    v_distance_ += by_v * distance;
+    squares_ += by_distance * distance;
+  }
 
   ViewSums& operator+=(const ViewSums& other);
+
+  double count() const { return count_; }
+  Eigen::Matrix3d matrix() const;  ///< weighted, of the products of 1, u and v
+  Eigen::Vector3d vector() const;  ///< and of theirs with the distance
 
   /// Distance [m] at u = v = 0, and its slopes along u and v, of the plane that fits best. Where beams do not
   /// tell a slope (a single line, a few points), it stays within some degrees of none.
   Eigen::Vector3d fit() const;
   double squares_left(const Eigen::Vector3d& fit) const;  ///< weighted, of residuals and of the tilt
   double freedom() const;                                 ///< beams, less what the fit took
+
+ private:
+  // Numbers by themselves: of what is summed in a loop all stay in registers.
+  double count_ = 0;
+  double weight_ = 0, u_ = 0, v_ = 0, distance_ = 0;
+  double uu_ = 0, uv_ = 0, vv_ = 0, u_distance_ = 0, v_distance_ = 0, squares_ = 0;
 };
 
 }  // namespace crisp

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <span>
 #include <utility>
 
 #include "pipeline/data/error.hpp"
@@ -81,7 +83,7 @@ struct Entry {
 
 /// Sorts by one digit of the key, keeping the order of equal ones: each block of entries counts its digits,
 /// and so knows where to put them.
-void sort_by_digit(const std::vector<Entry>& entries, int shift, int bits, std::vector<Entry>& sorted) {
+void sort_by_digit(std::span<const Entry> entries, int shift, int bits, std::span<Entry> sorted) {
   const std::size_t digits = std::size_t{1} << bits;
   const auto digit = [=](const Entry& entry) { return entry.key >> shift & (digits - 1); };
   std::vector<std::size_t> first(blocks_of(entries.size(), kBlock) * digits);
@@ -98,14 +100,18 @@ void sort_by_digit(const std::vector<Entry>& entries, int shift, int bits, std::
   });
 }
 
-void radix_sort(std::vector<Entry>& entries) {
+/// Entries that are yet to be written: memory is new to whichever thread comes first, not all to one.
+using Entries = std::unique_ptr<Entry[]>;
+Entries unwritten(std::size_t n) { return std::make_unique_for_overwrite<Entry[]>(n); }
+
+void radix_sort(Entries& own, std::size_t n) {
   std::uint64_t used = 0;
-  for (const Entry& entry : entries) used |= entry.key;
-  std::vector<Entry> sorted(entries.size());
-  const int bits = entries.size() < 16384 ? 8 : 11;  // to count few entries by many digits takes longer
+  for (const Entry& entry : std::span(own.get(), n)) used |= entry.key;
+  Entries other = unwritten(n);
+  const int bits = n < 16384 ? 8 : 11;  // to count few entries by many digits takes longer
   for (int shift = 0; shift < 64 && used >> shift != 0; shift += bits) {
-    sort_by_digit(entries, shift, bits, sorted);
-    entries.swap(sorted);
+    sort_by_digit({own.get(), n}, shift, bits, {other.get(), n});
+    own.swap(other);
   }
 }
 
@@ -113,7 +119,9 @@ void radix_sort(std::vector<Entry>& entries) {
 
 CellLattice::Cell CellLattice::cell(double x, double y, double z) const {
   const auto along = [this](double value, std::size_t axis) {
-    return static_cast<std::int64_t>(std::clamp(std::floor((value - low.at(axis)) / side), -1e9, 1e9));
+    const double sides = std::clamp((value - low.at(axis)) / side, -1e9, 1e9);
+    const auto whole = static_cast<std::int64_t>(sides);
+    return sides < static_cast<double>(whole) ? whole - 1 : whole;
   };
   return {along(x, 0), along(y, 1), along(z, 2)};
 }
@@ -142,13 +150,13 @@ SpatialOrder spatial_order(const PointsView& points, double side) {
   const auto x = fine_cells(points.x, fine_side, order.lattice.low[0]);
   const auto y = fine_cells(points.y, fine_side, order.lattice.low[1]);
   const auto z = fine_cells(points.z, fine_side, order.lattice.low[2]);
-  std::vector<Entry> entries(n);
+  Entries entries = unwritten(n);
   for_blocks(n, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       entries[i] = {interleave(x[i], y[i], z[i]), static_cast<std::uint32_t>(i)};
     }
   });
-  radix_sort(entries);
+  radix_sort(entries, n);
   order.index.resize(n);
   order.cell.resize(n);
   for_blocks(n, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {

@@ -68,10 +68,6 @@ class PieceFinder {
 
 }  // namespace
 
-Eigen::Vector3d SurfelCells::point(const BeamsView& beams, std::uint32_t beam) const {
-  return Eigen::Vector3d(beams.points.x[beam], beams.points.y[beam], beams.points.z[beam]) - origin;
-}
-
 SurfelCells cells_of(const BeamsView& beams, const SurfelSettings& settings) {
   SurfelCells cells;
   cells.order = spatial_order(beams.points, settings.smallest);
@@ -83,11 +79,17 @@ SurfelCells cells_of(const BeamsView& beams, const SurfelSettings& settings) {
     if (k == 0 || order.cell[k] != order.cell[k - 1]) {
       cells.key.push_back(order.cell[k]);
       cells.begin.push_back(k);
-      cells.moments.emplace_back();
     }
-    cells.moments.back().add(cells.point(beams, order.index[k]));
   }
   cells.begin.push_back(static_cast<std::uint32_t>(order.index.size()));
+  cells.moments.resize(cells.size());
+  for_each_index(cells.size(), [&](std::size_t c) {
+    Moments moments;
+    for (std::uint32_t k = cells.begin[c]; k < cells.begin[c + 1]; ++k) {
+      moments.add(cells.point(beams, order.index[k]));
+    }
+    cells.moments[c] = moments;
+  });
   return cells;
 }
 

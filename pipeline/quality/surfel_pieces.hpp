@@ -23,7 +23,10 @@ struct SurfelCells {
   std::vector<Moments> moments;
 
   std::size_t size() const { return key.size(); }
-  Eigen::Vector3d point(const BeamsView& beams, std::uint32_t beam) const;  ///< relative to the origin
+  /// Where a beam ends, relative to the origin.
+  Eigen::Vector3d point(const BeamsView& beams, std::uint32_t beam) const {
+    return Eigen::Vector3d(beams.points.x[beam], beams.points.y[beam], beams.points.z[beam]) - origin;
+  }
 };
 
 SurfelCells cells_of(const BeamsView& beams, const SurfelSettings& settings);

@@ -79,7 +79,8 @@ class BeamSorter {
     return near;
   }
 
-  std::uint32_t region_of(const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+  /// @param cell  in which the beam ends
+  std::uint32_t region_of(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, std::size_t cell,
                           const std::vector<std::uint32_t>& near) const {
     for (const std::uint32_t r : near) {
       const Plane& plane = regions_[r].plane;
@@ -89,15 +90,17 @@ class BeamSorter {
       // Where the beam meets the plane does not depend on the noise of its range, and nor may the choice:
       // else beams that are too short would be chosen rather than those that are too long.
       const Eigen::Vector3d foot = point - distance / incidence * direction;
-      if (region_at(foot) == r && !is_near_another(foot, r, near)) return r;
+      if (region_at(foot, cell) == r && !is_near_another(foot, r, near)) return r;
     }
     return kNoRegion;
   }
 
  private:
-  std::uint32_t region_at(const Eigen::Vector3d& point) const {
+  /// @param guess  at the cell
+  std::uint32_t region_at(const Eigen::Vector3d& point, std::size_t guess) const {
     const Eigen::Vector3d at = point + cells_.origin;
-    const std::size_t cell = finder_.find(cell_key(cells_.order.lattice.cell(at.x(), at.y(), at.z())));
+    const std::uint64_t key = cell_key(cells_.order.lattice.cell(at.x(), at.y(), at.z()));
+    const std::size_t cell = key == cells_.key[guess] ? guess : finder_.find(key);
     return cell == cells_.size() ? kNoRegion : region_of_cell_[cell];
   }
 
@@ -158,7 +161,7 @@ std::vector<std::uint32_t> region_of_beams(const BeamsView& beams, const SurfelC
     for (std::uint32_t k = cells.begin[c]; k < cells.begin[c + 1]; ++k) {
       const std::uint32_t i = cells.order.index[k];
       const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
-      result[i] = sorter.region_of(cells.point(beams, i), direction, near);
+      result[i] = sorter.region_of(cells.point(beams, i), direction, c, near);
     }
   });
   return result;

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "pipeline/quality/surfels.hpp"
 
 namespace crisp {
+
+/// [beams] What is looked at in a row.
+inline constexpr std::size_t kResidualBlock = 8192;
 
 /// How one beam of a surfel stands to the plane that fits the surfel's beams best.
 struct SurfelResidual {
@@ -15,6 +20,12 @@ struct SurfelResidual {
   double weight = 0;        ///< 0 to 1: how much it counts
   double range_change = 0;  ///< [m] by which the range would have to grow to end on the plane
   double u = 0, v = 0;      ///< [m] where the beam meets the plane, from the surfel's middle
+
+  /// Whether the beam all but runs along the plane.
+  bool grazes() const {
+    constexpr double kGrazing = 0.05;
+    return std::abs(incidence) < kGrazing;
+  }
 };
 
 /// The residuals of a surfel's beams, in the order of its members, after a plane has been fitted to them once

@@ -14,7 +14,10 @@ constexpr double kMostTilt = 0.1;  // [rad] of a view against all: beyond, it se
 }  // namespace
 
 ViewNumbers::ViewNumbers(const BeamsView& beams) : of_beam(beams.points.size(), 0) {
-  std::vector<std::uint32_t> known(beams.views.begin(), beams.views.end());
+  std::vector<std::uint32_t> known;
+  for (std::size_t i = 0; i < beams.views.size(); ++i) {
+    if (i == 0 || beams.views[i] != beams.views[i - 1]) known.push_back(beams.views[i]);
+  }
   sort_once(known);
   for (std::size_t i = 0; i < beams.views.size(); ++i) {
     of_beam[i] = static_cast<std::uint32_t>(std::ranges::lower_bound(known, beams.views[i]) - known.begin());
@@ -31,7 +34,7 @@ bool ViewShape::is_flat(std::span<const std::uint32_t> members, const Plane& pla
     const double incidence = plane.normal.dot(Eigen::Vector3d(along.x[i], along.y[i], along.z[i]));
     const double variance = std::pow(settings_.noise * incidence, 2) + std::pow(settings_.floor, 2);
     ViewSums& sums = sums_[views_.of_beam[i]];
-    if (sums.count == 0) in_use_.push_back(views_.of_beam[i]);
+    if (sums.count() == 0) in_use_.push_back(views_.of_beam[i]);
     sums.add(plane.u.dot(offset), plane.v.dot(offset), plane.normal.dot(offset), 1 / variance);
   }
   double left = 0;
