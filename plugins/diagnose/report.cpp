@@ -112,12 +112,30 @@ std::string reason_of(const Diagnosis::Limit& limit, const std::string& told_by,
       1e3 * limit.size * noise, needs);
 }
 
+/// What the extended model leaves over a covariate, unless something is said of that already.
+void add_left_over(const SideBySide& left, const Calibration& calibration, double visible, Findings& all) {
+  for (const Profile& profile : left.profiles) {
+    if (!profile.departs() || profile.rms < visible) continue;
+    const std::string& laser = calibration.lasers[profile.laser].name;
+    const bool is_known = std::ranges::any_of(all.unnamed, [&](const UnnamedFinding& known) {
+      return known.covariate == profile.covariate && (known.scope == laser || known.scope == "plate");
+    });
+    if (is_known) continue;
+    all.unnamed.push_back({.covariate = profile.covariate,
+                           .quantity = "range",
+                           .scope = laser,
+                           .amplitude = profile.rms,
+                           .unit = "m",
+                           .p_value = profile.p_value,
+                           .gain = {}});
+  }
+}
+
 /// The profiles that depart from the simulation.
 std::string profiles_in_words(const SideBySide& left, const Calibration& calibration) {
-  constexpr double kSignificant = 0.05;
   std::string words;
   for (const Profile& profile : left.profiles) {
-    if (profile.p_value > kSignificant) continue;
+    if (!profile.departs()) continue;
     words +=
         fmt::format("  {} against {:<14}{:>8.3f} mm   p = {:.3f}\n", calibration.lasers[profile.laser].name,
                     profile.covariate, profile.rms * 1e3, profile.p_value);
@@ -141,6 +159,7 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
       all.unnamed.push_back(unnamed_of(departure, calibration, diagnosis, noise));
     }
   }
+  add_left_over(diagnosis.left_after, calibration, settings.visible * noise, all);
   for (const Diagnosis::Limit& limit : diagnosis.unobservable) {
     all.unobservable.push_back({.parameter = limit.name,
                                 .reason = reason_of(limit, told_by(limit.name, terms), noise),
@@ -181,9 +200,10 @@ std::string in_words(const Finding& finding) {
 }
 
 std::string in_words(const UnnamedFinding& finding) {
-  return fmt::format("unnamed: {} of {} depends on the {}, by {:.3f} mm{}\n", finding.quantity, finding.scope,
-                     finding.covariate, finding.amplitude * 1e3, finding.accepted ? "" : " (refused)") +
-         gain_in_words(finding.gain);
+  const std::string what = fmt::format("unnamed: {} of {} depends on the {}, by {:.3f} mm", finding.quantity,
+                                       finding.scope, finding.covariate, finding.amplitude * 1e3);
+  if (finding.gain.empty()) return what + "\n  no term of the catalogue takes it\n";
+  return fmt::format("{}{}\n{}", what, finding.accepted ? "" : " (refused)", gain_in_words(finding.gain));
 }
 
 std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
@@ -203,11 +223,6 @@ std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
   }
   words += fmt::format("measured and simulated residuals: p = {:.3f} before, {:.3f} after", findings.before_p,
                        findings.after_p);
-  const std::string left = profiles_in_words(diagnosis.left_after, calibration);
-  if (!left.empty() && !(findings.findings.empty() && findings.unnamed.empty())) {
-    words += "\nwhat is left with these terms in the model still departs from the simulation:\n" + left;
-    words.pop_back();
-  }
   if (!findings.unobservable.empty()) {
     std::vector<std::string> names;
     for (const auto& one : findings.unobservable) names.push_back(one.parameter);
