@@ -163,7 +163,7 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
   for (const Diagnosis::Limit& limit : diagnosis.unobservable) {
     all.unobservable.push_back({.parameter = limit.name,
                                 .reason = reason_of(limit, told_by(limit.name, terms), noise),
-                                .combination = {}});
+                                .combination = limit.combination});
   }
   for (const std::string& cause : diagnosis.unshared) {
     all.unobservable.push_back(

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <sstream>
+#include <utility>
 
 #include "tests/plugins/diagnose/hidden.hpp"
 
@@ -78,6 +80,59 @@ TEST(Report, HasNothingUnnamedThatChanceOrAWallsBumpsMayHaveMade) {
   Diagnosis bumps = diagnosis;
   for (Profile& profile : bumps.left_after.profiles) profile.rms = 0.9 * SelectionSettings{}.visible * kNoise;
   EXPECT_THAT(reported(bumps).unnamed, IsEmpty());
+}
+
+/// "+ 4.9" of "laser2.lambda + 4.9 * laser2.mount.tangential_offset.y, …"; NaN if it is not there.
+double slope_in(const std::string& combination, const std::string& parameter) {
+  const auto at = combination.find(parameter + " ");
+  if (at == std::string::npos) return std::nan("");
+  std::istringstream text(combination.substr(at + parameter.size() + 1));
+  char sign = 0;
+  double slope = 0;
+  text >> sign >> slope;
+  return sign == '-' ? -slope : slope;
+}
+
+/// By how much an estimate is off the truth, and its standard error.
+std::pair<double, double> shift_of(const Outcome& outcome, const Calibration& truth,
+                                   const std::string& name) {
+  const SensorModel model(truth, built_in_terms());
+  const auto value = [&](const SensorModel& of) {
+    return of.values()[std::ranges::find(of.names(), name) - of.names().begin()];
+  };
+  for (std::size_t k = 0; k < outcome.free.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (outcome.model.names()[outcome.free[k]] != name) continue;
+    return {value(outcome.model) - value(model), std::sqrt(outcome.covariance(i, i))};
+  }
+  return {std::nan(""), 0};
+}
+
+std::string combination_with(const Findings& findings, const std::string& cause) {
+  const auto found = std::ranges::find(findings.unobservable, cause, &Unobservable::parameter);
+  return found == findings.unobservable.end() ? "it is not said to be unobservable" : found->combination;
+}
+
+TEST(Report, SaysWhichCombinationIsKnownInPlaceOfWhatCannotBeSeen) {
+  constexpr double kOffset = 0.01;  // [m]
+  const std::string hidden = "laser2.mount.tangential_offset";
+  DiagnosisSettings settings;
+  settings.rounds = 1;
+  settings.beams = 40'000;
+  const auto recording = test::hidden(53, 3, office(), {{hidden, {kOffset}}});
+  const Diagnosis diagnosis = test::diagnosed(recording, settings);
+  const Findings findings = reported(diagnosis);
+
+  // That λ + 5 y is known means that λ comes out larger by 5 y where nobody counts on y.
+  const std::string combination = combination_with(findings, hidden);
+  for (const std::string name : {"laser2.lambda", "laser2.alpha"}) {
+    const auto [shift, error] = shift_of(diagnosis.after.outcome, recording.scanner.truth, name);
+    const double foretold = slope_in(combination, name) * kOffset;
+    EXPECT_NEAR(shift, foretold, 4 * error + 0.02 * std::abs(foretold)) << name << " in " << combination;
+    EXPECT_GT(std::abs(foretold), 0.03) << name;
+  }
+  // A plate that never turns back: as if the whole room had been turned.
+  EXPECT_EQ(combination_with(findings, "encoder.backlash"), "");
 }
 
 }  // namespace
