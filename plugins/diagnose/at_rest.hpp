@@ -40,6 +40,7 @@ struct CommonChange {
   double shape = 0;  ///< [s] since the first scan: when it steps; or T
   double shape_error = 0;
   double p_value = 1;
+  double log10_odds = 0;  ///< against the next likely of: a step, a creeping, neither; by BIC
   Gain gain;
 };
 

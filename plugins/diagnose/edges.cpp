@@ -140,6 +140,7 @@ std::optional<Finding> mixed_pixels(const std::string& scope, const Crossings& c
                                  .value = crossings.share(),
                                  .std_error = error,
                                  .free = true}},
+                 .explained_fraction = kUnasked,
                  .p_value = p,
                  .confounded_with = {},
                  .gain = {},

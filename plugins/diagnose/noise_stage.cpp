@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <span>
+
 #include "pipeline/clocks/unwrap.hpp"
+#include "plugins/diagnose/likelihood_gain.hpp"
 #include "plugins/diagnose/report.hpp"
 
 namespace crisp {
@@ -17,6 +20,7 @@ Finding finding_of(const CommonChange& change, const std::string& laser) {
                   .scope = laser,
                   .parameters = {},
                   .explained_fraction = change.gain.explained(),
+                  .log10_odds = change.log10_odds,
                   .p_value = change.p_value,
                   .confounded_with = {},
                   .gain = {change.gain},
@@ -75,6 +79,8 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
   all.noise.push_back({.laser = name, .ranges = errors->size(), .sigma = noise.law.sigma});
   all.findings.insert(all.findings.end(), noise.findings.begin(), noise.findings.end());
   all.unnamed.insert(all.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
+  share_explained(std::span(all.findings).last(noise.findings.size()),
+                  std::span(all.unnamed).last(noise.unnamed.size()));
 }
 
 void DiagnoseNoiseStage::finish(Outputs& out, Context& context) {

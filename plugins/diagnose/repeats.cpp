@@ -220,6 +220,7 @@ std::optional<Finding> moving(const ChangingDirections& directions, std::uint64_
                                 {.name = "directions",
                                  .unit = "1",
                                  .value = static_cast<double>(directions.looks.size())}},
+                 .explained_fraction = kUnasked,
                  .p_value = p,
                  .confounded_with = {},
                  .gain = {},

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <span>
 
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
@@ -11,6 +12,7 @@
 #include "plugins/diagnose/comb.hpp"
 #include "plugins/diagnose/edges.hpp"
 #include "plugins/diagnose/evidence.hpp"
+#include "plugins/diagnose/likelihood_gain.hpp"
 #include "plugins/diagnose/noise.hpp"
 #include "plugins/diagnose/repeats.hpp"
 #include "plugins/diagnose/report.hpp"
@@ -84,6 +86,8 @@ void DiagnoseScatterStage::finish(Outputs& out, Context& context) {
 void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Findings& found,
                                      Context& context) const {
   const std::string& name = calibration_->lasers[laser].name;
+  const std::size_t named = found.findings.size();
+  const std::size_t unnamed = found.unnamed.size();
   add_noise(laser, all, found, context);
   std::vector<float> ranges;
   std::vector<std::uint32_t> blocks;
@@ -97,6 +101,7 @@ void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Fin
   context.say(fmt::format("{}: {} edges crossed, {:.1f} % of them with a range that ends in thin air", name,
                           edges.mixed.size(), 100 * edges.share()));
   if (const auto mixed = mixed_pixels(name, edges, context.seed())) found.findings.push_back(*mixed);
+  share_explained(std::span(found.findings).subspan(named), std::span(found.unnamed).subspan(unnamed));
 }
 
 void DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
