@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "pipeline/data/middle.hpp"
 #include "plugins/diagnose/series.hpp"
@@ -144,6 +145,25 @@ std::optional<CommonChange> common_change(const RangeErrors& errors, const std::
     change.shape_error = change.shape;  // known to a factor
   }
   return change;
+}
+
+Plot change_plot(const std::string& name, const CommonChange& change, const RangeErrors& errors,
+                 const std::vector<double>& seconds) {
+  const Eigen::VectorXd values = means(errors, seconds.size());
+  PlotSeries measured{.name = "measured", .x = {}, .y = {}, .joined = false};
+  PlotSeries found{.name = "found", .x = {}, .y = {}};
+  double middle = 0;  // of what was found: errors are about the mean of their beams
+  for (const double second : seconds) middle += at(change, second) / static_cast<double>(seconds.size());
+  for (std::size_t scan = 0; scan < seconds.size(); ++scan) {
+    measured.x.push_back(seconds[scan]);
+    measured.y.push_back(1e3 * values[static_cast<Eigen::Index>(scan)]);
+    found.x.push_back(seconds[scan]);
+    found.y.push_back(1e3 * (at(change, seconds[scan]) - middle));
+  }
+  return {.title = name + ": all beams together",
+          .x_label = "time since the run's epoch [s]",
+          .y_label = "mean error of a scan [mm]",
+          .series = {std::move(measured), std::move(found)}};
 }
 
 void take_out(const CommonChange& change, const std::vector<double>& seconds, RangeErrors& errors) {

@@ -180,6 +180,13 @@ TEST(Noise, OfAllBeamsTogetherIsAStepOrACreepingWithOdds) {
   ASSERT_TRUE(step && step->is_step);
   // Means of 50 beams scatter by 1.1 mm; a straight line leaves 0.75 mm of the step: 200/2 lg 1.44 = 16.
   EXPECT_GT(step->log10_odds, 5);
+  const Plot plot =
+      change_plot("laser1", *step, drawn([](int scan) { return scan < 90 ? 0 : 0.003; }), seconds);
+  double misfit = 0;
+  for (std::size_t scan = 0; scan < seconds.size(); ++scan) {
+    misfit += std::pow(plot.series.at(0).y[scan] - 1.65 - plot.series.at(1).y[scan], 2) / kScans;
+  }
+  EXPECT_LT(std::sqrt(misfit), 1.4) << "[mm] scatter of the means: the curve goes through them";
   const auto creeping =
       common_change(drawn([](int scan) { return 0.006 * (1 - std::exp(-scan / 60.0)); }), seconds, 1, 1);
   ASSERT_TRUE(creeping && !creeping->is_step);
