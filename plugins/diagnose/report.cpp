@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -82,8 +83,10 @@ UnnamedFinding unnamed_of(const Departure& departure, const Calibration& calibra
 
 std::string with_unit(const Parameter& parameter) {
   const auto shown = [&](double factor, const char* unit) {
-    return fmt::format("{} = {:.4g} ± {:.2g}{}{}", parameter.name, parameter.value * factor,
-                       parameter.std_error * factor, *unit ? " " : "", unit);
+    const std::string error =
+        parameter.std_error > 0 ? fmt::format(" ± {:.2g}", parameter.std_error * factor) : "";
+    return fmt::format("{} = {:.4g}{}{}{}", parameter.name, parameter.value * factor, error, *unit ? " " : "",
+                       unit);
   };
   if (parameter.unit == "rad") return shown(180 / std::numbers::pi, "deg");
   if (parameter.unit == "m") return shown(1e3, "mm");
@@ -91,13 +94,27 @@ std::string with_unit(const Parameter& parameter) {
   return shown(1, parameter.unit == "1" ? "" : parameter.unit.c_str());
 }
 
+/// Of what is off; what a model's term moves is told by how much ranges change for it, whatever its unit.
+std::string by_how_much(const UnnamedFinding& finding) {
+  if (finding.unit == "rad")
+    return fmt::format(", by {:.4f} deg", finding.amplitude * 180 / std::numbers::pi);
+  if (finding.unit == "s") return fmt::format(", by {:.4f} ms", finding.amplitude * 1e3);
+  const std::array lengths = {"range", "base", "noise"};
+  const bool is_length = std::ranges::find(lengths, finding.quantity) != lengths.end();
+  return fmt::format("{} {:.3f} mm", is_length ? ", by" : "; ranges change by", finding.amplitude * 1e3);
+}
+
+std::string chance_in_words(double p_value) {
+  return p_value > 0 ? fmt::format("p = {:.2g}", p_value) : "p < 1e-300";
+}
+
 std::string gain_in_words(const std::vector<Gain>& gains) {
-  if (gains.empty()) return "  no held-out data say what that brings\n";
+  if (gains.empty()) return "\n  no held-out data say what that brings";
   std::string words;
   for (const Gain& gain : gains) {
     const double factor = gain.unit == "m" ? 1e3 : gain.unit == "s" ? 1e6 : 1;
     const std::string unit = gain.unit == "m" ? "mm" : gain.unit == "s" ? "us" : gain.unit;
-    words += fmt::format("  {:<32}{:>10.4f} -> {:>8.4f} {:<3}  change {:+.4f} to {:+.4f}\n", gain.metric,
+    words += fmt::format("\n  {:<32}{:>10.4f} -> {:>8.4f} {:<3}  change {:+.4f} to {:+.4f}", gain.metric,
                          gain.before * factor, gain.after * factor, unit, gain.ci95[0] * factor,
                          gain.ci95[1] * factor);
   }
@@ -177,12 +194,22 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
   return all;
 }
 
-std::string in_words(const Finding& finding) {
+std::string headline(const Finding& finding) {
   std::string words =
       fmt::format("{} of {}{}: ", finding.cause, finding.scope, finding.accepted ? "" : " (refused)");
-  for (std::size_t k = 0; k < finding.parameters.size(); ++k) {
-    words += (k > 0 ? ", " : "") + with_unit(finding.parameters[k]);
-  }
+  for (const Parameter& parameter : finding.parameters) words += with_unit(parameter) + ", ";
+  return words + chance_in_words(finding.p_value);
+}
+
+std::string headline(const UnnamedFinding& finding) {
+  const bool has_gain = !finding.gain.empty();
+  return fmt::format("unnamed: {} of {} depends on the {}{}, {}{}", finding.quantity, finding.scope,
+                     finding.covariate, by_how_much(finding), chance_in_words(finding.p_value),
+                     has_gain && !finding.accepted ? " (refused)" : "");
+}
+
+std::string in_words(const Finding& finding) {
+  std::string words = headline(finding);
   if (finding.explained_fraction > 0) {
     words += fmt::format("\n  explains {:.0f} % of what was found", 100 * finding.explained_fraction);
   }
@@ -196,14 +223,12 @@ std::string in_words(const Finding& finding) {
     words += fmt::format("\n  what would: {}", fmt::join(finding.told_apart_by, "; "));
   }
   if (!finding.accepted) words += "\n  it does not pay on data that it was not fitted to";
-  return words + "\n" + gain_in_words(finding.gain);
+  return words + gain_in_words(finding.gain);
 }
 
 std::string in_words(const UnnamedFinding& finding) {
-  const std::string what = fmt::format("unnamed: {} of {} depends on the {}, by {:.3f} mm", finding.quantity,
-                                       finding.scope, finding.covariate, finding.amplitude * 1e3);
-  if (finding.gain.empty()) return what + "\n  no term of the catalogue takes it\n";
-  return fmt::format("{}{}\n{}", what, finding.accepted ? "" : " (refused)", gain_in_words(finding.gain));
+  if (finding.gain.empty()) return headline(finding) + "\n  no term of the catalogue takes it";
+  return headline(finding) + gain_in_words(finding.gain);
 }
 
 std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
@@ -213,10 +238,8 @@ std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
   const std::string departing = profiles_in_words(diagnosis.left_before, calibration);
   words += departing.empty() ? "  nothing departs from the simulation\n" : departing;
   if (findings.findings.empty() && findings.unnamed.empty()) words += "no cause is found\n";
-  for (const Finding& finding : findings.findings) words += in_words(finding);
-  for (const UnnamedFinding& finding : findings.unnamed) {
-    words += in_words(finding);
-  }
+  for (const Finding& finding : findings.findings) words += in_words(finding) + "\n";
+  for (const UnnamedFinding& finding : findings.unnamed) words += in_words(finding) + "\n";
   for (const Artefact& artefact : findings.artefacts) {
     words += fmt::format("the estimator's own ({}): {}\n", artefact.name, artefact.reason);
     for (const Parameter& parameter : artefact.parameters) words += "  " + with_unit(parameter) + "\n";

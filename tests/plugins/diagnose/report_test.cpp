@@ -59,6 +59,29 @@ TEST(Report, HasWhatTheModelLeavesAmongTheUnnamed) {
   EXPECT_THAT(in_words(found[0]), HasSubstr("no term of the catalogue takes it"));
 }
 
+TEST(Report, SaysWhatIsOffInItsOwnUnitWithThePValue) {
+  const auto words = [](const std::string& quantity, const std::string& unit) {
+    return headline(UnnamedFinding{.covariate = "time",
+                                   .quantity = quantity,
+                                   .scope = "laser1",
+                                   .amplitude = 0.002,
+                                   .unit = unit,
+                                   .p_value = 1e-4});
+  };
+  EXPECT_EQ(words("range", "m"), "unnamed: range of laser1 depends on the time, by 2.000 mm, p = 0.0001");
+  EXPECT_EQ(words("lag", "m"),
+            "unnamed: lag of laser1 depends on the time; ranges change by 2.000 mm, p = 0.0001");
+  EXPECT_EQ(words("lag", "s"), "unnamed: lag of laser1 depends on the time, by 2.0000 ms, p = 0.0001");
+  EXPECT_EQ(words("plate angle", "rad"),
+            "unnamed: plate angle of laser1 depends on the time, by 0.1146 deg, p = 0.0001");
+  EXPECT_EQ(headline(Finding{.cause = "scene.moving",
+                             .scope = "scene",
+                             .parameters = {{.name = "directions", .unit = "1", .value = 16}},
+                             .p_value = 1e-3,
+                             .accepted = true}),
+            "scene.moving of scene: directions = 16, p = 0.001");
+}
+
 TEST(Report, SaysOnceWhatATermWasRefusedFor) {
   Diagnosis diagnosis = without_candidates(with_a_third_harmonic());
   diagnosis.departures.push_back({.candidate = {.owner = 2,
