@@ -20,7 +20,7 @@ class EdgeFinder {
       : beams_(beams), points_(points), met_(met), crowd_(crowd), near_(kOnSurface * usual) {}
 
   bool is_on(std::size_t i) const {
-    return met_.end[i] != kNothing && std::abs(double{met_.distance[i]}) < near_;
+    return met_.end[i] != kNoSurface && std::abs(double{met_.distance[i]}) < near_;
   }
 
   /// The first beam after those between, if an edge begins at `i`; else `i`.

@@ -184,7 +184,7 @@ ChangingDirections changing_directions(const Measurements& beams, const PlateTra
   Glances glances(grid);
   double ahead = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (met.ahead[i] == kNothing) continue;
+    if (met.ahead[i] == kNoSurface) continue;
     const auto glance = grid.glance(beams, i);
     if (!glance) continue;
     ahead += 1;

@@ -109,7 +109,7 @@ Scatter scatter_of(std::size_t laser, const Measurements& beams, const Met& met,
   std::vector<std::size_t> chosen;
   std::vector<float> errors;
   for (std::size_t i = 1; i + 1 < beams.size(); ++i) {
-    if (beams.laser[i] != laser || met.ahead[i] == kNothing) continue;
+    if (beams.laser[i] != laser || met.ahead[i] == kNoSurface) continue;
     if (!are_neighbours(beams, i - 1, i) || !are_neighbours(beams, i, i + 1)) continue;
     if (!is_on(i - 1, met.ahead[i]) || !is_on(i + 1, met.ahead[i])) continue;
     if (std::abs(double{met.error[i]}) > kFarOff.back() * usual) continue;
