@@ -10,8 +10,8 @@
 
 namespace crisp {
 
-/// The catalogue as a recording has it: where there are telegrams, a clock that drifts is a device's own, and
-/// so also the plate's.
+/// What of the catalogue can be simulated in a recording: where there are telegrams, a clock that drifts is a
+/// device's own, and so also the plate's. What a scene does is in it, to be refused with a word.
 std::vector<EffectInfo> recording_catalogue(const TermRegistry& terms);
 
 /// Of the catalogue what befalls a laser's noise and mirror: what is simulated of a device without telegrams.

@@ -100,7 +100,10 @@ FoundEffects effects_of(const Findings& findings, const std::string& file, const
   for (const Found& found : all_found(findings)) {
     check_device(found, file, rig);
     const auto info = std::ranges::find(catalogue, found.cause, &EffectInfo::name);
-    if (info != catalogue.end() && info->scope != Scope::kScene) {
+    if (found.cause == "noise.mixed_pixels") {
+      result.others.push_back(fmt::format(
+          "{} of {}: the file has the share of edges, not the width of the spot", found.cause, found.scope));
+    } else if (info != catalogue.end() && info->scope != Scope::kScene) {
       wanted.push_back(as_option(found, file));
     } else {
       result.others.push_back(fmt::format("{} of {}", found.cause, found.scope));

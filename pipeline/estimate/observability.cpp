@@ -37,11 +37,10 @@ std::size_t to_hold(const Eigen::VectorXd& direction, const std::vector<std::siz
   return held;
 }
 
-/// What is known although `held` is not: by how much each of the known parameters makes up for it.
-///
-/// @param scaled  information in units of what was known before
+}  // namespace
+
 std::string known_with(std::size_t held, const std::vector<std::size_t>& known, const Eigen::MatrixXd& scaled,
-                       const std::vector<std::string>& free_names, const Eigen::VectorXd& prior) {
+                       const std::vector<std::string>& names, const Eigen::VectorXd& scale) {
   if (known.empty()) return {};
   const auto h = static_cast<Eigen::Index>(held);
   const Eigen::VectorXd made_up =
@@ -52,14 +51,12 @@ std::string known_with(std::size_t held, const std::vector<std::size_t>& known, 
   for (std::size_t i = 0; i < known.size(); ++i) {
     const double share = made_up[static_cast<Eigen::Index>(i)];
     if (std::abs(share) < kTakesPart * largest) continue;
-    const double slope = share * prior[static_cast<Eigen::Index>(known[i])] / prior[h];
-    text += fmt::format("{}{} {} {:.4g} * {}", text.empty() ? "" : ", ", free_names[known[i]],
-                        slope < 0 ? "-" : "+", std::abs(slope), free_names[held]);
+    const double slope = share * scale[static_cast<Eigen::Index>(known[i])] / scale[h];
+    text += fmt::format("{}{} {} {:.4g} * {}", text.empty() ? "" : ", ", names[known[i]],
+                        slope < 0 ? "-" : "+", std::abs(slope), names[held]);
   }
   return text;
 }
-
-}  // namespace
 
 Observability observability(const Eigen::MatrixXd& information, const std::vector<std::size_t>& free,
                             const std::vector<std::string>& names, const Eigen::VectorXd& prior) {

@@ -26,4 +26,14 @@ struct Observability {
 Observability observability(const Eigen::MatrixXd& information, const std::vector<std::size_t>& free,
                             const std::vector<std::string>& names, const Eigen::VectorXd& prior);
 
+/// What is known although one parameter is not: each of the known ones with what makes up for it, where that
+/// is no small part: "tau + 0.98 * y, alpha - 1.2 * y". Empty if nothing does.
+///
+/// @param held    index of the one that is not
+/// @param known   indices of those that are
+/// @param scaled  Fisher's information in units of `scale`
+/// @param scale   of each parameter, in its unit: what counts as one of it
+std::string known_with(std::size_t held, const std::vector<std::size_t>& known, const Eigen::MatrixXd& scaled,
+                       const std::vector<std::string>& names, const Eigen::VectorXd& scale);
+
 }  // namespace crisp

@@ -42,7 +42,59 @@ std::vector<EffectInfo> clocks_and_links() {
                        .summary = "of the exponentially distributed delay beyond the shortest; 0: that of "
                                   "its kind of link"}},
        .details = "Half of the telegrams are later than the shortest delay by more than 0.69 of it. A real "
-                  "LMS111: 0.1 ms."}};
+                  "LMS111: 0.1 ms."},
+      {.name = "latency.bursts",
+       .summary = "scans that were taken evenly are held back and handed on several at a time",
+       .scope = Scope::kDevice,
+       .parameters = {{.name = "together",
+                       .unit = "1",
+                       .lower = 0,
+                       .upper = 1,
+                       .summary = "share of the scans that come together with the one before"},
+                      {.name = "interval",
+                       .unit = "s",
+                       .lower = 0,
+                       .upper = 10,
+                       .summary = "mean time between two scans, as they were taken",
+                       .shape = true},
+                      {.name = "wait",
+                       .unit = "s",
+                       .lower = 0,
+                       .upper = 10,
+                       .summary = "standard deviation of receipt less stamp"}},
+       .details =
+           "Seen in a recording of 2004 whose host stored several scans of a SICK LMS at a time: 56 % of "
+           "them "
+           "came with the one before, up to 0.48 s late. The laser's own count of scans, mapped to the hub "
+           "by the "
+           "lower envelope, is then the model of their times. No simulator makes it."}};
+}
+
+std::vector<EffectInfo> mirrors() {
+  return {
+      {.name = "mirror.interleave",
+       .summary = "kinds of scans take turns, whose beams point a part of a step apart",
+       .scope = Scope::kLaser,
+       .parameters = {{.name = "shift",
+                       .unit = "rad",
+                       .lower = -0.1,
+                       .upper = 0.1,
+                       .summary = "by which the beams of one kind point further than those of the others"},
+                      {.name = "period",
+                       .unit = "1",
+                       .lower = 0,
+                       .upper = 64,
+                       .summary = "scans after which they are alike again",
+                       .shape = true},
+                      {.name = "kind",
+                       .unit = "1",
+                       .lower = 0,
+                       .upper = 63,
+                       .summary = "which of them it is: number of the scan modulo the period",
+                       .shape = true}},
+       .details = "A laser that makes half degrees of a mirror that fires every degree: every other turn "
+                  "goes between. A real SICK LMS: 0.500 ± 0.013 steps. Once beams are angles and times, "
+                  "nothing shows which scan they were of. No simulator makes it."}};
 }
 
 std::vector<EffectInfo> noises() {
@@ -154,6 +206,7 @@ const std::vector<EffectInfo>& effects_beyond_the_chain() {
   static const std::vector<EffectInfo> kEffects = [] {
     std::vector<EffectInfo> all = clocks_and_links();
     for (auto& effect : noises()) all.push_back(std::move(effect));
+    for (auto& effect : mirrors()) all.push_back(std::move(effect));
     for (auto& effect : scenes()) all.push_back(std::move(effect));
     return all;
   }();

@@ -14,8 +14,8 @@ void register_built_in(TermRegistry& terms);
 /// A term's parameters as a calibration has them, all at the values that change nothing.
 TermParameters neutral_parameters(const TermInfo& term);
 
-/// What befalls clocks, links, noise or the scene, and so is no term of the chain. The simulator can do it,
-/// and a diagnosis may find it.
+/// What befalls clocks, links, noise or the scene, and so is no term of the chain: what the simulator can do,
+/// and whatever a diagnosis may find.
 const std::vector<EffectInfo>& effects_beyond_the_chain();
 
 /// All effects that have a name: the terms, a plugin's among them, and those beyond the chain; by name.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "pipeline/clocks/series.hpp"
 #include "pipeline/data/middle.hpp"
@@ -29,6 +31,26 @@ Eigen::VectorXd means(const RangeErrors& errors, std::size_t scans) {
     counts[errors.block[i]] += 1;
   }
   return sums.cwiseQuotient(counts.cwiseMax(1));
+}
+
+/// The least sum of squares that one of the columns, and a mean, leave of some values.
+double squares_left(const Eigen::Ref<const Eigen::MatrixXd>& columns, const Eigen::VectorXd& values) {
+  const Eigen::VectorXd centred = values.array() - values.mean();
+  double most = 0;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    const Eigen::VectorXd column = columns.col(k).array() - columns.col(k).mean();
+    const double square = column.squaredNorm();
+    if (square > 0) most = std::max(most, std::pow(column.dot(centred), 2) / square);
+  }
+  return centred.squaredNorm() - most;
+}
+
+/// What is left by one kind of change against what is by the other, and by none, which has two parameters
+/// less.
+double log10_odds_of(double own, double other, double none, double n) {
+  const double ahead_of_other = n * std::log(other / own);
+  const double ahead_of_none = n * std::log(none / own) - 2 * std::log(n);
+  return std::min(ahead_of_other, ahead_of_none) / 2 / std::numbers::ln10;
 }
 
 }  // namespace
@@ -100,8 +122,8 @@ std::optional<CommonChange> common_change(const RangeErrors& errors, const std::
     const double constant = kWarmUps[k] * time[n - 1];
     columns.col(jumps.cols() + static_cast<Eigen::Index>(k)) = 1 - (-time / constant).exp();
   }
-  const SeriesLook look =
-      look_at_series(Eigen::MatrixXd::Ones(n, 1), columns, means(errors, seconds.size()), seed);
+  const Eigen::VectorXd values = means(errors, seconds.size());
+  const SeriesLook look = look_at_series(Eigen::MatrixXd::Ones(n, 1), columns, values, seed);
   CommonChange change{.is_step = look.column < jumps.cols(),
                       .size = look.values[1],
                       .std_error = look.errors[1],
@@ -110,6 +132,11 @@ std::optional<CommonChange> common_change(const RangeErrors& errors, const std::
   change.gain.metric = "mean error of a scan";
   change.gain.unit = "m";
   if (change.p_value > kSignificantInSeries) return std::nullopt;
+  const double by_step = squares_left(jumps, values);
+  const double by_creeping = squares_left(columns.rightCols(columns.cols() - jumps.cols()), values);
+  change.log10_odds =
+      log10_odds_of(change.is_step ? by_step : by_creeping, change.is_step ? by_creeping : by_step,
+                    squares_left(Eigen::MatrixXd(n, 0), values), static_cast<double>(n));
   if (change.is_step) {
     const auto first = static_cast<std::size_t>(before_step(columns.col(look.column)));
     change.shape = seconds[first];
@@ -119,6 +146,25 @@ std::optional<CommonChange> common_change(const RangeErrors& errors, const std::
     change.shape_error = change.shape;  // known to a factor
   }
   return change;
+}
+
+Plot change_plot(const std::string& name, const CommonChange& change, const RangeErrors& errors,
+                 const std::vector<double>& seconds) {
+  const Eigen::VectorXd values = means(errors, seconds.size());
+  PlotSeries measured{.name = "measured", .x = {}, .y = {}, .joined = false};
+  PlotSeries found{.name = "found", .x = {}, .y = {}};
+  double middle = 0;  // of what was found: errors are about the mean of their beams
+  for (const double second : seconds) middle += at(change, second) / static_cast<double>(seconds.size());
+  for (std::size_t scan = 0; scan < seconds.size(); ++scan) {
+    measured.x.push_back(seconds[scan]);
+    measured.y.push_back(1e3 * values[static_cast<Eigen::Index>(scan)]);
+    found.x.push_back(seconds[scan]);
+    found.y.push_back(1e3 * (at(change, seconds[scan]) - middle));
+  }
+  return {.title = name + ": all beams together",
+          .x_label = "time since the run's epoch [s]",
+          .y_label = "mean error of a scan [mm]",
+          .series = {std::move(measured), std::move(found)}};
 }
 
 void take_out(const CommonChange& change, const std::vector<double>& seconds, RangeErrors& errors) {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "pipeline/data/scan.hpp"
+#include "pipeline/plot/plot.hpp"
 #include "plugins/diagnose/noise.hpp"
 
 namespace crisp {
@@ -40,6 +42,7 @@ struct CommonChange {
   double shape = 0;  ///< [s] since the first scan: when it steps; or T
   double shape_error = 0;
   double p_value = 1;
+  double log10_odds = 0;  ///< against the next likely of: a step, a creeping, neither; by BIC
   Gain gain;
 };
 
@@ -51,6 +54,10 @@ struct CommonChange {
 /// @return  what is significant beyond 0.002
 std::optional<CommonChange> common_change(const RangeErrors& errors, const std::vector<double>& seconds,
                                           std::size_t looks, std::uint64_t seed);
+
+/// The mean error of each scan beside the change that was found in it.
+Plot change_plot(const std::string& name, const CommonChange& change, const RangeErrors& errors,
+                 const std::vector<double>& seconds);
 
 /// Takes it out of the ranges' errors.
 void take_out(const CommonChange& change, const std::vector<double>& seconds, RangeErrors& errors);

@@ -95,9 +95,11 @@ std::optional<Finding> quantisation(const std::string& scope, std::span<const fl
   std::vector<double> after;
   double mean = 0;
   double squares = 0;
+  double likelihood = 0;
   for (const float range : ranges) {
     before.push_back(0);
     after.push_back(log_density_ratio(double{range}, step));
+    likelihood += after.back();
     mean += double{range} / static_cast<double>(ranges.size());
     squares += double{range} * double{range} / static_cast<double>(ranges.size());
   }
@@ -116,6 +118,7 @@ std::optional<Finding> quantisation(const std::string& scope, std::span<const fl
                       .value = step,
                       .std_error = step * step * slope_error / (2 * std::numbers::pi),
                       .free = true}},
+      .log10_odds = (likelihood - std::log(count) / 2) / std::numbers::ln10,
       .p_value = std::min(1.0, static_cast<double>(last - first) * std::exp(-count * strongest * strongest)),
       .confounded_with = {},
       .gain = {gain},

@@ -93,22 +93,30 @@ double limit_of(const Candidate& candidate, const Look& look, const SelectionSet
   return left > 0 ? std::max(significant, settings.visible / left) : std::numeric_limits<double>::infinity();
 }
 
-/// Candidates that could be half as large as the noise of ranges, in every form, without being seen.
-std::vector<Diagnosis::Limit> hidden(const std::vector<std::optional<Look>>& looks,
-                                     const Dictionary& dictionary, const SelectionSettings& settings,
-                                     std::size_t beams) {
+/// Candidates that could be half as large as the noise of ranges, in every form, without being seen beside
+/// those that were taken.
+std::vector<Diagnosis::Limit> hidden(const std::vector<std::size_t>& taken, const Dictionary& dictionary,
+                                     const NormalEquations& equations, const SelectionSettings& settings) {
   constexpr double kMuch = 0.5;
-  std::map<std::string, double> limits;
+  struct Least {
+    double limit = 0;
+    std::size_t candidate = 0;
+  };
+  const auto looks = looks_beside(taken, dictionary, equations);
+  std::map<std::string, Least> limits;
   for (std::size_t c = 0; c < looks.size(); ++c) {
     const Candidate& candidate = dictionary.candidates()[c];
     if (!looks[c] || !candidate.is_cause()) continue;
-    const double limit = limit_of(candidate, *looks[c], settings, beams);
-    const auto [known, is_new] = limits.try_emplace(candidate.name, limit);
-    known->second = std::min(known->second, limit);
+    const Least own{.limit = limit_of(candidate, *looks[c], settings, equations.beams), .candidate = c};
+    const auto [known, is_new] = limits.try_emplace(candidate.name, own);
+    if (own.limit < known->second.limit) known->second = own;
   }
   std::vector<Diagnosis::Limit> hidden;
-  for (const auto& [name, limit] : limits) {
-    if (!(limit < kMuch)) hidden.push_back({.name = name, .size = limit});
+  for (const auto& [name, least] : limits) {
+    if (least.limit < kMuch) continue;
+    hidden.push_back({.name = name,
+                      .size = least.limit,
+                      .combination = known_instead(least.candidate, taken, dictionary, equations)});
   }
   return hidden;
 }
@@ -130,8 +138,7 @@ void look(const Evidence& evidence, const TermRegistry& terms, const SelectionSe
          .rivals = rivals(choice, dictionary),
          .gains = {}});
   }
-  result.unobservable =
-      hidden(looks_beside(taken, dictionary, equations), dictionary, settings, equations.beams);
+  result.unobservable = hidden(taken, dictionary, equations, settings);
   result.looks = names_of(dictionary.candidates()).size();
   result.unshared = unshared_causes(terms, evidence.lasting());
 }

@@ -41,6 +41,7 @@ struct Diagnosis {
     std::string name;
     double size =
         0;  ///< RMS change of ranges that would not be seen, in units of their noise; may be infinite
+    std::string combination;  ///< that is known instead: see known_instead()
   };
   std::vector<Limit> unobservable;
   std::vector<std::string> unshared;  ///< terms that were not looked for: recordings cannot share them

@@ -38,8 +38,12 @@ std::size_t first_slot(const Calibration& calibration, std::size_t owner, std::s
 Dictionary::Dictionary(const SensorModel& model, std::vector<std::size_t> base,
                        std::vector<Candidate> candidates, const TermRegistry& terms)
     : candidates_(std::move(candidates)), terms_(terms), base_(base.size()), parameters_(base.size()) {
+  for (const std::size_t parameter : base) names_.push_back(model.names()[parameter]);
   for (const Candidate& candidate : candidates_) {
-    auto& columns = of_.emplace_back(sizes(terms.get(candidate.term.term)->info()).size());
+    const auto own = sizes(terms.get(candidate.term.term)->info());
+    for (const std::size_t k : own)
+      names_.push_back(candidate.name + "." + candidate.term.parameters[k].name);
+    auto& columns = of_.emplace_back(own.size());
     std::iota(columns.begin(), columns.end(), parameters_);
     parameters_ += columns.size();
   }

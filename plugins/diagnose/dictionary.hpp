@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "pipeline/estimate/sample.hpp"
@@ -18,8 +19,9 @@ class Dictionary {
   Dictionary(const SensorModel& model, std::vector<std::size_t> base, std::vector<Candidate> candidates,
              const TermRegistry& terms);
 
-  std::size_t parameters() const { return parameters_; }  ///< those of the base first: 0, 1, …
-  std::size_t base() const { return base_; }              ///< how many of them are the base's
+  std::size_t parameters() const { return parameters_; }            ///< those of the base first: 0, 1, …
+  std::size_t base() const { return base_; }                        ///< how many of them are the base's
+  const std::vector<std::string>& names() const { return names_; }  ///< of each: "laser2.mirror.cone.kappa"
   const std::vector<Candidate>& candidates() const { return candidates_; }
   /// Those of one candidate that say how large it is; its forms are not among them.
   const std::vector<std::size_t>& of(std::size_t candidate) const { return of_[candidate]; }
@@ -42,6 +44,7 @@ class Dictionary {
   std::vector<Candidate> candidates_;
   const TermRegistry& terms_;
   std::vector<std::vector<std::size_t>> of_;
+  std::vector<std::string> names_;
   std::size_t base_ = 0;
   std::size_t parameters_ = 0;
   std::vector<Page> pages_;

@@ -20,7 +20,7 @@ class EdgeFinder {
       : beams_(beams), points_(points), met_(met), crowd_(crowd), near_(kOnSurface * usual) {}
 
   bool is_on(std::size_t i) const {
-    return met_.end[i] != kNothing && std::abs(double{met_.distance[i]}) < near_;
+    return met_.end[i] != kNoSurface && std::abs(double{met_.distance[i]}) < near_;
   }
 
   /// The first beam after those between, if an edge begins at `i`; else `i`.
@@ -36,14 +36,17 @@ class EdgeFinder {
     return i;
   }
 
-  bool is_mixed(std::size_t first, std::size_t last) const {
+  /// Where between the near side (0) and the far one (1) a range ends in thin air, if one does.
+  std::optional<double> in_the_air(std::size_t first, std::size_t last) const {
     constexpr double kClear = 0.12;  // [m] from either side
     const auto [low, high] = std::minmax({double{beams_.range[first]}, double{beams_.range[last]}});
     for (std::size_t k = first + 1; k < last; ++k) {
       const double range{beams_.range[k]};
-      if (range > low + kClear && range < high - kClear && is_in_the_air(k, first)) return true;
+      if (range > low + kClear && range < high - kClear && is_in_the_air(k, first)) {
+        return (range - low) / (high - low);
+      }
     }
-    return false;
+    return std::nullopt;
   }
 
  private:
@@ -111,7 +114,10 @@ Crossings crossings_of(std::size_t laser, const Measurements& beams, const Point
   for (std::size_t i = 0; i + 1 < beams.size(); ++i) {
     if (beams.laser[i] != laser || !finder.is_on(i)) continue;
     const std::size_t far = finder.far_side(i);
-    if (far != i) crossings.mixed.push_back(finder.is_mixed(i, far));
+    if (far == i) continue;
+    const auto place = finder.in_the_air(i, far);
+    crossings.mixed.push_back(place.has_value());
+    if (place) crossings.places.push_back(*place);
   }
   return crossings;
 }
@@ -140,6 +146,7 @@ std::optional<Finding> mixed_pixels(const std::string& scope, const Crossings& c
                                  .value = crossings.share(),
                                  .std_error = error,
                                  .free = true}},
+                 .explained_fraction = kUnasked,
                  .p_value = p,
                  .confounded_with = {},
                  .gain = {},

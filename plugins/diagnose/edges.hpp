@@ -34,7 +34,8 @@ class Crowd {
 
 /// The edges that one laser's scans cross: from one flat surface to another one behind it.
 struct Crossings {
-  std::vector<bool> mixed;  ///< of each: whether a range was reported there that ends on nothing
+  std::vector<bool> mixed;     ///< of each: whether a range was reported there that ends on nothing
+  std::vector<double> places;  ///< of those ranges: from 0, at the near side, to 1, at the far one
 
   double share() const;  ///< of all that are mixed
 };

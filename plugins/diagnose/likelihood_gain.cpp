@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/likelihood_gain.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
+#include <optional>
 
 #include "pipeline/quality/resampling.hpp"
 
 namespace crisp {
+namespace {
+
+constexpr const char* kMetric = "log-likelihood a measurement";
+
+/// [nat] By how much a range's log-likelihood rises, if it was asked.
+std::optional<double> rise_of(const std::vector<Gain>& gains) {
+  const auto gain = std::ranges::find(gains, kMetric, &Gain::metric);
+  if (gain == gains.end()) return std::nullopt;
+  return std::max(0.0, gain->after - gain->before);
+}
+
+}  // namespace
 
 Gain likelihood_gain(const std::vector<double>& before, const std::vector<double>& after,
                      const std::vector<std::uint32_t>& block, std::uint64_t seed) {
@@ -32,7 +46,7 @@ Gain likelihood_gain(const std::vector<double>& before, const std::vector<double
     sums.push_back(sum);
     add(sum, all);
   }
-  Gain gain{.metric = "log-likelihood a measurement", .unit = "nat"};
+  Gain gain{.metric = kMetric, .unit = "nat"};
   if (sums.size() < 2) return gain;
   gain.before = all.before / all.count;
   gain.after = all.after / all.count;
@@ -42,6 +56,16 @@ Gain likelihood_gain(const std::vector<double>& before, const std::vector<double
                 return (total.after - total.before) / total.count;
               }).ci95;
   return gain;
+}
+
+void share_explained(std::span<Finding> findings, std::span<const UnnamedFinding> unnamed) {
+  double all = 0;
+  for (const Finding& finding : findings) all += rise_of(finding.gain).value_or(0);
+  for (const UnnamedFinding& finding : unnamed) all += rise_of(finding.gain).value_or(0);
+  for (Finding& finding : findings) {
+    const auto own = rise_of(finding.gain);
+    if (own) finding.explained_fraction = all > 0 ? *own / all : 0;
+  }
 }
 
 }  // namespace crisp

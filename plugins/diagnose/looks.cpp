@@ -23,15 +23,15 @@ Eigen::MatrixXd seen_directions(const Eigen::MatrixXd& matrix, const Eigen::Vect
 }
 
 /// By how much steps along some directions scatter, and how far they are beyond that.
-struct Spread {
+struct StepSpread {
   Eigen::MatrixXd covariance;
   double wald = std::numeric_limits<double>::infinity();
 };
 
 /// By the division into blocks by which the steps are the most ordinary.
-Spread widest(const NormalEquations& equations, const std::vector<std::size_t>& of,
-              const Eigen::MatrixXd& directions, const Eigen::VectorXd& steps) {
-  Spread widest;
+StepSpread widest(const NormalEquations& equations, const std::vector<std::size_t>& of,
+                  const Eigen::MatrixXd& directions, const Eigen::VectorXd& steps) {
+  StepSpread widest;
   for (std::size_t division = 0; division < equations.pulls.size(); ++division) {
     const Eigen::MatrixXd pulls = equations.pulls_along(division, of, directions);
     const Eigen::MatrixXd covariance = pulls * pulls.transpose();
@@ -55,7 +55,7 @@ Look look_at(const NormalEquations& equations, const std::vector<std::size_t>& o
   const Eigen::VectorXd squares = equations.squares(of);
   const Eigen::MatrixXd seen = seen_directions(matrix, squares);
   const Eigen::VectorXd steps = -seen.transpose() * equations.vector(of);
-  const Spread spread = widest(equations, of, seen, steps);
+  const StepSpread spread = widest(equations, of, seen, steps);
 
   Look look;
   look.value = seen * steps;

@@ -118,8 +118,8 @@ Met met_by(const Surfels& surfels, const BeamsView& beams, const std::vector<flo
   for (const Surfel& surfel : surfels.surfels) surfaces.emplace_back(surfel, surfels, beams);
   const std::size_t n = ranges.size();
   Met met;
-  met.ahead.assign(n, kNothing);
-  met.end.assign(n, kNothing);
+  met.ahead.assign(n, kNoSurface);
+  met.end.assign(n, kNoSurface);
   for (auto* values : {&met.error, &met.cosine, &met.distance}) values->assign(n, 0);
   for_blocks(n, kAtOnce, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -137,7 +137,7 @@ double usual_error(const Met& met) {
   constexpr double kOfNormal = 1.4826;
   std::vector<float> sizes;
   for (std::size_t i = 0; i < met.size(); ++i) {
-    if (met.ahead[i] != kNothing) sizes.push_back(std::abs(met.error[i]));
+    if (met.ahead[i] != kNoSurface) sizes.push_back(std::abs(met.error[i]));
   }
   if (sizes.empty()) return 0;
   return kOfNormal * double{middle_of(sizes)};

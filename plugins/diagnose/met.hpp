@@ -9,16 +9,17 @@
 
 namespace crisp {
 
-inline constexpr std::uint32_t kNothing = ~std::uint32_t{0};
+inline constexpr std::uint32_t kNoSurface = ~std::uint32_t{0};
 
 /// What n beams should have met, by the surfaces that all of them show together, and what they did meet.
 /// Element i of all arrays is of beam i.
 struct Met {
-  std::vector<std::uint32_t> ahead;  ///< the surface before it, well inside what is known of it; or kNothing
-  std::vector<float> error;          ///< [m] of its range beyond that surface; 0 where there is none
-  std::vector<float> cosine;         ///< |cos β| there
-  std::vector<std::uint32_t> end;    ///< the surface nearest to where it ended; kNothing: near none
-  std::vector<float> distance;       ///< [m] along the beam from there
+  std::vector<std::uint32_t>
+      ahead;                       ///< the surface before it, well inside what is known of it; or kNoSurface
+  std::vector<float> error;        ///< [m] of its range beyond that surface; 0 where there is none
+  std::vector<float> cosine;       ///< |cos β| there
+  std::vector<std::uint32_t> end;  ///< the surface nearest to where it ended; kNoSurface: near none
+  std::vector<float> distance;     ///< [m] along the beam from there
 
   std::size_t size() const { return ahead.size(); }
 };

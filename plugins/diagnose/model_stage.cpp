@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/model_stage.hpp"
 
+#include <utility>
+
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/plot/write_plot.hpp"
@@ -81,6 +83,11 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
   calibration.provenance["diagnosis"] = "diagnose.model";
   calibration.quality = start_->quality;
   calibration.quality["chi2"] = diagnosis.after.chi2;
+  // That of the calibration that came is none of this one's.
+  if (auto known = calibration.quality.extract("rqe_after")) {
+    known.key() = "rqe_undiagnosed";
+    calibration.quality.insert(std::move(known));
+  }
   Findings findings = findings_of(diagnosis, calibration, terms, settings_.selection, noise_);
   for (const auto& artefact : {aliasing(sample), density_bias(*start_, diagnosis.before.outcome)}) {
     if (artefact) findings.artefacts.push_back(*artefact);

@@ -151,6 +151,12 @@ std::size_t beams_of(const RangeErrors& errors) {
   return errors.beam.empty() ? 0 : std::ranges::max(errors.beam) + std::size_t{1};
 }
 
+double NoiseLaw::variance(double range, std::uint16_t beam) const {
+  const double tail = has_tail ? tail_share * (tail_scale * tail_scale - 1) : 0;
+  const double far = has_peaks() ? weight[beam] : 0;
+  return std::pow(sigma_at(*this, range, beam), 2) * (1 + tail) + separation * separation * far * (1 - far);
+}
+
 double NoiseLaw::log_density(double value, double range_m, std::uint16_t beam) const {
   const Parts parts = parts_of(*this, beam);
   const double sigma_here = sigma_at(*this, range_m, beam);

@@ -37,6 +37,9 @@ struct NoiseLaw {
 
   /// ln of the density [1/m].
   double log_density(double value, double range, std::uint16_t beam) const;
+
+  /// [m²] of all parts together.
+  double variance(double range, std::uint16_t beam) const;
 };
 
 /// The likeliest law of those that have what `like` has, by expectation and maximisation.

@@ -3,7 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <span>
+
 #include "pipeline/clocks/unwrap.hpp"
+#include "pipeline/plot/write_plot.hpp"
+#include "plugins/diagnose/likelihood_gain.hpp"
+#include "plugins/diagnose/noise_plots.hpp"
 #include "plugins/diagnose/report.hpp"
 
 namespace crisp {
@@ -17,6 +24,7 @@ Finding finding_of(const CommonChange& change, const std::string& laser) {
                   .scope = laser,
                   .parameters = {},
                   .explained_fraction = change.gain.explained(),
+                  .log10_odds = change.log10_odds,
                   .p_value = change.p_value,
                   .confounded_with = {},
                   .gain = {change.gain},
@@ -39,6 +47,8 @@ void DiagnoseNoiseStage::describe(StageDescription<DiagnoseNoiseStage>& d) {
       "grows with the range, heavy tails, two peaks with a weight of each beam's own (`noise.*`), forward by "
       "BIC, each judged by scans that it was not fitted to. A laser that moves is passed over with a word.");
   d.takes<Scan>().takes<Findings>(Need::optional).gives<Findings>();
+  d.option("folder", &DiagnoseNoiseStage::folder_,
+           "where plots go of each laser of which something is found; auto: nowhere");
 }
 
 void DiagnoseNoiseStage::process(const Inputs& in, Outputs&, Context& context) {
@@ -65,8 +75,10 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
   for (std::size_t scan = 0; scan < scans.scans(); ++scan) {
     seconds.push_back(1e-9 * static_cast<double>(scans.receipt_ns(scan) - epoch_ns));
   }
+  std::vector<Plot> plots;
   if (const auto change = common_change(*errors, seconds, lasers_.size(), context.seed())) {
     all.findings.push_back(finding_of(*change, name));
+    plots.push_back(change_plot(name, *change, *errors, seconds));
     take_out(*change, seconds, *errors);
   }
   const NoiseDiagnosis noise = diagnose_noise(name, *errors, context.seed());
@@ -75,6 +87,12 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
   all.noise.push_back({.laser = name, .ranges = errors->size(), .sigma = noise.law.sigma});
   all.findings.insert(all.findings.end(), noise.findings.begin(), noise.findings.end());
   all.unnamed.insert(all.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
+  share_explained(std::span(all.findings).last(noise.findings.size()),
+                  std::span(all.unnamed).last(noise.unnamed.size()));
+  if (!noise.findings.empty() || !noise.unnamed.empty()) {
+    std::ranges::move(noise_plots(name, *errors, noise), std::back_inserter(plots));
+  }
+  if (folder_ && !plots.empty()) write_plots(*folder_ / (name + "_noise.svg"), plots, context);
 }
 
 void DiagnoseNoiseStage::finish(Outputs& out, Context& context) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,7 @@ class DiagnoseNoiseStage final : public Stage {
  private:
   void add_laser(const std::string& name, const AtRest& scans, Findings& all, Context& context) const;
 
+  std::optional<std::filesystem::path> folder_;
   std::vector<AtRest> lasers_;  // of the rig
   std::int64_t first_ns_ = 0;   // receipt of the first scan
   Findings all_;                // what other diagnoses said before

@@ -22,6 +22,9 @@ struct Profile {
   std::vector<Bin> bins;
   double rms = 0;      ///< [m] of the measured means, less what noise makes
   double p_value = 1;  ///< that noise makes as much in any of the profiles that were looked at
+
+  /// Whether this is the simulation's by one chance in a hundred at most.
+  bool departs() const { return p_value <= 0.01; }
 };
 
 /// The measured data beside what the model expects of them.

@@ -2,6 +2,7 @@
 #include "plugins/diagnose/register.hpp"
 
 #include "plugins/diagnose/crispness_stage.hpp"
+#include "plugins/diagnose/findings_inspector.hpp"
 #include "plugins/diagnose/model_stage.hpp"
 #include "plugins/diagnose/noise_stage.hpp"
 #include "plugins/diagnose/scatter_stage.hpp"
@@ -15,6 +16,7 @@ void register_diagnose(Registrar& registrar) {
   registrar.stage<DiagnoseNoiseStage>();
   registrar.stage<DiagnoseScatterStage>();
   registrar.stage<DiagnoseStampsStage>();
+  registrar.inspector(findings_inspector());
 }
 
 }  // namespace crisp

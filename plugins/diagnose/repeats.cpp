@@ -184,7 +184,7 @@ ChangingDirections changing_directions(const Measurements& beams, const PlateTra
   Glances glances(grid);
   double ahead = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (met.ahead[i] == kNothing) continue;
+    if (met.ahead[i] == kNoSurface) continue;
     const auto glance = grid.glance(beams, i);
     if (!glance) continue;
     ahead += 1;
@@ -220,6 +220,7 @@ std::optional<Finding> moving(const ChangingDirections& directions, std::uint64_
                                 {.name = "directions",
                                  .unit = "1",
                                  .value = static_cast<double>(directions.looks.size())}},
+                 .explained_fraction = kUnasked,
                  .p_value = p,
                  .confounded_with = {},
                  .gain = {},

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -82,8 +83,10 @@ UnnamedFinding unnamed_of(const Departure& departure, const Calibration& calibra
 
 std::string with_unit(const Parameter& parameter) {
   const auto shown = [&](double factor, const char* unit) {
-    return fmt::format("{} = {:.4g} ± {:.2g}{}{}", parameter.name, parameter.value * factor,
-                       parameter.std_error * factor, *unit ? " " : "", unit);
+    const std::string error =
+        parameter.std_error > 0 ? fmt::format(" ± {:.2g}", parameter.std_error * factor) : "";
+    return fmt::format("{} = {:.4g}{}{}{}", parameter.name, parameter.value * factor, error, *unit ? " " : "",
+                       unit);
   };
   if (parameter.unit == "rad") return shown(180 / std::numbers::pi, "deg");
   if (parameter.unit == "m") return shown(1e3, "mm");
@@ -91,13 +94,27 @@ std::string with_unit(const Parameter& parameter) {
   return shown(1, parameter.unit == "1" ? "" : parameter.unit.c_str());
 }
 
+/// Of what is off; what a model's term moves is told by how much ranges change for it, whatever its unit.
+std::string by_how_much(const UnnamedFinding& finding) {
+  if (finding.unit == "rad")
+    return fmt::format(", by {:.4f} deg", finding.amplitude * 180 / std::numbers::pi);
+  if (finding.unit == "s") return fmt::format(", by {:.4f} ms", finding.amplitude * 1e3);
+  const std::array lengths = {"range", "base", "noise"};
+  const bool is_length = std::ranges::find(lengths, finding.quantity) != lengths.end();
+  return fmt::format("{} {:.3f} mm", is_length ? ", by" : "; ranges change by", finding.amplitude * 1e3);
+}
+
+std::string chance_in_words(double p_value) {
+  return p_value > 0 ? fmt::format("p = {:.2g}", p_value) : "p < 1e-300";
+}
+
 std::string gain_in_words(const std::vector<Gain>& gains) {
-  if (gains.empty()) return "  no held-out data say what that brings\n";
+  if (gains.empty()) return "\n  no held-out data say what that brings";
   std::string words;
   for (const Gain& gain : gains) {
     const double factor = gain.unit == "m" ? 1e3 : gain.unit == "s" ? 1e6 : 1;
     const std::string unit = gain.unit == "m" ? "mm" : gain.unit == "s" ? "us" : gain.unit;
-    words += fmt::format("  {:<32}{:>10.4f} -> {:>8.4f} {:<3}  change {:+.4f} to {:+.4f}\n", gain.metric,
+    words += fmt::format("\n  {:<32}{:>10.4f} -> {:>8.4f} {:<3}  change {:+.4f} to {:+.4f}", gain.metric,
                          gain.before * factor, gain.after * factor, unit, gain.ci95[0] * factor,
                          gain.ci95[1] * factor);
   }
@@ -112,12 +129,30 @@ std::string reason_of(const Diagnosis::Limit& limit, const std::string& told_by,
       1e3 * limit.size * noise, needs);
 }
 
+/// What the extended model leaves over a covariate, unless something is said of that already.
+void add_left_over(const SideBySide& left, const Calibration& calibration, double visible, Findings& all) {
+  for (const Profile& profile : left.profiles) {
+    if (!profile.departs() || profile.rms < visible) continue;
+    const std::string& laser = calibration.lasers[profile.laser].name;
+    const bool is_known = std::ranges::any_of(all.unnamed, [&](const UnnamedFinding& known) {
+      return known.covariate == profile.covariate && (known.scope == laser || known.scope == "plate");
+    });
+    if (is_known) continue;
+    all.unnamed.push_back({.covariate = profile.covariate,
+                           .quantity = "range",
+                           .scope = laser,
+                           .amplitude = profile.rms,
+                           .unit = "m",
+                           .p_value = profile.p_value,
+                           .gain = {}});
+  }
+}
+
 /// The profiles that depart from the simulation.
 std::string profiles_in_words(const SideBySide& left, const Calibration& calibration) {
-  constexpr double kSignificant = 0.05;
   std::string words;
   for (const Profile& profile : left.profiles) {
-    if (profile.p_value > kSignificant) continue;
+    if (!profile.departs()) continue;
     words +=
         fmt::format("  {} against {:<14}{:>8.3f} mm   p = {:.3f}\n", calibration.lasers[profile.laser].name,
                     profile.covariate, profile.rms * 1e3, profile.p_value);
@@ -141,10 +176,11 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
       all.unnamed.push_back(unnamed_of(departure, calibration, diagnosis, noise));
     }
   }
+  add_left_over(diagnosis.left_after, calibration, settings.visible * noise, all);
   for (const Diagnosis::Limit& limit : diagnosis.unobservable) {
     all.unobservable.push_back({.parameter = limit.name,
                                 .reason = reason_of(limit, told_by(limit.name, terms), noise),
-                                .combination = {}});
+                                .combination = limit.combination});
   }
   for (const std::string& cause : diagnosis.unshared) {
     all.unobservable.push_back(
@@ -158,12 +194,22 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
   return all;
 }
 
-std::string in_words(const Finding& finding) {
+std::string headline(const Finding& finding) {
   std::string words =
       fmt::format("{} of {}{}: ", finding.cause, finding.scope, finding.accepted ? "" : " (refused)");
-  for (std::size_t k = 0; k < finding.parameters.size(); ++k) {
-    words += (k > 0 ? ", " : "") + with_unit(finding.parameters[k]);
-  }
+  for (const Parameter& parameter : finding.parameters) words += with_unit(parameter) + ", ";
+  return words + chance_in_words(finding.p_value);
+}
+
+std::string headline(const UnnamedFinding& finding) {
+  const bool has_gain = !finding.gain.empty();
+  return fmt::format("unnamed: {} of {} depends on the {}{}, {}{}", finding.quantity, finding.scope,
+                     finding.covariate, by_how_much(finding), chance_in_words(finding.p_value),
+                     has_gain && !finding.accepted ? " (refused)" : "");
+}
+
+std::string in_words(const Finding& finding) {
+  std::string words = headline(finding);
   if (finding.explained_fraction > 0) {
     words += fmt::format("\n  explains {:.0f} % of what was found", 100 * finding.explained_fraction);
   }
@@ -177,13 +223,12 @@ std::string in_words(const Finding& finding) {
     words += fmt::format("\n  what would: {}", fmt::join(finding.told_apart_by, "; "));
   }
   if (!finding.accepted) words += "\n  it does not pay on data that it was not fitted to";
-  return words + "\n" + gain_in_words(finding.gain);
+  return words + gain_in_words(finding.gain);
 }
 
 std::string in_words(const UnnamedFinding& finding) {
-  return fmt::format("unnamed: {} of {} depends on the {}, by {:.3f} mm{}\n", finding.quantity, finding.scope,
-                     finding.covariate, finding.amplitude * 1e3, finding.accepted ? "" : " (refused)") +
-         gain_in_words(finding.gain);
+  if (finding.gain.empty()) return headline(finding) + "\n  no term of the catalogue takes it";
+  return headline(finding) + gain_in_words(finding.gain);
 }
 
 std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
@@ -193,21 +238,14 @@ std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
   const std::string departing = profiles_in_words(diagnosis.left_before, calibration);
   words += departing.empty() ? "  nothing departs from the simulation\n" : departing;
   if (findings.findings.empty() && findings.unnamed.empty()) words += "no cause is found\n";
-  for (const Finding& finding : findings.findings) words += in_words(finding);
-  for (const UnnamedFinding& finding : findings.unnamed) {
-    words += in_words(finding);
-  }
+  for (const Finding& finding : findings.findings) words += in_words(finding) + "\n";
+  for (const UnnamedFinding& finding : findings.unnamed) words += in_words(finding) + "\n";
   for (const Artefact& artefact : findings.artefacts) {
     words += fmt::format("the estimator's own ({}): {}\n", artefact.name, artefact.reason);
     for (const Parameter& parameter : artefact.parameters) words += "  " + with_unit(parameter) + "\n";
   }
   words += fmt::format("measured and simulated residuals: p = {:.3f} before, {:.3f} after", findings.before_p,
                        findings.after_p);
-  const std::string left = profiles_in_words(diagnosis.left_after, calibration);
-  if (!left.empty() && !(findings.findings.empty() && findings.unnamed.empty())) {
-    words += "\nwhat is left with these terms in the model still departs from the simulation:\n" + left;
-    words.pop_back();
-  }
   if (!findings.unobservable.empty()) {
     std::vector<std::string> names;
     for (const auto& one : findings.unobservable) names.push_back(one.parameter);

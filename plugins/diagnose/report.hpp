@@ -14,7 +14,11 @@ namespace crisp {
 Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration, const TermRegistry& terms,
                      const SelectionSettings& settings, double noise);
 
-/// And for people.
+/// And for people: what was found, with its size and p-value, in a line.
+std::string headline(const Finding& finding);
+std::string headline(const UnnamedFinding& finding);
+
+/// With what else is known of it, in a few lines.
 std::string in_words(const Finding& finding);
 std::string in_words(const UnnamedFinding& finding);
 std::string in_words(const Diagnosis& diagnosis, const Findings& findings);

@@ -47,8 +47,8 @@ void balance(const std::vector<float>& errors, double least, double most, std::v
 constexpr std::size_t kGroups = 10;
 
 /// For each value the group it is of: tenths of all.
-std::vector<std::size_t> groups_of(const std::vector<float>& values) {
-  std::vector<float> sorted = values;
+std::vector<std::size_t> groups_of(std::span<const float> values) {
+  std::vector<float> sorted(values.begin(), values.end());
   std::ranges::sort(sorted);
   std::vector<float> ends;
   for (std::size_t g = 1; g < kGroups; ++g) ends.push_back(sorted[g * sorted.size() / kGroups]);
@@ -109,7 +109,7 @@ Scatter scatter_of(std::size_t laser, const Measurements& beams, const Met& met,
   std::vector<std::size_t> chosen;
   std::vector<float> errors;
   for (std::size_t i = 1; i + 1 < beams.size(); ++i) {
-    if (beams.laser[i] != laser || met.ahead[i] == kNothing) continue;
+    if (beams.laser[i] != laser || met.ahead[i] == kNoSurface) continue;
     if (!are_neighbours(beams, i - 1, i) || !are_neighbours(beams, i, i + 1)) continue;
     if (!is_on(i - 1, met.ahead[i]) || !is_on(i + 1, met.ahead[i])) continue;
     if (std::abs(double{met.error[i]}) > kFarOff.back() * usual) continue;
@@ -135,7 +135,7 @@ Scatter scatter_of(std::size_t laser, const Measurements& beams, const Met& met,
   return scatter;
 }
 
-std::optional<UnnamedFinding> noise_by(const std::string& name, const std::vector<float>& values,
+std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const float> values,
                                        const std::string& scope, const RangeErrors& errors,
                                        const NoiseLaw& law, double least_gain, std::uint64_t seed) {
   constexpr double kUnlikely = 0.002;

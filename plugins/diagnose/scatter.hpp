@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,7 @@ Scatter scatter_of(std::size_t laser, const Measurements& beams, const Met& met,
 /// @param name    of the covariate: "incidence"
 /// @param values  of it, one a range
 /// @return  what is significant beyond 0.002 and brings at least `least_gain` [nat] a range held out
-std::optional<UnnamedFinding> noise_by(const std::string& name, const std::vector<float>& values,
+std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const float> values,
                                        const std::string& scope, const RangeErrors& errors,
                                        const NoiseLaw& law, double least_gain, std::uint64_t seed);
 

@@ -4,14 +4,18 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <span>
 
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
+#include "pipeline/plot/write_plot.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/diagnose/comb.hpp"
 #include "plugins/diagnose/edges.hpp"
 #include "plugins/diagnose/evidence.hpp"
+#include "plugins/diagnose/likelihood_gain.hpp"
 #include "plugins/diagnose/noise.hpp"
+#include "plugins/diagnose/noise_plots.hpp"
 #include "plugins/diagnose/repeats.hpp"
 #include "plugins/diagnose/report.hpp"
 #include "plugins/diagnose/scatter.hpp"
@@ -40,6 +44,8 @@ void DiagnoseScatterStage::describe(StageDescription<DiagnoseScatterStage>& d) {
            "brings less may be the surfaces' own roughness")
       .unit("nat")
       .range(0, 10);
+  d.option("folder", &DiagnoseScatterStage::folder_,
+           "where plots go of each laser of which something is found, and of what moved; auto: nowhere");
 }
 
 void DiagnoseScatterStage::process(const Inputs& in, Outputs&, Context&) {
@@ -73,7 +79,10 @@ void DiagnoseScatterStage::finish(Outputs& out, Context& context) {
     add_laser(laser, all, found, context);
   }
   const auto changing = changing_directions(beams, *evidence.sample().plate, all.met, all.usual);
-  if (const auto moved = moving(changing, context.seed())) found.findings.push_back(*moved);
+  if (const auto moved = moving(changing, context.seed())) {
+    found.findings.push_back(*moved);
+    if (folder_) write_plots(*folder_ / "scene_moving.svg", {moving_plot(changing)}, context);
+  }
   for (const Finding& finding : found.findings) context.say(in_words(finding));
   for (const UnnamedFinding& finding : found.unnamed) context.say(in_words(finding));
   context.report({{"findings", found.findings.size()}, {"unnamed", found.unnamed.size()}});
@@ -84,7 +93,9 @@ void DiagnoseScatterStage::finish(Outputs& out, Context& context) {
 void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Findings& found,
                                      Context& context) const {
   const std::string& name = calibration_->lasers[laser].name;
-  add_noise(laser, all, found, context);
+  const std::size_t named = found.findings.size();
+  const std::size_t unnamed = found.unnamed.size();
+  std::vector<Plot> plots = add_noise(laser, all, found, context);
   std::vector<float> ranges;
   std::vector<std::uint32_t> blocks;
   for (std::size_t i = 0; i < all.beams.size(); ++i) {
@@ -92,22 +103,30 @@ void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Fin
     ranges.push_back(all.beams.range[i]);
     blocks.push_back(all.blocks[i]);
   }
-  if (const auto comb = quantisation(name, ranges, blocks, context.seed())) found.findings.push_back(*comb);
+  if (const auto comb = quantisation(name, ranges, blocks, context.seed())) {
+    found.findings.push_back(*comb);
+    plots.push_back(comb_plot(name, ranges, comb->parameters.front().value));
+  }
   const Crossings edges = crossings_of(laser, all.beams, all.points, all.met, all.crowd, all.usual);
   context.say(fmt::format("{}: {} edges crossed, {:.1f} % of them with a range that ends in thin air", name,
                           edges.mixed.size(), 100 * edges.share()));
-  if (const auto mixed = mixed_pixels(name, edges, context.seed())) found.findings.push_back(*mixed);
+  if (const auto mixed = mixed_pixels(name, edges, context.seed())) {
+    found.findings.push_back(*mixed);
+    plots.push_back(edge_plot(name, edges));
+  }
+  share_explained(std::span(found.findings).subspan(named), std::span(found.unnamed).subspan(unnamed));
+  if (folder_ && !plots.empty()) write_plots(*folder_ / (name + "_noise.svg"), plots, context);
 }
 
-void DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
-                                     Context& context) const {
+std::vector<Plot> DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
+                                                  Context& context) const {
   constexpr std::size_t kTooFew = 1000;
   const std::string& name = calibration_->lasers[laser].name;
   const Scatter scatter = scatter_of(laser, all.beams, all.met, all.usual, all.blocks);
   if (scatter.errors.size() < kTooFew) {
     context.say(
         fmt::format("{}: too few beams well inside flat surfaces to say how its ranges scatter", name));
-    return;
+    return {};
   }
   const NoiseDiagnosis noise = diagnose_noise(name, scatter.errors, context.seed(), least_gain_);
   context.say(fmt::format("{}: {} ranges on flat surfaces scatter by {:.2f} mm (RMS)", name,
@@ -115,12 +134,18 @@ void DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Fin
   found.noise.push_back({.laser = name, .ranges = scatter.errors.size(), .sigma = noise.law.sigma});
   found.findings.insert(found.findings.end(), noise.findings.begin(), noise.findings.end());
   found.unnamed.insert(found.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
-  for (const auto& [covariate, values] :
-       {std::pair("incidence", &scatter.cosine), std::pair("remission", &scatter.remission)}) {
+  std::vector<Plot> plots;
+  if (!noise.findings.empty() || !noise.unnamed.empty()) plots = noise_plots(name, scatter.errors, noise);
+  for (const NoiseCovariate& over :
+       {NoiseCovariate{"incidence", "cosine of the incidence", scatter.cosine},
+        NoiseCovariate{"remission", "remission [device's units]", scatter.remission}}) {
     const auto changes =
-        noise_by(covariate, *values, name, scatter.errors, noise.law, least_gain_, context.seed());
-    if (changes) found.unnamed.push_back(*changes);
+        noise_by(over.name, over.values, name, scatter.errors, noise.law, least_gain_, context.seed());
+    if (!changes) continue;
+    found.unnamed.push_back(*changes);
+    plots.push_back(noise_over(over, name, scatter.errors, noise));
   }
+  return plots;
 }
 
 }  // namespace crisp

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "pipeline/data/findings.hpp"
 #include "pipeline/estimate/collected.hpp"
+#include "pipeline/plot/plot.hpp"
 #include "pipeline/quality/surfels.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
@@ -33,10 +36,13 @@ class DiagnoseScatterStage final : public Stage {
     std::vector<std::uint32_t> blocks;
   };
   void add_laser(std::size_t laser, const Followed& all, Findings& found, Context& context) const;
-  void add_noise(std::size_t laser, const Followed& all, Findings& found, Context& context) const;
+  /// @return  what is drawn of what was found
+  std::vector<Plot> add_noise(std::size_t laser, const Followed& all, Findings& found,
+                              Context& context) const;
 
   double noise_ = SurfelSettings{}.noise;
   double least_gain_ = 0.001;
+  std::optional<std::filesystem::path> folder_;
   Collected collected_;
   std::shared_ptr<const Calibration> calibration_;
   Findings all_;  // what other diagnoses said before

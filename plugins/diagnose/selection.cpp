@@ -8,12 +8,24 @@
 #include <optional>
 #include <set>
 
+#include "pipeline/estimate/observability.hpp"
+
 namespace crisp {
 namespace {
 
 std::vector<std::size_t> without(std::vector<std::size_t> taken, std::size_t one) {
   std::erase(taken, one);
   return taken;
+}
+
+/// The parameters that are estimated beside whatever is looked at: the base's, and those of what was taken.
+std::vector<std::size_t> estimated_with(const std::vector<std::size_t>& taken, const Dictionary& dictionary) {
+  std::vector<std::size_t> parameters(dictionary.base());
+  std::iota(parameters.begin(), parameters.end(), std::size_t{0});
+  for (const std::size_t t : taken) {
+    parameters.insert(parameters.end(), dictionary.of(t).begin(), dictionary.of(t).end());
+  }
+  return parameters;
 }
 
 /// A set of candidates, and what the data say of each other one beside it.
@@ -113,11 +125,7 @@ NormalEquations from_neutral(const Dictionary& dictionary, NormalEquations equat
 std::vector<std::optional<Look>> looks_beside(const std::vector<std::size_t>& taken,
                                               const Dictionary& dictionary,
                                               const NormalEquations& equations) {
-  std::vector<std::size_t> eliminated(dictionary.base());
-  std::iota(eliminated.begin(), eliminated.end(), std::size_t{0});
-  for (const std::size_t t : taken) {
-    eliminated.insert(eliminated.end(), dictionary.of(t).begin(), dictionary.of(t).end());
-  }
+  const std::vector<std::size_t> eliminated = estimated_with(taken, dictionary);
   std::vector<std::size_t> all(dictionary.parameters());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const NormalEquations left = equations.reduced(all, eliminated);
@@ -133,6 +141,27 @@ std::vector<std::optional<Look>> looks_beside(const std::vector<std::size_t>& ta
     looks[c] = std::move(look);
   }
   return looks;
+}
+
+std::string known_instead(std::size_t candidate, const std::vector<std::size_t>& taken,
+                          const Dictionary& dictionary, const NormalEquations& equations) {
+  constexpr double kNothing = 1e-3;  // left of the squares of what a parameter does
+  constexpr double kLittle = 0.05;   // left of what planes leave
+  const std::vector<std::size_t> known = estimated_with(taken, dictionary);
+  const Eigen::VectorXd scale =
+      equations.squares.unaryExpr([](double square) { return square > 0 ? 1 / std::sqrt(square) : 0.0; });
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * equations.matrix * scale.asDiagonal();
+  const std::vector<std::size_t>& own = dictionary.of(candidate);
+  const Eigen::MatrixXd left = equations.reduced(own, known).matrix;
+  std::string text;
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(own[k]);
+    const auto at = static_cast<Eigen::Index>(k);
+    if (scaled(i, i) < kNothing || left(at, at) > kLittle * equations.matrix(i, i)) continue;
+    const std::string combination = known_with(own[k], known, scaled, dictionary.names(), scale);
+    text += (text.empty() || combination.empty() ? "" : "; ") + combination;
+  }
+  return text;
 }
 
 std::vector<Choice> choose(const Dictionary& dictionary, const NormalEquations& equations,

@@ -36,6 +36,12 @@ struct Choice {
 std::vector<std::optional<Look>> looks_beside(const std::vector<std::size_t>& taken,
                                               const Dictionary& dictionary, const NormalEquations& equations);
 
+/// Of a candidate that is hardly seen beside the base and those in `taken`: the combinations of its
+/// parameters with theirs that are known instead (see known_with()). Empty where they do not do nearly all
+/// that it could: the surfaces' planes do, or the data are few.
+std::string known_instead(std::size_t candidate, const std::vector<std::size_t>& taken,
+                          const Dictionary& dictionary, const NormalEquations& equations);
+
 /// Which candidates a model needs: forward by BIC, each time followed by leaving out what has become needless
 /// (stepwise selection), on the linearised problem. The significance by the recording's blocks is asked of
 /// those only that the model has: the blocks of the others scatter by the very effect.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/world_options.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "plugins/study/bound_text.hpp"
@@ -87,7 +88,7 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
 }
 
 std::vector<Effect> BoundStage::effects(const RunSettings& run) const {
-  return read_effects(truth_.effects, run.rig, effect_catalogue(known_terms(run)));
+  return read_effects(truth_.effects, run.rig, recording_catalogue(known_terms(run)));
 }
 
 void BoundStage::check(const RunSettings& run) const {

@@ -148,6 +148,11 @@ class Trial {
         diagnosis.left_after.p_value, 1e3 * std::ranges::max(diagnosis.left_before.noise),
         1e3 * std::ranges::max(diagnosis.left_after.noise), seconds.count(),
         diagnosis.settled ? "" : "; NOT SETTLED");
+    for (const Profile& profile : diagnosis.left_after.profiles) {
+      if (!profile.departs()) continue;
+      fmt::print("    left: laser{} over {}, {:.3f} mm, p {:.3f}\n", profile.laser + 1, profile.covariate,
+                 1e3 * profile.rms, profile.p_value);
+    }
     for (const auto& limit : diagnosis.unobservable) {
       if (std::ranges::count(drawn.names, limit.name) > 0) {
         fmt::print("    {} would not show below {:.2f} of the noise\n", limit.name, limit.size);

@@ -30,6 +30,8 @@ TEST(Configs, DiagnoseNamesTheCauseAndExtendsTheCalibration) {
   const Calibration calibration = read_calibration(workshop / "out/calibration.yaml");
   ASSERT_EQ(calibration.lasers.at(1).terms.size(), 1U);
   EXPECT_NEAR(calibration.lasers[1].terms[0].parameters.at(0).value, 0.02, 0.001);
+  EXPECT_FALSE(calibration.quality.contains("rqe_after")) << "it was that of the calibration before";
+  EXPECT_TRUE(calibration.quality.contains("rqe_undiagnosed"));
 }
 
 TEST(Configs, DiagnoseTakesAFolderOfCapturesOfOneScanner) {

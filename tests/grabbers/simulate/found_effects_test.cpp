@@ -110,10 +110,14 @@ TEST_F(FoundEffectsTest, ThatNoSimulatorKnowsAreNamed) {
   Findings findings;
   findings.findings = {finding("mirror.interleave", "laser1", {}), finding("mirror.cone", "laser1", {})};
   findings.findings.push_back({.cause = "latency.bursts", .scope = "laser2", .accepted = false});
+  findings.findings.push_back(
+      finding("noise.mixed_pixels", "laser3", {{.name = "share_of_edges", .unit = "1", .value = 0.1}}));
   findings.unnamed = {{.covariate = "range", .quantity = "range", .scope = "laser3", .accepted = true}};
   const FoundEffects found = effects(findings);
   EXPECT_THAT(found.others,
-              ElementsAre("mirror.interleave of laser1", HasSubstr("range of laser3 over the range")));
+              ElementsAre("mirror.interleave of laser1",
+                          HasSubstr("noise.mixed_pixels of laser3: the file has the share of edges"),
+                          HasSubstr("range of laser3 over the range")));
   ASSERT_EQ(found.effects.size(), 1U);
   EXPECT_EQ(found.effects[0].name, "mirror.cone");
   EXPECT_EQ(found.effects[0].owner, 0U);

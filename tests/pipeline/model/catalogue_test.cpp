@@ -3,6 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+
 #include "pipeline/data/error.hpp"
 #include "tests/pipeline/model/terms_support.hpp"
 
@@ -21,10 +27,12 @@ TEST(Catalogue, HasEveryNameThatReportsAndProgramsUse) {
                                              "encoder.eccentricity",
                                              "encoder.second_harmonic",
                                              "encoder.speed_lag",
+                                             "latency.bursts",
                                              "latency.jitter",
                                              "latency.step",
                                              "mirror.cone",
                                              "mirror.eccentricity",
+                                             "mirror.interleave",
                                              "mirror.period",
                                              "mount.axial_offset",
                                              "mount.mirror_zero",
@@ -47,6 +55,42 @@ TEST(Catalogue, HasEveryNameThatReportsAndProgramsUse) {
                                              "range.warmup",
                                              "scene.moving",
                                              "timing.intra_scan"}));
+}
+
+/// Names of families that the catalogue has: "mirror".
+std::set<std::string> families() {
+  std::set<std::string> all;
+  for (const auto& effect : effect_catalogue(built_in_terms())) {
+    all.insert(effect.name.substr(0, effect.name.find('.')));
+  }
+  return all;
+}
+
+/// What a source writes in quotes that is named as effects are: "mirror.interleave".
+std::set<std::string> names_in(const std::filesystem::path& source) {
+  std::ifstream stream(source);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  static const std::regex kName("\"([a-z]+)\\.([a-z_]+)\"");
+  const std::set<std::string> known = families();
+  std::set<std::string> names;
+  for (std::sregex_iterator match(text.begin(), text.end(), kName), end; match != end; ++match) {
+    if (known.contains((*match)[1])) names.insert((*match)[1].str() + "." + (*match)[2].str());
+  }
+  return names;
+}
+
+TEST(Catalogue, HasEveryCauseThatAStageCanName) {
+  std::set<std::string> catalogue;
+  for (const auto& effect : effect_catalogue(built_in_terms())) catalogue.insert(effect.name);
+  std::set<std::string> named;
+  for (const char* folder : {"plugins/diagnose", "plugins/scans"}) {
+    const auto path = std::filesystem::path(CRISP_SOURCE_DIR) / folder;
+    for (const auto& file : std::filesystem::directory_iterator(path)) named.merge(names_in(file.path()));
+  }
+  for (const char* some : {"scene.moving", "mirror.interleave", "range.warmup", "noise.two_peaks"}) {
+    EXPECT_TRUE(named.contains(some)) << some << ": the sources are not read as they are written";
+  }
+  for (const std::string& name : named) EXPECT_TRUE(catalogue.contains(name)) << name;
 }
 
 TEST(Catalogue, KeepsShapesApartFromCauses) {

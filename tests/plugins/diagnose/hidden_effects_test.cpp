@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "plugins/diagnose/held_out.hpp"
+#include "plugins/diagnose/report.hpp"
 #include "tests/plugins/diagnose/hidden.hpp"
 #include "tests/support/several_recordings.hpp"
 
@@ -35,6 +36,9 @@ TEST_P(CleanRecordings, AreGivenNoCause) {
   EXPECT_THAT(test::names_in(diagnosis), IsEmpty());
   EXPECT_TRUE(diagnosis.settled);
   EXPECT_GT(diagnosis.left_before.p_value, 0.01);
+  const Findings findings = findings_of(diagnosis, diagnosis.after.outcome.model.calibration(),
+                                        built_in_terms(), {}, SurfelSettings{}.noise);
+  EXPECT_THAT(findings.unnamed, IsEmpty());
 }
 
 INSTANTIATE_TEST_SUITE_P(HiddenEffects, CleanRecordings, testing::Values("office", "hall", "street"),

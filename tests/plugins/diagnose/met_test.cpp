@@ -67,8 +67,8 @@ TEST_F(TwoWalls, EachBeamHasTheFirstAheadOfIt) {
   const Met followed = met();
   const std::size_t behind = beam_at(-1.5, 0);
   const std::size_t before = beam_at(0, 0);
-  ASSERT_NE(followed.ahead[behind], kNothing);
-  ASSERT_NE(followed.ahead[before], kNothing);
+  ASSERT_NE(followed.ahead[behind], kNoSurface);
+  ASSERT_NE(followed.ahead[before], kNoSurface);
   EXPECT_NE(followed.ahead[behind], followed.ahead[before]);
   EXPECT_NEAR(followed.error[behind], 0, 1e-4);
   EXPECT_NEAR(followed.cosine[before], 1, 1e-4);
@@ -79,8 +79,8 @@ TEST_F(TwoWalls, EachBeamHasTheFirstAheadOfIt) {
 
 TEST_F(TwoWalls, NothingIsAheadAtTheirRims) {
   const Met followed = met();
-  EXPECT_EQ(followed.ahead[beam_at(2, 0)], kNothing) << "not known all around";
-  EXPECT_NE(followed.end[beam_at(1.9, 0)], kNothing) << "but ends there";
+  EXPECT_EQ(followed.ahead[beam_at(2, 0)], kNoSurface) << "not known all around";
+  EXPECT_NE(followed.end[beam_at(1.9, 0)], kNoSurface) << "but ends there";
 }
 
 TEST(ACrowd, CountsThePointsAboutAPlace) {

@@ -8,6 +8,9 @@
 #include <functional>
 #include <random>
 
+#include "plugins/diagnose/at_rest.hpp"
+#include "plugins/diagnose/likelihood_gain.hpp"
+
 namespace crisp {
 namespace {
 
@@ -135,6 +138,59 @@ TEST(Noise, OfTwoKindsIsFoundAsBoth) {
   std::vector<std::string> causes;
   for (const auto& finding : found.findings) causes.push_back(finding.cause);
   EXPECT_THAT(causes, testing::UnorderedElementsAre("noise.two_peaks", "noise.range_dependent"));
+  for (const auto& finding : found.findings) EXPECT_GT(finding.log10_odds, 2) << finding.cause;
+}
+
+TEST(Noise, IsExplainedByEachLawByItsShareOfTheGain) {
+  const auto gain = [](double rise) {
+    return std::vector<Gain>{{.metric = "log-likelihood a measurement", .unit = "nat", .after = rise}};
+  };
+  std::vector<Finding> findings = {{.cause = "noise.two_peaks", .gain = gain(0.3)},
+                                   {.cause = "noise.heavy_tail", .gain = gain(0.1)},
+                                   {.cause = "noise.quantisation", .gain = gain(-0.1)},
+                                   {.cause = "range.step", .explained_fraction = 0.7},
+                                   {.cause = "noise.mixed_pixels", .explained_fraction = kUnasked}};
+  const std::vector<UnnamedFinding> unnamed = {{.covariate = "beam", .gain = gain(0.1)}};
+  share_explained(findings, unnamed);
+  EXPECT_NEAR(findings[0].explained_fraction, 0.6, 1e-12);
+  EXPECT_NEAR(findings[1].explained_fraction, 0.2, 1e-12);
+  EXPECT_EQ(findings[2].explained_fraction, 0) << "it loses";
+  EXPECT_EQ(findings[3].explained_fraction, 0.7) << "judged by something else";
+  EXPECT_TRUE(std::isnan(findings[4].explained_fraction)) << "judged by no gain";
+}
+
+TEST(Noise, OfAllBeamsTogetherIsAStepOrACreepingWithOdds) {
+  constexpr int kScans = 200;
+  std::vector<double> seconds;
+  for (int scan = 0; scan < kScans; ++scan) seconds.push_back(0.02 * scan);
+  const auto drawn = [&](const std::function<double(int scan)>& together) {
+    Random random(7);
+    RangeErrors errors;
+    for (int scan = 0; scan < kScans; ++scan) {
+      for (int beam = 0; beam < 50; ++beam) {
+        errors.value.push_back(static_cast<float>(kSigma * normal(random) + together(scan)));
+        errors.range.push_back(3);
+        errors.beam.push_back(static_cast<std::uint16_t>(beam));
+        errors.block.push_back(static_cast<std::uint32_t>(scan));
+      }
+    }
+    return errors;
+  };
+  const auto step = common_change(drawn([](int scan) { return scan < 90 ? 0 : 0.003; }), seconds, 1, 1);
+  ASSERT_TRUE(step && step->is_step);
+  // Means of 50 beams scatter by 1.1 mm; a straight line leaves 0.75 mm of the step: 200/2 lg 1.44 = 16.
+  EXPECT_GT(step->log10_odds, 5);
+  const Plot plot =
+      change_plot("laser1", *step, drawn([](int scan) { return scan < 90 ? 0 : 0.003; }), seconds);
+  double misfit = 0;
+  for (std::size_t scan = 0; scan < seconds.size(); ++scan) {
+    misfit += std::pow(plot.series.at(0).y[scan] - 1.65 - plot.series.at(1).y[scan], 2) / kScans;
+  }
+  EXPECT_LT(std::sqrt(misfit), 1.4) << "[mm] scatter of the means: the curve goes through them";
+  const auto creeping =
+      common_change(drawn([](int scan) { return 0.006 * (1 - std::exp(-scan / 60.0)); }), seconds, 1, 1);
+  ASSERT_TRUE(creeping && !creeping->is_step);
+  EXPECT_GT(creeping->log10_odds, 2);
 }
 
 }  // namespace

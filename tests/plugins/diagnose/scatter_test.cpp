@@ -9,12 +9,16 @@
 
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
+#include "pipeline/stage/registry.hpp"
 #include "plugins/diagnose/comb.hpp"
 #include "plugins/diagnose/edges.hpp"
 #include "plugins/diagnose/evidence.hpp"
 #include "plugins/diagnose/noise.hpp"
 #include "plugins/diagnose/repeats.hpp"
+#include "plugins/diagnose/scatter_stage.hpp"
 #include "tests/plugins/diagnose/hidden.hpp"
+#include "tests/support/stage_driver.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace crisp {
 namespace {
@@ -109,6 +113,29 @@ TEST(Scatter, WithHeavyTailsIsNamedAndMeasured) {
   // 0.001: what is balanced away and edges that pass for tails; four standard errors of 3 % of 180 000 ranges
   EXPECT_NEAR(value_in(found[0], "share"), 0.03, 4 * error_in(found[0], "share") + 0.001);
   EXPECT_NEAR(value_in(found[0], "scale"), 5, 4 * error_in(found[0], "scale") + 0.1);
+}
+
+TEST(Scatter, OfTheStageIsDrawnForLasersOfWhichSomethingIsFound) {
+  const test::TemporaryFolder folder;
+  auto stage =
+      test::StageDriver::of<DiagnoseScatterStage>({{"folder", OptionScalar(folder.path().string())}});
+  TermRegistry terms = built_in_terms();
+  Registrar registrar;
+  registrar.attach(terms);
+  stage.run().registrar = &registrar;
+  ScannerSettings scanner = test::scanner_of(3, 4);
+  scanner.laser_effects.resize(3);
+  scanner.laser_effects[1].noise = {.tail_share = 0.03, .tail_scale = 5};
+  const test::Recording recording = test::recorded(scanner, office());
+  stage.feed(recording.made.beams, recording.made.plate, recording.made.truth);
+  stage.finish();
+  EXPECT_THAT(stage.report().written, testing::ElementsAre(folder / "laser2_noise.svg"));
+  const auto found = stage.given<Findings>();
+  ASSERT_THAT(found, SizeIs(1));
+  ASSERT_THAT(found[0]->findings, SizeIs(1));
+  EXPECT_EQ(found[0]->findings[0].scope, "laser2");
+  EXPECT_EQ(found[0]->findings[0].explained_fraction, 1) << "there is no other law";
+  EXPECT_GT(found[0]->findings[0].log10_odds, 10);
 }
 
 TEST(Scatter, ThatGrowsWithTheRangeIsNamedAndMeasured) {

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/findings_inspector.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <cmath>
+
+#include "pipeline/files/findings_file.hpp"
+#include "plugins/diagnose/report.hpp"
+
+namespace crisp {
+namespace {
+
+Inspection inspect_findings(const std::filesystem::path& file, const Rig&) {
+  const Findings all = read_findings(file);
+  Inspection inspection;
+  inspection.data = {{"findings", nlohmann::json::array()},
+                     {"unnamed", all.unnamed.size()},
+                     {"unobservable", all.unobservable.size()},
+                     {"artefacts", all.artefacts.size()},
+                     {"devices", all.devices.size()}};
+  inspection.text =
+      fmt::format("  causes: {}; unnamed departures: {}; causes that these data could not show: {}",
+                  all.findings.size(), all.unnamed.size(), all.unobservable.size());
+  for (const Finding& finding : all.findings) {
+    inspection.text += "\n  " + headline(finding);
+    inspection.data["findings"].push_back(
+        {{"cause", finding.cause}, {"scope", finding.scope}, {"accepted", finding.accepted}});
+  }
+  for (const UnnamedFinding& finding : all.unnamed) inspection.text += "\n  " + headline(finding);
+  for (const Artefact& artefact : all.artefacts) {
+    inspection.text += fmt::format("\n  the estimator's own: {}", artefact.name);
+  }
+  for (const DeviceFacts& facts : all.devices) {
+    inspection.text += fmt::format(
+        "\n  {}: {} stamps, skew {:+.2f} ± {:.2f} ppm, delays of {:.3f} ms (median)", facts.device,
+        facts.stamps, 1e6 * facts.skew, 1e6 * facts.skew_std_error, 1e3 * facts.delay_median);
+  }
+  for (const NoiseFacts& facts : all.noise) {
+    inspection.text +=
+        fmt::format("\n  {}: {} ranges, noise {:.2f} mm", facts.laser, facts.ranges, 1e3 * facts.sigma);
+  }
+  if (!std::isnan(all.before_p)) {
+    inspection.text += fmt::format("\n  measured and simulated residuals: p = {:.3f} before, {:.3f} after",
+                                   all.before_p, all.after_p);
+    inspection.data["before_p"] = all.before_p;
+    inspection.data["after_p"] = all.after_p;
+  }
+  return inspection;
+}
+
+/// By its first keys, as findings_json() writes them.
+bool is_findings(std::string_view head) {
+  constexpr std::string_view kBegin = R"({"crisp":1,"findings":[)";
+  std::string packed;
+  for (const char c : head.substr(0, 2 * kBegin.size())) {
+    if (std::isspace(static_cast<unsigned char>(c)) == 0) packed += c;
+  }
+  return packed.starts_with(kBegin);
+}
+
+}  // namespace
+
+Inspector findings_inspector() { return {"a diagnosis", is_findings, inspect_findings}; }
+
+}  // namespace crisp

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/noise_plots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace crisp {
+namespace {
+
+constexpr double kBarLength = 2;  // [standard errors]
+
+struct Histogram {
+  double first = 0, width = 1;  // of the bins
+  std::vector<double> count;
+  double all = 0;
+
+  Histogram(double from, double to, std::size_t bins)
+      : first(from), width((to - from) / static_cast<double>(bins)), count(bins) {}
+  void add(double value) {
+    all += 1;
+    const double bin = std::floor((value - first) / width);
+    if (bin >= 0 && bin < static_cast<double>(count.size())) count[static_cast<std::size_t>(bin)] += 1;
+  }
+  double middle(std::size_t bin) const { return first + (static_cast<double>(bin) + 0.5) * width; }
+};
+
+/// The density of a law [1/m], mean over ranges and beams like those that were measured.
+double mean_density(const NoiseLaw& law, const RangeErrors& errors, double value) {
+  constexpr std::size_t kEnough = 500;
+  const std::size_t stride = std::max<std::size_t>(1, errors.size() / kEnough);
+  double sum = 0;
+  double count = 0;
+  for (std::size_t i = 0; i < errors.size(); i += stride) {
+    sum += std::exp(law.log_density(value, double{errors.range[i]}, errors.beam[i]));
+    count += 1;
+  }
+  return sum / count;
+}
+
+/// lg of a density [1/m] a millimetre; nothing where hardly a range would be.
+double shown_density(double density, double least) {
+  return density >= least ? std::log10(1e-3 * density) : std::numeric_limits<double>::quiet_NaN();
+}
+
+PlotSeries law_over(const std::string& name, const NoiseLaw& law, const RangeErrors& errors,
+                    const Histogram& bins, double least) {
+  PlotSeries series{.name = name, .x = {}, .y = {}};
+  for (std::size_t b = 0; b < bins.count.size(); ++b) {
+    series.x.push_back(1e3 * bins.middle(b));
+    series.y.push_back(shown_density(mean_density(law, errors, bins.middle(b)), least));
+  }
+  return series;
+}
+
+Plot distribution(const std::string& name, const RangeErrors& errors, const NoiseDiagnosis& noise) {
+  constexpr std::size_t kBins = 81;
+  constexpr double kShown = 0.9995;  // of all errors
+  std::vector<float> sizes;
+  for (const float error : errors.value) sizes.push_back(std::abs(error));
+  const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(kShown * static_cast<double>(sizes.size() - 1));
+  std::ranges::nth_element(sizes, at);
+  const double farthest = std::max(1e-6, double{*at});
+  Histogram bins(-farthest, farthest, kBins);
+  for (const float error : errors.value) bins.add(double{error});
+  const double one = 1 / (bins.all * bins.width);  // [1/m] of a single range in a bin
+  PlotSeries measured{.name = "measured", .x = {}, .y = {}, .joined = false};
+  for (std::size_t b = 0; b < kBins; ++b) {
+    measured.x.push_back(1e3 * bins.middle(b));
+    measured.y.push_back(shown_density(bins.count[b] * one, one));
+    measured.error.push_back(kBarLength / std::numbers::ln10 / std::sqrt(std::max(1.0, bins.count[b])));
+  }
+  return {.title = fmt::format("{}: {} ranges about the mean of their beams", name, errors.size()),
+          .x_label = "error [mm]",
+          .y_label = "lg of the share a millimetre",
+          .series = {measured, law_over("normal law", noise.plain, errors, bins, one),
+                     law_over("with what was found", noise.law, errors, bins, one)}};
+}
+
+/// Shares of all in each bin [%], beside the same in each.
+std::vector<PlotSeries> beside_even(const Histogram& bins, double unit) {
+  PlotSeries measured{.name = "measured", .x = {}, .y = {}, .joined = false};
+  PlotSeries even{.name = "evenly strewn", .x = {}, .y = {}};
+  for (std::size_t b = 0; b < bins.count.size(); ++b) {
+    const double all = std::max(1.0, bins.all);
+    for (PlotSeries* series : {&measured, &even}) series->x.push_back(bins.middle(b) / unit);
+    measured.y.push_back(100 * bins.count[b] / all);
+    measured.error.push_back(100 * kBarLength * std::sqrt(bins.count[b]) / all);
+    even.y.push_back(100 / static_cast<double>(bins.count.size()));
+  }
+  return {measured, even};
+}
+
+}  // namespace
+
+Plot noise_over(const NoiseCovariate& over, const std::string& name, const RangeErrors& errors,
+                const NoiseDiagnosis& noise) {
+  constexpr std::size_t kBins = 12;
+  std::vector<std::size_t> order(errors.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return over.values[i]; });
+  PlotSeries measured{.name = "measured", .x = {}, .y = {}, .joined = false};
+  PlotSeries plain{.name = "normal law", .x = {}, .y = {}};
+  PlotSeries found{.name = "with what was found", .x = {}, .y = {}};
+  for (std::size_t b = 0; b < kBins; ++b) {
+    const std::size_t begin = b * order.size() / kBins;
+    const std::size_t end = (b + 1) * order.size() / kBins;
+    if (begin == end) continue;
+    double sum = 0, squares = 0, fourths = 0, of_plain = 0, of_found = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t i = order[k];
+      sum += double{over.values[i]};
+      squares += std::pow(double{errors.value[i]}, 2);
+      fourths += std::pow(double{errors.value[i]}, 4);
+      of_plain += noise.plain.variance(double{errors.range[i]}, errors.beam[i]);
+      of_found += noise.law.variance(double{errors.range[i]}, errors.beam[i]);
+    }
+    const auto count = static_cast<double>(end - begin);
+    const double rms = 1e3 * std::sqrt(squares / count);
+    for (PlotSeries* series : {&measured, &plain, &found}) series->x.push_back(sum / count);
+    measured.y.push_back(rms);
+    // However they are distributed: tails make the mean of squares scatter more than a normal law's.
+    const double error_of_squares = std::sqrt(std::max(0.0, fourths - squares * squares / count)) / count;
+    measured.error.push_back(kBarLength * 1e6 * error_of_squares / (2 * rms));
+    plain.y.push_back(1e3 * std::sqrt(of_plain / count));
+    found.y.push_back(1e3 * std::sqrt(of_found / count));
+  }
+  return {.title = name + ": noise over the " + over.name,
+          .x_label = over.label,
+          .y_label = "RMS error [mm]",
+          .series = {measured, plain, found}};
+}
+
+std::vector<Plot> noise_plots(const std::string& name, const RangeErrors& errors,
+                              const NoiseDiagnosis& noise) {
+  if (errors.size() == 0) return {};
+  return {distribution(name, errors, noise),
+          noise_over({.name = "range", .label = "range [m]", .values = errors.range}, name, errors, noise)};
+}
+
+Plot comb_plot(const std::string& name, std::span<const float> ranges, double step) {
+  constexpr std::size_t kBins = 40;
+  Histogram bins(-step / 2, step / 2, kBins);
+  for (const float range : ranges) bins.add(std::remainder(double{range}, step));
+  return {.title = fmt::format("{}: ranges beyond whole steps of {:.4g} mm", name, 1e3 * step),
+          .x_label = "beyond [mm]",
+          .y_label = "ranges [%]",
+          .series = beside_even(bins, 1e-3)};
+}
+
+Plot edge_plot(const std::string& name, const Crossings& edges) {
+  constexpr std::size_t kBins = 10;
+  Histogram bins(0, 1, kBins);
+  for (const double place : edges.places) bins.add(place);
+  return {.title = fmt::format("{}: {:.1f} % of {} edges with a range in thin air", name, 100 * edges.share(),
+                               edges.mixed.size()),
+          .x_label = "way from the near side to the far one",
+          .y_label = "of those ranges [%]",
+          .series = beside_even(bins, 1)};
+}
+
+Plot moving_plot(const ChangingDirections& directions) {
+  PlotSeries hidden{.name = "hidden", .x = {}, .y = {}};
+  const std::size_t whens = directions.looks.empty() ? 0 : directions.looks.front().size();
+  for (std::size_t when = 0; when < whens; ++when) {
+    const auto count = std::ranges::count_if(
+        directions.looks, [&](const auto& looks) { return looks[when] == Glimpse::kHidden; });
+    hidden.x.push_back(static_cast<double>(when));
+    hidden.y.push_back(static_cast<double>(count));
+  }
+  return {.title = fmt::format("{} directions that show a surface at other times", directions.looks.size()),
+          .x_label = "half turns of the plate",
+          .y_label = "directions",
+          .series = {hidden}};
+}
+
+}  // namespace crisp

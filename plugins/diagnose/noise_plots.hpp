@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/plot/plot.hpp"
+#include "plugins/diagnose/edges.hpp"
+#include "plugins/diagnose/noise.hpp"
+#include "plugins/diagnose/repeats.hpp"
+
+namespace crisp {
+
+/// A quantity that each of some ranges has.
+struct NoiseCovariate {
+  std::string name;
+  std::string label;  ///< with its unit
+  std::span<const float> values;
+};
+
+/// RMS of one laser's errors in bins of equally many ranges, measured beside the normal law and the one that
+/// was found. Bars are two standard errors either way.
+Plot noise_over(const NoiseCovariate& over, const std::string& name, const RangeErrors& errors,
+                const NoiseDiagnosis& noise);
+
+/// How one laser's ranges scatter, measured beside the normal law and the one that was found: the
+/// distribution of their errors, as the logarithm of its density, and their RMS over the range. Bars are two
+/// standard errors either way.
+std::vector<Plot> noise_plots(const std::string& name, const RangeErrors& errors,
+                              const NoiseDiagnosis& noise);
+
+/// How much of a laser's ranges is beyond the last whole step, beside ranges of any size.
+///
+/// @param ranges  [m]
+/// @param step    [m]
+Plot comb_plot(const std::string& name, std::span<const float> ranges, double step);
+
+/// Where between the two sides of an edge ranges end in thin air.
+Plot edge_plot(const std::string& name, const Crossings& edges);
+
+/// When directions were hidden that show a surface at other times.
+Plot moving_plot(const ChangingDirections& directions);
+
+}  // namespace crisp

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/report.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "tests/plugins/diagnose/hidden.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr double kNoise = 0.012;  // [m]
+
+/// What a look at no candidate at all finds: nothing is taken into the model.
+Diagnosis without_candidates(const test::Recording& recording) {
+  DiagnosisSettings settings;
+  settings.rounds = 0;
+  return test::diagnosed(recording, settings);
+}
+
+Findings reported(const Diagnosis& diagnosis) {
+  return findings_of(diagnosis, diagnosis.after.outcome.model.calibration(), built_in_terms(), {}, kNoise);
+}
+
+test::Recording with_a_third_harmonic() {
+  test::Recording recording = test::hidden(4, 3, office(), {});
+  Measurements& beams = recording.made.beams;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (beams.laser[i] == 2) beams.range[i] += 0.006F * std::sin(3 * beams.mirror_angle[i]);
+  }
+  return recording;
+}
+
+std::vector<UnnamedFinding> over_the_mirror(const Findings& findings) {
+  std::vector<UnnamedFinding> found;
+  for (const UnnamedFinding& finding : findings.unnamed) {
+    if (finding.covariate == "mirror angle" && finding.scope == "laser3") found.push_back(finding);
+  }
+  return found;
+}
+
+TEST(Report, HasWhatTheModelLeavesAmongTheUnnamed) {
+  Diagnosis diagnosis = without_candidates(with_a_third_harmonic());
+  const Findings findings = reported(diagnosis);
+  const auto found = over_the_mirror(findings);
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].quantity, "range");
+  EXPECT_EQ(found[0].unit, "m");
+  EXPECT_NEAR(found[0].amplitude, 0.006 / std::sqrt(2), 0.0025) << "less what planes take of it";
+  EXPECT_LE(found[0].p_value, 0.01);
+  EXPECT_FALSE(found[0].accepted) << "no term was taken";
+  EXPECT_THAT(in_words(found[0]), HasSubstr("no term of the catalogue takes it"));
+}
+
+TEST(Report, SaysWhatIsOffInItsOwnUnitWithThePValue) {
+  const auto words = [](const std::string& quantity, const std::string& unit) {
+    return headline(UnnamedFinding{.covariate = "time",
+                                   .quantity = quantity,
+                                   .scope = "laser1",
+                                   .amplitude = 0.002,
+                                   .unit = unit,
+                                   .p_value = 1e-4});
+  };
+  EXPECT_EQ(words("range", "m"), "unnamed: range of laser1 depends on the time, by 2.000 mm, p = 0.0001");
+  EXPECT_EQ(words("lag", "m"),
+            "unnamed: lag of laser1 depends on the time; ranges change by 2.000 mm, p = 0.0001");
+  EXPECT_EQ(words("lag", "s"), "unnamed: lag of laser1 depends on the time, by 2.0000 ms, p = 0.0001");
+  EXPECT_EQ(words("plate angle", "rad"),
+            "unnamed: plate angle of laser1 depends on the time, by 0.1146 deg, p = 0.0001");
+  EXPECT_EQ(headline(Finding{.cause = "scene.moving",
+                             .scope = "scene",
+                             .parameters = {{.name = "directions", .unit = "1", .value = 16}},
+                             .p_value = 1e-3,
+                             .accepted = true}),
+            "scene.moving of scene: directions = 16, p = 0.001");
+}
+
+TEST(Report, SaysOnceWhatATermWasRefusedFor) {
+  Diagnosis diagnosis = without_candidates(with_a_third_harmonic());
+  diagnosis.departures.push_back({.candidate = {.owner = 2,
+                                                .term = {.term = "empirical.range_by_mirror_angle"},
+                                                .name = "laser3.empirical.range_by_mirror_angle",
+                                                .covariate = "mirror angle"},
+                                  .look = {},
+                                  .rivals = {},
+                                  .gains = {},
+                                  .accepted = false});
+  EXPECT_THAT(over_the_mirror(reported(diagnosis)), SizeIs(1));
+}
+
+TEST(Report, HasNothingUnnamedThatChanceOrAWallsBumpsMayHaveMade) {
+  const Diagnosis diagnosis = without_candidates(with_a_third_harmonic());
+  Diagnosis chance = diagnosis;
+  for (Profile& profile : chance.left_after.profiles) profile.p_value = 0.015;
+  EXPECT_THAT(reported(chance).unnamed, IsEmpty());
+  Diagnosis bumps = diagnosis;
+  for (Profile& profile : bumps.left_after.profiles) profile.rms = 0.9 * SelectionSettings{}.visible * kNoise;
+  EXPECT_THAT(reported(bumps).unnamed, IsEmpty());
+}
+
+/// "+ 4.9" of "laser2.lambda + 4.9 * laser2.mount.tangential_offset.y, …"; NaN if it is not there.
+double slope_in(const std::string& combination, const std::string& parameter) {
+  const auto at = combination.find(parameter + " ");
+  if (at == std::string::npos) return std::nan("");
+  std::istringstream text(combination.substr(at + parameter.size() + 1));
+  char sign = 0;
+  double slope = 0;
+  text >> sign >> slope;
+  return sign == '-' ? -slope : slope;
+}
+
+/// By how much an estimate is off the truth, and its standard error.
+std::pair<double, double> shift_of(const Outcome& outcome, const Calibration& truth,
+                                   const std::string& name) {
+  const SensorModel model(truth, built_in_terms());
+  const auto value = [&](const SensorModel& of) {
+    return of.values()[std::ranges::find(of.names(), name) - of.names().begin()];
+  };
+  for (std::size_t k = 0; k < outcome.free.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (outcome.model.names()[outcome.free[k]] != name) continue;
+    return {value(outcome.model) - value(model), std::sqrt(outcome.covariance(i, i))};
+  }
+  return {std::nan(""), 0};
+}
+
+std::string combination_with(const Findings& findings, const std::string& cause) {
+  const auto found = std::ranges::find(findings.unobservable, cause, &Unobservable::parameter);
+  return found == findings.unobservable.end() ? "it is not said to be unobservable" : found->combination;
+}
+
+TEST(Report, SaysWhichCombinationIsKnownInPlaceOfWhatCannotBeSeen) {
+  constexpr double kOffset = 0.01;  // [m]
+  const std::string hidden = "laser2.mount.tangential_offset";
+  DiagnosisSettings settings;
+  settings.rounds = 1;
+  settings.beams = 40'000;
+  const auto recording = test::hidden(53, 3, office(), {{hidden, {kOffset}}});
+  const Diagnosis diagnosis = test::diagnosed(recording, settings);
+  const Findings findings = reported(diagnosis);
+
+  // That λ + 5 y is known means that λ comes out larger by 5 y where nobody counts on y.
+  const std::string combination = combination_with(findings, hidden);
+  for (const std::string name : {"laser2.lambda", "laser2.alpha"}) {
+    const auto [shift, error] = shift_of(diagnosis.after.outcome, recording.scanner.truth, name);
+    const double foretold = slope_in(combination, name) * kOffset;
+    EXPECT_NEAR(shift, foretold, 4 * error + 0.02 * std::abs(foretold)) << name << " in " << combination;
+    EXPECT_GT(std::abs(foretold), 0.03) << name;
+  }
+  // A plate that never turns back: as if the whole room had been turned.
+  EXPECT_EQ(combination_with(findings, "encoder.backlash"), "");
+}
+
+}  // namespace
+}  // namespace crisp
