@@ -102,6 +102,10 @@ Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, c
   return candidate;
 }
 
+const Parameter& form_parameter(const Candidate& candidate, const TermRegistry& terms) {
+  return candidate.term.parameters.at(form_of(terms.get(candidate.term.term)->info()));
+}
+
 void add_to(Calibration& calibration, const Candidate& candidate) {
   terms_of(calibration, candidate.owner).push_back(candidate.term);
 }

@@ -14,6 +14,7 @@ struct Candidate {
   TermParameters term;    ///< neutral, but for the form that is tried
   std::size_t forms = 1;  ///< how many are tried
   double form = 0;        ///< which of them this is: see in_form()
+  double form_error = 0;  ///< by how much another may be the right one, in the unit of the parameter of form
   std::string name;       ///< "laser2.mirror.cone", "encoder.eccentricity"
   std::string covariate;  ///< see TermInfo: empty for a term that names a cause
 
@@ -52,6 +53,9 @@ std::vector<std::string> unshared_causes(const TermRegistry& terms, const Lastin
 /// @param step  on the scale of the forms that are tried: 0 is the first, forms − 1 the last, fractions lie
 ///              between
 Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, const Lasting& lasting);
+
+/// The parameter of a candidate's term that is tried in several forms; it has one.
+const Parameter& form_parameter(const Candidate& candidate, const TermRegistry& terms);
 
 /// The terms of one owner: of a laser, or of the plate where the index is the number of lasers.
 std::vector<TermParameters>& terms_of(Calibration& calibration, std::size_t owner);

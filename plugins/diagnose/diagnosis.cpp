@@ -157,6 +157,7 @@ class Diagnoser {
     Diagnosis result{.before = plain, .after = plain};
     extend(result);
     if (goes_on(1, "judging by held-out turns")) judge(result);
+    add_form_errors(result);
     if (goes_on(1, "simulating the scanner again")) compare(result);
     return result;
   }
@@ -190,7 +191,27 @@ class Diagnoser {
       if (result.settled) return;
       if (!goes_on(share, fmt::format("round {}: refining with what was found", round + 1))) return;
       chosen = with_sharper_forms(next, result.after.outcome.model, base_of(result.after), evidence, terms_);
+      for (const Candidate& candidate : chosen) {
+        if (candidate.form_error > 0) result.form_errors[full_name(candidate)] = candidate.form_error;
+      }
       result.after = refined(with_terms(result.after.outcome.model.calibration(), chosen), sample_);
+    }
+  }
+
+  /// The full name of the parameter that a candidate's form is.
+  std::string full_name(const Candidate& candidate) const {
+    const bool of_plate = candidate.owner == start_.lasers.size();
+    return (of_plate ? "plate." : "") + candidate.name + "." + form_parameter(candidate, terms_).name;
+  }
+
+  /// The refined model knows the curvature at its form alone, not that another may be the right one.
+  static void add_form_errors(Diagnosis& result) {
+    Outcome& outcome = result.after.outcome;
+    for (std::size_t k = 0; k < outcome.free.size(); ++k) {
+      const auto error = result.form_errors.find(outcome.model.names()[outcome.free[k]]);
+      if (error == result.form_errors.end()) continue;
+      const auto i = static_cast<Eigen::Index>(k);
+      outcome.covariance(i, i) += error->second * error->second;
     }
   }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ struct Diagnosis {
   Refinement before;  ///< without any terms
   Refinement after;   ///< with those that were accepted
   std::vector<Departure> departures;
+  /// Of terms with a form by how much another may be the right one, by the parameter's full name. `after`
+  /// counts on it.
+  std::map<std::string, double> form_errors;
   /// A candidate of which these data tell little.
   struct Limit {
     std::string name;

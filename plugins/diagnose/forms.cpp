@@ -2,6 +2,7 @@
 #include "plugins/diagnose/forms.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "plugins/diagnose/selection.hpp"
@@ -9,22 +10,46 @@
 namespace crisp {
 namespace {
 
-/// The best of some forms of one candidate beside the others.
-std::size_t best_of(const std::vector<Candidate>& forms, const std::vector<Candidate>& others,
-                    const SensorModel& model, const std::vector<std::size_t>& base, const Evidence& evidence,
-                    const TermRegistry& terms) {
+/// Looks at some forms of one candidate, each beside the others.
+std::vector<Look> looks_at(const std::vector<Candidate>& forms, const std::vector<Candidate>& others,
+                           const SensorModel& model, const std::vector<std::size_t>& base,
+                           const Evidence& evidence, const TermRegistry& terms) {
   std::vector<Candidate> all = forms;
   all.insert(all.end(), others.begin(), others.end());
   std::vector<std::size_t> taken(others.size());
   std::iota(taken.begin(), taken.end(), forms.size());
   const Dictionary dictionary(model, base, all, terms);
-  const auto looks =
+  const auto found =
       looks_beside(taken, dictionary, from_neutral(dictionary, evidence.equations(dictionary)));
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < forms.size(); ++k) {
-    if (looks[k]->gain > looks[best]->gain) best = k;
+  std::vector<Look> looks;
+  for (std::size_t k = 0; k < forms.size(); ++k) looks.push_back(*found[k]);
+  return looks;
+}
+
+std::size_t best_of(const std::vector<Look>& looks) {
+  return static_cast<std::size_t>(std::ranges::max_element(looks, {}, &Look::gain) - looks.begin());
+}
+
+/// By how much the form may be another than the best, in the unit of its parameter: the spread of all that
+/// are tried, each as likely as the data make it. A form that a small part of an effect hangs on (a sway
+/// beside a larger drift) has rivals far off, of which its own curvature knows nothing.
+double form_error(const Candidate& best, const std::vector<Candidate>& others, const SensorModel& model,
+                  const std::vector<std::size_t>& base, const Evidence& evidence, const TermRegistry& terms) {
+  std::vector<Candidate> forms = {best};
+  for (std::size_t k = 0; k < best.forms; ++k) {
+    forms.push_back(in_form(best, static_cast<double>(k), terms, evidence.lasting()));
   }
-  return best;
+  const std::vector<Look> looks = looks_at(forms, others, model, base, evidence, terms);
+  const double value = form_parameter(best, terms).value;
+  double likelihoods = 0;
+  double squares = 0;
+  for (std::size_t k = 0; k < forms.size(); ++k) {
+    const double behind = std::max(0.0, looks.front().gain - looks[k].gain) / looks.front().sharing();
+    const double likelihood = std::exp(-behind / 2);
+    likelihoods += likelihood;
+    squares += likelihood * std::pow(form_parameter(forms[k], terms).value - value, 2);
+  }
+  return std::sqrt(squares / likelihoods);
 }
 
 }  // namespace
@@ -45,8 +70,9 @@ std::vector<Candidate> with_sharper_forms(std::vector<Candidate> chosen, const S
       for (int k = -kHalf; k <= kHalf; ++k) {
         forms.push_back(in_form(chosen[c], chosen[c].form + k * step, terms, evidence.lasting()));
       }
-      chosen[c] = forms[best_of(forms, others, model, base, evidence, terms)];
+      chosen[c] = forms[best_of(looks_at(forms, others, model, base, evidence, terms))];
     }
+    chosen[c].form_error = form_error(chosen[c], others, model, base, evidence, terms);
   }
   return chosen;
 }

@@ -9,7 +9,8 @@
 namespace crisp {
 
 /// The candidates with their forms (a period, an instant) as finely told as the data allow: between those
-/// that were tried, each beside all the others. Those of candidates that the model already has stay.
+/// that were tried, each beside all the others. Those of candidates that the model already has stay; the
+/// others are told how far off another form may be.
 ///
 /// @param base  indices of λ, τ, α, η that are estimated with them
 std::vector<Candidate> with_sharper_forms(std::vector<Candidate> chosen, const SensorModel& model,

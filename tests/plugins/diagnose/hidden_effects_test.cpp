@@ -8,6 +8,7 @@
 
 #include "plugins/diagnose/held_out.hpp"
 #include "plugins/diagnose/report.hpp"
+#include "tests/plugins/diagnose/drawn.hpp"
 #include "tests/plugins/diagnose/hidden.hpp"
 #include "tests/support/several_recordings.hpp"
 
@@ -66,6 +67,19 @@ TEST(HiddenEffects, ACyclicErrorIsFoundWithItsPeriod) {
   const Diagnosis diagnosis = test::diagnosed(recording);
   EXPECT_THAT(test::names_in(diagnosis), ElementsAre("laser1.range.cyclic"));
   expect_within_errors(diagnosis, recording, "laser1.range.cyclic", 3);
+}
+
+/// Drawn: the plate's foundation drifts by much and sways by little, so that the frequency of the sway is
+/// hardly told. By the curvature alone its error was eleven standard errors.
+TEST(HiddenEffects, AFormThatIsHardlyToldSaysSo) {
+  const auto drawn = test::Drawer(1302).with({"base.motion"}, 0.008);
+  const Diagnosis diagnosis = test::diagnosed(drawn.recording);
+  EXPECT_THAT(test::names_in(diagnosis), ElementsAre("base.motion"));
+  const auto parameters = test::told_of(diagnosis, drawn.recording.scanner.truth, "base.motion");
+  const auto frequency = std::ranges::find(parameters, "f", &test::Told::name);
+  ASSERT_NE(frequency, parameters.end());
+  EXPECT_LT(std::abs(frequency->error()), 3);
+  EXPECT_GT(frequency->std_error, 0.1) << "Hz: a tenth of what is tried";
 }
 
 TEST(HiddenEffects, TwoAtOnceAreBothNamedAndEachPays) {
