@@ -11,8 +11,8 @@ namespace crisp {
 
 /// Where the shortest delay of a link becomes another.
 struct DelayStep {
-  double by = 0;         ///< [s] longer
-  double std_error = 0;  ///< [s] of it
+  double by = 0;          ///< [s] longer
+  double std_error = 0;   ///< [s] of it
   std::size_t from = 0;   ///< the stamps from here to before `to` may have been sent before it or after it
   std::size_t first = 0;  ///< of them the first that seems to be after it
   std::size_t to = 0;
