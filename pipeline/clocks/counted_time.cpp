@@ -55,10 +55,14 @@ std::optional<double> CountedTime::excess(double seconds, std::int64_t steps, do
   const auto n = static_cast<double>(steps);
   const double excess = seconds - n * usual;
   if (std::abs(excess) < n * std::max(kLeast, kManyTimes * middle_of(values))) return std::nullopt;
-  // Where nothing was sent for a while, and not counted either, receipts go with the device's clock.
+  // Where receipts go with the device's clock the interval was such: nothing was sent for a while, and not
+  // counted either, or what is counted does not come evenly.
+  constexpr double kAgree = 0.25;
   constexpr double kNearlyAStep = 0.75;
-  const bool uncounted = std::abs(hub - seconds) < std::abs(hub - n * usual);
-  if (excess > kNearlyAStep * usual && uncounted) return std::nullopt;
+  const double off_clock = std::abs(hub - seconds);
+  const double off_count = std::abs(hub - n * usual);
+  if (off_clock < kAgree * std::abs(excess)) return std::nullopt;
+  if (excess > kNearlyAStep * usual && off_clock < off_count) return std::nullopt;
   return excess;
 }
 

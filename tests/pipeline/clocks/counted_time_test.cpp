@@ -82,6 +82,15 @@ TEST(CountedTime, TakesWhatWasNeitherSentNorCountedForNoJump) {
   EXPECT_NEAR(counted.jumped(), 2 * kPeriod, 1e-9);
 }
 
+TEST(CountedTime, TakesBurstsThatTheReceiptsConfirmForNoJump) {
+  CountedTime counted;
+  for (int i = 0; i < 400; ++i) {
+    const double interval = i % 25 == 24 ? 0.001 : i % 25 == 23 ? 0.07 : 0.0133;
+    counted.add(interval, 1, interval);
+    EXPECT_EQ(counted.jumped(), 0) << i;
+  }
+}
+
 TEST(CountedTime, SaysNothingOfUnevenIntervals) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<> any(0.001, 0.1);
