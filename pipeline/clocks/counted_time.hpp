@@ -38,7 +38,7 @@ class CountedTime {
   };
   std::optional<double> excess(double seconds, std::int64_t steps, double hub) const;
   void remember(double step);
-  void judge_trial(std::optional<double> excess);
+  void judge_trial(std::optional<double> jump);
 
   std::vector<double> latest_;  // [s] a step, of the latest intervals
   std::size_t next_ = 0;        // which of them is replaced next

@@ -20,7 +20,7 @@ struct Envelope {
   Eigen::VectorXd lead;            ///< [s]
 
   Eigen::MatrixXd straight() const;  ///< n × 2: a constant, and time about its mean
-  double line(const Eigen::VectorXd& values, double time) const;  ///< by coefficients of straight()
+  double line(const Eigen::VectorXd& values, double at) const;  ///< [s] by coefficients of straight()
 };
 
 /// [s] When a stamp came in.
