@@ -49,10 +49,11 @@ void CountedTime::judge_trial(std::optional<double> jump) {
 
 std::optional<double> CountedTime::excess(double seconds, std::int64_t steps, double hub) const {
   if (latest_.size() < kEnough) return std::nullopt;
+  const auto n = static_cast<double>(steps);
+  if (std::abs(seconds - n * usual_) < n * kLeast / 2) return std::nullopt;  // as nearly all
   std::vector<double> values = latest_;
   const double usual = middle_of(values);
   for (double& value : values) value = std::abs(value - usual);
-  const auto n = static_cast<double>(steps);
   const double excess = seconds - n * usual;
   if (std::abs(excess) < n * std::max(kLeast, kManyTimes * middle_of(values))) return std::nullopt;
   // Where receipts go with the device's clock the interval was such: nothing was sent for a while, and not
@@ -72,6 +73,10 @@ void CountedTime::remember(double step) {
   } else {
     latest_[next_] = step;
     next_ = (next_ + 1) % kKept;
+  }
+  if (latest_.size() == kEnough || next_ % kEnough == 0) {
+    std::vector<double> values = latest_;
+    usual_ = middle_of(values);
   }
 }
 

@@ -42,6 +42,7 @@ class CountedTime {
 
   std::vector<double> latest_;  // [s] a step, of the latest intervals
   std::size_t next_ = 0;        // which of them is replaced next
+  double usual_ = 0;            // [s] their median, of some intervals ago
   double jumped_ = 0;
   std::optional<Trial> trial_;
   std::optional<double> confirmed_;
