@@ -47,6 +47,8 @@ NormalEquations without_plane(const SurfelSums& sums, std::span<const SurfelResi
   result.vector = left.col(0).tail(m);
   result.matrix = left.bottomRightCorner(m, m);
   result.squares = sums.gram.diagonal().tail(m);
+  result.range_squares = sums.range_squares;
+  result.changed = sums.changed;
   for (const Eigen::MatrixXd& pulls : sums.pulls) {
     result.pulls.emplace_back(pulls.bottomRows(m) - share.rightCols(m).transpose() * pulls.topRows<3>());
   }
@@ -88,6 +90,8 @@ NormalEquations::NormalEquations(std::size_t parameters, const std::vector<std::
   matrix.setZero(m, m);
   vector.setZero(m);
   squares.setZero(m);
+  range_squares.setZero(m);
+  changed.setZero(m);
   for (const std::size_t count : blocks) {
     pulls.emplace_back(Eigen::MatrixXd::Zero(m, static_cast<Eigen::Index>(count)));
   }
@@ -103,6 +107,8 @@ NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   influence += other.influence;
   stiffness += other.stiffness;
   squares += other.squares;
+  range_squares += other.range_squares;
+  changed += other.changed;
   for (std::size_t d = 0; d < pulls.size(); ++d) pulls[d] += other.pulls[d];
   return *this;
 }
@@ -129,6 +135,8 @@ NormalEquations NormalEquations::reduced(const std::vector<std::size_t>& kept,
   result.chi2 = chi2 - gone.dot(solve_in_any_units(inner, gone).col(0));
   result.freedom = freedom - static_cast<double>(eliminated.size());
   result.squares = squares(kept);
+  result.range_squares = range_squares(kept);
+  result.changed = changed(kept);
   for (Eigen::MatrixXd& of_division : result.pulls) {
     of_division = Eigen::MatrixXd(of_division(kept, Eigen::all)) -
                   by_cross.transpose() * Eigen::MatrixXd(of_division(eliminated, Eigen::all));

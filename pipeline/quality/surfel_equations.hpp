@@ -35,6 +35,10 @@ struct NormalEquations {
   /// Of each division m × blocks: what the beams of each block contribute to `vector`. So the blocks tell by
   /// how much `vector` really scatters. None if no divisions were named.
   std::vector<Eigen::MatrixXd> pulls;
+  /// [m²] m: Σ of the squares of what a unit of each parameter changes ranges by, each beam alike. Zero if no
+  /// divisions were named, too.
+  Eigen::VectorXd range_squares;
+  Eigen::VectorXd changed;  ///< m: how many beams that are
 
   explicit NormalEquations(std::size_t parameters = 0, const std::vector<std::size_t>& blocks = {});
   NormalEquations& operator+=(const NormalEquations& other);

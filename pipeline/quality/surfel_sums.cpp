@@ -34,6 +34,15 @@ Rows weighted_rows(const Surfel& surfel, std::span<const std::uint32_t> members,
   return all;
 }
 
+/// For each beam by what the square of a weighted derivative is to be multiplied to be one of its range.
+Eigen::VectorXd per_weight(std::span<const SurfelResidual> residuals) {
+  Eigen::VectorXd factors(static_cast<Eigen::Index>(residuals.size()));
+  std::ranges::transform(residuals, factors.begin(), [](const SurfelResidual& r) {
+    return r.weight > 0 ? 1 / std::pow(weight_of(r) * r.incidence, 2) : 0.0;
+  });
+  return factors;
+}
+
 /// normal · ∂x/∂φ [m] where a beam meets the surfel, of a turn φ about the z axis.
 double moved_by_turn(const Surfel& surfel, const SurfelResidual& r) {
   const Eigen::Vector3d foot = surfel.middle + r.u * surfel.u + r.v * surfel.v;
@@ -46,7 +55,11 @@ class SurfelSummer {
       : surfel_(surfel), summands_(summands), columns_(static_cast<Eigen::Index>(summands.parameters + 4)) {}
 
   SurfelSums none(std::span<const std::uint32_t> members) const {
-    SurfelSums sums{.gram = Eigen::MatrixXd::Zero(columns_, columns_), .pulls = {}, .turns = {}};
+    SurfelSums sums{.gram = Eigen::MatrixXd::Zero(columns_, columns_),
+                    .range_squares = Eigen::VectorXd::Zero(columns_ - 4),
+                    .changed = Eigen::VectorXd::Zero(columns_ - 4),
+                    .pulls = {},
+                    .turns = {}};
     for (const std::size_t blocks : summands_.blocks) {
       sums.pulls.emplace_back(Eigen::MatrixXd::Zero(columns_, static_cast<Eigen::Index>(blocks)));
     }
@@ -65,6 +78,7 @@ class SurfelSummer {
            SurfelSums& sums) const {
     const Rows rows = weighted_rows(surfel_, members, residuals, summands_);
     sums.gram.selfadjointView<Eigen::Upper>().rankUpdate(rows.transpose());
+    if (!sums.pulls.empty()) add_ranges(rows, residuals, sums);
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       for (std::size_t d = 0; d < sums.pulls.size(); ++d) {
@@ -81,6 +95,12 @@ class SurfelSummer {
   }
 
  private:
+  void add_ranges(const Rows& rows, std::span<const SurfelResidual> residuals, SurfelSums& sums) const {
+    const auto derivatives = rows.rightCols(columns_ - 4);
+    sums.range_squares += derivatives.cwiseAbs2().transpose() * per_weight(residuals);
+    sums.changed += (derivatives.array() != 0).cast<double>().colwise().sum().matrix().transpose();
+  }
+
   const Surfel& surfel_;
   const SurfelSummands& summands_;
   Eigen::Index columns_;
@@ -111,6 +131,8 @@ SurfelSums sums_of(const Surfel& surfel, std::span<const std::uint32_t> members,
   SurfelSums sum = summer.none(members);
   for (const SurfelSums& part : parts) {
     sum.gram += part.gram;
+    sum.range_squares += part.range_squares;
+    sum.changed += part.changed;
     for (std::size_t d = 0; d < sum.pulls.size(); ++d) sum.pulls[d] += part.pulls[d];
     if (part.turns.sums.size() > 0) sum.turns += part.turns;
   }

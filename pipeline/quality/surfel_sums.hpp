@@ -28,6 +28,8 @@ struct SumsByMoment {
 /// m parameters, all by √weight / spread; and what a turn about the z axis moves it by, likewise.
 struct SurfelSums {
   Eigen::MatrixXd gram;                ///< (m + 4)²: Σ rowᵀ row
+  Eigen::VectorXd range_squares;       ///< [m²] m: see NormalEquations
+  Eigen::VectorXd changed;             ///< m: likewise
   std::vector<Eigen::MatrixXd> pulls;  ///< of each division (m + 4) × blocks: Σ rowᵀ distance
   SumsByMoment turns;                  ///< m + 5 a moment: Σ rowᵀ turn, and Σ turn² at last
 };

@@ -14,9 +14,15 @@ struct Candidate {
   TermParameters term;    ///< neutral, but for the form that is tried
   std::size_t forms = 1;  ///< how many are tried
   double form = 0;        ///< which of them this is: see in_form()
-  double form_error = 0;  ///< by how much another may be the right one, in the unit of the parameter of form
-  std::string name;       ///< "laser2.mirror.cone", "encoder.eccentricity"
-  std::string covariate;  ///< see TermInfo: empty for a term that names a cause
+
+  /// Another form, beside the best.
+  struct OtherForm {
+    double off = 0;     ///< its parameter of form less that of the best
+    double behind = 0;  ///< [2 nat] by how much less it explains, errors of beams taken for independent
+  };
+  std::vector<OtherForm> other_forms;  ///< all that are tried, as far as they have been looked at
+  std::string name;                    ///< "laser2.mirror.cone", "encoder.eccentricity"
+  std::string covariate;               ///< see TermInfo: empty for a term that names a cause
 
   bool in_model = false;  ///< whether the calibration has it
 

@@ -82,22 +82,25 @@ std::vector<Departure::Rival> rivals(const Choice& choice, const Dictionary& dic
   return result;
 }
 
-/// By how much a candidate can change ranges (RMS, in units of their noise) without being taken: because it
-/// is not significant, or because the other parameters leave too little of it to be seen.
+/// [m] By how much a candidate can change ranges (RMS) without being taken: because it is not significant, or
+/// because the other parameters leave too little of it to be seen.
 double limit_of(const Candidate& candidate, const Look& look, const SelectionSettings& settings,
                 std::size_t beams) {
   const auto parameters = static_cast<double>(look.value.size()) + (candidate.forms > 1 ? 1 : 0);
   const double significant =
-      std::sqrt(settings.bic + parameters * std::log(static_cast<double>(beams))) * look.whole_error;
-  const double left = std::sqrt(look.identifiability());
-  return left > 0 ? std::max(significant, settings.visible / left) : std::numeric_limits<double>::infinity();
+      std::sqrt(settings.bic + parameters * std::log(static_cast<double>(beams))) * look.ranges_error;
+  return look.visible > 0 ? std::max(significant, look.ranges * settings.visible / look.visible)
+                          : std::numeric_limits<double>::infinity();
 }
 
-/// Candidates that could be half as large as the noise of ranges, in every form, without being seen beside
-/// those that were taken.
+/// Candidates that could be a quarter of the noise of ranges, in every form, without being seen beside those
+/// that were taken.
+///
+/// @param noise  [m] of ranges
 std::vector<Diagnosis::Limit> hidden(const std::vector<std::size_t>& taken, const Dictionary& dictionary,
-                                     const NormalEquations& equations, const SelectionSettings& settings) {
-  constexpr double kMuch = 0.5;
+                                     const NormalEquations& equations, const SelectionSettings& settings,
+                                     double noise) {
+  constexpr double kMuch = 0.25;
   struct Least {
     double limit = 0;
     std::size_t candidate = 0;
@@ -113,7 +116,7 @@ std::vector<Diagnosis::Limit> hidden(const std::vector<std::size_t>& taken, cons
   }
   std::vector<Diagnosis::Limit> hidden;
   for (const auto& [name, least] : limits) {
-    if (least.limit < kMuch) continue;
+    if (least.limit < kMuch * noise) continue;
     hidden.push_back({.name = name,
                       .size = least.limit,
                       .combination = known_instead(least.candidate, taken, dictionary, equations)});
@@ -122,7 +125,7 @@ std::vector<Diagnosis::Limit> hidden(const std::vector<std::size_t>& taken, cons
 }
 
 /// One look at a model: what it needs, as candidates with values.
-void look(const Evidence& evidence, const TermRegistry& terms, const SelectionSettings& settings,
+void look(const Evidence& evidence, const TermRegistry& terms, const DiagnosisSettings& settings,
           const std::set<std::string>& refused, Diagnosis& result) {
   const SensorModel& model = result.after.outcome.model;
   const Dictionary dictionary(model, base_of(result.after),
@@ -130,7 +133,7 @@ void look(const Evidence& evidence, const TermRegistry& terms, const SelectionSe
   const NormalEquations equations = from_neutral(dictionary, evidence.equations(dictionary));
   result.departures.clear();
   std::vector<std::size_t> taken;
-  for (const Choice& choice : choose(dictionary, equations, settings, refused)) {
+  for (const Choice& choice : choose(dictionary, equations, settings.selection, refused)) {
     taken.push_back(choice.candidate);
     result.departures.push_back(
         {.candidate = valued(dictionary.candidates()[choice.candidate], choice.look, terms),
@@ -138,7 +141,8 @@ void look(const Evidence& evidence, const TermRegistry& terms, const SelectionSe
          .rivals = rivals(choice, dictionary),
          .gains = {}});
   }
-  result.unobservable = hidden(taken, dictionary, equations, settings);
+  result.unobservable =
+      hidden(taken, dictionary, equations, settings.selection, settings.refinement.surfels.noise);
   result.looks = names_of(dictionary.candidates()).size();
   result.unshared = unshared_causes(terms, evidence.lasting());
 }
@@ -180,7 +184,7 @@ class Diagnoser {
       if (!goes_on(share, fmt::format("round {}: looking at all candidates", round + 1))) return;
       const Evidence evidence(result.after.outcome.model, inside_, settings_.refinement.surfels,
                               settings_.beams);
-      look(evidence, terms_, settings_.selection, refused, result);
+      look(evidence, terms_, settings_, refused, result);
       std::vector<Candidate> next;
       for (const Departure& departure : result.departures) next.push_back(departure.candidate);
       // What was found needless once the model had it would be taken again for ever.
@@ -192,7 +196,7 @@ class Diagnoser {
       if (!goes_on(share, fmt::format("round {}: refining with what was found", round + 1))) return;
       chosen = with_sharper_forms(next, result.after.outcome.model, base_of(result.after), evidence, terms_);
       for (const Candidate& candidate : chosen) {
-        if (candidate.form_error > 0) result.form_errors[full_name(candidate)] = candidate.form_error;
+        if (!candidate.other_forms.empty()) result.other_forms[candidate.name] = candidate.other_forms;
       }
       result.after = refined(with_terms(result.after.outcome.model.calibration(), chosen), sample_);
     }
@@ -205,13 +209,17 @@ class Diagnoser {
   }
 
   /// The refined model knows the curvature at its form alone, not that another may be the right one.
-  static void add_form_errors(Diagnosis& result) {
+  void add_form_errors(Diagnosis& result) const {
     Outcome& outcome = result.after.outcome;
-    for (std::size_t k = 0; k < outcome.free.size(); ++k) {
-      const auto error = result.form_errors.find(outcome.model.names()[outcome.free[k]]);
-      if (error == result.form_errors.end()) continue;
-      const auto i = static_cast<Eigen::Index>(k);
-      outcome.covariance(i, i) += error->second * error->second;
+    for (const Departure& departure : result.departures) {
+      const auto others = result.other_forms.find(departure.candidate.name);
+      if (others == result.other_forms.end()) continue;
+      const std::string name = full_name(departure.candidate);
+      const double error = form_error(others->second, departure.look.sharing());
+      for (std::size_t k = 0; k < outcome.free.size(); ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        if (outcome.model.names()[outcome.free[k]] == name) outcome.covariance(i, i) += error * error;
+      }
     }
   }
 

@@ -37,14 +37,12 @@ struct Diagnosis {
   Refinement before;  ///< without any terms
   Refinement after;   ///< with those that were accepted
   std::vector<Departure> departures;
-  /// Of terms with a form by how much another may be the right one, by the parameter's full name. `after`
-  /// counts on it.
-  std::map<std::string, double> form_errors;
+  /// Of candidates with a form, by name, what else was tried. `after` counts on it.
+  std::map<std::string, std::vector<Candidate::OtherForm>> other_forms;
   /// A candidate of which these data tell little.
   struct Limit {
     std::string name;
-    double size =
-        0;  ///< RMS change of ranges that would not be seen, in units of their noise; may be infinite
+    double size = 0;          ///< [m] RMS change of ranges that would not be seen; may be infinite
     std::string combination;  ///< that is known instead: see known_instead()
   };
   std::vector<Limit> unobservable;

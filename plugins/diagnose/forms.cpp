@@ -30,26 +30,22 @@ std::size_t best_of(const std::vector<Look>& looks) {
   return static_cast<std::size_t>(std::ranges::max_element(looks, {}, &Look::gain) - looks.begin());
 }
 
-/// By how much the form may be another than the best, in the unit of its parameter: the spread of all that
-/// are tried, each as likely as the data make it. A form that a small part of an effect hangs on (a sway
-/// beside a larger drift) has rivals far off, of which its own curvature knows nothing.
-double form_error(const Candidate& best, const std::vector<Candidate>& others, const SensorModel& model,
-                  const std::vector<std::size_t>& base, const Evidence& evidence, const TermRegistry& terms) {
+/// All forms that are tried, beside the best.
+std::vector<Candidate::OtherForm> other_forms(const Candidate& best, const std::vector<Candidate>& others,
+                                              const SensorModel& model, const std::vector<std::size_t>& base,
+                                              const Evidence& evidence, const TermRegistry& terms) {
   std::vector<Candidate> forms = {best};
   for (std::size_t k = 0; k < best.forms; ++k) {
     forms.push_back(in_form(best, static_cast<double>(k), terms, evidence.lasting()));
   }
   const std::vector<Look> looks = looks_at(forms, others, model, base, evidence, terms);
   const double value = form_parameter(best, terms).value;
-  double likelihoods = 0;
-  double squares = 0;
-  for (std::size_t k = 0; k < forms.size(); ++k) {
-    const double behind = std::max(0.0, looks.front().gain - looks[k].gain) / looks.front().sharing();
-    const double likelihood = std::exp(-behind / 2);
-    likelihoods += likelihood;
-    squares += likelihood * std::pow(form_parameter(forms[k], terms).value - value, 2);
+  std::vector<Candidate::OtherForm> result;
+  for (std::size_t k = 1; k < forms.size(); ++k) {
+    result.push_back({.off = form_parameter(forms[k], terms).value - value,
+                      .behind = std::max(0.0, looks.front().gain - looks[k].gain)});
   }
-  return std::sqrt(squares / likelihoods);
+  return result;
 }
 
 }  // namespace
@@ -72,9 +68,20 @@ std::vector<Candidate> with_sharper_forms(std::vector<Candidate> chosen, const S
       }
       chosen[c] = forms[best_of(looks_at(forms, others, model, base, evidence, terms))];
     }
-    chosen[c].form_error = form_error(chosen[c], others, model, base, evidence, terms);
+    chosen[c].other_forms = other_forms(chosen[c], others, model, base, evidence, terms);
   }
   return chosen;
+}
+
+double form_error(const std::vector<Candidate::OtherForm>& others, double sharing) {
+  double likelihoods = 1;
+  double squares = 0;
+  for (const auto& other : others) {
+    const double likelihood = std::exp(-other.behind / sharing / 2);
+    likelihoods += likelihood;
+    squares += likelihood * other.off * other.off;
+  }
+  return std::sqrt(squares / likelihoods);
 }
 
 }  // namespace crisp

@@ -17,4 +17,11 @@ std::vector<Candidate> with_sharper_forms(std::vector<Candidate> chosen, const S
                                           const std::vector<std::size_t>& base, const Evidence& evidence,
                                           const TermRegistry& terms);
 
+/// By how much the form may be another than the best, in the unit of its parameter: the spread of all that
+/// are tried, each as likely as the data make it. A form that a small part of an effect hangs on (a sway
+/// beside a larger drift) has rivals far off, of which its own curvature knows nothing.
+///
+/// @param sharing  see Look::sharing(), of the candidate where the model has it
+double form_error(const std::vector<Candidate::OtherForm>& others, double sharing);
+
 }  // namespace crisp

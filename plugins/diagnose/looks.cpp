@@ -65,9 +65,11 @@ Look look_at(const NormalEquations& equations, const std::vector<std::size_t>& o
   look.bic = look.gain - count * std::log(static_cast<double>(equations.beams));
   look.visible = std::sqrt(steps.squaredNorm() / equations.weight);
   look.whole = std::sqrt(squares.dot(look.value.cwiseAbs2()) / equations.weight);
-  look.whole_error = seen.cols() < matrix.cols()
-                         ? std::numeric_limits<double>::infinity()
-                         : std::sqrt(squares.dot(look.covariance.diagonal()) / equations.weight);
+  const double changed = of.empty() ? 1 : std::max(1.0, equations.changed(of).maxCoeff());
+  const Eigen::VectorXd in_ranges = equations.range_squares(of) / changed;
+  look.ranges = std::sqrt(in_ranges.dot(look.value.cwiseAbs2()));
+  look.ranges_error = seen.cols() < matrix.cols() ? std::numeric_limits<double>::infinity()
+                                                  : std::sqrt(in_ranges.dot(look.covariance.diagonal()));
   look.wald = spread.wald;
   if (seen.cols() > 0) look.p_value = cdf(complement(boost::math::chi_squared(count), look.wald));
   return look;

@@ -25,8 +25,10 @@ struct Look {
   double visible =
       0;  ///< [σ] RMS over the beams by which ranges change, after planes and the other parameters
           ///< have taken what they can; σ is the noise of ranges that the surfels were told
-  double whole = 0;        ///< [σ] RMS by which ranges change at all
-  double whole_error = 0;  ///< [σ] standard error of that; infinite if a direction is hidden
+  double whole = 0;  ///< [σ] RMS by which ranges change at all
+  double ranges =
+      0;  ///< [m] the same of all beams that change alike, also of those that graze and count little
+  double ranges_error = 0;  ///< [m] standard error of that; infinite if a direction is hidden
   /// Share of the whole (in squares) that planes and the other parameters cannot take. Near 0 the parameters
   /// are unobservable in these data.
   double identifiability() const { return whole > 0 ? visible * visible / (whole * whole) : 0; }

@@ -121,12 +121,12 @@ std::string gain_in_words(const std::vector<Gain>& gains) {
   return words;
 }
 
-std::string reason_of(const Diagnosis::Limit& limit, const std::string& told_by, double noise) {
+std::string reason_of(const Diagnosis::Limit& limit, const std::string& told_by) {
   const std::string needs = told_by.empty() ? "" : "; what tells it: " + told_by;
   if (!std::isfinite(limit.size)) return "the other parameters do all that it could do to these data" + needs;
   return fmt::format(
       "beside the other parameters it would not show if it changed ranges by less than {:.0f} mm (RMS){}",
-      1e3 * limit.size * noise, needs);
+      1e3 * limit.size, needs);
 }
 
 /// What the extended model leaves over a covariate, unless something is said of that already.
@@ -179,7 +179,7 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
   add_left_over(diagnosis.left_after, calibration, settings.visible * noise, all);
   for (const Diagnosis::Limit& limit : diagnosis.unobservable) {
     all.unobservable.push_back({.parameter = limit.name,
-                                .reason = reason_of(limit, told_by(limit.name, terms), noise),
+                                .reason = reason_of(limit, told_by(limit.name, terms)),
                                 .combination = limit.combination});
   }
   for (const std::string& cause : diagnosis.unshared) {

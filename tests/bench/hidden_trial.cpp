@@ -155,7 +155,7 @@ class Trial {
     }
     for (const auto& limit : diagnosis.unobservable) {
       if (std::ranges::count(drawn.names, limit.name) > 0) {
-        fmt::print("    {} would not show below {:.2f} of the noise\n", limit.name, limit.size);
+        fmt::print("    {} would not show below {:.1f} mm\n", limit.name, 1e3 * limit.size);
       }
     }
     std::fflush(stdout);

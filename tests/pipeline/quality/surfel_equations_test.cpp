@@ -92,6 +92,33 @@ TEST(SurfelEquations, AreThoseOfAllPlanesAndParametersTogether) {
   EXPECT_NEAR(equations.chi2, distances.squaredNorm(), 1e-6 * equations.chi2);
 }
 
+TEST(SurfelEquations, SayByHowMuchEachParameterChangesRanges) {
+  const auto scan = test::scan_room(3000, {{0, 0}, {0.004, 0}, {0, 0.003}}, 0.012, 1);
+  const SurfelSettings settings;
+  const auto surfels = find_surfels(scan.beams(), settings);
+  const std::vector<Division> together = {Division(scan.points.size(), 0)};
+  const auto equations =
+      normal_equations(surfels, scan.beams(), kParameters, derivatives_of(scan), settings, together);
+  // An offset of ranges changes each by as much as any other, whatever it counts.
+  EXPECT_EQ(equations.changed[4], static_cast<double>(equations.beams));
+  EXPECT_NEAR(equations.range_squares[4], equations.changed[4], 1e-9 * 3000);
+  // A shift outwards does along the beam what it does across the plane, divided by the cosine.
+  double expected = 0;
+  double of_laser = 0;
+  for (const Surfel& surfel : surfels.surfels) {
+    const auto residuals = residuals_of(surfel, surfels, scan.beams(), settings);
+    for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
+      const std::uint32_t i = surfels.members[k];
+      const SurfelResidual& r = residuals[k - surfel.begin];
+      if (r.weight == 0 || scan.laser[i] != 1) continue;
+      expected += std::pow(surfel.normal.dot(scan.outwards[i]) / r.incidence, 2);
+      ++of_laser;
+    }
+  }
+  EXPECT_NEAR(equations.range_squares[0], expected, 1e-9 * expected);
+  EXPECT_EQ(equations.changed[0], of_laser);
+}
+
 TEST(SurfelEquations, FindWhereLasersAreWithinTheirStandardErrors) {
   const Eigen::VectorXd truth = (Eigen::VectorXd(5) << 0.01, -0.005, -0.004, 0.008, 0).finished();
   // Each squared error over its variance is 1 on average: a sum of 40 · 5 has a standard deviation of 20.

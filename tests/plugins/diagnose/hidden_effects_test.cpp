@@ -67,6 +67,10 @@ TEST(HiddenEffects, ACyclicErrorIsFoundWithItsPeriod) {
   const Diagnosis diagnosis = test::diagnosed(recording);
   EXPECT_THAT(test::names_in(diagnosis), ElementsAre("laser1.range.cyclic"));
   expect_within_errors(diagnosis, recording, "laser1.range.cyclic", 3);
+  const auto parameters = test::told_of(diagnosis, recording.scanner.truth, "laser1.range.cyclic");
+  const auto period = std::ranges::find(parameters, "P", &test::Told::name);
+  ASSERT_NE(period, parameters.end());
+  EXPECT_LT(period->std_error, 0.01) << "m: no other period explains it as well";
 }
 
 /// Drawn: the plate's foundation drifts by much and sways by little, so that the frequency of the sway is

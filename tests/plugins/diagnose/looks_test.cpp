@@ -81,7 +81,7 @@ TEST(Look, HoldsHiddenDirectionsAtZero) {
   const Look look = look_at(equations, {1});
   EXPECT_EQ(look.value[0], 0);
   EXPECT_EQ(look.p_value, 1);
-  EXPECT_TRUE(std::isinf(look.whole_error));
+  EXPECT_TRUE(std::isinf(look.ranges_error));
 }
 
 }  // namespace
