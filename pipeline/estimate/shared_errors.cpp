@@ -21,6 +21,24 @@ std::vector<std::uint32_t> beams_of_scans(const Measurements& beams) {
   return most;
 }
 
+constexpr std::size_t kPlaces = 4;  // along each side of a surface
+
+/// Which of the places of a surface a beam meets. Where it meets the plane, not where noise has put its
+/// point: else beams would be sorted by their noise.
+std::size_t place_on(const Surfel& surfel, const BeamsView& beams, std::uint32_t i) {
+  const Eigen::Vector3d point(beams.points.x[i], beams.points.y[i], beams.points.z[i]);
+  const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
+  const double incidence = surfel.normal.dot(direction);
+  const Eigen::Vector3d from_middle = point - surfel.middle;
+  const double further = incidence < 0 ? -surfel.normal.dot(from_middle) / incidence : 0;
+  const Eigen::Vector3d foot = from_middle + further * direction;
+  const auto step = [&](double along) {  // of uniform surfaces the sides are ±√3 times the RMS
+    const double share = std::clamp(along / (2 * surfel.radius) + 0.5, 0.0, 1.0);
+    return std::min(kPlaces - 1, static_cast<std::size_t>(share * kPlaces));
+  };
+  return kPlaces * step(surfel.u.dot(foot)) + step(surfel.v.dot(foot));
+}
+
 }  // namespace
 
 Division recording_blocks(const Measurements& beams) {
@@ -57,8 +75,19 @@ Division scan_blocks(const Measurements& beams) {
   return blocks;
 }
 
+Division place_blocks(const Surfels& surfels, const BeamsView& beams) {
+  Division blocks(beams.points.size(), 0);
+  for (std::size_t s = 0; s < surfels.surfels.size(); ++s) {
+    const Surfel& surfel = surfels.surfels[s];
+    for (const std::uint32_t i : surfels.beams_of(surfel)) {
+      blocks[i] = static_cast<std::uint32_t>((kPlaces * kPlaces * s + place_on(surfel, beams, i)) % kFewest);
+    }
+  }
+  return blocks;
+}
+
 Eigen::VectorXd widening(const NormalEquations& equations) {
-  constexpr double kSure = 2;  // [standard errors]
+  constexpr double kSure = 3;  // [standard errors of a logarithm]
   const Eigen::Index m = equations.matrix.cols();
   std::vector<std::size_t> all(static_cast<std::size_t>(m));
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -74,13 +103,15 @@ Eigen::VectorXd widening(const NormalEquations& equations) {
     const Eigen::ArrayXd sum = squares.rowwise().sum() * unbiased;
     const Eigen::ArrayXd error =
         (squares.square().rowwise().sum() * unbiased * unbiased - sum.square() / count).sqrt();
-    wider = (sum - kSure * error > alone).select(wider.max(sum / alone), wider);
+    const Eigen::ArrayXd least = sum * (-kSure * error / sum).exp();
+    wider = (least > alone).select(wider.max(sum / alone), wider);
   }
   return wider.sqrt();
 }
 
-std::vector<Division> shared_errors(const Measurements& beams) {
-  return {recording_blocks(beams), scan_blocks(beams)};
+std::vector<Division> shared_errors(const Measurements& beams, const Surfels& surfels,
+                                    const BeamsView& placed) {
+  return {recording_blocks(beams), scan_blocks(beams), place_blocks(surfels, placed)};
 }
 
 }  // namespace crisp

@@ -86,7 +86,7 @@ class Refiner {
     const PlacedBeams placed(model_, sample_);
     const auto equations =
         normal_equations(found_, placed.view(), free_.size(), surfel_rows(model_, sample_, free_),
-                         settings_.surfels, shared_errors(sample_.beams));
+                         settings_.surfels, shared_errors(sample_.beams, found_, placed.view()));
     const Eigen::VectorXd wider = widening(equations);
     covariance_ = wider.asDiagonal() * covariance_ * wider.asDiagonal();
   }

@@ -57,7 +57,7 @@ Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings
               .last = last,
               .one_begin = recordings.size() < 2,
               .one_zero = recordings.empty() || recordings.front().zero == recordings.back().zero};
-  shared_ = shared_errors(sample_.beams);
+  shared_ = shared_errors(sample_.beams, surfels_, placed_.view());
 }
 
 NormalEquations Evidence::equations(const Dictionary& dictionary) const {
