@@ -87,7 +87,7 @@ Division place_blocks(const Surfels& surfels, const BeamsView& beams) {
 }
 
 Eigen::VectorXd widening(const NormalEquations& equations) {
-  constexpr double kSure = 3;  // [standard errors of a logarithm]
+  constexpr double kSure = 2;  // [standard errors of a logarithm]
   const Eigen::Index m = equations.matrix.cols();
   std::vector<std::size_t> all(static_cast<std::size_t>(m));
   std::iota(all.begin(), all.end(), std::size_t{0});
