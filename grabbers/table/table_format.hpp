@@ -23,10 +23,10 @@ struct TableFormat {
   std::int64_t counter_modulus = 1 << 16;  ///< at which it wraps
   double period = 0;                       ///< [s] nominal, of a scan; needed where there is no time
 
-  int angle_column = 0;  ///< of the actuator
+  std::optional<int> angle_column;  ///< of the actuator; else there is none
   AngleUnit angle_unit = AngleUnit::rad;
 
-  int range_column = 0;             ///< of the first range
+  std::optional<int> range_column;  ///< of the first range; else rows are times alone
   std::optional<int> count_column;  ///< how many ranges the row has; else they go on to its end
   LengthUnit range_unit = LengthUnit::m;
   std::optional<double>

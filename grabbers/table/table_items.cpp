@@ -75,7 +75,7 @@ std::shared_ptr<const Scan> TableItems::scan_of(const TableRow& row, std::int64_
   scan->scan_frequency = format_.period > 0 ? 1 / format_.period : 0;
   scan->start_angle = settings_.start_angle;
   scan->angle_step = settings_.angle_step;
-  scan->echoes.push_back({.ranges = row.ranges, .remissions = row.remissions});
+  if (format_.range_column) scan->echoes.push_back({.ranges = row.ranges, .remissions = row.remissions});
   return scan;
 }
 
@@ -126,7 +126,7 @@ std::optional<TableScan> TableItems::add(const TableRow& row) {
   add_beams(row, time);
 
   TableScan item;
-  if (!last_reading_us_ || time_ns / kMicrosecond > *last_reading_us_) {
+  if (format_.angle_column && (!last_reading_us_ || time_ns / kMicrosecond > *last_reading_us_)) {
     last_reading_us_ = time_ns / kMicrosecond;
     const double counts = std::round(angle / kTurn * rig_.plate.counts_per_revolution);
     item.reading = PlateReading{.sequence = readings_++,

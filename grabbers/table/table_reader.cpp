@@ -103,11 +103,11 @@ double angle_of(const Fields& fields, int column, AngleUnit unit) {
 
 std::size_t count_of(const Fields& fields, const TableFormat& format) {
   if (format.mirror_column) return 1;
-  const auto first = static_cast<std::size_t>(format.range_column);
+  const auto first = static_cast<std::size_t>(*format.range_column);
   if (first > fields.size()) throw Fault{"rows with too few columns", fields.start(fields.size())};
   std::size_t left = fields.size() - first + 1;
-  if (format.remission_column && *format.remission_column > format.range_column) {
-    left = std::min(left, static_cast<std::size_t>(*format.remission_column - format.range_column));
+  if (format.remission_column && *format.remission_column > *format.range_column) {
+    left = std::min(left, static_cast<std::size_t>(*format.remission_column - *format.range_column));
   }
   if (format.count_column) {
     const auto counted = fields.decimal(static_cast<std::size_t>(*format.count_column), 0);
@@ -125,7 +125,7 @@ void read_ranges(const Fields& fields, const TableFormat& format, TableRow& row)
   const double unit = metres(format.range_unit);
   row.ranges.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const double raw = fields.number(static_cast<std::size_t>(format.range_column) + k);
+    const double raw = fields.number(static_cast<std::size_t>(*format.range_column) + k);
     const bool code = !(raw > 0) || (format.invalid_from && raw >= *format.invalid_from);
     row.ranges.push_back(code || raw * unit > kLargestRange ? 0.0F : static_cast<float>(raw * unit));
     if (!format.remission_column) continue;
@@ -154,9 +154,9 @@ std::optional<TableRow> TableReader::parse(std::string_view text) {
       }
       row.laser = static_cast<std::uint16_t>(laser);
     }
-    row.angle = angle_of(fields, format_.angle_column, format_.angle_unit);
+    if (format_.angle_column) row.angle = angle_of(fields, *format_.angle_column, format_.angle_unit);
     if (format_.mirror_column) row.mirror = angle_of(fields, *format_.mirror_column, format_.angle_unit);
-    read_ranges(fields, format_, row);
+    if (format_.range_column) read_ranges(fields, format_, row);
     return row;
   } catch (const Fault& fault) {
     ++losses_[fault.what];

@@ -26,14 +26,10 @@ void describe_columns(StageDescription<TableStage>& d, TableFormat TableStage::*
   d.option("period", format, &TableFormat::period, "nominal time between two scans; 0: not known")
       .unit("s")
       .range(0, 1000);
-  d.option("angle_column", format, &TableFormat::angle_column, "the actuator's angle")
-      .range(1, kMostColumns)
-      .required();
+  column("angle_column", &TableFormat::angle_column, "the actuator's angle; auto: the laser stands still");
   d.option("angle_unit", format, &TableFormat::angle_unit, "of all angles in the table")
       .choices({{"rad", AngleUnit::rad}, {"deg", AngleUnit::deg}});
-  d.option("range_column", format, &TableFormat::range_column, "the first range")
-      .range(1, kMostColumns)
-      .required();
+  column("range_column", &TableFormat::range_column, "the first range; auto: rows are times alone");
   column("count_column", &TableFormat::count_column, "how many ranges there are; auto: up to the row's end");
   d.option("range_unit", format, &TableFormat::range_unit, "of ranges")
       .choices({{"m", LengthUnit::m}, {"cm", LengthUnit::cm}, {"mm", LengthUnit::mm}});
@@ -63,7 +59,8 @@ void TableStage::describe(StageDescription<TableStage>& d) {
       "else by its time.\n\n"
       "The rig's plate is the actuator, whatever it turns; angles are rounded to its "
       "`counts_per_revolution`. "
-      "docs/reality-gap.md says how a tilting unit is described.");
+      "docs/reality-gap.md says how a tilting unit is described. Of a laser without an actuator there are no "
+      "readings, and of a table without ranges no measurements: its times are there for `diagnose.stamps`.");
   d.gives<Scan>().gives<PlateReading>().gives<PlateTrajectory>().gives<Measurements>();
   d.option("file", &TableStage::file_, "the table").required();
   describe_columns(d, &TableStage::format_);
@@ -100,7 +97,10 @@ void TableStage::check(const RunSettings& run) const {
   if (format_.counter_column && format_.period == 0) {
     throw Error("a count of scans is no time without the time between two of them", "give the period");
   }
-  if (!format_.mirror_column && settings_.angle_step == 0) {
+  if (!format_.range_column && (format_.mirror_column || format_.count_column || format_.remission_column)) {
+    throw Error("nothing says where the ranges are", "give range_column");
+  }
+  if (format_.range_column && !format_.mirror_column && settings_.angle_step == 0) {
     throw Error("all beams of a scan would have the same angle", "give angle_step, or mirror_column");
   }
   if (run.rig.lasers.size() > 1 && !format_.laser_column) {
@@ -146,7 +146,7 @@ void TableStage::process(const Inputs&, Outputs& out, Context& context) {
   std::uint64_t beams = 0;
   for (const auto& piece : measurements) beams += piece->size();
   report(reader, items, beams, context);
-  out.give(items.trajectory());
+  if (format_.range_column) out.give(items.trajectory());
   for (const auto& piece : measurements) out.give(piece);
 }
 
@@ -156,9 +156,10 @@ void TableStage::report(const TableReader& reader, const TableItems& items, std:
     for (const auto& [what, n] : *losses) context.count(what, n);
   }
   const auto& fault = reader.first_fault();
-  if (beams == 0) {
+  if (format_.range_column ? beams == 0 : reader.rows() == 0) {
     if (fault) throw Error("no row can be read: " + fault->message(), "correct the columns", fault->place());
-    throw Error(file_.string() + " holds no range", "is it the right table, and are its columns right?");
+    throw Error(file_.string() + (format_.range_column ? " holds no range" : " holds no row"),
+                "is it the right table, and are its columns right?");
   }
   if (fault) context.warn(to_string(fault->place()) + ": here is the first of the " + fault->message());
   context.report({{"rows", reader.rows()}, {"beams", beams}});

@@ -20,6 +20,7 @@ class RealData : public testing::Test {
  protected:
   /// A file of the data that are shared but not in the repository; the test is skipped where it is missing.
   static fs::path data(const std::string& name) { return shared_data() / "actuated" / name; }
+  static fs::path stamps(const std::string& name) { return shared_data() / "clocks" / (name + ".csv"); }
   const test::Workshop workshop_;
 };
 
@@ -166,6 +167,53 @@ TEST_F(RealData, VelodynesLasersComeBackToOneAnotherFromAnAngleThatIsPutInByHand
     EXPECT_NEAR(turned.apart - as_made.apart, 0, 0.1 * std::abs(degrees) * kDegree + 0.05 * kDegree)
         << degrees;
   }
+}
+
+TEST_F(RealData, VelodynesStandardErrorsHoldWhatItsMakerSays) {
+  const auto capture = data("velodyne_vlp16_static/sample_velodyne_vlp16_gps.pcap");
+  if (!fs::exists(capture)) GTEST_SKIP() << missing(capture);
+  ASSERT_EQ(workshop_.run("real/vlp16.yaml", capture, "out").status, ExitStatus::done);
+  const auto found = read_calibration(workshop_ / "out/calibration.yaml");
+  for (const auto& laser : found.lasers) {
+    if (!laser.lambda.free) continue;
+    EXPECT_LT(std::abs(laser.lambda.value), 4 * laser.lambda.std_error)
+        << laser.name << ": told against beam02, whose own error all of them share";
+  }
+}
+
+TEST_F(RealData, ASecondLms1xxHasTwoPeaksAsWell) {
+  const auto table = data("sick_lms1xx_static/lms1xx_scans.csv");
+  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
+  const auto outcome = workshop_.run("real/lms1xx.yaml", table, "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const auto diagnosis = diagnosis_in(workshop_ / "out");
+  const auto peaks = finding(diagnosis, "noise.two_peaks");
+  ASSERT_TRUE(peaks.is_object());
+  EXPECT_GT(peaks["parameters"][0]["value"], 0.0135) << "as an independent look found: 13.5 to 16.7 mm";
+  EXPECT_LT(peaks["parameters"][0]["value"], 0.0167);
+  EXPECT_GT(peaks["gain"][0]["ci95"][0], 0);
+  const auto slow = finding(diagnosis, "mirror.period");
+  ASSERT_TRUE(slow.is_object());
+  const double excess = slow["parameters"][0]["value"];
+  EXPECT_NEAR(1 / (0.02 + excess), 49.89, 0.05) << "Hz, as an independent look found";
+}
+
+TEST_F(RealData, ThreeStreamsOfOneClockOverWiFiGiveOneRate) {
+  if (!fs::exists(stamps("esp32_wifi_A_scan"))) GTEST_SKIP() << missing(stamps("esp32_wifi_A_scan"));
+  double weights = 0, mean = 0, squares = 0;
+  for (const auto* stream : {"esp32_wifi_A_scan", "esp32_wifi_A_imu", "esp32_wifi_A_ultrasonic"}) {
+    ASSERT_EQ(workshop_.run("real/clocks.yaml", stamps(stream), stream).status, ExitStatus::done);
+    const auto diagnosis = diagnosis_in(workshop_ / stream);
+    EXPECT_THAT(diagnosis["findings"], testing::IsEmpty()) << stream;
+    const auto& device = diagnosis["devices"].at(0);
+    const double skew = device["skew"], error = device["skew_std_error"];
+    weights += 1 / (error * error);
+    mean += skew / (error * error);
+    squares += skew * skew / (error * error);
+    EXPECT_GT(device["delay_median"], 0.01) << stream;
+  }
+  EXPECT_LT(squares - mean * mean / weights, 9.2) << "of chi2 with two degrees of freedom one in a hundred";
+  EXPECT_NEAR(mean / weights, -110e-6, 60e-6) << "as an independent look found: 88 to 117 ppm slow";
 }
 
 }  // namespace

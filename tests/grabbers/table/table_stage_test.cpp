@@ -11,8 +11,10 @@
 namespace crisp {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::Pair;
 
 class TableStageTest : public testing::Test {
@@ -64,6 +66,20 @@ TEST_F(TableStageTest, ReadsAPartOfTheTable) {
   EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows left out because of begin and duration", 2)));
 }
 
+TEST_F(TableStageTest, ALaserThatStandsStillHasNoReadings) {
+  const auto result = run("0,1,2\n1,1,2\n2,1,2\n", "time_column: 1, range_column: 2, angle_step: 1deg");
+  EXPECT_EQ(result.report.section["beams"], 6);
+  EXPECT_THAT(result.given, Contains(Pair("Scan", 3)));
+  EXPECT_THAT(result.given, Not(Contains(Pair("PlateReading", testing::_))));
+}
+
+TEST_F(TableStageTest, ReadsTimesAlone) {
+  const auto result = run("0,5\n1,6\n2,7\n", "time_column: 1, receipt_column: 2");
+  EXPECT_EQ(result.report.section["rows"], 3);
+  EXPECT_THAT(result.given, ElementsAre(Pair("Scan", 3)));
+  EXPECT_THAT(complaint("# nothing\n", "time_column: 1"), HasSubstr("holds no row"));
+}
+
 TEST_F(TableStageTest, RefusesWhatHoldsNothingWithThePlaceOfTheFirstFault) {
   EXPECT_THAT(complaint("# nothing\n", kColumns), HasSubstr("holds no range"));
   EXPECT_THAT(complaint("\n0,0\n", kColumns), HasSubstr("t.csv:2:4"));
@@ -73,6 +89,7 @@ TEST_F(TableStageTest, RefusesWhatHoldsNothingWithThePlaceOfTheFirstFault) {
 TEST_F(TableStageTest, RefusesOptionsThatLeaveATimeOrAnAngleUnknown) {
   EXPECT_THAT(complaint("", "angle_column: 1, range_column: 2, angle_step: 1deg"),
               HasSubstr("give time_column"));
+  EXPECT_THAT(complaint("", "time_column: 1, remission_column: 3"), HasSubstr("give range_column"));
   EXPECT_THAT(complaint("", "time_column: 1, angle_column: 1, range_column: 2"),
               HasSubstr("give angle_step"));
   EXPECT_THAT(
