@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How often the whole pipeline names what hides in a capture and is no term of the sensor's model: clocks,
-// links, the scatter of ranges, things that move. Beside hidden_trial, which hides terms in measurements.
-// Each capture is simulated from a seed, and configs/diagnose.yaml is given it alone. Prints a line for each
-// capture, and a table in the end.
+// How often the whole pipeline names what hides in a capture: clocks, links, the scatter of ranges, things
+// that move, and terms of the sensor's model, which hidden_trial hides in measurements. Each capture is
+// simulated from a seed, and configs/diagnose.yaml is given it alone. Prints a line for each capture, and a
+// table in the end.
 //
-//     hidden_capture [SEEDS [FIRST [EFFECT]]]       EFFECT: one of them, or `none`
+//     hidden_capture [SEEDS [FIRST [EFFECT]]]       EFFECT: one of them, `none`, or `terms`: all of the model
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,6 +19,7 @@
 
 #include "pipeline/files/findings_file.hpp"
 #include "tests/end_to_end/workshop.hpp"
+#include "tests/plugins/diagnose/drawn.hpp"
 
 namespace crisp {
 namespace {
@@ -33,7 +34,8 @@ struct Hidden {
   std::string beside;                   ///< further effects in YAML
   std::string makes;                    ///< cause that is there with it
   Scenes scenes = {"office", "hall", "street"};
-  double duration = 10;  ///< [s]
+  double duration = 10;             ///< [s]
+  std::vector<std::string> motion;  ///< of the plate, as options; else as the configuration has it
 };
 
 class Drawer {
@@ -109,13 +111,44 @@ const std::map<std::string, Draw>& draws() {
   return all;
 }
 
+/// A term of the model, by which ranges change by 8 mm RMS.
+Hidden hidden_term(const std::string& term, std::uint64_t seed) {
+  constexpr double kSize = 0.008;  // [m]
+  const test::Drawn drawn = test::Drawer(seed, default_rig()).with({term}, kSize);
+  const Calibration& truth = drawn.recording.scanner.truth;
+  Hidden hidden{.scope = "plate", .scenes = {drawn.scene}};
+  const TermParameters* found = find_term(truth.plate_terms, term);
+  for (const LaserCalibration& laser : truth.lasers) {
+    if (found) break;
+    found = find_term(laser.terms, term);
+    hidden.scope = laser.name;
+  }
+  for (const Parameter& parameter : found->parameters) hidden.truth[parameter.name] = parameter.value;
+  const MotionSettings& motion = drawn.recording.scanner.motion;
+  hidden.motion = {motion.kind == MotionKind::reversal ? "motion=reversal" : "motion=varying",
+                   fmt::format("min_rate={}Hz", motion.min_rate),
+                   fmt::format("max_rate={}Hz", motion.max_rate)};
+  return hidden;
+}
+
+std::vector<std::string> terms() {
+  std::vector<std::string> causes;
+  for (const auto& name : built_in_terms().names()) {
+    if (built_in_terms().get(name)->info().covariate.empty() && !draws().contains(name))
+      causes.push_back(name);
+  }
+  return causes;
+}
+
 std::string effects_of(const Hidden& hidden) {
   if (hidden.truth.empty()) return "effects={}";
   std::string parameters;
   for (const auto& [name, value] : hidden.truth) {
     parameters += fmt::format("{}{}: {}", parameters.empty() ? "" : ", ", name, value);
   }
-  return fmt::format("effects={{{}.{}: {{{}}}{}}}", hidden.scope, hidden.cause, parameters, hidden.beside);
+  const std::string owner =
+      hidden.scope == "plate" && built_in_terms().get(hidden.cause) ? "" : hidden.scope + ".";
+  return fmt::format("effects={{{}{}: {{{}}}{}}}", owner, hidden.cause, parameters, hidden.beside);
 }
 
 struct Row {
@@ -126,12 +159,14 @@ class Trial {
  public:
   void run(const std::string& cause, std::uint64_t seed) {
     Drawer drawer(seed);
-    Hidden hidden = draws().at(cause)(drawer);
+    Hidden hidden = draws().contains(cause) ? draws().at(cause)(drawer) : hidden_term(cause, seed);
     hidden.cause = cause;
     const std::string scene = hidden.scenes[drawer.below(hidden.scenes.size())];
     const test::Workshop workshop;
-    workshop.simulate("made", {fmt::format("seed={}", seed), "scene=" + scene,
-                               fmt::format("duration={}s", hidden.duration), effects_of(hidden)});
+    std::vector<std::string> options = hidden.motion;
+    options.insert(options.end(), {fmt::format("seed={}", seed), "scene=" + scene,
+                                   fmt::format("duration={}s", hidden.duration), effects_of(hidden)});
+    workshop.simulate("made", options);
     const auto outcome = workshop.run("diagnose.yaml", workshop / "made/hub.pcap", "out");
     if (!std::ranges::count(outcome.files, "diagnosis.json")) throw Error(cause + ": " + outcome.told);
     fmt::print("{:<22} seed {:<4} {:<8} {}; found:", cause, seed, scene, effects_of(hidden));
@@ -196,6 +231,10 @@ void run(std::uint64_t seeds, std::uint64_t first, const std::string& effect) {
     for (const auto& [cause, draw] : draws()) {
       const std::uint64_t own = seed + 1000 * ++k;
       if (effect.empty() ? cause != "none" : cause == effect) trial.run(cause, own);
+    }
+    for (const auto& cause : terms()) {
+      const std::uint64_t own = seed + 1000 * ++k;
+      if (effect == "terms" || effect == cause) trial.run(cause, own);
     }
   }
   trial.print();

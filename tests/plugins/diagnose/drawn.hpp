@@ -35,6 +35,15 @@ class Drawer {
     draw_motion();
   }
 
+  /// With a scanner that is as its rig says.
+  Drawer(std::uint64_t seed, const Rig& rig) : random_(seed) {
+    drawn_.recording.scanner.seed = seed;
+    draw_scene();
+    scanner().rig = rig;
+    scanner().truth = nominal_calibration(rig);
+    draw_motion();
+  }
+
   /// Hides effects by their names without an owner, each as large as `size` [m].
   Drawn with(const std::vector<std::string>& effects, double size) {
     for (const std::string& effect : effects) hide(effect, size);

@@ -84,7 +84,7 @@ struct Told {
 
 /// A term's estimated parameters.
 inline std::vector<Told> told_of(const Diagnosis& diagnosis, Calibration truth, const std::string& term) {
-  const Outcome& outcome = diagnosis.after.outcome;
+  const crisp::Outcome& outcome = diagnosis.after.outcome;
   const auto& parameters = term_of(truth, term).parameters;
   std::vector<Told> all;
   for (std::size_t k = 0; k < outcome.free.size(); ++k) {
