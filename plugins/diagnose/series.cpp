@@ -14,8 +14,9 @@ namespace crisp {
 namespace {
 
 Eigen::MatrixXd beside(const Eigen::MatrixXd& base, const Eigen::VectorXd& column) {
-  Eigen::MatrixXd both(base.rows(), base.cols() + 1);
-  both << base, column;
+  Eigen::MatrixXd both(column.size(), base.cols() + 1);
+  both.leftCols(base.cols()) = base;
+  both.rightCols<1>() = column;
   return both;
 }
 
@@ -24,14 +25,18 @@ std::vector<double> left_of_others(const Eigen::MatrixXd& design, const Eigen::V
   std::vector<Eigen::Index> fitted;
   std::vector<Eigen::Index> rest;
   for (Eigen::Index w = 0; w < values.size(); ++w) (w % 2 == 0 ? fitted : rest).push_back(w);
-  const Eigen::MatrixXd some = design(fitted, Eigen::all);
-  const Eigen::VectorXd fit = some.colPivHouseholderQr().solve(Eigen::VectorXd(values(fitted)));
-  const Eigen::VectorXd left = values(rest) - design(rest, Eigen::all) * fit;
+  Eigen::VectorXd left = values(rest);
+  if (design.cols() > 0) {
+    const Eigen::MatrixXd some = design(fitted, Eigen::all);
+    left -= design(rest, Eigen::all) * some.colPivHouseholderQr().solve(Eigen::VectorXd(values(fitted)));
+  }
   return {left.begin(), left.end()};
 }
 
-Gain gain_of(const Eigen::MatrixXd& base, const Eigen::VectorXd& column, const Eigen::VectorXd& values,
-             std::uint64_t seed) {
+}  // namespace
+
+Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::VectorXd& column, const Eigen::VectorXd& values,
+                    std::uint64_t seed) {
   constexpr std::size_t kDraws = 999;
   const auto before = left_of_others(base, values);
   const auto after = left_of_others(beside(base, column), values);
@@ -52,8 +57,6 @@ Gain gain_of(const Eigen::MatrixXd& base, const Eigen::VectorXd& column, const E
           .ci95 = bootstrap(before.size(), 1, seed, kDraws, change).ci95};
 }
 
-}  // namespace
-
 SeriesLook look_at_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
                           const Eigen::VectorXd& values, std::uint64_t seed) {
   constexpr int kShuffles = 4999;
@@ -61,7 +64,7 @@ SeriesLook look_at_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& co
   SeriesLook look{.column = fit.column,
                   .values = fit.values,
                   .errors = fit.errors,
-                  .gain = gain_of(base, columns.col(fit.column), values, seed)};
+                  .gain = gain_in_series(base, columns.col(fit.column), values, seed)};
   // All shuffles have the same sum of squares: the largest product alone says which does best.
   const Eigen::MatrixXd unit = off_base(base, columns).colwise().normalized();
   Eigen::VectorXd left = off_base(base, values);

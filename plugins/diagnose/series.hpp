@@ -17,8 +17,13 @@ struct SeriesLook {
   double p_value = 1;       ///< how often any column does as much where what is left is shuffled
   Eigen::VectorXd values;   ///< of the base's columns, then of that one
   Eigen::VectorXd errors;   ///< of them: standard errors
-  Gain gain;                ///< RMS of every other value about a fit to the rest, without and with the column
+  Gain gain;                ///< see gain_in_series()
 };
+
+/// What a column brings beside a base for values that it was not fitted to: the RMS of every other value
+/// about a fit to the rest, without it and with it. Metric and unit are left open.
+Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::VectorXd& column, const Eigen::VectorXd& values,
+                    std::uint64_t seed);
 
 /// Tries each of some columns beside a base, by least squares. Significance is by 4999 permutations of what
 /// the base leaves, so that no law of the values is assumed but that they are exchangeable.

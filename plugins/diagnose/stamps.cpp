@@ -159,15 +159,24 @@ std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes) {
   };
   facts.period = period(0, passes.size() - 1);
   double squares = 0;
-  double pieces = 0;
   for (std::size_t i = 0; i + kOfPiece < passes.size(); i += kOfPiece) {
-    squares += std::pow(period(i, i + kOfPiece) - facts.period, 2);
-    pieces += 1;
+    facts.periods.push_back(period(i, i + kOfPiece));
+    squares += std::pow(facts.periods.back() - facts.period, 2);
   }
+  const auto pieces = static_cast<double>(facts.periods.size());
   const double spread = std::sqrt(squares / pieces);
   facts.wander = spread / facts.period;
   facts.period_std_error = spread / std::sqrt(pieces);
   return facts;
+}
+
+Gain gain_over_nominal(const MirrorFacts& facts, double nominal, std::uint64_t seed) {
+  const auto n = static_cast<Eigen::Index>(facts.periods.size());
+  const Eigen::VectorXd excess = Eigen::Map<const Eigen::VectorXd>(facts.periods.data(), n).array() - nominal;
+  Gain gain = gain_in_series(Eigen::MatrixXd(n, 0), Eigen::VectorXd::Ones(n), excess, seed);
+  gain.metric = "period about what is expected";
+  gain.unit = "s";
+  return gain;
 }
 
 }  // namespace crisp

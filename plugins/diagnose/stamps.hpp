@@ -74,11 +74,16 @@ std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stam
 struct MirrorFacts {
   double period = 0;  ///< [s] mean, on the device's clock
   double period_std_error = 0;
-  double wander = 0;  ///< RMS of the period's slow changes, as a share of it
+  double wander = 0;            ///< RMS of the period's slow changes, as a share of it
+  std::vector<double> periods;  ///< [s] of pieces of eight turns
 };
 
 /// @param passes  when the mirror passed its index, with the turn that it was; ascending
 /// @return  nothing for fewer than 16 turns
 std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes);
+
+/// What it brings for every other piece's period to expect that of the others in place of the nominal one
+/// [s].
+Gain gain_over_nominal(const MirrorFacts& facts, double nominal, std::uint64_t seed);
 
 }  // namespace crisp

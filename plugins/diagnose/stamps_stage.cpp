@@ -148,7 +148,7 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, std
     facts.period_std_error = mirror->period_std_error;
     facts.nominal_period = device.nominal_period;
     facts.wander = mirror->wander;
-    if (nominal_mirrors_ && device.nominal_period > 0) add_mirror(device, *mirror, all);
+    if (nominal_mirrors_ && device.nominal_period > 0) add_mirror(device, *mirror, seed, all);
   }
   all.devices.push_back(facts);
   if (auto departure = clock_departure(stamps, looks, seed)) {
@@ -157,19 +157,21 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, std
   }
 }
 
-void DiagnoseStampsStage::add_mirror(const Device& device, const MirrorFacts& facts, Findings& all) const {
+void DiagnoseStampsStage::add_mirror(const Device& device, const MirrorFacts& facts, std::uint64_t seed,
+                                     Findings& all) const {
   const double excess = facts.period - device.nominal_period;
   const double z = std::abs(excess) / facts.period_std_error;
   const double p = 2 * cdf(complement(boost::math::normal(), z)) * static_cast<double>(longest_.size());
   if (!(p < kSignificantInSeries)) return;
+  const Gain gain = gain_over_nominal(facts, device.nominal_period, seed);
   all.findings.push_back({.cause = "mirror.period",
                           .scope = device.name,
                           .parameters = {parameter("excess", "s", excess, facts.period_std_error)},
-                          .explained_fraction = 1,
+                          .explained_fraction = gain.explained(),
                           .p_value = p,
                           .confounded_with = {},
-                          .gain = {},
-                          .accepted = true});
+                          .gain = {gain},
+                          .accepted = gain.surely_falls()});
 }
 
 void DiagnoseStampsStage::finish(Outputs& out, Context& context) {

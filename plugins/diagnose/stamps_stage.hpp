@@ -31,7 +31,7 @@ class DiagnoseStampsStage final : public Stage {
   void arrive(std::int64_t receipt_ns);
   void end_recording();
   void add_clock(const Device& device, std::size_t looks, std::uint64_t seed, Findings& all) const;
-  void add_mirror(const Device& device, const MirrorFacts& facts, Findings& all) const;
+  void add_mirror(const Device& device, const MirrorFacts& facts, std::uint64_t seed, Findings& all) const;
 
   bool nominal_mirrors_ = false;
   std::vector<Device> devices_;           // the lasers of the rig, then the plate, in the present recording

@@ -100,6 +100,7 @@ void add_findings(const std::string& laser, const PassShift& found, Findings& fi
   finding.explained_fraction = found.gain.explained();
   finding.p_value = p;
   finding.confounded_with = {laser + ".eta"};
+  finding.told_apart_by = {"both ways gone at another speed: play stays, a lag shifts them by more"};
   finding.gain = {found.gain};
   finding.accepted = pays;
   findings.findings.push_back(std::move(finding));

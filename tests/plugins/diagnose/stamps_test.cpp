@@ -125,6 +125,12 @@ TEST(Stamps, GiveTheRateOfAMirror) {
   ASSERT_TRUE(facts);
   EXPECT_NEAR(facts->period, kPeriod_us * 1e-6, 1e-8);
   EXPECT_LT(facts->wander, 1e-5);
+  const Gain gain = gain_over_nominal(*facts, 0.02, 1);
+  EXPECT_NEAR(gain.before, 114.5e-6, 1e-7);
+  EXPECT_LT(gain.after, 1e-6);
+  EXPECT_TRUE(gain.surely_falls());
+  EXPECT_GT(gain.explained(), 0.99);
+  EXPECT_LT(gain_over_nominal(*facts, facts->period, 1).before, 1e-7) << "the stamps' microsecond";
 }
 
 }  // namespace
