@@ -73,6 +73,23 @@ TEST(HiddenEffects, ACyclicErrorIsFoundWithItsPeriod) {
   EXPECT_LT(period->std_error, 0.01) << "m: no other period explains it as well";
 }
 
+/// A few of what hidden_trial draws: effect, owner, parameters, scene, rig and motion, all from the seed.
+class DrawnEffects : public testing::TestWithParam<std::pair<const char*, std::uint64_t>> {};
+
+TEST_P(DrawnEffects, AreNamedWithTheirParameters) {
+  const auto& [effect, seed] = GetParam();
+  const auto drawn = test::Drawer(seed).with({effect}, 0.008);
+  const Diagnosis diagnosis = test::diagnosed(drawn.recording);
+  EXPECT_THAT(test::names_in(diagnosis), testing::ElementsAreArray(drawn.names));
+  for (const auto& told : test::told_of(diagnosis, drawn.recording.scanner.truth, drawn.names.at(0))) {
+    EXPECT_LT(std::abs(told.error()), 3.5) << told.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(HiddenEffects, DrawnEffects,
+                         testing::Values(std::pair("encoder.backlash", 3302), std::pair("mirror.cone", 7302),
+                                         std::pair("mount.axial_offset", 10302)));
+
 /// Drawn: the plate's foundation drifts by much and sways by little, so that the frequency of the sway is
 /// hardly told. By the curvature alone its error was eleven standard errors.
 TEST(HiddenEffects, AFormThatIsHardlyToldSaysSo) {
