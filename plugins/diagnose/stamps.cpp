@@ -16,20 +16,6 @@ namespace {
 constexpr std::int64_t kWrap_us = std::int64_t{1} << 32;
 constexpr std::size_t kFewest = 64;  // stamps that say anything
 
-std::vector<Stamp> bare(std::span<const CountedStamp> stamps) {
-  std::vector<Stamp> bare;
-  bare.reserve(stamps.size());
-  for (const auto& s : stamps) bare.push_back(s.stamp);
-  return bare;
-}
-
-ClockLine line_of(std::vector<Stamp> stamps) {
-  std::ranges::stable_sort(stamps, {}, &Stamp::device);
-  double sum = 0;
-  for (const Stamp& s : stamps) sum += s.device;
-  return line_by_convex_hull(stamps, sum / static_cast<double>(stamps.size()));
-}
-
 /// By how much the device's time since the stamp before is longer than its counter says [s].
 double jump_of_device(std::span<const CountedStamp> stamps, std::size_t at) {
   constexpr std::size_t kAround = 20;
@@ -81,6 +67,20 @@ void tell_step(std::span<const CountedStamp> stamps, const Envelope& envelope, s
 }
 
 }  // namespace
+
+std::vector<Stamp> bare(std::span<const CountedStamp> stamps) {
+  std::vector<Stamp> bare;
+  bare.reserve(stamps.size());
+  for (const auto& s : stamps) bare.push_back(s.stamp);
+  return bare;
+}
+
+ClockLine line_of(std::vector<Stamp> stamps) {
+  std::ranges::stable_sort(stamps, {}, &Stamp::device);
+  double sum = 0;
+  for (const Stamp& s : stamps) sum += s.device;
+  return line_by_convex_hull(stamps, sum / static_cast<double>(stamps.size()));
+}
 
 void StampTrack::add(std::uint16_t counter, std::uint32_t device_us, std::int64_t receipt_ns) {
   constexpr std::int64_t kRestart = 1000;  // counts: no telegram is repeated so late
@@ -148,8 +148,7 @@ std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stam
 }
 
 std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes) {
-  constexpr std::size_t kOfPiece = 8;
-  if (passes.size() < 2 * kOfPiece) return std::nullopt;
+  if (passes.size() < 2 * kTurnsOfPiece) return std::nullopt;
   MirrorFacts facts;
   const auto turns = [&](std::size_t from, std::size_t to) {
     return static_cast<double>(passes[to].count - passes[from].count);
@@ -159,8 +158,8 @@ std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes) {
   };
   facts.period = period(0, passes.size() - 1);
   double squares = 0;
-  for (std::size_t i = 0; i + kOfPiece < passes.size(); i += kOfPiece) {
-    facts.periods.push_back(period(i, i + kOfPiece));
+  for (std::size_t i = 0; i + kTurnsOfPiece < passes.size(); i += kTurnsOfPiece) {
+    facts.periods.push_back(period(i, i + kTurnsOfPiece));
     squares += std::pow(facts.periods.back() - facts.period, 2);
   }
   const auto pieces = static_cast<double>(facts.periods.size());

@@ -70,6 +70,14 @@ ClockFacts clock_facts(std::span<const CountedStamp> stamps);
 std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stamps, std::size_t looks,
                                               std::uint64_t seed);
 
+/// The straight line below all stamps (convex hull), whatever their order.
+ClockLine line_of(std::vector<Stamp> stamps);
+
+/// Without their counts.
+std::vector<Stamp> bare(std::span<const CountedStamp> stamps);
+
+inline constexpr std::size_t kTurnsOfPiece = 8;  ///< that a mirror's period is taken over
+
 /// How a mirror turns by its own stamps.
 struct MirrorFacts {
   double period = 0;  ///< [s] mean, on the device's clock

@@ -12,6 +12,7 @@
 #include "pipeline/data/scan.hpp"
 #include "plugins/diagnose/report.hpp"
 #include "plugins/diagnose/series.hpp"
+#include "plugins/diagnose/stamps_plots.hpp"
 
 namespace crisp {
 namespace {
@@ -88,6 +89,8 @@ void DiagnoseStampsStage::describe(StageDescription<DiagnoseStampsStage>& d) {
       "nominal_mirrors", &DiagnoseStampsStage::nominal_mirrors_,
       "whether a mirror that is off its nominal rate is a departure (`mirror.period`); clock stages measure "
       "the rate, so that points do not suffer by it");
+  d.option("folder", &DiagnoseStampsStage::folder_,
+           "where a plot of each device's stamps goes; auto: nowhere");
 }
 
 DiagnoseStampsStage::Device& DiagnoseStampsStage::device(std::size_t index, const Rig& rig) {
@@ -133,7 +136,7 @@ void DiagnoseStampsStage::process(const Inputs& in, Outputs&, Context& context) 
   }
 }
 
-void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, std::uint64_t seed,
+void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, Context& context,
                                     Findings& all) const {
   const auto stamps = device.telegrams.stamps();
   const ClockFacts clock = clock_facts(stamps);
@@ -143,15 +146,23 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, std
                     .skew_std_error = clock.skew_std_error,
                     .delay_median = clock.delay_median,
                     .delay_95 = clock.delay_95};
-  if (const auto mirror = mirror_facts(device.passes.stamps())) {
+  const auto mirror = mirror_facts(device.passes.stamps());
+  if (mirror) {
     facts.period = mirror->period;
     facts.period_std_error = mirror->period_std_error;
     facts.nominal_period = device.nominal_period;
     facts.wander = mirror->wander;
-    if (nominal_mirrors_ && device.nominal_period > 0) add_mirror(device, *mirror, seed, all);
+    if (nominal_mirrors_ && device.nominal_period > 0) add_mirror(device, *mirror, context.seed(), all);
   }
   all.devices.push_back(facts);
-  if (auto departure = clock_departure(stamps, looks, seed)) {
+  auto departure = clock_departure(stamps, looks, context.seed());
+  if (folder_ && stamps.size() > 1) {
+    std::vector<Plot> plots = {clock_plot(device.name, stamps, departure)};
+    if (mirror && device.nominal_period > 0)
+      plots.push_back(mirror_plot(device.name, *mirror, device.nominal_period));
+    write_plots(*folder_ / (device.name + "_stamps.svg"), plots, context);
+  }
+  if (departure) {
     departure->at += 1e-9 * static_cast<double>(device.telegrams.first_ns() - epoch_of_run(*first_ns_));
     all.findings.push_back(finding_of(*departure, device.name));
   }
@@ -180,7 +191,7 @@ void DiagnoseStampsStage::finish(Outputs& out, Context& context) {
   std::size_t looks = 0;
   for (const Device& device : longest_) looks += device.telegrams.stamps().empty() ? 0 : 1;
   for (const Device& device : longest_) {
-    if (!device.telegrams.stamps().empty()) add_clock(device, looks, context.seed(), all);
+    if (!device.telegrams.stamps().empty()) add_clock(device, looks, context, all);
   }
   context.say(facts_in_words(all.devices));
   for (const Finding& finding : all.findings) context.say(in_words(finding));

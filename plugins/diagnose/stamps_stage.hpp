@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,10 +31,11 @@ class DiagnoseStampsStage final : public Stage {
   Device& device(std::size_t index, const Rig& rig);
   void arrive(std::int64_t receipt_ns);
   void end_recording();
-  void add_clock(const Device& device, std::size_t looks, std::uint64_t seed, Findings& all) const;
+  void add_clock(const Device& device, std::size_t looks, Context& context, Findings& all) const;
   void add_mirror(const Device& device, const MirrorFacts& facts, std::uint64_t seed, Findings& all) const;
 
   bool nominal_mirrors_ = false;
+  std::optional<std::filesystem::path> folder_;
   std::vector<Device> devices_;           // the lasers of the rig, then the plate, in the present recording
   std::vector<Device> longest_;           // in that of most stamps so far
   std::optional<std::int64_t> first_ns_;  // receipt of all

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "plugins/diagnose/stamps_plots.hpp"
 #include "tests/support/simulated_stamps.hpp"
 
 namespace crisp {
@@ -112,6 +113,20 @@ TEST(Stamps, GiveTheUsualOfAClock) {
   EXPECT_NEAR(facts.skew, 40e-6, 4 * facts.skew_std_error);
   EXPECT_NEAR(facts.delay_median, 1e-4 * std::log(2.0), 1e-5);
   EXPECT_NEAR(facts.delay_95, 1e-4 * std::log(20.0), 4e-5);
+}
+
+TEST(Stamps, AreDrawnWithWhatWasFoundInThem) {
+  const auto track = track_of(7, {.clock_step = 0.004, .at = 20}, kDelays);
+  const auto departure = clock_departure(track.stamps(), 1, 1);
+  ASSERT_TRUE(departure);
+  const Plot plot = clock_plot("laser1", track.stamps(), departure);
+  ASSERT_EQ(plot.series.size(), 3U);
+  const PlotSeries& least = plot.series[1];
+  const PlotSeries& found = plot.series[2];
+  ASSERT_EQ(least.x, found.x);
+  for (std::size_t i = 0; i < least.x.size(); ++i) EXPECT_NEAR(least.y[i], found.y[i], 0.1) << "ms";
+  EXPECT_LE(plot.series[0].x.size(), 1000U);
+  EXPECT_EQ(clock_plot("laser1", track.stamps(), {}).series.size(), 1U);
 }
 
 TEST(Stamps, GiveTheRateOfAMirror) {
