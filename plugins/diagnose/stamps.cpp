@@ -147,6 +147,22 @@ std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stam
   return departure;
 }
 
+std::vector<CountedStamp> without_step(std::span<const CountedStamp> stamps,
+                                       const ClockDeparture& departure) {
+  std::vector<CountedStamp> mended(stamps.begin(), stamps.end());
+  if (departure.kind == ClockDeparture::Kind::drift) return mended;
+  for (CountedStamp& s : mended) {
+    if (receipt_of(s.stamp) < departure.at) continue;
+    if (departure.kind == ClockDeparture::Kind::latency_step) {
+      s.stamp.lead -= departure.size;
+    } else {  // it was received when it was
+      s.stamp.device -= departure.size;
+      s.stamp.lead += departure.size;
+    }
+  }
+  return mended;
+}
+
 std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes) {
   if (passes.size() < 2 * kTurnsOfPiece) return std::nullopt;
   MirrorFacts facts;

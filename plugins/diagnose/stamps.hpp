@@ -70,6 +70,11 @@ ClockFacts clock_facts(std::span<const CountedStamp> stamps);
 std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stamps, std::size_t looks,
                                               std::uint64_t seed);
 
+/// The stamps as they were without a step, of the clock or of the link. A drift is left in them.
+///
+/// @param departure  with its instant since the first stamp
+std::vector<CountedStamp> without_step(std::span<const CountedStamp> stamps, const ClockDeparture& departure);
+
 /// The straight line below all stamps (convex hull), whatever their order.
 ClockLine line_of(std::vector<Stamp> stamps);
 

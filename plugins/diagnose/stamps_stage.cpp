@@ -139,14 +139,18 @@ void DiagnoseStampsStage::process(const Inputs& in, Outputs&, Context& context) 
 void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, Context& context,
                                     Findings& all) const {
   const auto stamps = device.telegrams.stamps();
-  const ClockFacts clock = clock_facts(stamps);
+  auto departure = clock_departure(stamps, looks, context.seed());
+  const auto as_usual = [&](std::span<const CountedStamp> some) {
+    return departure ? without_step(some, *departure) : std::vector(some.begin(), some.end());
+  };
+  const ClockFacts clock = clock_facts(as_usual(stamps));
   DeviceFacts facts{.device = device.name,
                     .stamps = stamps.size(),
                     .skew = clock.skew,
                     .skew_std_error = clock.skew_std_error,
                     .delay_median = clock.delay_median,
                     .delay_95 = clock.delay_95};
-  const auto mirror = mirror_facts(device.passes.stamps());
+  const auto mirror = mirror_facts(as_usual(device.passes.stamps()));
   if (mirror) {
     facts.period = mirror->period;
     facts.period_std_error = mirror->period_std_error;
@@ -155,7 +159,6 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, Con
     if (nominal_mirrors_ && device.nominal_period > 0) add_mirror(device, *mirror, context.seed(), all);
   }
   all.devices.push_back(facts);
-  auto departure = clock_departure(stamps, looks, context.seed());
   if (folder_ && stamps.size() > 1) {
     std::vector<Plot> plots = {clock_plot(device.name, stamps, departure)};
     if (mirror && device.nominal_period > 0)

@@ -115,6 +115,20 @@ TEST(Stamps, GiveTheUsualOfAClock) {
   EXPECT_NEAR(facts.delay_95, 1e-4 * std::log(20.0), 4e-5);
 }
 
+TEST(Stamps, GiveTheUsualOfAClockThatSteps) {
+  const ClockFacts straight = clock_facts(track_of(6, {}, kDelays).stamps());
+  for (const Hidden& hidden :
+       {Hidden{.clock_step = -0.004, .at = 20}, Hidden{.latency_step = 0.003, .at = 40}}) {
+    const auto track = track_of(6, hidden, kDelays);
+    const auto departure = clock_departure(track.stamps(), 1, 1);
+    ASSERT_TRUE(departure);
+    const ClockFacts facts = clock_facts(without_step(track.stamps(), *departure));
+    EXPECT_NEAR(facts.skew, straight.skew, 4 * straight.skew_std_error);
+    EXPECT_NEAR(facts.delay_median, straight.delay_median, 2e-5);
+    EXPECT_NEAR(facts.delay_95, straight.delay_95, 4e-5);
+  }
+}
+
 TEST(Stamps, AreDrawnWithWhatWasFoundInThem) {
   const auto track = track_of(7, {.clock_step = 0.004, .at = 20}, kDelays);
   const auto departure = clock_departure(track.stamps(), 1, 1);
