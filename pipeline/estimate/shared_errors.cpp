@@ -32,7 +32,7 @@ std::size_t place_on(const Surfel& surfel, const BeamsView& beams, std::uint32_t
   const Eigen::Vector3d from_middle = point - surfel.middle;
   const double further = incidence < 0 ? -surfel.normal.dot(from_middle) / incidence : 0;
   const Eigen::Vector3d foot = from_middle + further * direction;
-  const auto step = [&](double along) {  // of uniform surfaces the sides are ±√3 times the RMS
+  const auto step = [&](double along) {  // the sides of a square are 1.2 times its radius away
     const double share = std::clamp(along / (2 * surfel.radius) + 0.5, 0.0, 1.0);
     return std::min(kPlaces - 1, static_cast<std::size_t>(share * kPlaces));
   };

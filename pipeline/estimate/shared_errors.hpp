@@ -20,9 +20,9 @@ Division recording_blocks(const Measurements& beams);
 /// A laser of fewer directions has pieces of the recording in their place.
 Division scan_blocks(const Measurements& beams);
 
-/// For each beam which of a hundred lots of places it meets, each a piece of a surface a sixteenth or so of it
-/// wide: where a surface is no plane, it is none at every turn, which no other division shows. Beams of no
-/// surface are of the first.
+/// For each beam which of a hundred lots of places it meets, each about a sixteenth of a surface: where a
+/// surface is no plane, it is none at every turn, which no other division shows. Beams of no surface are of
+/// the first.
 Division place_blocks(const Surfels& surfels, const BeamsView& beams);
 
 /// All of these.
