@@ -109,6 +109,11 @@ Eigen::VectorXd widening(const NormalEquations& equations) {
   return wider.sqrt();
 }
 
+Eigen::MatrixXd widened(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& by) {
+  const Eigen::VectorXd excess = (by.array().square() - 1).sqrt();
+  return covariance + excess.asDiagonal() * covariance * excess.asDiagonal();
+}
+
 std::vector<Division> shared_errors(const Measurements& beams, const Surfels& surfels,
                                     const BeamsView& placed) {
   return {recording_blocks(beams), scan_blocks(beams), place_blocks(surfels, placed)};

@@ -36,4 +36,10 @@ std::vector<Division> shared_errors(const Measurements& beams, const Surfels& su
 ///          blocks disagree. 1 where that may be chance.
 Eigen::VectorXd widening(const NormalEquations& equations);
 
+/// A covariance with larger standard errors, of which no combination of parameters is better known than
+/// before. (Were parameters that hang together scaled by different factors, some would be.)
+///
+/// @param by  m: factors of the standard errors, 1 or more
+Eigen::MatrixXd widened(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& by);
+
 }  // namespace crisp

@@ -80,15 +80,15 @@ class Refiner {
     return told.unobservable;
   }
 
-  /// Widens the standard errors to what pieces of the recording, or directions of the mirrors, disagree by.
+  /// Widens the standard errors to what pieces of the recording, directions of the mirrors, or places on the
+  /// surfaces disagree by.
   void widen_by_shared_errors() {
     if (found_.surfels.empty()) return;
     const PlacedBeams placed(model_, sample_);
     const auto equations =
         normal_equations(found_, placed.view(), free_.size(), surfel_rows(model_, sample_, free_),
                          settings_.surfels, shared_errors(sample_.beams, found_, placed.view()));
-    const Eigen::VectorXd wider = widening(equations);
-    covariance_ = wider.asDiagonal() * covariance_ * wider.asDiagonal();
+    covariance_ = widened(covariance_, widening(equations));
   }
 
   const SensorModel& model() const { return model_; }

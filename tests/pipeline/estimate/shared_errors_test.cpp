@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 #include <functional>
@@ -86,6 +87,16 @@ TEST(PlaceBlocks, AreOfPlacesOnSurfacesWhateverTheNoise) {
   surfels.surfels.front().end = static_cast<std::uint32_t>(points.size());
   const Division blocks = place_blocks(surfels, {points.view(), directions.view(), {}});
   EXPECT_THAT(blocks, testing::ElementsAre(2, 2, 6, 10, 10, 14, 14, 2, 2, 6, 10, 10, 14, 14));
+}
+
+TEST(Widened, MakesNoCombinationBetterKnown) {
+  const Eigen::Matrix2d covariance{{1, 0.99}, {0.99, 1}};
+  const Eigen::Vector2d by(3, 1);
+  const Eigen::MatrixXd wider = widened(covariance, by);
+  EXPECT_NEAR(wider(0, 0), 9, 1e-12);
+  EXPECT_NEAR(wider(1, 1), 1, 1e-12);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> more(wider - covariance);
+  EXPECT_GE(more.eigenvalues().minCoeff(), -1e-12);
 }
 
 using Change = std::function<void(ScannerSettings&)>;
