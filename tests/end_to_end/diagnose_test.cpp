@@ -19,9 +19,13 @@ TEST(Configs, DiagnoseNamesTheCauseAndExtendsTheCalibration) {
   EXPECT_THAT(outcome.files,
               ElementsAre("calibration.yaml", "calibration.yaml.provenance.json", "cloud.pcd",
                           "cloud.pcd.provenance.json", "diagnosis.json", "diagnosis.json.provenance.json",
-                          "laser1_residuals.svg", "laser1_residuals.svg.provenance.json",
-                          "laser2_residuals.svg", "laser2_residuals.svg.provenance.json",
-                          "laser3_residuals.svg", "laser3_residuals.svg.provenance.json", "summary.json"));
+                          "laser1_residuals.svg", "laser1_residuals.svg.provenance.json", "laser1_stamps.svg",
+                          "laser1_stamps.svg.provenance.json", "laser2_residuals.svg",
+                          "laser2_residuals.svg.provenance.json", "laser2_stamps.svg",
+                          "laser2_stamps.svg.provenance.json", "laser3_residuals.svg",
+                          "laser3_residuals.svg.provenance.json", "laser3_stamps.svg",
+                          "laser3_stamps.svg.provenance.json", "plate_stamps.svg",
+                          "plate_stamps.svg.provenance.json", "summary.json"));
   const auto diagnosis = nlohmann::json::parse(test::bytes_of(workshop / "out/diagnosis.json"));
   ASSERT_EQ(diagnosis["findings"].size(), 1U);
   EXPECT_EQ(diagnosis["findings"][0]["cause"], "range.offset");
