@@ -1,44 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Recordings of other actuated lasers, as configs/real/ reads them. Where they are not at hand, the tests are
 // skipped.
+#include "tests/end_to_end/real_data.hpp"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/files/calibration_file.hpp"
-#include "tests/end_to_end/workshop.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace crisp {
 namespace {
 
-namespace fs = std::filesystem;
-
-class RealData : public testing::Test {
- protected:
-  /// A file of the data that are shared but not in the repository; the test is skipped where it is missing.
-  static fs::path data(const std::string& name) { return shared_data() / "actuated" / name; }
-  static fs::path stamps(const std::string& name) { return shared_data() / "clocks" / (name + ".csv"); }
-  const test::Workshop workshop_;
-};
-
-std::string missing(const fs::path& file) {
-  return file.string() + " is missing; CRISP_SHARED_DATA names the folder of the data";
-}
-
-/// The one finding of a cause, or null.
-nlohmann::json finding(const nlohmann::json& findings, const std::string& cause) {
-  for (const auto& each : findings["findings"]) {
-    if (each["cause"] == cause) return each;
-  }
-  return {};
-}
-
-nlohmann::json diagnosis_in(const fs::path& folder) {
-  return nlohmann::json::parse(test::bytes_of(folder / "diagnosis.json"));
-}
+using RealData = test::OnRealData;
 
 std::vector<std::string> unobservable_in(const nlohmann::json& diagnosis) {
   std::vector<std::string> names;
@@ -47,17 +22,13 @@ std::vector<std::string> unobservable_in(const nlohmann::json& diagnosis) {
 }
 
 TEST_F(RealData, OverbotsBeamsAreInterleavedAndItsScansComeInBursts) {
-  const auto table = data("overbot_sick_lms_tilt/lidarscans20041211_194820.csv");
-  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
-  const auto outcome = workshop_.run("real/overbot.yaml", table, "out");
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  EXPECT_EQ(outcome.stage("table")["report"]["rows"], 300);
-  EXPECT_EQ(outcome.losses("table"), 0U);
-  ASSERT_NE(outcome.cloud, nullptr);
-  EXPECT_GT(outcome.cloud->size(), 40'000U);
+  if (!run("overbot.yaml", "actuated/overbot_sick_lms_tilt/lidarscans20041211_194820.csv")) return;
+  EXPECT_EQ(outcome_.stage("table")["report"]["rows"], 300);
+  EXPECT_EQ(outcome_.losses("table"), 0U);
+  ASSERT_NE(outcome_.cloud, nullptr);
+  EXPECT_GT(outcome_.cloud->size(), 40'000U);
 
-  const auto diagnosis = diagnosis_in(workshop_ / "out");
-  const auto interleave = finding(diagnosis, "mirror.interleave");
+  const auto interleave = finding("mirror.interleave");
   ASSERT_TRUE(interleave.is_object());
   const double shift = interleave["parameters"][0]["value"];
   const double error = interleave["parameters"][0]["std_error"];
@@ -65,81 +36,65 @@ TEST_F(RealData, OverbotsBeamsAreInterleavedAndItsScansComeInBursts) {
   EXPECT_LT(interleave["gain"][0]["ci95"][1], 0) << "at rest";
   EXPECT_LT(interleave["gain"][1]["ci95"][1], 0) << "in the sweep";
 
-  const auto bursts = finding(diagnosis, "latency.bursts");
+  const auto bursts = finding("latency.bursts");
   ASSERT_TRUE(bursts.is_object());
   EXPECT_LT(bursts["p_value"], 0.01);
   EXPECT_LT(bursts["gain"][0]["ci95"][1], 0);
   EXPECT_LT(bursts["gain"][0]["after"], 0.02) << "as an independent look found: 1.5 cm instead of 6.1 cm";
-  EXPECT_THAT(unobservable_in(diagnosis), testing::ElementsAre("lms.eta", "lms.tau", "lms.alpha"));
+  EXPECT_THAT(unobservable_in(diagnosis_), testing::ElementsAre("lms.eta", "lms.tau", "lms.alpha"));
 }
 
 TEST_F(RealData, OverbotsOtherRecordingHasTheSameInterleave) {
-  const auto table = data("overbot_sick_lms_tilt/lidarscans20041210_172937.csv");
-  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
-  const auto outcome = workshop_.run("real/overbot.yaml", table, "out");
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  const auto interleave = finding(diagnosis_in(workshop_ / "out"), "mirror.interleave");
+  if (!run("overbot.yaml", "actuated/overbot_sick_lms_tilt/lidarscans20041210_172937.csv")) return;
+  const auto interleave = finding("mirror.interleave");
   ASSERT_TRUE(interleave.is_object());
   const double error = interleave["parameters"][0]["std_error"];
   EXPECT_NEAR(interleave["parameters"][0]["value"].get<double>(), 0.5 * kDegree, 3 * error + 0.005 * kDegree);
 }
 
 TEST_F(RealData, UrgsWaysUpAndDownDifferByAboutAStepAndWhatIsPutInComesBack) {
-  const auto table = data("urg04lx_tilt_stand/Jeremy.csv");
-  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
-  const auto outcome = workshop_.run("real/urg.yaml", table, "out");
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  const auto& report = outcome.stage("diagnose.passes")["report"]["urg"];
+  if (!run("urg.yaml", "actuated/urg04lx_tilt_stand/Jeremy.csv")) return;
+  const auto& report = outcome_.stage("diagnose.passes")["report"]["urg"];
   EXPECT_NEAR(report["steps"], 1, 0.2) << "of the order of one step, by an independent look";
   EXPECT_NEAR(report["answer_ratio"], 1, 0.1);
-  const auto play = finding(diagnosis_in(workshop_ / "out"), "encoder.backlash");
+  const auto play = finding("encoder.backlash");
   ASSERT_TRUE(play.is_object());
   EXPECT_THAT(play["confounded_with"], testing::ElementsAre("urg.eta"));
   EXPECT_LT(play["gain"][0]["ci95"][1], 0);
 }
 
 TEST_F(RealData, UrgsShiftOverNinetyDegreesIsNotTheSameEverywhereAndHasNoName) {
-  const auto table = data("urg04lx_tilt_stand/0_to_pos90_degree.csv");
-  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
-  const auto outcome = workshop_.run("real/urg.yaml", table, "out", {"first=0deg"});
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  const auto& report = outcome.stage("diagnose.passes")["report"]["urg"];
+  if (!run("urg.yaml", "actuated/urg04lx_tilt_stand/0_to_pos90_degree.csv", {"first=0deg"})) return;
+  const auto& report = outcome_.stage("diagnose.passes")["report"]["urg"];
   EXPECT_NEAR(report["answer_ratio"], 1, 0.1);
-  const auto diagnosis = diagnosis_in(workshop_ / "out");
-  EXPECT_THAT(diagnosis["findings"], testing::IsEmpty());
-  ASSERT_THAT(diagnosis["unnamed"], testing::SizeIs(1));
-  EXPECT_EQ(diagnosis["unnamed"][0]["quantity"], "plate angle");
+  EXPECT_THAT(diagnosis_["findings"], testing::IsEmpty());
+  ASSERT_THAT(diagnosis_["unnamed"], testing::SizeIs(1));
+  EXPECT_EQ(diagnosis_["unnamed"][0]["quantity"], "plate angle");
 }
 
 TEST_F(RealData, UrgsShortWayBackDoesNotTellTheShift) {
-  const auto table = data("urg04lx_tilt_stand/room_240.csv");
-  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
-  const auto outcome = workshop_.run("real/urg.yaml", table, "out", {"first=-2.086213827rad"});
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  const auto diagnosis = diagnosis_in(workshop_ / "out");
-  EXPECT_THAT(diagnosis["findings"], testing::IsEmpty());
-  EXPECT_THAT(diagnosis["unnamed"], testing::IsEmpty());
+  if (!run("urg.yaml", "actuated/urg04lx_tilt_stand/room_240.csv", {"first=-2.086213827rad"})) return;
+  EXPECT_THAT(diagnosis_["findings"], testing::IsEmpty());
+  EXPECT_THAT(diagnosis_["unnamed"], testing::IsEmpty());
 }
 
 TEST_F(RealData, HrlsSingleSweepTellsNeitherItsAnglesNorItsMounting) {
-  const auto table = data("hrl_utm30lx_tilt/ROStest_laserscans.csv");
-  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
-  const auto outcome = workshop_.run("real/hrl.yaml", table, "out");
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  const auto diagnosis = diagnosis_in(workshop_ / "out");
-  EXPECT_THAT(diagnosis["findings"], testing::IsEmpty());
-  EXPECT_THAT(diagnosis["unnamed"], testing::IsEmpty());
+  if (!run("hrl.yaml", "actuated/hrl_utm30lx_tilt/ROStest_laserscans.csv")) return;
+  EXPECT_THAT(diagnosis_["findings"], testing::IsEmpty());
+  EXPECT_THAT(diagnosis_["unnamed"], testing::IsEmpty());
   EXPECT_THAT(
-      unobservable_in(diagnosis),
+      unobservable_in(diagnosis_),
       testing::ElementsAre("shift between passes (utm)", "utm: offset from the axis along the middle beam",
                            "utm: offset from the axis along the fan's normal"));
-  ASSERT_NE(outcome.cloud, nullptr);
-  EXPECT_EQ(outcome.cloud->size(), 56073U);
+  ASSERT_NE(outcome_.cloud, nullptr);
+  EXPECT_EQ(outcome_.cloud->size(), 56073U);
 }
+
+constexpr const char* kVelodyne = "actuated/velodyne_vlp16_static/sample_velodyne_vlp16_gps.pcap";
 
 /// The VLP-16's azimuths, with those of every other laser turned by hand before the calibration.
 struct TurnedHead {
-  TurnedHead(const test::Workshop& workshop, const fs::path& capture, double by) {
+  TurnedHead(const test::Workshop& workshop, const std::filesystem::path& capture, double by) {
     Calibration start = read_calibration(CRISP_SOURCE_DIR "/configs/real/vlp16_start.yaml");
     for (std::size_t i = 1; i < start.lasers.size(); i += 2) start.lasers[i].lambda.value += by;
     write_calibration(workshop / "start.yaml", start);
@@ -157,8 +112,8 @@ struct TurnedHead {
 };
 
 TEST_F(RealData, VelodynesLasersComeBackToOneAnotherFromAnAngleThatIsPutInByHand) {
-  const auto capture = data("velodyne_vlp16_static/sample_velodyne_vlp16_gps.pcap");
-  if (!fs::exists(capture)) GTEST_SKIP() << missing(capture);
+  if (!at_hand(kVelodyne)) return;
+  const auto capture = shared_data() / kVelodyne;
   const TurnedHead as_made(workshop_, capture, 0);
   EXPECT_EQ(as_made.outcome.status, ExitStatus::done) << as_made.outcome.told;
   EXPECT_NEAR(as_made.apart, 0, 0.2 * kDegree) << "as the maker has them";
@@ -170,9 +125,8 @@ TEST_F(RealData, VelodynesLasersComeBackToOneAnotherFromAnAngleThatIsPutInByHand
 }
 
 TEST_F(RealData, VelodynesStandardErrorsHoldWhatItsMakerSays) {
-  const auto capture = data("velodyne_vlp16_static/sample_velodyne_vlp16_gps.pcap");
-  if (!fs::exists(capture)) GTEST_SKIP() << missing(capture);
-  ASSERT_EQ(workshop_.run("real/vlp16.yaml", capture, "out").status, ExitStatus::done);
+  if (!at_hand(kVelodyne)) return;
+  ASSERT_EQ(workshop_.run("real/vlp16.yaml", shared_data() / kVelodyne, "out").status, ExitStatus::done);
   const auto found = read_calibration(workshop_ / "out/calibration.yaml");
   for (const auto& laser : found.lasers) {
     if (!laser.lambda.free) continue;
@@ -182,30 +136,24 @@ TEST_F(RealData, VelodynesStandardErrorsHoldWhatItsMakerSays) {
 }
 
 TEST_F(RealData, ASecondLms1xxHasTwoPeaksAsWell) {
-  const auto table = data("sick_lms1xx_static/lms1xx_scans.csv");
-  if (!fs::exists(table)) GTEST_SKIP() << missing(table);
-  const auto outcome = workshop_.run("real/lms1xx.yaml", table, "out");
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  const auto diagnosis = diagnosis_in(workshop_ / "out");
-  const auto peaks = finding(diagnosis, "noise.two_peaks");
+  if (!run("lms1xx.yaml", "actuated/sick_lms1xx_static/lms1xx_scans.csv")) return;
+  const auto peaks = finding("noise.two_peaks");
   ASSERT_TRUE(peaks.is_object());
   EXPECT_GT(peaks["parameters"][0]["value"], 0.0135) << "as an independent look found: 13.5 to 16.7 mm";
   EXPECT_LT(peaks["parameters"][0]["value"], 0.0167);
   EXPECT_GT(peaks["gain"][0]["ci95"][0], 0);
-  const auto slow = finding(diagnosis, "mirror.period");
+  const auto slow = finding("mirror.period");
   ASSERT_TRUE(slow.is_object());
   const double excess = slow["parameters"][0]["value"];
   EXPECT_NEAR(1 / (0.02 + excess), 49.89, 0.05) << "Hz, as an independent look found";
 }
 
 TEST_F(RealData, ThreeStreamsOfOneClockOverWiFiGiveOneRate) {
-  if (!fs::exists(stamps("esp32_wifi_A_scan"))) GTEST_SKIP() << missing(stamps("esp32_wifi_A_scan"));
   double weights = 0, mean = 0, squares = 0;
-  for (const auto* stream : {"esp32_wifi_A_scan", "esp32_wifi_A_imu", "esp32_wifi_A_ultrasonic"}) {
-    ASSERT_EQ(workshop_.run("real/clocks.yaml", stamps(stream), stream).status, ExitStatus::done);
-    const auto diagnosis = diagnosis_in(workshop_ / stream);
-    EXPECT_THAT(diagnosis["findings"], testing::IsEmpty()) << stream;
-    const auto& device = diagnosis["devices"].at(0);
+  for (const std::string stream : {"scan", "imu", "ultrasonic"}) {
+    if (!run("clocks.yaml", "clocks/esp32_wifi_A_" + stream + ".csv")) return;
+    EXPECT_THAT(diagnosis_["findings"], testing::IsEmpty()) << stream;
+    const auto& device = diagnosis_["devices"].at(0);
     const double skew = device["skew"], error = device["skew_std_error"];
     weights += 1 / (error * error);
     mean += skew / (error * error);

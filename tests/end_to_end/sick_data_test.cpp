@@ -4,29 +4,15 @@
 // they are not at hand.
 #include <gmock/gmock.h>
 
-#include <cstdlib>
-#include <nlohmann/json.hpp>
+#include <limits>
 
-#include "tests/end_to_end/workshop.hpp"
-#include "tests/support/shared_data.hpp"
+#include "tests/end_to_end/real_data.hpp"
 
 namespace crisp {
 namespace {
 
-namespace fs = std::filesystem;
-
-class SickData : public testing::Test {
+class SickData : public test::OnRealData {
  protected:
-  /// Runs the diagnosis on a recording; false if it is not at hand.
-  bool diagnose(const std::string& name) {
-    const fs::path file = shared_data() / "sick" / name;
-    missing_ = file.string() + " is missing; CRISP_SHARED_DATA names the folder of the data";
-    if (!fs::exists(file)) return false;
-    const auto outcome = workshop_.run("real/sick.yaml", file, "out");
-    EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-    diagnosis_ = nlohmann::json::parse(test::bytes_of(workshop_ / "out/diagnosis.json"));
-    return true;
-  }
   std::vector<std::string> accepted() const {
     std::vector<std::string> causes;
     for (const auto& finding : diagnosis_["findings"]) {
@@ -36,21 +22,17 @@ class SickData : public testing::Test {
   }
   /// A parameter of a cause, "value" or "std_error".
   double number(const std::string& cause, const std::string& parameter, const char* which = "value") const {
-    for (const auto& finding : diagnosis_["findings"]) {
-      if (finding["cause"] != cause) continue;
-      for (const auto& p : finding["parameters"]) {
-        if (p["name"] == parameter) return p[which];
-      }
+    const auto found = finding(cause);
+    if (!found.is_object()) return std::numeric_limits<double>::quiet_NaN();
+    for (const auto& p : found["parameters"]) {
+      if (p["name"] == parameter) return p[which];
     }
     return std::numeric_limits<double>::quiet_NaN();
   }
-  const test::Workshop workshop_;
-  nlohmann::json diagnosis_;
-  std::string missing_;
 };
 
 TEST_F(SickData, AnLms111TurnsSlowlyJumpsAndScattersAboutTwoValues) {
-  if (!diagnose("lms111-20210302-colab-rebuilt.pcap")) GTEST_SKIP() << missing_;
+  if (!run("sick.yaml", "sick/lms111-20210302-colab-rebuilt.pcap")) return;
   EXPECT_THAT(accepted(), testing::UnorderedElementsAre("mirror.period", "range.step", "noise.two_peaks"));
   EXPECT_NEAR(number("mirror.period", "excess"), 114.5e-6, 1e-6);  // 20 114.5 us for 20 000
   EXPECT_NEAR(number("range.step", "h"), -2.05e-3, 3 * number("range.step", "h", "std_error"));
@@ -65,7 +47,7 @@ TEST_F(SickData, AnLms111TurnsSlowlyJumpsAndScattersAboutTwoValues) {
 }
 
 TEST_F(SickData, ATim781KeepsItsRateAndItsNoiseHasOnePeak) {
-  if (!diagnose("tim781s-20210106-colab.pcapng")) GTEST_SKIP() << missing_;
+  if (!run("sick.yaml", "sick/tim781s-20210106-colab.pcapng")) return;
   const auto causes = accepted();
   EXPECT_THAT(causes, testing::Not(testing::Contains("noise.two_peaks")));
   EXPECT_THAT(causes, testing::Not(testing::Contains("mirror.period")));
