@@ -132,12 +132,9 @@ Hidden hidden_term(const std::string& term, std::uint64_t seed) {
 }
 
 std::vector<std::string> terms() {
-  std::vector<std::string> causes;
-  for (const auto& name : built_in_terms().names()) {
-    if (built_in_terms().get(name)->info().covariate.empty() && !draws().contains(name))
-      causes.push_back(name);
-  }
-  return causes;
+  std::vector<std::string> names = test::causes();
+  std::erase_if(names, [](const std::string& name) { return draws().contains(name); });
+  return names;
 }
 
 std::string effects_of(const Hidden& hidden) {

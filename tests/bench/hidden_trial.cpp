@@ -21,16 +21,9 @@
 namespace crisp {
 namespace {
 
+using test::causes;
 using test::Drawer;
 using test::Drawn;
-
-std::vector<std::string> causes() {
-  std::vector<std::string> names;
-  for (const auto& name : built_in_terms().names()) {
-    if (built_in_terms().get(name)->info().covariate.empty()) names.push_back(name);
-  }
-  return names;
-}
 
 /// What became of one recording.
 struct Outcome {

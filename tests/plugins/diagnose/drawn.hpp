@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <string>
 #include <tuple>
@@ -25,22 +26,28 @@ struct Drawn {
   Recording recording;
 };
 
+/// The terms of the catalogue that name a cause.
+inline std::vector<std::string> causes() {
+  std::vector<std::string> names;
+  for (const auto& name : built_in_terms().names()) {
+    if (built_in_terms().get(name)->info().covariate.empty()) names.push_back(name);
+  }
+  return names;
+}
+
 /// Draws recordings of ten seconds.
 class Drawer {
  public:
-  explicit Drawer(std::uint64_t seed) : random_(seed) {
-    drawn_.recording.scanner.seed = seed;
+  /// @param rig  of a scanner that is as it says; else a rig and how far the scanner is off it are drawn
+  explicit Drawer(std::uint64_t seed, const std::optional<Rig>& rig = {}) : random_(seed) {
+    scanner().seed = seed;
     draw_scene();
-    draw_rig();
-    draw_motion();
-  }
-
-  /// With a scanner that is as its rig says.
-  Drawer(std::uint64_t seed, const Rig& rig) : random_(seed) {
-    drawn_.recording.scanner.seed = seed;
-    draw_scene();
-    scanner().rig = rig;
-    scanner().truth = nominal_calibration(rig);
+    if (rig) {
+      scanner().rig = *rig;
+      scanner().truth = nominal_calibration(*rig);
+    } else {
+      draw_rig();
+    }
     draw_motion();
   }
 
