@@ -5,6 +5,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_ends.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
+#include "pipeline/quality/wall_lines.hpp"
 
 namespace crisp {
 namespace {
@@ -14,16 +15,17 @@ void refine_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& 
                  [&](std::size_t s) { refine(surfels.surfels[s], surfels, beams, settings); });
 }
 
+// Beams that join and leave surfaces at their rims would keep steps from getting any smaller than this.
+constexpr double kSmallStep = 0.5;  // [standard errors]
+// From a degree off, walls that lie apart come together one after the other.
+constexpr int kSearches = 12;
+
 class Patches final : public FlatSurfaces {
  public:
   explicit Patches(const SurfelSettings& settings) : settings_(settings) {}
 
   const Surfels& update(const BeamsView& beams, double last_step) override {
     if (!is_searching_) return surfels_;
-    // Beams that join and leave surfaces at their rims would keep the steps from getting any smaller.
-    constexpr double kSmallStep = 0.5;
-    // From a degree off, walls that lie apart come together one after the other.
-    constexpr int kSearches = 12;
     is_searching_ = last_step > kSmallStep && round_++ < kSearches;
     if (is_searching_) {
       // Cells along edges are no surfaces' own, but what was met there tells much.
@@ -61,25 +63,25 @@ class UprightWalls final : public FlatSurfaces {
  public:
   explicit UprightWalls(const SurfelSettings& settings) : settings_(settings) {}
 
-  const Surfels& update(const BeamsView& beams, double) override {
-    constexpr int kSearches = 2;
-    if (round_ < kSearches) walls_ = find_surfels(beams, settings_);
-    if (round_ < kRenewals) walls_ = claimed(walls_, beams, settings_);
-    // Weights that come and go by a hair would keep the steps from getting any smaller.
-    constexpr int kWeighings = 9;
-    if (round_ < kWeighings) refine_all(walls_, beams, settings_);
-    ++round_;
+  const Surfels& update(const BeamsView& beams, double last_step) override {
+    if (!is_searching_) return walls_;
+    is_searching_ = widening_ > 1 || (last_step > kSmallStep && round_++ < kSearches);
+    if (is_searching_) {
+      walls_ = wall_lines(beams, {.noise = widening_ * settings_.noise});
+      widening_ = std::max(1.0, widening_ / 2);
+    }
+    refine_all(walls_, beams, settings_);
     return walls_;
   }
 
-  bool is_settled() const override { return round_ > kRenewals; }
+  bool is_settled() const override { return !is_searching_; }
 
  private:
-  static constexpr int kRenewals = 5;  // rounds in which it is decided anew which wall each beam met
-
   SurfelSettings settings_;
   Surfels walls_;
+  double widening_ = 8;  // of the noise, for what views disagree by; halved from one round to the next
   int round_ = 0;
+  bool is_searching_ = true;
 };
 
 }  // namespace

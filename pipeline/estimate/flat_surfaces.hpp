@@ -25,8 +25,7 @@ class FlatSurfaces {
 /// Patches and walls that beams of a full field of view see: see find_surfels().
 std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings);
 
-/// Upright walls that beams in the plate's plane see, spread along the spin axis: see spread_upright(). Where
-/// there are so few beams each counts, those in corners and at edges, too: see claimed().
+/// Upright walls that beams in the plate's plane see as lines: see wall_lines().
 std::unique_ptr<FlatSurfaces> upright_walls(const SurfelSettings& settings);
 
 }  // namespace crisp

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "pipeline/data/degree.hpp"
 #include "pipeline/data/recordings.hpp"
 
 namespace crisp {
@@ -113,6 +114,12 @@ Sample in_plane(const Sample& sample, double half_width, Half half) {
     const bool front = std::abs(theta + kRight) <= half_width;
     const bool back = std::abs(theta - kRight) <= half_width;
     return (front && half != Half::kBack) || (back && half != Half::kFront);
+  });
+}
+
+bool is_in_plane(const Sample& sample) {
+  return std::ranges::all_of(sample.beams.mirror_angle, [](float angle) {
+    return std::abs(std::abs(static_cast<double>(angle)) - std::numbers::pi / 2) < 0.5 * kDegree;
   });
 }
 

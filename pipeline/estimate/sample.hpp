@@ -36,6 +36,9 @@ double turned(const Sample& sample);
 enum class Half { kFront, kBack, kBoth };  ///< θ < 0 (reported −45° with the usual mount), θ > 0 (135°), both
 Sample in_plane(const Sample& sample, double half_width, Half half);
 
+/// Whether all beams lie in the plate's plane (θ = ±90°) to within half a degree, a mirror's coarsest step.
+bool is_in_plane(const Sample& sample);
+
 /// Thins a sample to about `count` beams, evenly over the surfaces that they hit: a beam is kept with a
 /// probability in proportion to the area it stands for, range × distance from the spin axis, up to certainty.
 /// Beams crowd at the spin axis, where an entropy over all of them would draw the whole cloud onto it.

@@ -22,12 +22,9 @@
 #include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/estimate/steady.hpp"
 #include "pipeline/estimate/surfel_rows.hpp"
-#include "pipeline/estimate/upright.hpp"
 
 namespace crisp {
 namespace {
-
-constexpr double kSpread = 0.1;  // [rad] by which beams in the plate's plane are taken out of it
 
 /// Equations at a model, with the start as one more observation.
 class Refiner {
@@ -70,8 +67,10 @@ class Refiner {
     return surfaces_->is_settled() && last_step_ < settings_.tolerance;
   }
 
-  /// Keeps at their start those that the data do not tell.
+  /// Keeps at their start those that the data do not tell. Not as long as surfaces are looked for: few may
+  /// have been found yet.
   std::vector<Unobservable> hold_unknown() {
+    if (!surfaces_->is_settled()) return {};
     auto told = observability(information_, free_, model_.names(), ranges_of(settings_.prior, model_, free_));
     if (told.unobservable.empty()) return {};
     const SensorModel found = model_;
@@ -170,10 +169,8 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
   FreeParameters parameters =
       can_be_told(free_parameters(start, inside.beams, settings.fixed, settings.terms, settings.forms), start,
                   inside, SearchRange{});
-  const bool upright = is_in_plane(inside);
-  if (upright) inside = spread_upright(inside, kSpread);
-  Refiner refiner(start, std::move(inside), parameters.free,
-                  upright ? upright_walls(settings.surfels) : patches(settings.surfels), settings);
+  auto surfaces = is_in_plane(inside) ? upright_walls(settings.surfels) : patches(settings.surfels);
+  Refiner refiner(start, std::move(inside), parameters.free, std::move(surfaces), settings);
   int round = 0;
   bool converged = false;
   while (!converged && round < settings.max_rounds && !refiner.free().empty()) {

@@ -43,8 +43,8 @@ using RoundReporter = std::function<bool(int round)>;
 /// step. The start counts as an observation with the standard deviations `prior`; what the data do not tell
 /// better is named and kept.
 ///
-/// Beams in the plate's plane alone, as in the paper's experiments, see walls as lines. They are taken to be
-/// upright walls, and the beams spread along the spin axis, which changes nothing in the plane.
+/// Beams in the plate's plane alone, as in the paper's experiments, see walls as lines, which are taken to be
+/// upright: see wall_lines().
 ///
 /// @param start   right to some centimetres and degrees
 /// @param sample  all beams; need not be covered

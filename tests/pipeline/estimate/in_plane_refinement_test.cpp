@@ -4,7 +4,6 @@
 #include "grabbers/simulate/paper.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
-#include "pipeline/estimate/upright.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {
@@ -20,22 +19,6 @@ SensorModel shifted(const SensorModel& model, double tau, double alpha, double e
   }
   result.set_values(values);
   return result;
-}
-
-TEST(Upright, LeavesPlacesInThePlaneAndSpreadsThemAlongTheAxis) {
-  const auto recording = simulate_measurements(paper_scanner(1), paper_room());
-  const Sample flat = sample_of(recording);
-  const Sample upright = spread_upright(flat, 0.1);
-  const SensorModel model(recording.truth);
-  const auto before = model.place(flat.beams, *flat.plate).points;
-  const auto after = model.place(upright.beams, *upright.plate).points;
-  ASSERT_EQ(before.cols(), after.cols());
-  // Angles and ranges are floats: 10⁻⁷ of 6 m.
-  EXPECT_LT((after - before).topRows<2>().cwiseAbs().maxCoeff(), 2e-6);
-  EXPECT_LT(before.row(2).cwiseAbs().maxCoeff(), 1e-5);
-  EXPECT_GT(after.row(2).maxCoeff(), 0.4);  // 0.1 of walls that are 4 to 5 m away
-  EXPECT_LT(after.row(2).minCoeff(), -0.4);
-  EXPECT_NEAR(after.row(2).mean(), 0, 0.02);  // evenly spread over ± 0.3 m: 0.17 m / √3000 at random
 }
 
 TEST(InPlaneRefinement, FindsTheTruthWithinItsStandardErrors) {

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/wall_lines.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "pipeline/quality/plane.hpp"
+
+namespace crisp {
+namespace {
+
+/// Pieces of one line, in the order of azimuth.
+struct Wall {
+  std::vector<Run> runs;
+  LineSums sums;
+  std::size_t beams = 0;
+};
+
+/// Beams in the order of their azimuth.
+class Panorama {
+ public:
+  Panorama(const PointsView& points, double noise) : points_(points), order_(points.size()), running_(1) {
+    std::vector<double> azimuth(points.size());
+    for (std::size_t i = 0; i < azimuth.size(); ++i) azimuth[i] = std::atan2(points.y[i], points.x[i]);
+    std::iota(order_.begin(), order_.end(), 0U);
+    std::ranges::stable_sort(order_, {}, [&](std::uint32_t i) { return azimuth[i]; });
+    for (const std::uint32_t i : order_) {
+      running_.push_back(running_.back() + LineSums::of(points.x[i], points.y[i], noise));
+    }
+  }
+
+  std::vector<Wall> walls(const RunPrices& prices) const {
+    std::vector<Wall> walls;
+    for (const Run& run : straight_runs(running_, prices)) {
+      walls.push_back({{run}, running_[run.end] - running_[run.begin], run.end - run.begin});
+    }
+    return walls;
+  }
+
+  /// [m] From one piece's end to the other's.
+  double between(const Run& a, const Run& b) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::size_t p : {a.begin, a.end - 1}) {
+      for (const std::size_t q : {b.begin, b.end - 1}) least = std::min(least, (at(p) - at(q)).norm());
+    }
+    return least;
+  }
+
+  std::size_t size() const { return order_.size(); }
+  std::uint32_t beam(std::size_t place) const { return order_[place]; }
+
+ private:
+  Eigen::Vector2d at(std::size_t place) const { return {points_.x[order_[place]], points_.y[order_[place]]}; }
+
+  const PointsView& points_;
+  std::vector<std::uint32_t> order_;
+  std::vector<LineSums> running_;
+};
+
+/// Leaves out short runs of whose neighbours many are on nothing straight.
+void leave_out_chance(std::vector<Wall>& walls, std::size_t beams) {
+  constexpr std::size_t kShort = 12;   // beams
+  constexpr std::size_t kBeside = 30;  // beams, to either side
+  constexpr double kMany = 0.4;
+  std::vector<std::size_t> strays(beams + 1, 1);  // among those before
+  strays[0] = 0;
+  for (const Wall& wall : walls) {
+    const Run& run = wall.runs.front();
+    std::fill_n(strays.begin() + static_cast<std::ptrdiff_t>(run.begin) + 1, run.end - run.begin, 0);
+  }
+  std::partial_sum(strays.begin(), strays.end(), strays.begin());
+  std::erase_if(walls, [&](const Wall& wall) {
+    const Run& run = wall.runs.front();
+    const std::size_t first = run.begin - std::min(run.begin, kBeside);
+    const std::size_t last = std::min(beams, run.end + kBeside);
+    const auto beside = static_cast<double>(2 * kBeside);
+    return wall.beams<kShort&& static_cast<double>(strays[last] - strays[first])> kMany * beside;
+  });
+}
+
+/// Whether both are one line, as far as noise lets one see.
+bool is_one_line(const Wall& a, const Wall& b) {
+  constexpr double kChance = 12;  // χ² of two numbers is beyond once in 400
+  return (a.sums + b.sums).left() - a.sums.left() - b.sums.left() < kChance;
+}
+
+bool is_near(const Wall& a, const Wall& b, const Panorama& panorama, double gap) {
+  return std::ranges::any_of(a.runs, [&](const Run& one) {
+    return std::ranges::any_of(b.runs, [&](const Run& other) { return panorama.between(one, other) <= gap; });
+  });
+}
+
+/// Joins pieces to the largest wall that they go on, again and again while walls grow.
+void join(std::vector<Wall>& walls, const Panorama& panorama, double gap) {
+  std::ranges::stable_sort(walls, std::ranges::greater{}, &Wall::beams);
+  for (std::size_t a = 0; a < walls.size(); ++a) {
+    for (std::size_t b = a + 1; b < walls.size();) {
+      if (!is_near(walls[a], walls[b], panorama, gap) || !is_one_line(walls[a], walls[b])) {
+        ++b;
+        continue;
+      }
+      walls[a].runs.insert(walls[a].runs.end(), walls[b].runs.begin(), walls[b].runs.end());
+      walls[a].sums = walls[a].sums + walls[b].sums;
+      walls[a].beams += walls[b].beams;
+      walls.erase(walls.begin() + static_cast<std::ptrdiff_t>(b));
+      b = a + 1;  // those that were too far off may now be near
+    }
+  }
+  std::ranges::stable_sort(walls, std::ranges::greater{}, &Wall::beams);
+}
+
+void append(const Wall& wall, const Panorama& panorama, const PointsView& points, Surfels& result) {
+  Surfel surfel;
+  surfel.begin = static_cast<std::uint32_t>(result.members.size());
+  for (const Run& run : wall.runs) {
+    for (std::size_t place = run.begin; place < run.end; ++place) {
+      result.members.push_back(panorama.beam(place));
+    }
+  }
+  surfel.end = static_cast<std::uint32_t>(result.members.size());
+  std::sort(result.members.begin() + surfel.begin, result.members.end());
+  surfel.normal << -wall.sums.line().normalized(), 0;
+  surfel.v = Eigen::Vector3d::UnitZ();
+  surfel.u = surfel.v.cross(surfel.normal);
+  Moments moments;
+  for (const std::uint32_t i : result.beams_of(surfel)) {
+    moments.add({points.x[i], points.y[i], points.z[i]});
+  }
+  surfel.middle = moments.sum / moments.count;
+  const Eigen::Matrix3d spread = moments.squares / moments.count - surfel.middle * surfel.middle.transpose();
+  surfel.thickness = std::sqrt(std::max(0.0, surfel.normal.dot(spread * surfel.normal)));
+  surfel.radius = std::sqrt(std::max(0.0, surfel.u.dot(spread * surfel.u)));
+  result.surfels.push_back(surfel);
+}
+
+}  // namespace
+
+Surfels wall_lines(const BeamsView& beams, const WallLineSettings& settings) {
+  check(beams.points);
+  const Panorama panorama(beams.points, settings.noise);
+  auto walls = panorama.walls(settings.prices);
+  leave_out_chance(walls, panorama.size());
+  join(walls, panorama, settings.gap);
+  Surfels result;
+  for (const Wall& wall : walls) {
+    if (wall.beams >= settings.fewest) append(wall, panorama, beams.points, result);
+  }
+  result.weights.assign(result.members.size(), 1);
+  return result;
+}
+
+}  // namespace crisp
