@@ -34,6 +34,7 @@ struct NoiseLaw {
   bool has_tail = false;
   bool has_peaks() const { return !weight.empty(); }
   bool has_spread() const { return !spread.empty(); }
+  bool is_normal() const { return !has_slope && !has_tail && !has_peaks() && !has_spread(); }
 
   /// ln of the density [1/m].
   double log_density(double value, double range, std::uint16_t beam) const;

@@ -74,11 +74,14 @@ Plot distribution(const std::string& name, const RangeErrors& errors, const Nois
     measured.y.push_back(shown_density(bins.count[b] * one, one));
     measured.error.push_back(kBarLength / std::numbers::ln10 / std::sqrt(std::max(1.0, bins.count[b])));
   }
-  return {.title = fmt::format("{}: {} ranges about the mean of their beams", name, errors.size()),
-          .x_label = "error [mm]",
-          .y_label = "lg of the share a millimetre",
-          .series = {measured, law_over("normal law", noise.plain, errors, bins, one),
-                     law_over("with what was found", noise.law, errors, bins, one)}};
+  Plot plot{.title = fmt::format("{}: {} ranges about the mean of their beams", name, errors.size()),
+            .x_label = "error [mm]",
+            .y_label = "lg of the share a millimetre",
+            .series = {measured, law_over("normal law", noise.plain, errors, bins, one)}};
+  if (!noise.law.is_normal()) {
+    plot.series.push_back(law_over("with what was found", noise.law, errors, bins, one));
+  }
+  return plot;
 }
 
 /// Shares of all in each bin [%], beside the same in each.
@@ -129,10 +132,12 @@ Plot noise_over(const NoiseCovariate& over, const std::string& name, const Range
     plain.y.push_back(1e3 * std::sqrt(of_plain / count));
     found.y.push_back(1e3 * std::sqrt(of_found / count));
   }
-  return {.title = name + ": noise over the " + over.name,
-          .x_label = over.label,
-          .y_label = "RMS error [mm]",
-          .series = {measured, plain, found}};
+  Plot plot{.title = name + ": noise over the " + over.name,
+            .x_label = over.label,
+            .y_label = "RMS error [mm]",
+            .series = {measured, plain}};
+  if (!noise.law.is_normal()) plot.series.push_back(found);
+  return plot;
 }
 
 std::vector<Plot> noise_plots(const std::string& name, const RangeErrors& errors,

@@ -48,7 +48,7 @@ void DiagnoseNoiseStage::describe(StageDescription<DiagnoseNoiseStage>& d) {
       "BIC, each judged by scans that it was not fitted to. A laser that moves is passed over with a word.");
   d.takes<Scan>().takes<Findings>(Need::optional).gives<Findings>();
   d.option("folder", &DiagnoseNoiseStage::folder_,
-           "where plots go of each laser of which something is found; auto: nowhere");
+           "where plots of each laser's noise go, and of what its ranges did at once; auto: nowhere");
 }
 
 void DiagnoseNoiseStage::process(const Inputs& in, Outputs&, Context& context) {
@@ -89,10 +89,8 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
   all.unnamed.insert(all.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
   share_explained(std::span(all.findings).last(noise.findings.size()),
                   std::span(all.unnamed).last(noise.unnamed.size()));
-  if (!noise.findings.empty() || !noise.unnamed.empty()) {
-    std::ranges::move(noise_plots(name, *errors, noise), std::back_inserter(plots));
-  }
-  if (folder_ && !plots.empty()) write_plots(*folder_ / (name + "_noise.svg"), plots, context);
+  std::ranges::move(noise_plots(name, *errors, noise), std::back_inserter(plots));
+  if (folder_) write_plots(*folder_ / (name + "_noise.svg"), plots, context);
 }
 
 void DiagnoseNoiseStage::finish(Outputs& out, Context& context) {

@@ -45,7 +45,7 @@ void DiagnoseScatterStage::describe(StageDescription<DiagnoseScatterStage>& d) {
       .unit("nat")
       .range(0, 10);
   d.option("folder", &DiagnoseScatterStage::folder_,
-           "where plots go of each laser of which something is found, and of what moved; auto: nowhere");
+           "where plots of each laser's noise go, and of what moved; auto: nowhere");
 }
 
 void DiagnoseScatterStage::process(const Inputs& in, Outputs&, Context&) {
@@ -134,8 +134,7 @@ std::vector<Plot> DiagnoseScatterStage::add_noise(std::size_t laser, const Follo
   found.noise.push_back({.laser = name, .ranges = scatter.errors.size(), .sigma = noise.law.sigma});
   found.findings.insert(found.findings.end(), noise.findings.begin(), noise.findings.end());
   found.unnamed.insert(found.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
-  std::vector<Plot> plots;
-  if (!noise.findings.empty() || !noise.unnamed.empty()) plots = noise_plots(name, scatter.errors, noise);
+  std::vector<Plot> plots = noise_plots(name, scatter.errors, noise);
   for (const NoiseCovariate& over :
        {NoiseCovariate{"incidence", "cosine of the incidence", scatter.cosine},
         NoiseCovariate{"remission", "remission [device's units]", scatter.remission}}) {

@@ -16,16 +16,18 @@ TEST(Configs, DiagnoseNamesTheCauseAndExtendsTheCalibration) {
   workshop.simulate("made", {"duration=4s", "effects={laser2.range.offset: {c: 2cm}}"});
   const auto outcome = workshop.run("diagnose.yaml", workshop / "made/hub.pcap", "out");
   EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  EXPECT_THAT(outcome.files,
-              ElementsAre("calibration.yaml", "calibration.yaml.provenance.json", "cloud.pcd",
-                          "cloud.pcd.provenance.json", "diagnosis.json", "diagnosis.json.provenance.json",
-                          "laser1_residuals.svg", "laser1_residuals.svg.provenance.json", "laser1_stamps.svg",
-                          "laser1_stamps.svg.provenance.json", "laser2_residuals.svg",
-                          "laser2_residuals.svg.provenance.json", "laser2_stamps.svg",
-                          "laser2_stamps.svg.provenance.json", "laser3_residuals.svg",
-                          "laser3_residuals.svg.provenance.json", "laser3_stamps.svg",
-                          "laser3_stamps.svg.provenance.json", "plate_stamps.svg",
-                          "plate_stamps.svg.provenance.json", "summary.json"));
+  EXPECT_THAT(
+      outcome.files,
+      ElementsAre("calibration.yaml", "calibration.yaml.provenance.json", "cloud.pcd",
+                  "cloud.pcd.provenance.json", "diagnosis.json", "diagnosis.json.provenance.json",
+                  "laser1_noise.svg", "laser1_noise.svg.provenance.json", "laser1_residuals.svg",
+                  "laser1_residuals.svg.provenance.json", "laser1_stamps.svg",
+                  "laser1_stamps.svg.provenance.json", "laser2_noise.svg", "laser2_noise.svg.provenance.json",
+                  "laser2_residuals.svg", "laser2_residuals.svg.provenance.json", "laser2_stamps.svg",
+                  "laser2_stamps.svg.provenance.json", "laser3_noise.svg", "laser3_noise.svg.provenance.json",
+                  "laser3_residuals.svg", "laser3_residuals.svg.provenance.json", "laser3_stamps.svg",
+                  "laser3_stamps.svg.provenance.json", "plate_stamps.svg", "plate_stamps.svg.provenance.json",
+                  "summary.json"));
   const auto diagnosis = nlohmann::json::parse(test::bytes_of(workshop / "out/diagnosis.json"));
   ASSERT_EQ(diagnosis["findings"].size(), 1U);
   EXPECT_EQ(diagnosis["findings"][0]["cause"], "range.offset");

@@ -72,6 +72,12 @@ TEST(NoisePlots, HaveDensitiesThatAddUpToOne) {
   }
 }
 
+TEST(NoisePlots, ShowTheNormalLawOnceWhereNothingElseWasFound) {
+  NoiseDiagnosis normal;
+  normal.plain.sigma = normal.law.sigma = kUsualSigma;
+  for (const Plot& plot : noise_plots("laser1", with_tails(), normal)) EXPECT_EQ(plot.series.size(), 2U);
+}
+
 TEST(NoisePlots, OfNoRangesAreNone) { EXPECT_TRUE(noise_plots("laser1", {}, known_tails()).empty()); }
 
 TEST(CombPlot, HasItsPeakAtWholeSteps) {

@@ -115,7 +115,7 @@ TEST(Scatter, WithHeavyTailsIsNamedAndMeasured) {
   EXPECT_NEAR(value_in(found[0], "scale"), 5, 4 * error_in(found[0], "scale") + 0.1);
 }
 
-TEST(Scatter, OfTheStageIsDrawnForLasersOfWhichSomethingIsFound) {
+TEST(Scatter, OfTheStageIsDrawnForEachLaser) {
   const test::TemporaryFolder folder;
   auto stage =
       test::StageDriver::of<DiagnoseScatterStage>({{"folder", OptionScalar(folder.path().string())}});
@@ -129,7 +129,9 @@ TEST(Scatter, OfTheStageIsDrawnForLasersOfWhichSomethingIsFound) {
   const test::Recording recording = test::recorded(scanner, office());
   stage.feed(recording.made.beams, recording.made.plate, recording.made.truth);
   stage.finish();
-  EXPECT_THAT(stage.report().written, testing::ElementsAre(folder / "laser2_noise.svg"));
+  EXPECT_THAT(stage.report().written,
+              testing::ElementsAre(folder / "laser1_noise.svg", folder / "laser2_noise.svg",
+                                   folder / "laser3_noise.svg"));
   const auto found = stage.given<Findings>();
   ASSERT_THAT(found, SizeIs(1));
   ASSERT_THAT(found[0]->findings, SizeIs(1));
