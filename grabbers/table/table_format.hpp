@@ -16,9 +16,10 @@ enum class LengthUnit { m, cm, mm };
 /// one beam.
 struct TableFormat {
   std::optional<int> time_column;  ///< when the row's first beam was fired
+  TimeUnit time_unit = TimeUnit::s;
   std::optional<int>
       receipt_column;  ///< when the row was received; the time where there is none, and the reverse
-  TimeUnit time_unit = TimeUnit::s;
+  TimeUnit receipt_unit = TimeUnit::s;
   std::optional<int> counter_column;       ///< the device's own count of its scans
   std::int64_t counter_modulus = 1 << 16;  ///< at which it wraps
   double period = 0;                       ///< [s] nominal, of a scan; needed where there is no time

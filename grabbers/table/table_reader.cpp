@@ -143,9 +143,12 @@ std::optional<TableRow> TableReader::parse(std::string_view text) {
     const auto column = [](int number) { return static_cast<std::size_t>(number); };
     TableRow row;
     row.line = line_;
-    const int exponent = exponent_of(format_.time_unit);
-    if (format_.time_column) row.time_ns = fields.decimal(column(*format_.time_column), exponent);
-    if (format_.receipt_column) row.receipt_ns = fields.decimal(column(*format_.receipt_column), exponent);
+    if (format_.time_column) {
+      row.time_ns = fields.decimal(column(*format_.time_column), exponent_of(format_.time_unit));
+    }
+    if (format_.receipt_column) {
+      row.receipt_ns = fields.decimal(column(*format_.receipt_column), exponent_of(format_.receipt_unit));
+    }
     if (format_.counter_column) row.counter = fields.decimal(column(*format_.counter_column), 0);
     if (format_.laser_column) {
       const auto laser = fields.decimal(column(*format_.laser_column), 0);

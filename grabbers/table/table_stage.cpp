@@ -16,10 +16,14 @@ void describe_columns(StageDescription<TableStage>& d, TableFormat TableStage::*
   const auto column = [&](const char* name, auto member, const char* help) {
     d.option(name, format, member, help).range(1, kMostColumns);
   };
+  const auto time_unit = [&](const char* name, auto member, const char* help) {
+    d.option(name, format, member, help)
+        .choices({{"s", TimeUnit::s}, {"ms", TimeUnit::ms}, {"us", TimeUnit::us}, {"ns", TimeUnit::ns}});
+  };
   column("time_column", &TableFormat::time_column, "when the row's first beam was fired; auto: not there");
+  time_unit("time_unit", &TableFormat::time_unit, "of that");
   column("receipt_column", &TableFormat::receipt_column, "when the row was received; auto: not there");
-  d.option("time_unit", format, &TableFormat::time_unit, "of both")
-      .choices({{"s", TimeUnit::s}, {"ms", TimeUnit::ms}, {"us", TimeUnit::us}, {"ns", TimeUnit::ns}});
+  time_unit("receipt_unit", &TableFormat::receipt_unit, "of that");
   column("counter_column", &TableFormat::counter_column,
          "the device's count of its scans, which times them where there is a clock stage; auto: not there");
   d.option("counter_modulus", format, &TableFormat::counter_modulus, "where that begins anew").at_least(2);

@@ -62,8 +62,10 @@ void tell_step(std::span<const CountedStamp> stamps, const Envelope& envelope, s
   const auto without_delay = [&](const Stamp& s, double beyond) {
     return receipt_of(s) - std::max(0.0, s.lead - level(receipt_of(s)) - beyond);
   };
-  departure.at = without_delay(stamps[at].stamp, step);
-  departure.at_std_error = waits * std::max(1e-6, departure.at - without_delay(stamps[at - 1].stamp, 0));
+  const double sent = without_delay(stamps[at].stamp, step);
+  departure.at = std::max(sent, receipt_of(stamps.front().stamp));  // what is no step is not seen before all
+  departure.at_std_error =
+      waits * std::max(1e-6, sent - without_delay(stamps[at - 1].stamp, 0)) + (departure.at - sent);
 }
 
 }  // namespace

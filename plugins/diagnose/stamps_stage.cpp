@@ -54,10 +54,10 @@ Finding finding_of(const ClockDeparture& departure, const std::string& device) {
 
 std::string facts_in_words(const std::vector<DeviceFacts>& devices) {
   std::string words =
-      "stamps              skew ppm     delay median, 95 %    mirror against nominal   wander";
+      "stamps              skew ppm       delay median, 95 %    mirror against nominal   wander";
   for (const DeviceFacts& facts : devices) {
     words +=
-        fmt::format("\n  {:<12}{:>+9.2f} ± {:<5.2f}{:>8.3f}, {:>7.3f} ms", facts.device, facts.skew * 1e6,
+        fmt::format("\n  {:<12}{:>+9.2f} ± {:<6.2f} {:>8.3f}, {:>7.3f} ms", facts.device, facts.skew * 1e6,
                     facts.skew_std_error * 1e6, facts.delay_median * 1e3, facts.delay_95 * 1e3);
     if (facts.period > 0 && facts.nominal_period > 0) {
       words += fmt::format("{:>+14.3f} ± {:.3f} %{:>9.3f} %", 100 * (facts.nominal_period / facts.period - 1),

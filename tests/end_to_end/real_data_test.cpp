@@ -164,5 +164,40 @@ TEST_F(RealData, ThreeStreamsOfOneClockOverWiFiGiveOneRate) {
   EXPECT_NEAR(mean / weights, -110e-6, 60e-6) << "as an independent look found: 88 to 117 ppm slow";
 }
 
+TEST_F(RealData, TheTimesOfATiM781AreToldOfSendingAndOfScanning) {
+  // device µs of transmission and host ns of the first packet: 4.1 ppm by an independent look, delays of 72
+  // and 271 µs
+  if (!run("clocks.yaml", "clocks/sick_tim781_tcp.csv",
+           {"grabber.table.time_column=4", "grabber.table.time_unit=us", "grabber.table.receipt_column=5"})) {
+    return;
+  }
+  EXPECT_THAT(diagnosis_["findings"], testing::IsEmpty());
+  const auto sending = diagnosis_["devices"].at(0);
+  EXPECT_NEAR(double{sending["skew"]}, 4.1e-6, 3 * double{sending["skew_std_error"]});
+  EXPECT_LT(double{sending["skew_std_error"]}, 0.5e-6);
+  EXPECT_NEAR(double{sending["delay_median"]}, 72e-6, 5e-6);
+  EXPECT_NEAR(double{sending["delay_95"]}, 271e-6, 10e-6);
+  // of the scan's start: the mirror's place at sending is among the delays
+  run("clocks.yaml", "clocks/sick_tim781_tcp.csv",
+      {"grabber.table.time_column=3", "grabber.table.time_unit=us", "grabber.table.receipt_column=6"});
+  const auto scanning = diagnosis_["devices"].at(0);
+  EXPECT_NEAR(double{scanning["skew"]}, 3.6e-6, 3 * double{scanning["skew_std_error"]});
+  EXPECT_GT(double{scanning["skew_std_error"]}, 3 * double{sending["skew_std_error"]});
+}
+
+TEST_F(RealData, ALaserThatStartsLateIsToldWithinItsRecording) {
+  // 45 scans come up to 0.4 s late at first, and catch up: no step, but what the least delays show of one.
+  if (!run("clocks.yaml", "clocks/overbot_lms_20041211.csv",
+           {"grabber.table.time_column=auto", "grabber.table.counter_column=1",
+            "grabber.table.period=13.3333ms"})) {
+    return;
+  }
+  const auto step = finding("latency.step");
+  ASSERT_TRUE(step.is_object());
+  EXPECT_LT(step["parameters"][0]["value"], 0);
+  EXPECT_GE(step["parameters"][1]["value"], 0.56203 - 1) << "when the first scan came in, of the next second";
+  EXPECT_GT(step["parameters"][1]["std_error"], 0.05);
+}
+
 }  // namespace
 }  // namespace crisp

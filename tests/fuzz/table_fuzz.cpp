@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   crisp::read(text, {.time_column = 1, .angle_column = 2, .range_column = 3});
   crisp::read(text, {.receipt_column = 1,
-                     .time_unit = crisp::TimeUnit::ns,
+                     .receipt_unit = crisp::TimeUnit::ns,
                      .counter_column = 2,
                      .counter_modulus = 256,
                      .period = 0.01,

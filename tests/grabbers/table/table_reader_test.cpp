@@ -44,8 +44,10 @@ TEST(TableReader, ReadsAScanARow) {
 }
 
 TEST(TableReader, ConvertsUnitsAndLeavesCodesOut) {
-  const TableFormat format{.receipt_column = 1,
-                           .time_unit = TimeUnit::ns,
+  const TableFormat format{.time_column = 9,
+                           .time_unit = TimeUnit::us,
+                           .receipt_column = 1,
+                           .receipt_unit = TimeUnit::ns,
                            .counter_column = 2,
                            .angle_column = 3,
                            .angle_unit = AngleUnit::deg,
@@ -53,8 +55,9 @@ TEST(TableReader, ConvertsUnitsAndLeavesCodesOut) {
                            .count_column = 4,
                            .range_unit = LengthUnit::cm,
                            .invalid_from = 8183};
-  const auto all = read("1102823344562033212,254,90,3,150,8191,8182,77\n", format);
+  const auto all = read("1102823344562033212,254,90,3,150,8191,8182,77,3014133219\n", format);
   ASSERT_EQ(all.rows.size(), 1U);
+  EXPECT_EQ(all.rows[0].time_ns, 3'014'133'219'000);
   EXPECT_EQ(all.rows[0].receipt_ns, 1102823344562033212);
   EXPECT_EQ(all.rows[0].counter, 254);
   EXPECT_DOUBLE_EQ(all.rows[0].angle, 90 * kDegree);
