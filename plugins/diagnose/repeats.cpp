@@ -135,11 +135,14 @@ bool changes(const std::vector<Glimpse>& looks) {
 ChangingDirections changing_among(const Grid& grid, const Glances& glances, double beams) {
   std::vector<bool> does_change(grid.cells());
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) does_change[cell] = changes(glances.looks(cell));
+  constexpr std::ptrdiff_t kMostOfNine = 6;
   ChangingDirections result;
   std::map<std::size_t, std::size_t> place;  // of a cell among those that count
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
-    if (!std::ranges::all_of(grid.around(cell), [&](std::size_t other) { return does_change[other]; }))
-      continue;
+    if (!does_change[cell]) continue;
+    const auto alike =
+        std::ranges::count_if(grid.around(cell), [&](std::size_t near) { return does_change[near]; });
+    if (alike < kMostOfNine) continue;
     place.emplace(cell, result.looks.size());
     result.looks.push_back(glances.looks(cell));
     result.hidden += static_cast<double>(glances.hidden(cell)) / std::max(1.0, beams);
@@ -209,7 +212,7 @@ double p_value(const ChangingDirections& directions, std::uint64_t seed) {
 }
 
 std::optional<Finding> moving(const ChangingDirections& directions, std::uint64_t seed) {
-  constexpr std::size_t kFewDirections = 10;
+  constexpr std::size_t kFewDirections = 20;
   constexpr double kByChance = 0.002;
   if (directions.looks.size() < kFewDirections) return std::nullopt;
   const double p = p_value(directions, seed);

@@ -26,8 +26,8 @@ struct ChangingDirections {
 
 /// A laser at the same plate angle looks along the same lines as a turn before, so that whatever stands still
 /// hides the same. Directions are cells of plate angle, as wide as the plate turns between two scans, and of
-/// two degrees of mirror angle. One counts as changing if all eight about it change, too: edges of what
-/// stands still flicker in strips that are narrower.
+/// two degrees of mirror angle. One counts as changing if five of the eight about it change, too: edges of
+/// what stands still flicker in strips that are narrower.
 ///
 /// @param beams  scan by scan of each laser; those that the plate's readings do not cover do not count
 /// @param usual  [m] standard deviation of ranges, by usual_error()
@@ -39,7 +39,7 @@ ChangingDirections changing_directions(const Measurements& beams, const PlateTra
 double p_value(const ChangingDirections& directions, std::uint64_t seed);
 
 /// Whether something moved (scene.moving).
-/// @return  what is significant beyond 0.002 and concerns ten directions at least
+/// @return  what is significant beyond 0.002 and concerns twenty directions at least
 std::optional<Finding> moving(const ChangingDirections& directions, std::uint64_t seed);
 
 }  // namespace crisp

@@ -172,8 +172,12 @@ TEST(Scatter, BetweenBothSidesOfAnEdgeIsNamed) {
 }
 
 TEST(Scatter, OfSomebodyWhoWalksByIsNamed) {
-  EXPECT_TRUE(moving(Followed("people", {}).changing(), 1));
-  EXPECT_FALSE(moving(Followed("workshop", {}).changing(), 1)) << "cluttered, but still";
+  for (std::uint64_t seed = 3; seed <= 6; ++seed) {
+    EXPECT_TRUE(moving(Followed("people", {}, 0.012, seed).changing(), 1)) << seed;
+    EXPECT_FALSE(moving(Followed("workshop", {}, 0.012, seed).changing(), 1))
+        << seed << ": cluttered, but still";
+  }
+  EXPECT_FALSE(moving(Followed("garden", {}).changing(), 1)) << "leaves";
 }
 
 }  // namespace
