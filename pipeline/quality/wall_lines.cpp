@@ -113,28 +113,29 @@ void join(std::vector<Wall>& walls, const Panorama& panorama, double gap) {
   std::ranges::stable_sort(walls, std::ranges::greater{}, &Wall::beams);
 }
 
-void append(const Wall& wall, const Panorama& panorama, const PointsView& points, Surfels& result) {
-  Surfel surfel;
-  surfel.begin = static_cast<std::uint32_t>(result.members.size());
+std::vector<std::uint32_t> members_of(const Wall& wall, const Panorama& panorama) {
+  std::vector<std::uint32_t> members;
   for (const Run& run : wall.runs) {
-    for (std::size_t place = run.begin; place < run.end; ++place) {
-      result.members.push_back(panorama.beam(place));
-    }
+    for (std::size_t place = run.begin; place < run.end; ++place) members.push_back(panorama.beam(place));
   }
-  surfel.end = static_cast<std::uint32_t>(result.members.size());
-  std::sort(result.members.begin() + surfel.begin, result.members.end());
-  surfel.normal << -wall.sums.line().normalized(), 0;
+  std::ranges::sort(members);
+  return members;
+}
+
+/// The upright plane of these beams, without saying where they are among others.
+Surfel upright(const Eigen::Vector2d& line, const std::vector<std::uint32_t>& members,
+               const PointsView& points) {
+  Moments moments;
+  for (const std::uint32_t i : members) moments.add({points.x[i], points.y[i], points.z[i]});
+  Surfel surfel;
+  surfel.middle = moments.sum / moments.count;
+  surfel.normal << -line.normalized(), 0;
   surfel.v = Eigen::Vector3d::UnitZ();
   surfel.u = surfel.v.cross(surfel.normal);
-  Moments moments;
-  for (const std::uint32_t i : result.beams_of(surfel)) {
-    moments.add({points.x[i], points.y[i], points.z[i]});
-  }
-  surfel.middle = moments.sum / moments.count;
   const Eigen::Matrix3d spread = moments.squares / moments.count - surfel.middle * surfel.middle.transpose();
   surfel.thickness = std::sqrt(std::max(0.0, surfel.normal.dot(spread * surfel.normal)));
   surfel.radius = std::sqrt(std::max(0.0, surfel.u.dot(spread * surfel.u)));
-  result.surfels.push_back(surfel);
+  return surfel;
 }
 
 }  // namespace
@@ -147,7 +148,14 @@ Surfels wall_lines(const BeamsView& beams, const WallLineSettings& settings) {
   join(walls, panorama, settings.gap);
   Surfels result;
   for (const Wall& wall : walls) {
-    if (wall.beams >= settings.fewest) append(wall, panorama, beams.points, result);
+    if (wall.beams < settings.fewest) break;
+    const auto members = members_of(wall, panorama);
+    Surfel surfel = upright(wall.sums.line(), members, beams.points);
+    if (surfel.radius < settings.noise) continue;  // one spot, from which the plate did not turn away
+    surfel.begin = static_cast<std::uint32_t>(result.members.size());
+    result.members.insert(result.members.end(), members.begin(), members.end());
+    surfel.end = static_cast<std::uint32_t>(result.members.size());
+    result.surfels.push_back(surfel);
   }
   result.weights.assign(result.members.size(), 1);
   return result;

@@ -11,7 +11,7 @@ namespace crisp {
 struct WallLineSettings {
   double noise = 0.012;  ///< [m] standard deviation of a range, with what views may disagree by
   RunPrices prices;
-  std::size_t fewest = 5;  ///< beams of a wall
+  std::size_t fewest = 5;  ///< beams of a wall, which is longer than the noise
   double gap = 2;          ///< [m] most between two pieces of one wall: a door, a window
 };
 

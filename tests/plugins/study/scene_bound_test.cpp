@@ -167,7 +167,9 @@ TEST(Reached, IsNoBetterThanTheBoundAndNotFarFromIt) {
     EXPECT_LT(reached.beams, bound.beams);
     EXPECT_GT(reached.beams, bound.beams / 2);
     const Eigen::ArrayXd ratio = reached.std_errors.array() / bound.std_errors.array();
-    EXPECT_GT(ratio.minCoeff(), 1);
+    // Its standard errors are estimated from the residuals, of which there are but 600 in the plane.
+    const double chance = 3 / std::sqrt(2.0 * static_cast<double>(reached.beams));
+    EXPECT_GT(ratio.minCoeff(), 1 - chance);
     EXPECT_LT(ratio.maxCoeff(), 3);
     EXPECT_THAT(bound_text(bound, reached), HasSubstr("   calibrate.refine\nlaser1.tau "));
   }
