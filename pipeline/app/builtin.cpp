@@ -8,6 +8,7 @@
 #include "grabbers/record/record_stage.hpp"
 #include "grabbers/simulate/simulate_stage.hpp"
 #include "grabbers/table/register.hpp"
+#include "grabbers/telegrams/register.hpp"
 #include "grabbers/velodyne/register.hpp"
 #include "pipeline/model/catalogue.hpp"
 #include "plugins/assemble/register.hpp"
@@ -35,6 +36,7 @@ Builtin::Builtin() {
   register_record(registrar_);
   register_pcd(registrar_);
   register_table(registrar_);
+  register_telegrams(registrar_);
   register_velodyne(registrar_);
   register_simulate(registrar_);
   register_clock(registrar_);

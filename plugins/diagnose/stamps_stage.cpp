@@ -84,7 +84,7 @@ void DiagnoseStampsStage::describe(StageDescription<DiagnoseStampsStage>& d) {
       "mirrors turn against their nominal rate. Of several recordings (what pauses of 5 s divide) the one "
       "with most "
       "stamps is looked at.");
-  d.takes<Scan>().takes<PlateReading>().takes<Findings>(Need::optional).gives<Findings>();
+  d.takes<Scan>().takes<PlateReading>(Need::optional).takes<Findings>(Need::optional).gives<Findings>();
   d.option(
       "nominal_mirrors", &DiagnoseStampsStage::nominal_mirrors_,
       "whether a mirror that is off its nominal rate is a departure (`mirror.period`); clock stages measure "

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+/// grabber.telegrams.
+void register_telegrams(Registrar& registrar);
+
+}  // namespace crisp

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// `grabber.telegrams`: scans of one laser from a list of its telegrams in JSON.
+class TelegramsStage final : public Stage {
+ public:
+  static void describe(StageDescription<TelegramsStage>& d);
+
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+
+ private:
+  std::filesystem::path file_;
+  std::string laser_;
+};
+
+}  // namespace crisp
