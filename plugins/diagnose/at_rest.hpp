@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "pipeline/data/scan.hpp"
-#include "pipeline/plot/plot.hpp"
-#include "plugins/diagnose/noise.hpp"
+#include "plugins/diagnose/noise_law.hpp"
 
 namespace crisp {
 
@@ -33,33 +33,5 @@ class AtRest {
   std::vector<std::int64_t> receipt_ns_;
   std::size_t left_out_ = 0;
 };
-
-/// What all beams of a laser at rest do at once.
-struct CommonChange {
-  bool is_step = true;  ///< else it creeps: c (1 − exp(−t/T))
-  double size = 0;      ///< [m]
-  double std_error = 0;
-  double shape = 0;  ///< [s] since the first scan: when it steps; or T
-  double shape_error = 0;
-  double p_value = 1;
-  double log10_odds = 0;  ///< against the next likely of: a step, a creeping, neither; by BIC
-  Gain gain;
-};
-
-/// Looks for a jump of all ranges, or their creeping, scan by scan: the mean error of a scan's beams is tried
-/// against a step at each instant and against warm-ups of several time constants.
-///
-/// @param errors   with the number of the scan as `block`
-/// @param seconds  [s] when each scan came in
-/// @return  what is significant beyond 0.002
-std::optional<CommonChange> common_change(const RangeErrors& errors, const std::vector<double>& seconds,
-                                          std::size_t looks, std::uint64_t seed);
-
-/// The mean error of each scan beside the change that was found in it.
-Plot change_plot(const std::string& name, const CommonChange& change, const RangeErrors& errors,
-                 const std::vector<double>& seconds);
-
-/// Takes it out of the ranges' errors.
-void take_out(const CommonChange& change, const std::vector<double>& seconds, RangeErrors& errors);
 
 }  // namespace crisp

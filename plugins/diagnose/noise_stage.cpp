@@ -9,6 +9,7 @@
 
 #include "pipeline/clocks/unwrap.hpp"
 #include "pipeline/plot/write_plot.hpp"
+#include "plugins/diagnose/common_change.hpp"
 #include "plugins/diagnose/likelihood_gain.hpp"
 #include "plugins/diagnose/noise_plots.hpp"
 #include "plugins/diagnose/report.hpp"
@@ -35,15 +36,27 @@ Finding finding_of(const CommonChange& change, const std::string& laser) {
   return finding;
 }
 
+UnnamedFinding finding_of(const CommonWander& wander, const std::string& laser) {
+  return {.covariate = "time",
+          .quantity = "range",
+          .scope = laser,
+          .amplitude = wander.rms,
+          .unit = "m",
+          .p_value = wander.p_value,
+          .gain = {wander.gain},
+          .accepted = wander.gain.surely_falls()};
+}
+
 }  // namespace
 
 void DiagnoseNoiseStage::describe(StageDescription<DiagnoseNoiseStage>& d) {
   d.name("diagnose.noise").summary("says how the ranges of lasers that stand still scatter");
   d.details(
       "Each beam of a laser at rest meets the same spot again and again. What all beams do together (a jump, "
-      "`range.step`, or a creeping, `range.warmup`) is looked for scan by scan, by permutations. What is "
-      "left "
-      "of each beam about its mean is compared with the normal law of the plain simulator: a spread that "
+      "`range.step`, a creeping, `range.warmup`, or a slow wander, `unnamed`) is looked for scan by scan. "
+      "What "
+      "is left of each beam about its mean is compared with the normal law of the plain simulator: a spread "
+      "that "
       "grows with the range, heavy tails, two peaks with a weight of each beam's own (`noise.*`), forward by "
       "BIC, each judged by scans that it was not fitted to. A laser that moves is passed over with a word.");
   d.takes<Scan>().takes<Findings>(Need::optional).gives<Findings>();
@@ -76,10 +89,12 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
     seconds.push_back(1e-9 * static_cast<double>(scans.receipt_ns(scan) - epoch_ns));
   }
   std::vector<Plot> plots;
-  if (const auto change = common_change(*errors, seconds, lasers_.size(), context.seed())) {
-    all.findings.push_back(finding_of(*change, name));
-    plots.push_back(change_plot(name, *change, *errors, seconds));
-    take_out(*change, seconds, *errors);
+  const DoneTogether together = done_together(*errors, seconds, lasers_.size(), context.seed());
+  if (together.change) all.findings.push_back(finding_of(*together.change, name));
+  if (together.wander) all.unnamed.push_back(finding_of(*together.wander, name));
+  if (together.curve.size() > 0) {
+    plots.push_back(common_plot(name, together, *errors, seconds));
+    take_out(together, *errors);
   }
   const NoiseDiagnosis noise = diagnose_noise(name, *errors, context.seed());
   context.say(fmt::format("{}: {} ranges of beams at rest scatter by {:.2f} mm (RMS)", name, errors->size(),

@@ -13,10 +13,10 @@
 namespace crisp {
 namespace {
 
-Eigen::MatrixXd beside(const Eigen::MatrixXd& base, const Eigen::VectorXd& column) {
-  Eigen::MatrixXd both(column.size(), base.cols() + 1);
+Eigen::MatrixXd beside(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd both(columns.rows(), base.cols() + columns.cols());
   both.leftCols(base.cols()) = base;
-  both.rightCols<1>() = column;
+  both.rightCols(columns.cols()) = columns;
   return both;
 }
 
@@ -35,11 +35,11 @@ std::vector<double> left_of_others(const Eigen::MatrixXd& design, const Eigen::V
 
 }  // namespace
 
-Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::VectorXd& column, const Eigen::VectorXd& values,
-                    std::uint64_t seed) {
+Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
+                    const Eigen::VectorXd& values, std::uint64_t seed) {
   constexpr std::size_t kDraws = 999;
   const auto before = left_of_others(base, values);
-  const auto after = left_of_others(beside(base, column), values);
+  const auto after = left_of_others(beside(base, columns), values);
   const auto rms = [](const std::vector<double>& all, const std::vector<std::size_t>& drawn) {
     double squares = 0;
     for (const std::size_t i : drawn) squares += all[i] * all[i];

@@ -20,10 +20,10 @@ struct SeriesLook {
   Gain gain;                ///< see gain_in_series()
 };
 
-/// What a column brings beside a base for values that it was not fitted to: the RMS of every other value
-/// about a fit to the rest, without it and with it. Metric and unit are left open.
-Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::VectorXd& column, const Eigen::VectorXd& values,
-                    std::uint64_t seed);
+/// What columns bring beside a base for values that they were not fitted to: the RMS of every other value
+/// about a fit to the rest, without them and with them. Metric and unit are left open.
+Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
+                    const Eigen::VectorXd& values, std::uint64_t seed);
 
 /// Tries each of some columns beside a base, by least squares. Significance is by 4999 permutations of what
 /// the base leaves, so that no law of the values is assumed but that they are exchangeable.

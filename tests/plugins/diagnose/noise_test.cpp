@@ -8,7 +8,7 @@
 #include <functional>
 #include <random>
 
-#include "plugins/diagnose/at_rest.hpp"
+#include "plugins/diagnose/common_change.hpp"
 #include "plugins/diagnose/likelihood_gain.hpp"
 
 namespace crisp {
@@ -176,21 +176,40 @@ TEST(Noise, OfAllBeamsTogetherIsAStepOrACreepingWithOdds) {
     }
     return errors;
   };
-  const auto step = common_change(drawn([](int scan) { return scan < 90 ? 0 : 0.003; }), seconds, 1, 1);
-  ASSERT_TRUE(step && step->is_step);
+  const auto jumping = drawn([](int scan) { return scan < 90 ? 0 : 0.003; });
+  const DoneTogether step = done_together(jumping, seconds, 1, 1);
+  ASSERT_TRUE(step.change && step.change->is_step);
+  EXPECT_FALSE(step.wander);
   // Means of 50 beams scatter by 1.1 mm; a straight line leaves 0.75 mm of the step: 200/2 lg 1.44 = 16.
-  EXPECT_GT(step->log10_odds, 5);
-  const Plot plot =
-      change_plot("laser1", *step, drawn([](int scan) { return scan < 90 ? 0 : 0.003; }), seconds);
+  EXPECT_GT(step.change->log10_odds, 5);
+  const Plot plot = common_plot("laser1", step, jumping, seconds);
   double misfit = 0;
   for (std::size_t scan = 0; scan < seconds.size(); ++scan) {
     misfit += std::pow(plot.series.at(0).y[scan] - 1.65 - plot.series.at(1).y[scan], 2) / kScans;
   }
   EXPECT_LT(std::sqrt(misfit), 1.4) << "[mm] scatter of the means: the curve goes through them";
   const auto creeping =
-      common_change(drawn([](int scan) { return 0.006 * (1 - std::exp(-scan / 60.0)); }), seconds, 1, 1);
-  ASSERT_TRUE(creeping && !creeping->is_step);
-  EXPECT_GT(creeping->log10_odds, 2);
+      done_together(drawn([](int scan) { return 0.008 * (1 - std::exp(-scan / 60.0)); }), seconds, 1, 1);
+  ASSERT_TRUE(creeping.change && !creeping.change->is_step);
+  EXPECT_GT(creeping.change->log10_odds, 2);
+  EXPECT_FALSE(creeping.wander);
+
+  const auto slow = [](int scan) { return 0.003 * std::sin(2 * M_PI * scan / 130.0); };
+  const DoneTogether wander = done_together(drawn(slow), seconds, 1, 1);
+  EXPECT_FALSE(wander.change) << "a wander has no name";
+  ASSERT_TRUE(wander.wander);
+  EXPECT_NEAR(wander.wander->rms, 0.0021, 4 * 0.0011 / std::sqrt(200));
+  EXPECT_LT(wander.wander->p_value, 1e-6);
+  EXPECT_TRUE(wander.wander->gain.surely_falls());
+  const DoneTogether both =
+      done_together(drawn([&](int scan) { return slow(scan) + (scan < 90 ? 0 : 0.009); }), seconds, 1, 1);
+  EXPECT_TRUE(both.wander);
+  ASSERT_TRUE(both.change && both.change->is_step);
+  EXPECT_NEAR(both.change->shape, seconds[90], 0.021);
+  EXPECT_NEAR(both.change->size, 0.009, 4 * both.change->std_error);
+  const DoneTogether still = done_together(drawn([](int) { return 0; }), seconds, 1, 1);
+  EXPECT_FALSE(still.change || still.wander);
+  EXPECT_EQ(still.curve.size(), 0);
 }
 
 }  // namespace
