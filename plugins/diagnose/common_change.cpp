@@ -58,38 +58,43 @@ Eigen::MatrixXd creeping(const Eigen::ArrayXd& time) {
   return columns;
 }
 
+/// Changes that have names, a column each.
+struct Shapes {
+  Eigen::MatrixXd jumps, creeping;
+};
+
 /// One way in which the means may have changed, and its price.
 struct Way {
-  Eigen::MatrixXd base;     // what is constant, and cosines if they wander
-  Eigen::MatrixXd columns;  // of which one is the change that has a name; none: there is none
+  Eigen::MatrixXd base;                      // what is constant, and cosines if they wander
+  const Eigen::MatrixXd* columns = nullptr;  // of which one is the change that has a name
   bool is_step = true;
   double bic = 0;
 
-  bool has_change() const { return columns.cols() > 0; }
+  bool has_change() const { return columns != nullptr; }
   bool is_nothing() const { return !has_change() && base.cols() == 1; }
 };
 
-Way priced(Eigen::MatrixXd base, Eigen::MatrixXd columns, bool is_step, const Eigen::VectorXd& values) {
+Way priced(Eigen::MatrixXd base, const Eigen::MatrixXd* columns, bool is_step,
+           const Eigen::VectorXd& values) {
   constexpr double kOfItsOwn = 2;  // its size and its shape
   const auto n = static_cast<double>(values.size());
   auto parameters = static_cast<double>(base.cols());
   double squares = off_base(base, values).squaredNorm();
-  if (columns.cols() > 0) {
-    squares -= std::pow(best_in_series(base, columns, values).product, 2);
+  if (columns != nullptr) {
+    squares -= std::pow(best_in_series(base, *columns, values).product, 2);
     parameters += kOfItsOwn;
   }
-  return {std::move(base), std::move(columns), is_step, n * std::log(squares / n) + parameters * std::log(n)};
+  squares = std::max(squares, std::numeric_limits<double>::min());
+  return {std::move(base), columns, is_step, n * std::log(squares / n) + parameters * std::log(n)};
 }
 
-std::vector<Way> ways(const Eigen::ArrayXd& time, const Eigen::VectorXd& values) {
-  const Eigen::MatrixXd jumps = steps(time.size(), kMargin);
-  const Eigen::MatrixXd none(time.size(), 0);
+std::vector<Way> ways(const Eigen::ArrayXd& time, const Shapes& shapes, const Eigen::VectorXd& values) {
   const Eigen::MatrixXd still = slow(time, 0);
-  std::vector<Way> all = {priced(still, none, true, values), priced(still, jumps, true, values),
-                          priced(still, creeping(time), false, values)};
+  std::vector<Way> all = {priced(still, nullptr, true, values), priced(still, &shapes.jumps, true, values),
+                          priced(still, &shapes.creeping, false, values)};
   for (const Eigen::Index count : {2, 4, 8}) {
-    all.push_back(priced(slow(time, count), none, true, values));
-    all.push_back(priced(slow(time, count), jumps, true, values));
+    all.push_back(priced(slow(time, count), nullptr, true, values));
+    all.push_back(priced(slow(time, count), &shapes.jumps, true, values));
   }
   return all;
 }
@@ -124,7 +129,7 @@ CommonChange change_of(const Way& way, const SeriesLook& look, const std::vector
                       .log10_odds = (next_likely - way.bic) / 2 / std::numbers::ln10,
                       .gain = named(look.gain)};
   if (way.is_step) {
-    const auto first = static_cast<std::size_t>(before_step(way.columns.col(look.column)));
+    const auto first = static_cast<std::size_t>(before_step(way.columns->col(look.column)));
     change.shape = seconds[first];
     change.shape_error = seconds[first] - seconds[first - 1];
   } else {
@@ -167,10 +172,10 @@ DoneTogether done_by(const Way& way, double next_likely, const Eigen::VectorXd& 
   DoneTogether found;
   Eigen::MatrixXd rest = way.base.leftCols(1);
   if (way.has_change()) {
-    const SeriesLook look = look_at_series(way.base, way.columns, values, seed);
+    const SeriesLook look = look_at_series(way.base, *way.columns, values, seed);
     found.change = change_of(way, look, seconds, next_likely, looks);
     rest.conservativeResize(Eigen::NoChange, 2);
-    rest.col(1) = way.columns.col(look.column);
+    rest.col(1) = way.columns->col(look.column);
   }
   Eigen::MatrixXd design = rest;
   if (way.base.cols() > 1) {
@@ -200,9 +205,11 @@ DoneTogether done_together(const RangeErrors& errors, const std::vector<double>&
                            std::uint64_t seed) {
   const auto n = static_cast<Eigen::Index>(seconds.size());
   constexpr Eigen::Index kFewest = 32;
-  if (n < kFewest) return {};
+  if (n < kFewest || !(seconds.back() > seconds.front())) return {};
   const Eigen::VectorXd values = means(errors, seconds.size());
-  const auto all = ways(Eigen::Map<const Eigen::ArrayXd>(seconds.data(), n) - seconds.front(), values);
+  const Eigen::ArrayXd time = Eigen::Map<const Eigen::ArrayXd>(seconds.data(), n) - seconds.front();
+  const Shapes shapes{.jumps = steps(n, kMargin), .creeping = creeping(time)};
+  const auto all = ways(time, shapes, values);
   for (const bool with_a_name : {true, false}) {
     const Way& way = cheapest(all, with_a_name);
     if (way.is_nothing()) return {};

@@ -210,6 +210,13 @@ TEST(Noise, OfAllBeamsTogetherIsAStepOrACreepingWithOdds) {
   const DoneTogether still = done_together(drawn([](int) { return 0; }), seconds, 1, 1);
   EXPECT_FALSE(still.change || still.wander);
   EXPECT_EQ(still.curve.size(), 0);
+
+  RangeErrors exact = jumping;
+  std::ranges::fill(exact.value, 0.0F);
+  const DoneTogether nothing = done_together(exact, seconds, 1, 1);
+  EXPECT_FALSE(nothing.change || nothing.wander);
+  const DoneTogether at_once = done_together(jumping, std::vector<double>(kScans, 1.0), 1, 1);
+  EXPECT_FALSE(at_once.change || at_once.wander) << "times that say nothing";
 }
 
 }  // namespace
