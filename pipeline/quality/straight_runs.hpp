@@ -16,8 +16,8 @@ struct LineSums {
   double xx = 0, xy = 0, yy = 0, x = 0, y = 0, one = 0;
 
   static LineSums of(double x, double y, double sigma);
-  LineSums operator+(const LineSums& other) const;
-  LineSums operator-(const LineSums& other) const;
+  LineSums operator+(const LineSums& b) const;
+  LineSums operator-(const LineSums& b) const;
 
   Eigen::Vector2d line() const;  ///< m [1/m]; of points in one direction the line across it
   double left() const;           ///< sum of (δ/σ)²
