@@ -213,7 +213,7 @@ DoneTogether done_together(const RangeErrors& errors, const std::vector<double>&
   for (const bool with_a_name : {true, false}) {
     const Way& way = cheapest(all, with_a_name);
     if (way.is_nothing()) return {};
-    const DoneTogether found =
+    DoneTogether found =
         done_by(way, without_such(all, way), values, seconds, static_cast<double>(looks), seed);
     if (is_sure(found)) return found;
   }
