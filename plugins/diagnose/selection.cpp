@@ -51,10 +51,14 @@ class Chooser {
 
   /// The best of those that are needed: a cause, unless a mere description says much more. Where a cause is
   /// at work, it does about as well as what describes it by its shape, and other causes do not.
-  std::optional<std::size_t> best(const std::vector<std::optional<Look>>& looks) const {
+  ///
+  /// @param rough  BIC that was gained by forms that are known roughly: what is small beside it may be what
+  ///               they leave, and has to wait until they are told more finely
+  std::optional<std::size_t> best(const std::vector<std::optional<Look>>& looks, double rough) const {
+    constexpr double kSmall = 0.05;
     std::array<std::optional<std::size_t>, 2> best;
     for (std::size_t c = 0; c < looks.size(); ++c) {
-      if (!looks[c] || !is_needed(c, *looks[c])) continue;
+      if (!looks[c] || !is_needed(c, *looks[c]) || looks[c]->bic < kSmall * rough) continue;
       auto& of_kind = best[dictionary_.candidates()[c].is_cause() ? 0 : 1];
       if (!of_kind || looks[c]->bic > looks[*of_kind]->bic) of_kind = c;
     }
@@ -169,9 +173,13 @@ std::vector<Choice> choose(const Dictionary& dictionary, const NormalEquations& 
   const Chooser chooser(dictionary, equations, settings, refused);
   std::vector<std::size_t> taken;
   std::set<std::vector<std::size_t>> seen;
+  double rough = 0;
   while (taken.size() < settings.most && seen.insert(taken).second) {
-    const auto next = chooser.best(chooser.beside(taken));
+    const auto looks = chooser.beside(taken);
+    const auto next = chooser.best(looks, rough);
     if (!next) break;
+    const Candidate& one = dictionary.candidates()[*next];
+    if (!one.in_model && one.forms > 1) rough = std::max(rough, looks[*next]->bic);
     taken.push_back(*next);
     chooser.leave_out_needless(taken);
   }
