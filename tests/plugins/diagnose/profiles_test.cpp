@@ -20,7 +20,7 @@ TEST(SideBySide, TellsNothingApartWhereTheModelIsTheTruth) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const SideBySide left = beside(test::hidden(seed, 3, office(), {}));
     EXPECT_GT(left.p_value, 0.01) << seed;
-    for (const double noise : left.noise) EXPECT_NEAR(noise, 0.012, 0.0015);
+    for (const double noise : left.noise) EXPECT_NEAR(noise, 0.012, 0.0002);
   }
 }
 
@@ -30,8 +30,8 @@ TEST(SideBySide, SimulatesEachLaserWithNoiseOfItsOwn) {
   scanner.laser_effects[1].noise.sigma = 0.005;
   const SideBySide left = beside(test::recorded(scanner, office()));
   EXPECT_GT(left.p_value, 0.01) << "of one size for all, laser 1 departs as soon as it scatters more";
-  EXPECT_NEAR(left.noise.at(0), 0.012, 0.0015);
-  EXPECT_NEAR(left.noise.at(1), 0.005, 0.0007);
+  EXPECT_NEAR(left.noise.at(0), 0.012, 0.0002);
+  EXPECT_NEAR(left.noise.at(1), 0.005, 0.0002);
 }
 
 TEST(SideBySide, ShowsADepartureOverItsCovariate) {
@@ -46,6 +46,39 @@ TEST(SideBySide, ShowsADepartureOverItsCovariate) {
   EXPECT_EQ(largest->laser, 2U);
   EXPECT_EQ(largest->covariate, "mirror angle");
   EXPECT_NEAR(largest->rms, 0.004 / std::sqrt(2), 0.002) << "less what planes take of it";
+}
+
+TEST(SideBySide, ShowsHalvesOfASweepThatDisagree) {
+  test::Recording recording = test::hidden(5, 3, office(), {});
+  for (std::size_t i = 0; i < recording.made.beams.size(); ++i) {
+    const bool is_back = recording.made.beams.mirror_angle[i] > 0;
+    if (recording.made.beams.laser[i] == 1 && is_back) recording.made.beams.range[i] += 0.004F;
+  }
+  const SideBySide left = beside(recording);
+  const auto halves = std::ranges::find_if(left.profiles, [](const Profile& profile) {
+    return profile.covariate == "front/back" && profile.laser == 1;
+  });
+  ASSERT_NE(halves, left.profiles.end());
+  ASSERT_EQ(halves->bins.size(), 2U);
+  EXPECT_EQ(halves->bins[0].at, 0);
+  EXPECT_EQ(halves->bins[1].at, 1);
+  EXPECT_LT(halves->p_value, 1e-4) << "which no rank among 199 simulations could tell";
+  EXPECT_GT(halves->bins[1].measured - halves->bins[0].measured, 0.001);
+}
+
+TEST(SideBySide, GivesPlainNoiseAnyPValue) {
+  constexpr std::size_t kRecordings = 16;
+  std::vector<double> p_values;
+  for (std::uint64_t seed = 11; seed < 11 + kRecordings; ++seed) {
+    p_values.push_back(beside(test::hidden(seed, 2, office(), {})).p_value);
+  }
+  std::ranges::sort(p_values);
+  double furthest = 0;
+  for (std::size_t k = 0; k < kRecordings; ++k) {
+    const double below = static_cast<double>(k) / kRecordings;
+    furthest = std::max({furthest, below + 1.0 / kRecordings - p_values[k], p_values[k] - below});
+  }
+  EXPECT_LT(furthest, 1.63 / std::sqrt(kRecordings)) << "one chance in a hundred (Kolmogorov)";
 }
 
 }  // namespace

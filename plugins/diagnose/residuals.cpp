@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/residuals.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "pipeline/data/middle.hpp"
+#include "pipeline/quality/surfel_residuals.hpp"
+
+namespace crisp {
+namespace {
+
+/// Orthonormal columns that span what a surface's plane can do to its weighted residuals.
+Eigen::MatrixX3d span_of_plane(const std::vector<SurfelResidual>& residuals) {
+  Eigen::MatrixX3d basis(static_cast<Eigen::Index>(residuals.size()), 3);
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    const SurfelResidual& r = residuals[k];
+    basis.row(static_cast<Eigen::Index>(k)) =
+        Eigen::RowVector3d(1, r.u, r.v) * (std::sqrt(r.weight) / std::max(0.05, std::abs(r.incidence)));
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixX3d> qr(basis);
+  Eigen::MatrixX3d span = qr.householderQ() * Eigen::MatrixX3d::Identity(basis.rows(), 3);
+  span.rightCols(3 - std::min<Eigen::Index>(3, qr.rank())).setZero();
+  return span;
+}
+
+}  // namespace
+
+Residuals residuals_in(const Evidence& evidence, const SurfelSettings& settings) {
+  Residuals all;
+  for (const Surfel& surfel : evidence.surfels().surfels) {
+    std::vector<SurfelResidual> counting;
+    const auto members = evidence.surfels().beams_of(surfel);
+    const auto residuals = residuals_of(surfel, evidence.surfels(), evidence.beams(), settings);
+    all.first.push_back(all.beam.size());
+    for (std::size_t k = 0; k < residuals.size(); ++k) {
+      const SurfelResidual& r = residuals[k];
+      if (r.weight == 0) continue;
+      counting.push_back(r);
+      all.beam.push_back(members[k]);
+      all.measured.value.push_back(-r.range_change);
+      all.measured.weight.push_back(r.weight);
+      all.cosine.push_back(std::abs(r.incidence));
+      all.end.push_back(settings.outlier * r.spread / std::abs(r.incidence));
+    }
+    all.planes.push_back(span_of_plane(counting));
+  }
+  all.first.push_back(all.beam.size());
+  return all;
+}
+
+std::vector<double> noise_of(const Residuals& residuals, const Measurements& beams) {
+  constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
+  constexpr std::size_t kFewPairs = 1000;
+  constexpr double kNormal = 1.4826;  // standard deviation of what is normal, in medians of its size
+  const std::size_t lasers = beams.laser.empty() ? 0 : std::ranges::max(beams.laser) + std::size_t{1};
+  std::vector<std::vector<double>> pairs(lasers);
+  std::vector<std::vector<double>> alone(lasers);
+  for (std::size_t s = 0; s + 1 < residuals.first.size(); ++s) {
+    for (std::size_t k = residuals.first[s]; k < residuals.first[s + 1]; ++k) {
+      const std::uint32_t own = residuals.beam[k];
+      alone[beams.laser[own]].push_back(std::abs(residuals.measured.value[k]));
+      if (k == residuals.first[s]) continue;
+      const std::uint32_t before = residuals.beam[k - 1];
+      if (beams.laser[before] != beams.laser[own] || beams.time[own] - beams.time[before] > kOneScan)
+        continue;
+      pairs[beams.laser[own]].push_back(
+          std::abs(residuals.measured.value[k] - residuals.measured.value[k - 1]) / std::numbers::sqrt2);
+    }
+  }
+  std::vector<double> noise;
+  for (std::size_t laser = 0; laser < lasers; ++laser) {
+    auto& sizes = pairs[laser].size() > kFewPairs ? pairs[laser] : alone[laser];
+    noise.push_back(sizes.empty() ? 0 : kNormal * middle_of(sizes));
+  }
+  return noise;
+}
+
+Weighed simulated(const Residuals& residuals, const std::vector<double>& noise, double usual,
+                  std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const std::size_t n = residuals.size();
+  Weighed made{.value = std::vector<double>(n), .weight = std::vector<double>(n)};
+  for (std::size_t k = 0; k < n; ++k) made.value[k] = noise[k] * normal(random);
+  for (std::size_t s = 0; s < residuals.planes.size(); ++s) {
+    const auto members = static_cast<Eigen::Index>(residuals.first[s + 1] - residuals.first[s]);
+    if (members == 0) continue;
+    const auto first = static_cast<std::ptrdiff_t>(residuals.first[s]);
+    Eigen::Map<Eigen::VectorXd> own(made.value.data() + first, members);
+    const Eigen::VectorXd roots =
+        Eigen::Map<const Eigen::VectorXd>(residuals.measured.weight.data() + first, members).cwiseSqrt();
+    const Eigen::VectorXd weighted = roots.cwiseProduct(own);
+    own -= (residuals.planes[s] * (residuals.planes[s].transpose() * weighted)).cwiseQuotient(roots);
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const double end = residuals.end[k] * std::max(1.0, noise[k] / usual);
+    const double inside = std::max(0.0, 1 - std::pow(made.value[k] / end, 2));
+    made.weight[k] = inside * inside;
+  }
+  return made;
+}
+
+}  // namespace crisp
