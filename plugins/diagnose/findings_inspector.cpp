@@ -42,8 +42,7 @@ Inspection inspect_findings(const std::filesystem::path& file, const Rig&) {
         fmt::format("\n  {}: {} ranges, noise {:.2f} mm", facts.laser, facts.ranges, 1e3 * facts.sigma);
   }
   if (!std::isnan(all.before_p)) {
-    inspection.text += fmt::format("\n  measured and simulated residuals: p = {:.3f} before, {:.3f} after",
-                                   all.before_p, all.after_p);
+    inspection.text += "\n  " + likeness_in_words(all);
     inspection.data["before_p"] = all.before_p;
     inspection.data["after_p"] = all.after_p;
   }

@@ -104,10 +104,6 @@ std::string by_how_much(const UnnamedFinding& finding) {
   return fmt::format("{} {:.3f} mm", is_length ? ", by" : "; ranges change by", finding.amplitude * 1e3);
 }
 
-std::string chance_in_words(double p_value) {
-  return p_value > 0 ? fmt::format("p = {:.2g}", p_value) : "p < 1e-300";
-}
-
 std::string gain_in_words(const std::vector<Gain>& gains) {
   if (gains.empty()) return "\n  no held-out data say what that brings";
   std::string words;
@@ -153,14 +149,22 @@ std::string profiles_in_words(const SideBySide& left, const Calibration& calibra
   std::string words;
   for (const Profile& profile : left.profiles) {
     if (!profile.departs()) continue;
-    words +=
-        fmt::format("  {} against {:<14}{:>8.3f} mm   p = {:.3f}\n", calibration.lasers[profile.laser].name,
-                    profile.covariate, profile.rms * 1e3, profile.p_value);
+    words += fmt::format("  {} against {:<14}{:>8.3f} mm   {}\n", calibration.lasers[profile.laser].name,
+                         profile.covariate, profile.rms * 1e3, chance_in_words(profile.p_value));
   }
   return words;
 }
 
 }  // namespace
+
+std::string chance_in_words(double p_value) {
+  return p_value > 0 ? fmt::format("p = {:.2g}", p_value) : "p < 1e-300";
+}
+
+std::string likeness_in_words(const Findings& findings) {
+  return fmt::format("measured and simulated residuals: {} before, {} after",
+                     chance_in_words(findings.before_p), chance_in_words(findings.after_p));
+}
 
 Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration, const TermRegistry& terms,
                      const SelectionSettings& settings, double noise) {
@@ -244,8 +248,7 @@ std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
     words += fmt::format("the estimator's own ({}): {}\n", artefact.name, artefact.reason);
     for (const Parameter& parameter : artefact.parameters) words += "  " + with_unit(parameter) + "\n";
   }
-  words += fmt::format("measured and simulated residuals: p = {:.3f} before, {:.3f} after", findings.before_p,
-                       findings.after_p);
+  words += likeness_in_words(findings);
   if (!findings.unobservable.empty()) {
     std::vector<std::string> names;
     for (const auto& one : findings.unobservable) names.push_back(one.parameter);

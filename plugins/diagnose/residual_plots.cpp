@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "pipeline/data/degree.hpp"
+#include "plugins/diagnose/report.hpp"
 
 namespace crisp {
 namespace {
@@ -46,7 +47,7 @@ void add_profile(const Profile& profile, const std::string& when, Plot& plot) {
 }
 
 std::string size_in_words(const Profile& profile) {
-  return fmt::format("{:.2f} mm (p {:.2g})", 1e3 * profile.rms, profile.p_value);
+  return fmt::format("{:.2f} mm ({})", 1e3 * profile.rms, chance_in_words(profile.p_value));
 }
 
 bool is_same(const Profile& one, const Profile& other) {

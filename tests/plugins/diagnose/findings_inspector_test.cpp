@@ -30,8 +30,9 @@ TEST(FindingsInspector, SaysInAFewLinesWhatADiagnosisHolds) {
   const test::TemporaryFolder folder;
   test::put_bytes(folder / "diagnosis.json", findings_json(some_findings()));
   const Inspection inspection = findings_inspector().inspect(folder / "diagnosis.json", {});
-  for (const char* part : {"causes: 1; unnamed departures: 1;", "mirror.cone of laser2: kappa = 0.2865",
-                           "p = 1e-09", "lag of laser1", "noise 11.30 mm", "0.005 before, 0.600 after"}) {
+  for (const char* part :
+       {"causes: 1; unnamed departures: 1;", "mirror.cone of laser2: kappa = 0.2865", "p = 1e-09",
+        "lag of laser1", "noise 11.30 mm", "p = 0.005 before, p = 0.6 after"}) {
     EXPECT_THAT(inspection.text, HasSubstr(part));
   }
   EXPECT_EQ(inspection.data["findings"][0]["cause"], "mirror.cone");

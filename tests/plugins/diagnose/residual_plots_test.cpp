@@ -29,7 +29,7 @@ TEST(ResidualPlots, ShowMeasuredBesideSimulatedBeforeAndAfter) {
   const auto plots = residual_plots(1, "laser2", some_profiles(4e-3), some_profiles(3e-4));
   ASSERT_EQ(plots.size(), 1U) << "the other is of another laser";
   const Plot& plot = plots[0];
-  EXPECT_THAT(plot.title, HasSubstr("laser2 against mirror angle: 4.00 mm (p 0.005), then 0.30 mm"));
+  EXPECT_THAT(plot.title, HasSubstr("laser2 against mirror angle: 4.00 mm (p = 0.005), then 0.30 mm"));
   EXPECT_EQ(plot.x_label, "mirror angle [deg]");
   ASSERT_EQ(plot.series.size(), 4U);
   EXPECT_THAT(plot.series[0].x, ElementsAre(DoubleNear(-90, 1e-9), DoubleNear(0, 1e-9)));
