@@ -32,6 +32,10 @@ const std::vector<Row>& rows() {
       {"noise.two_peaks", "most", [](L& l) -> double& { return l.noise.most_weight; }},
       {"noise.quantisation", "step", [](L& l) -> double& { return l.noise.step; }},
       {"mirror.period", "excess", [](L& l) -> double& { return l.mirror_excess; }},
+      {"mirror.wander", "rms", [](L& l) -> double& { return l.mirror_wander; }},
+      {"mirror.interleave", "shift", [](L& l) -> double& { return l.interleave.shift; }},
+      {"mirror.interleave", "period", [](L& l) -> double& { return l.interleave.period; }},
+      {"mirror.interleave", "kind", [](L& l) -> double& { return l.interleave.kind; }},
       {"clock.drift", "skew", nullptr, [](D& d) -> double& { return d.skew; }},
       {"clock.drift", "drift", nullptr, [](D& d) -> double& { return d.drift; }},
       {"clock.step", "by", nullptr, [](D& d) -> double& { return d.clock.by; }},
@@ -39,6 +43,10 @@ const std::vector<Row>& rows() {
       {"latency.step", "by", nullptr, [](D& d) -> double& { return d.latency.by; }},
       {"latency.step", "at", nullptr, [](D& d) -> double& { return d.latency.at; }},
       {"latency.jitter", "mean", nullptr, [](D& d) -> double& { return d.jitter; }},
+      {"latency.jitter", "shape", nullptr, [](D& d) -> double& { return d.shape; }},
+      {"latency.bursts", "together", nullptr, [](D& d) -> double& { return d.bursts.together; }},
+      {"latency.bursts", "interval", nullptr, [](D& d) -> double& { return d.bursts.interval; }},
+      {"latency.bursts", "wait", nullptr, [](D& d) -> double& { return d.bursts.wait; }},
   };
   return kRows;
 }

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "pipeline/data/error.hpp"
@@ -25,15 +26,28 @@ Found fact(const std::string& where, const std::string& cause, const std::string
   return {.where = where, .cause = cause, .scope = device, .parameters = {parameter}};
 }
 
+/// Weibull's law for delays of a median and a 95th percentile [s]; the exponential one where these are none
+/// of such a law.
+std::vector<Parameter> law_of_delays(double median, double high) {
+  constexpr double kLeast = 0.2, kMost = 5;
+  const double in_20 = std::log(20.0);  // −ln of the share that is later than the percentile
+  const double in_2 = std::numbers::ln2;
+  const double ratio = median > 0 ? high / median : 0;
+  const double shape = ratio > 1 ? std::clamp(std::log(in_20 / in_2) / std::log(ratio), kLeast, kMost) : 1;
+  const double mean = median * std::pow(in_2, -1 / shape) * std::tgamma(1 + 1 / shape);
+  return {{.name = "mean", .unit = "s", .value = mean}, {.name = "shape", .unit = "1", .value = shape}};
+}
+
 void add_clocks_and_links(const Findings& findings, std::vector<Found>& all) {
   for (std::size_t i = 0; i < findings.devices.size(); ++i) {
     const DeviceFacts& facts = findings.devices[i];
     const std::string where = fmt::format("devices[{}]", i);
     all.push_back(
         fact(where, "clock.drift", facts.device, {.name = "skew", .unit = "1", .value = facts.skew}));
-    // Of an exponential distribution the median is ln 2 of the mean.
-    const double mean = facts.delay_median / std::numbers::ln2;
-    all.push_back(fact(where, "latency.jitter", facts.device, {.name = "mean", .unit = "s", .value = mean}));
+    all.push_back({.where = where,
+                   .cause = "latency.jitter",
+                   .scope = facts.device,
+                   .parameters = law_of_delays(facts.delay_median, facts.delay_95)});
   }
 }
 
@@ -45,6 +59,8 @@ void add_mirrors(const Findings& findings, std::vector<Found>& all) {
     const double excess = facts.period * (1 + facts.skew) - facts.nominal_period;
     all.push_back(fact(fmt::format("devices[{}]", i), "mirror.period", facts.device,
                        {.name = "excess", .unit = "s", .value = excess}));
+    all.push_back(fact(fmt::format("devices[{}]", i), "mirror.wander", facts.device,
+                       {.name = "rms", .unit = "1", .value = facts.wander}));
   }
 }
 

@@ -12,11 +12,24 @@ namespace crisp {
 /// How long a telegram travels from a device to the hub's network interface.
 struct LinkSettings {
   double minimum = 1e-3;     ///< [s] shortest way that this kind of device can have
-  double jitter = 1e-4;      ///< [s] mean of an exponentially distributed delay beyond that
+  double jitter = 1e-4;      ///< [s] mean of the delay beyond that, by Weibull's law
+  double shape = 1;          ///< of that law; 1: exponential, below: a longer tail
   double stall_rate = 0.2;   ///< [1/s] how often the link stalls: what is sent meanwhile arrives in a burst
   double stall_time = 5e-3;  ///< [s] mean duration of a stall
   double seconds_per_byte = 80e-9;  ///< [s] 100 Mbit/s: telegrams follow each other no closer
 };
+
+/// What is held back and handed on several at a time: `latency.bursts` of the catalogue.
+struct Bursts {
+  double together = 0;     ///< share of the telegrams that come together with the one before; 0: none
+  double interval = 0.02;  ///< [s] between two telegrams, as they are sent
+  double wait = 0;         ///< [s] standard deviation of their delays
+};
+
+/// A link that stalls so often and so long, at random, that telegrams come in such bursts.
+///
+/// @throws Error if no stalls make so many come together that wait so little
+LinkSettings with_bursts(LinkSettings link, const Bursts& bursts);
 
 /// The way of one device's telegrams: in order, late by at least a minimum of its own.
 class Link {
@@ -34,6 +47,7 @@ class Link {
  private:
   LinkSettings settings_;
   double minimum_;
+  double scale_;  // [s] of the jitter's law
   Step step_;
   RandomStream jitter_;
   RandomStream stalls_;

@@ -27,6 +27,9 @@ Mirror::Mirror(const MirrorSettings& settings, std::uint64_t seed, const std::st
   }
 }
 
+// Each wave has its part of the largest departure, and 1/√2 of that as its root mean square.
+double Mirror::wander_of_rms(double rms) { return rms * std::sqrt(2.0 * kWaves); }
+
 Revolution Mirror::next() {
   double departure = slowness_;
   for (const auto& wave : waves_) {

@@ -32,7 +32,11 @@ class Mirror {
 
   Revolution next();
 
+  /// The largest departure of a mirror whose period wanders by `rms`, both as a share of it.
+  static double wander_of_rms(double rms);
+
  private:
+  static constexpr std::size_t kWaves = 3;
   struct Wave {
     double amplitude;
     double angular_frequency;
@@ -42,7 +46,7 @@ class Mirror {
   MirrorSettings settings_;
   double slowness_ = 0;
   RandomStream jitter_;
-  std::array<Wave, 3> waves_{};
+  std::array<Wave, kWaves> waves_{};
   double time_ = 0;
   std::uint64_t number_ = 0;
 };

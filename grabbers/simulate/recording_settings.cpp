@@ -30,6 +30,8 @@ DeviceTruth draw_device(const RecordingSettings& settings, std::size_t index, co
     device.clock.step = effects.clock;
     device.latency = effects.latency;
     if (effects.jitter > 0) device.link.jitter = effects.jitter;
+    device.link.shape *= effects.shape;
+    if (effects.bursts.together > 0) device.link = with_bursts(device.link, effects.bursts);
   }
   for (const auto& restart : settings.faults.restarts) {
     if (restart.device == name) device.clock.resets.push_back(restart.time);

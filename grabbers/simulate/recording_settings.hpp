@@ -64,13 +64,15 @@ struct DeviceEffects {
   Step clock;
   Step latency;
   double jitter = 0;  ///< [s] mean delay beyond the shortest; 0: its link's
+  double shape = 1;   ///< of these delays' law; see LinkSettings
+  Bursts bursts;
 };
 
 /// One device as it is: what clock alignment and calibration should find.
 struct DeviceTruth {
   std::string name;
   DeviceClock clock;
-  LinkSettings link;         ///< those of its kind, with its own jitter
+  LinkSettings link;         ///< those of its kind, with its own jitter and bursts
   double minimum_delay = 0;  ///< [s] of its link
   Step latency;              ///< of the minimum delay
   double stamp_lag = 0;      ///< [s] how much later the scan's stamp is than the rig's offsets say

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
@@ -24,9 +25,23 @@ struct FieldOfView {
   std::size_t beams() const;
 };
 
+/// Scans of several kinds that take turns: `mirror.interleave` of the catalogue.
+struct Interleave {
+  double shift = 0;   ///< [rad] by which the beams of one kind point further
+  double period = 0;  ///< scans after which kinds are alike again; 0: all are
+  double kind = 0;    ///< which one it is: the scan's number modulo the period
+
+  /// [rad] by which the beams of a scan point further.
+  double of(std::uint64_t scan) const {
+    return period >= 1 && std::fmod(static_cast<double>(scan), period) == kind ? shift : 0;
+  }
+};
+
 /// How one laser departs from the others of its kind, beyond what the true calibration says.
 struct LaserEffects {
   NoiseEffects noise;
+  double mirror_wander = 0;  ///< RMS of slow changes of its mirror's period, as a share; 0: of its kind
+  Interleave interleave;
   double mirror_excess = 0;  ///< [s] of its mirror's mean period over the nominal one; 0: as drawn
   bool mirror_drawn = true;  ///< false: an excess of 0 is one of 0
 };

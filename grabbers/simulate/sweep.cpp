@@ -76,12 +76,14 @@ SweepSimulator::SweepSimulator(const ScannerSettings& settings, const Scene& sce
     const LaserEffects effects = settings_.effects_of(i);
     MirrorSettings mirror = settings_.mirror;
     if (!effects.mirror_drawn) mirror.slowest = 0;
+    if (effects.mirror_wander > 0) mirror.wander = Mirror::wander_of_rms(effects.mirror_wander);
     Laser& laser = lasers_.emplace_back(Laser{
         .mirror = Mirror(mirror, settings_.seed, name, effects.mirror_excess),
         .noise = RangeNoise(settings_.range, effects.noise, settings_.field.beams(), settings_.seed, name),
         .foliage = RandomStream(settings_.seed, name + ".foliage"),
         .spot = Spot(effects.noise, settings_.range.max_distance, reflectances),
         .upcoming = {},
+        .interleave = effects.interleave,
         .parameters = {}});
     laser.upcoming = laser.mirror.next();
     for (const auto slot : model_.chain(i).slots) {
@@ -108,9 +110,10 @@ void SweepSimulator::aim(Laser& laser, Sweep& sweep) {
   const double eta = laser.parameters[3];
   const double mount = settings_.rig.lasers[sweep.laser].mount;
   const auto& field = settings_.field;
+  const double shift = laser.interleave.of(sweep.revolution.number);
   sweep.times.resize(beams_.size());
   for (std::size_t i = 0; i < beams_.size(); ++i) {
-    const double angle = field.first + beams_[i] * field.step;
+    const double angle = field.first + beams_[i] * field.step + shift;
     const double turned = (angle - kFirstPossibleBeam) / (360 * kDegree);
     sweep.times[i] = sweep.revolution.begin + turned * sweep.revolution.period;
     traced_[i] = {};

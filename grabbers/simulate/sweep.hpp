@@ -49,6 +49,7 @@ class SweepSimulator {
     RandomStream foliage;
     Spot spot;
     Revolution upcoming;
+    Interleave interleave;
     std::vector<double> parameters;  ///< of its chain: λ, τ, α, η and those of its terms
   };
 

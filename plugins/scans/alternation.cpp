@@ -72,6 +72,26 @@ std::size_t period_of(const std::vector<double>& difference) {
   return 1;
 }
 
+/// Puts the counts of each rest into another order: scans of different rests are never compared, and what the
+/// actuator's angle changes between them is no turn that kinds of scans take.
+void shuffle_within_rests(std::vector<std::int64_t>& counts, const std::vector<std::size_t>& rests,
+                          std::mt19937_64& random) {
+  for (std::size_t r = 0; r + 1 < rests.size(); ++r) {
+    const auto first = counts.begin() + static_cast<std::ptrdiff_t>(rests[r]);
+    std::shuffle(first, counts.begin() + static_cast<std::ptrdiff_t>(rests[r + 1]), random);
+  }
+}
+
+/// Where rests begin, and where the last one ends: more scans lie between them than are compared.
+std::vector<std::size_t> rests_of(const std::vector<std::int64_t>& counts) {
+  std::vector<std::size_t> first = {0};
+  for (std::size_t i = 1; i < counts.size(); ++i) {
+    if (counts[i] - counts[i - 1] > static_cast<std::int64_t>(kMostLags)) first.push_back(i);
+  }
+  first.push_back(counts.size());
+  return first;
+}
+
 }  // namespace
 
 Alternation find_alternation(const std::vector<SeriesScan>& scans, std::uint64_t seed) {
@@ -84,10 +104,11 @@ Alternation find_alternation(const std::vector<SeriesScan>& scans, std::uint64_t
   found.period = period_of(found.difference);
   if (found.period == 1) return found;
   const double seen = extremes(found.difference).contrast();
+  const auto rests = rests_of(counts);
   std::mt19937_64 random(seed);
   std::size_t as_much = 0;
   for (std::size_t i = 0; i < kShuffles; ++i) {
-    std::shuffle(counts.begin(), counts.end(), random);
+    shuffle_within_rests(counts, rests, random);
     if (extremes(differences(some, counts)).contrast() >= seen) ++as_much;
   }
   found.p_value = static_cast<double>(as_much + 1) / static_cast<double>(kShuffles + 1);

@@ -14,14 +14,13 @@ struct Bursts {
   double together_error = 0;  ///< standard error
   double wait = 0;            ///< [s] standard deviation of receipt less stamp
   double longest = 0;         ///< [s] most that a scan came later than the least late one
-  double correlation = 0;     ///< of each interval between receipts with the next; −1: two by two
-  double p_value = 1;         ///< that delays independent of one another make as strong a correlation
+  double p_value = 1;         ///< that delays independent of one another make as many come together
 };
 
 /// @param receipts  [s] of scans
 /// @param stamps    [s] of the same on the same clock but for a constant
-/// Delays that are independent of one another already correlate neighbouring intervals by −1/2: the p-value
-/// is from shuffled delays.
+/// Delays that are independent of one another already make some come together: the p-value is from shuffled
+/// delays.
 Bursts find_bursts(const std::vector<double>& receipts, const std::vector<double>& stamps,
                    std::uint64_t seed);
 

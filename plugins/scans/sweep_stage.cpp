@@ -159,11 +159,8 @@ void DiagnoseSweepStage::diagnose(std::size_t index, Findings& findings, Context
       fmt::format("{}: a scan every {:.3f} ms; {:.0f} % come together with the one before (p {:.3g}), up to "
                   "{:.0f} ms late",
                   name, 1e3 * bursts.interval, 100 * bursts.together, bursts.p_value, 1e3 * bursts.longest));
-  context.report({{name,
-                   {{"interval", bursts.interval},
-                    {"together", bursts.together},
-                    {"correlation", bursts.correlation},
-                    {"longest", bursts.longest}}}});
+  context.report(
+      {{name, {{"interval", bursts.interval}, {"together", bursts.together}, {"longest", bursts.longest}}}});
   if (!std::isfinite(gain.before)) {
     findings.unobservable.push_back(
         {"latency.bursts (" + name + ")", "no sweep of the actuator was seen", ""});

@@ -106,16 +106,40 @@ TEST_F(FoundEffectsTest, AreInPlaceOfWhatWouldBeDrawn) {
   EXPECT_NEAR(fired[2][1] - fired[2][0], 0.02 * (1 + 200e-6), 1e-9) << "true seconds, not the laser's";
 }
 
+TEST_F(FoundEffectsTest, HaveDelaysBurstsAndWandersAsTheyWereMeasured) {
+  Findings findings;
+  findings.devices = {{.device = "laser1",
+                       .delay_median = 68e-6,
+                       .delay_95 = 344e-6,
+                       .period = 0.0201,
+                       .nominal_period = 0.02,
+                       .wander = 1.1e-3}};
+  findings.findings = {finding("latency.bursts", "laser2",
+                               {{.name = "together", .unit = "1", .value = 0.5},
+                                {.name = "interval", .unit = "s", .value = 0.02},
+                                {.name = "wait", .unit = "s", .value = 0.1}})};
+  const RecordingSettings settings = settings_with(findings);
+  EXPECT_DOUBLE_EQ(settings.scanner.laser_effects[0].mirror_wander, 1.1e-3);
+  const RecordingTruth truth = draw_devices(settings);
+  // Weibull's law F(d) = 1 − exp(−(d / scale)^shape), by hand.
+  const LinkSettings& link = truth.lasers[0].link;
+  const double scale = link.jitter / std::tgamma(1 + 1 / link.shape);
+  EXPECT_NEAR(std::exp(-std::pow(68e-6 / scale, link.shape)), 0.5, 1e-9);
+  EXPECT_NEAR(std::exp(-std::pow(344e-6 / scale, link.shape)), 0.05, 1e-9);
+  EXPECT_GT(truth.lasers[1].link.stall_rate, 1) << "bursts, many a second";
+  EXPECT_EQ(truth.lasers[2].link.stall_rate, LinkSettings{}.stall_rate);
+}
+
 TEST_F(FoundEffectsTest, ThatNoSimulatorKnowsAreNamed) {
   Findings findings;
-  findings.findings = {finding("mirror.interleave", "laser1", {}), finding("mirror.cone", "laser1", {})};
-  findings.findings.push_back({.cause = "latency.bursts", .scope = "laser2", .accepted = false});
+  findings.findings = {finding("scene.moving", "plate", {}), finding("mirror.cone", "laser1", {})};
+  findings.findings.push_back({.cause = "range.gremlins", .scope = "laser2", .accepted = false});
   findings.findings.push_back(
       finding("noise.mixed_pixels", "laser3", {{.name = "share_of_edges", .unit = "1", .value = 0.1}}));
   findings.unnamed = {{.covariate = "range", .quantity = "range", .scope = "laser3", .accepted = true}};
   const FoundEffects found = effects(findings);
   EXPECT_THAT(found.others,
-              ElementsAre("mirror.interleave of laser1",
+              ElementsAre("scene.moving of plate",
                           HasSubstr("noise.mixed_pixels of laser3: the file has the share of edges"),
                           HasSubstr("range of laser3 over the range")));
   ASSERT_EQ(found.effects.size(), 1U);

@@ -119,6 +119,25 @@ TEST(SimulateMeasurements, ItsNoiseHasTheStatedSpreadAndStep) {
   EXPECT_NEAR(s4 / n / variance / variance, 3, 4 * std::sqrt(96 / n));
 }
 
+TEST(SimulateMeasurements, HasKindsOfScansThatTakeTurns) {
+  ScannerSettings settings = exact_settings();
+  settings.laser_effects.resize(settings.rig.lasers.size());
+  settings.laser_effects[0].interleave = {.shift = settings.field.step, .period = 3, .kind = 1};
+  const auto beams = simulate_measurements(settings, plain_room(), Motion({{0, 0}}, 0)).beams;
+  std::vector<float> at_199;
+  std::vector<float> at_200;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (beams.laser[i] != 0) continue;
+    if (beams.beam[i] == 199) at_199.push_back(beams.range[i]);
+    if (beams.beam[i] == 200) at_200.push_back(beams.range[i]);
+  }
+  ASSERT_GT(at_199.size(), 6U);
+  EXPECT_NE(at_199[0], at_200[0]);
+  for (std::size_t scan = 0; scan < at_199.size(); ++scan) {
+    EXPECT_NEAR(at_199[scan], scan % 3 == 1 ? at_200[0] : at_199[0], 1e-6) << scan;
+  }
+}
+
 TEST(SimulateMeasurements, SeesNothingBeyondItsReach) {
   ScannerSettings settings;
   settings.duration = 1;

@@ -36,6 +36,16 @@ TEST(Mirror, HasThePeriodThatWasAskedFor) {
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(mirror.next().period, 0.020114, 1e-12);
 }
 
+TEST(Mirror, WandersAsMuchAsWasAskedFor) {
+  constexpr double kRms = 1.1e-3;
+  const MirrorSettings settings{.slowest = 0, .wander = Mirror::wander_of_rms(kRms)};
+  Mirror mirror(settings, 1, "laser1");
+  constexpr int kTurns = 500'000;  // 10 000 s: a thousand waves and more
+  double squares = 0;
+  for (int i = 0; i < kTurns; ++i) squares += std::pow(mirror.next().period * settings.frequency - 1, 2);
+  EXPECT_NEAR(std::sqrt(squares / kTurns), kRms, 0.01 * kRms);
+}
+
 TEST(Mirror, BeginsEachTurnWhereTheLastOneEnded) {
   const auto all = turns({.jitter = 1e-3}, 1, 1000);
   EXPECT_GE(all.front().begin, 0);

@@ -34,6 +34,7 @@ TEST(Catalogue, HasEveryNameThatReportsAndProgramsUse) {
                                              "mirror.eccentricity",
                                              "mirror.interleave",
                                              "mirror.period",
+                                             "mirror.wander",
                                              "mount.axial_offset",
                                              "mount.mirror_zero",
                                              "mount.scan_plane_tilt",

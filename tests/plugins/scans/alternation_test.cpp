@@ -54,6 +54,21 @@ TEST(Alternation, FindsByHowMuchOneKindOfScanPointsElsewhere) {
   EXPECT_NEAR(kinds[0].answer, kinds[0].put_in, 0.1 * kinds[0].put_in);
 }
 
+TEST(Alternation, IsFoundInManyRestsAtDifferentAngles) {
+  test::TiltingScene scene(kNoiseAtRest);
+  ScanSeries series;
+  for (std::uint16_t rest = 0; rest < 6; ++rest) {
+    for (std::uint16_t i = 0; i < 25; ++i) {
+      const auto number = static_cast<std::uint16_t>(100 * rest + i);
+      const double first = (20 + (number % 2 == 1 ? 0.5 : 0.0)) * kDegree;
+      series.add(scene.scan((50 + 5 * rest) * kDegree, first, 140, number, 0.0133 * number));
+    }
+  }
+  const auto found = find_alternation(series.scans(), 1);
+  EXPECT_EQ(found.period, 2U);
+  EXPECT_LE(found.p_value, 0.01);
+}
+
 TEST(Alternation, TakesAnOffsetOfTheRangesForNoShift) {
   const auto scans = at_rest({.offset = 0.02});
   EXPECT_EQ(find_alternation(scans, 1).period, 2U);

@@ -22,7 +22,21 @@ TEST(Bursts, FindsScansThatComeTwoByTwo) {
   const Bursts bursts = find_bursts(receipts, stamps, 1);
   EXPECT_NEAR(bursts.interval, kPeriod, 1e-9);
   EXPECT_NEAR(bursts.together, 0.5, 0.01);
-  EXPECT_LT(bursts.correlation, -0.9);
+  EXPECT_LT(bursts.p_value, 0.01);
+}
+
+TEST(Bursts, FindsScansThatComeManyAtATime) {
+  std::mt19937_64 random(5);
+  std::exponential_distribution<double> length(1 / 0.06);
+  std::vector<double> receipts, stamps;
+  double end = 0;
+  for (int i = 0; i < 200; ++i) {
+    stamps.push_back(kPeriod * i);
+    while (end < stamps.back()) end += length(random);  // one stall after another
+    receipts.push_back(end + 1e-4 * i / 200);
+  }
+  const Bursts bursts = find_bursts(receipts, stamps, 1);
+  EXPECT_NEAR(bursts.together, std::exp(-kPeriod / 0.06), 0.1);
   EXPECT_LT(bursts.p_value, 0.01);
 }
 
