@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
@@ -27,7 +28,9 @@ using test::Drawn;
 
 /// What became of one recording.
 struct Outcome {
-  std::size_t hidden = 0, named = 0, in_class = 0, said_unobservable = 0;
+  std::size_t hidden = 0, named = 0, in_class = 0;
+  std::size_t in_span = 0;     ///< said, by name, to be what the parameters without it can do as well
+  std::size_t said_small = 0;  ///< said, by name, to show in these data from a larger size on only
   std::size_t wrong = 0, unnamed = 0, right_covariate = 0;
   std::size_t parameters = 0, within_three = 0;
 };
@@ -53,8 +56,9 @@ void count_hidden(const Drawn& drawn, const Diagnosis& diagnosis, const std::str
     }
   } else if (taken([&](const Departure& departure) { return stands_for(departure, name); })) {
     ++outcome.in_class;
-  } else if (std::ranges::count(diagnosis.unobservable, name, &Diagnosis::Limit::name) > 0) {
-    ++outcome.said_unobservable;
+  } else if (const auto limit = std::ranges::find(diagnosis.unobservable, name, &Diagnosis::Limit::name);
+             limit != diagnosis.unobservable.end()) {
+    ++(std::isfinite(limit->size) ? outcome.said_small : outcome.in_span);
   }
 }
 
@@ -98,9 +102,9 @@ struct Row {
   void add(const Outcome& one, bool is_settled) {
     ++recordings;
     settled += is_settled ? 1 : 0;
-    for (auto part :
-         {&Outcome::hidden, &Outcome::named, &Outcome::in_class, &Outcome::said_unobservable, &Outcome::wrong,
-          &Outcome::unnamed, &Outcome::right_covariate, &Outcome::parameters, &Outcome::within_three}) {
+    for (auto part : {&Outcome::hidden, &Outcome::named, &Outcome::in_class, &Outcome::in_span,
+                      &Outcome::said_small, &Outcome::wrong, &Outcome::unnamed, &Outcome::right_covariate,
+                      &Outcome::parameters, &Outcome::within_three}) {
       sum.*part += one.*part;
     }
   }
@@ -156,9 +160,10 @@ class Trial {
 
   void print() const {
     fmt::print(
-        "\n| what hides | recordings | hidden | named | its class | said to be unobservable | wrong "
+        "\n| what hides | recordings | hidden | named | its class | the base's class | said to be too small "
+        "| wrong "
         "names | unnamed | of these right | parameters within 3 s.e. |\n"
-        "|---|---|---|---|---|---|---|---|---|---|\n");
+        "|---|---|---|---|---|---|---|---|---|---|---|\n");
     Row all;
     for (const auto& [what, row] : rows_) {
       print(what, row);
@@ -171,8 +176,8 @@ class Trial {
  private:
   static void print(const std::string& what, const Row& row) {
     const Outcome& s = row.sum;
-    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} of {} |\n", what, row.recordings, s.hidden,
-               s.named, s.in_class, s.said_unobservable, s.wrong, s.unnamed, s.right_covariate,
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} of {} |\n", what, row.recordings,
+               s.hidden, s.named, s.in_class, s.in_span, s.said_small, s.wrong, s.unnamed, s.right_covariate,
                s.within_three, s.parameters);
   }
   std::map<std::string, Row> rows_;
