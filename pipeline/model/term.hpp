@@ -53,10 +53,10 @@ class ModelTerm {
 template <class Term>
 class DifferentiableTerm : public ModelTerm {
  public:
-  void apply(std::span<Beam<double>> beams, std::span<const double> parameters) const final {
+  [[gnu::flatten]] void apply(std::span<Beam<double>> beams, std::span<const double> parameters) const final {
     for (auto& beam : beams) static_cast<const Term&>(*this).change(beam, parameters);
   }
-  void apply(std::span<Beam<Jet>> beams, std::span<const Jet> parameters) const final {
+  [[gnu::flatten]] void apply(std::span<Beam<Jet>> beams, std::span<const Jet> parameters) const final {
     for (auto& beam : beams) static_cast<const Term&>(*this).change(beam, parameters);
   }
 };
