@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pipeline/model/catalogue.hpp"
+#include "plugins/diagnose/looks.hpp"
 
 namespace crisp {
 namespace {
@@ -102,8 +103,16 @@ Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, c
   return candidate;
 }
 
-const Parameter& form_parameter(const Candidate& candidate, const TermRegistry& terms) {
-  return candidate.term.parameters.at(form_of(terms.get(candidate.term.term)->info()));
+Candidate valued(Candidate candidate, const Look& look, const TermRegistry& terms) {
+  const auto term = terms.get(candidate.term.term);
+  const auto& parameters = term->info().parameters;
+  Eigen::Index k = 0;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].shape) continue;
+    candidate.term.parameters[i].value =
+        std::clamp(parameters[i].neutral + look.value[k++], parameters[i].lower, parameters[i].upper);
+  }
+  return candidate;
 }
 
 void add_to(Calibration& calibration, const Candidate& candidate) {

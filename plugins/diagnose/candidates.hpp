@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
 #include "pipeline/model/sensor_model.hpp"
 
 namespace crisp {
+
+struct Look;
 
 /// One way to extend the sensor model: a term of the plate or of one laser, in one of its forms.
 struct Candidate {
@@ -17,8 +20,8 @@ struct Candidate {
 
   /// Another form, beside the best.
   struct OtherForm {
-    double off = 0;     ///< its parameter of form less that of the best
-    double behind = 0;  ///< [2 nat] by how much less it explains, errors of beams taken for independent
+    Eigen::VectorXd off;  ///< of each of the term's parameters: its value then, less that of the best form
+    double behind = 0;    ///< [2 nat] by how much less it explains, errors of beams taken for independent
   };
   std::vector<OtherForm> other_forms;  ///< all that are tried, as far as they have been looked at
   std::string name;                    ///< "laser2.mirror.cone", "encoder.eccentricity"
@@ -60,8 +63,8 @@ std::vector<std::string> unshared_causes(const TermRegistry& terms, const Lastin
 ///              between
 Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, const Lasting& lasting);
 
-/// The parameter of a candidate's term that is tried in several forms; it has one.
-const Parameter& form_parameter(const Candidate& candidate, const TermRegistry& terms);
+/// The candidate with the values that a look found.
+Candidate valued(Candidate candidate, const Look& look, const TermRegistry& terms);
 
 /// The terms of one owner: of a laser, or of the plate where the index is the number of lasers.
 std::vector<TermParameters>& terms_of(Calibration& calibration, std::size_t owner);

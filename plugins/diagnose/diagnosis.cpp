@@ -50,20 +50,7 @@ std::vector<std::size_t> base_of(const Refinement& refinement) {
   return base;
 }
 
-/// The candidate with the values that a look found.
-Candidate valued(Candidate candidate, const Look& look, const TermRegistry& terms) {
-  const auto term = terms.get(candidate.term.term);
-  const auto& parameters = term->info().parameters;
-  Eigen::Index k = 0;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].shape) continue;
-    candidate.term.parameters[i].value =
-        std::clamp(parameters[i].neutral + look.value[k++], parameters[i].lower, parameters[i].upper);
-  }
-  return candidate;
-}
-
-/// The same with the values that a calibration has for them.
+/// The candidates with the values that a calibration has for them.
 std::vector<Candidate> with_values_of(const Calibration& calibration, std::vector<Candidate> chosen) {
   for (Candidate& candidate : chosen) {
     const TermParameters* found = find_term(terms_of(calibration, candidate.owner), candidate.term.term);
@@ -202,10 +189,20 @@ class Diagnoser {
     }
   }
 
-  /// The full name of the parameter that a candidate's form is.
-  std::string full_name(const Candidate& candidate) const {
+  /// Where each parameter of a candidate's term is among those that were estimated; nothing for those that
+  /// were not.
+  std::vector<std::optional<Eigen::Index>> places_of(const Candidate& candidate,
+                                                     const Outcome& outcome) const {
     const bool of_plate = candidate.owner == start_.lasers.size();
-    return (of_plate ? "plate." : "") + candidate.name + "." + form_parameter(candidate, terms_).name;
+    std::vector<std::optional<Eigen::Index>> places(candidate.term.parameters.size());
+    for (std::size_t p = 0; p < places.size(); ++p) {
+      const std::string name =
+          (of_plate ? "plate." : "") + candidate.name + "." + candidate.term.parameters[p].name;
+      for (std::size_t k = 0; k < outcome.free.size(); ++k) {
+        if (outcome.model.names()[outcome.free[k]] == name) places[p] = static_cast<Eigen::Index>(k);
+      }
+    }
+    return places;
   }
 
   /// The refined model knows the curvature at its form alone, not that another may be the right one.
@@ -214,11 +211,14 @@ class Diagnoser {
     for (const Departure& departure : result.departures) {
       const auto others = result.other_forms.find(departure.candidate.name);
       if (others == result.other_forms.end()) continue;
-      const std::string name = full_name(departure.candidate);
-      const double error = form_error(others->second, departure.look.sharing());
-      for (std::size_t k = 0; k < outcome.free.size(); ++k) {
-        const auto i = static_cast<Eigen::Index>(k);
-        if (outcome.model.names()[outcome.free[k]] == name) outcome.covariance(i, i) += error * error;
+      const Eigen::MatrixXd added = form_covariance(others->second, departure.look.sharing());
+      const auto places = places_of(departure.candidate, outcome);
+      for (std::size_t p = 0; p < places.size(); ++p) {
+        for (std::size_t q = 0; q < places.size(); ++q) {
+          if (!places[p] || !places[q]) continue;
+          outcome.covariance(*places[p], *places[q]) +=
+              added(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q));
+        }
       }
     }
   }

@@ -24,6 +24,12 @@ Surfels surfaces(const BeamsView& beams, const SurfelSettings& settings) {
   return kept(found, steady(found, beams, settings.noise));
 }
 
+bool are_elsewhere(const BeamsView& beams, const BeamsView& before) {
+  return !std::ranges::equal(beams.points.x, before.points.x) ||
+         !std::ranges::equal(beams.points.y, before.points.y) ||
+         !std::ranges::equal(beams.points.z, before.points.z);
+}
+
 /// Every so-manieth beam of each surface, so that at most about `most` are left.
 Surfels thinned(const Surfels& surfels, std::size_t most) {
   std::size_t all = 0;
@@ -47,9 +53,14 @@ Surfels thinned(const Surfels& surfels, std::size_t most) {
 
 Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings& settings, std::size_t most)
     : sample_(std::move(sample)), placed_(model, sample_), settings_(settings) {
-  const Surfels all = surfaces(placed_.view(), settings_);
+  Surfels all = surfaces(placed_.view(), settings_);
   sample_.beams.cos_incidence = incidences(all, placed_.view());
-  placed_ = PlacedBeams(model, sample_);  // by terms that ask for it, too
+  // Terms that ask for the incidence move beams, mostly those that graze, and so the surfaces.
+  if (PlacedBeams moved(model, sample_); are_elsewhere(moved.view(), placed_.view())) {
+    all = surfaces(moved.view(), settings_);
+    sample_.beams.cos_incidence = incidences(all, moved.view());
+    placed_ = PlacedBeams(model, sample_);
+  }
   surfels_ = thinned(all, most);
   const auto [first, last] = std::ranges::minmax(sample_.beams.time);
   const auto recordings = recordings_of(*sample_.plate);

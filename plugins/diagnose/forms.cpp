@@ -30,6 +30,13 @@ std::size_t best_of(const std::vector<Look>& looks) {
   return static_cast<std::size_t>(std::ranges::max_element(looks, {}, &Look::gain) - looks.begin());
 }
 
+Eigen::VectorXd values_of(const Candidate& candidate) {
+  const auto& parameters = candidate.term.parameters;
+  Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
+  std::ranges::transform(parameters, values.begin(), &Parameter::value);
+  return values;
+}
+
 /// All forms that are tried, beside the best.
 std::vector<Candidate::OtherForm> other_forms(const Candidate& best, const std::vector<Candidate>& others,
                                               const SensorModel& model, const std::vector<std::size_t>& base,
@@ -39,10 +46,10 @@ std::vector<Candidate::OtherForm> other_forms(const Candidate& best, const std::
     forms.push_back(in_form(best, static_cast<double>(k), terms, evidence.lasting()));
   }
   const std::vector<Look> looks = looks_at(forms, others, model, base, evidence, terms);
-  const double value = form_parameter(best, terms).value;
+  const Eigen::VectorXd values = values_of(valued(best, looks.front(), terms));
   std::vector<Candidate::OtherForm> result;
   for (std::size_t k = 1; k < forms.size(); ++k) {
-    result.push_back({.off = form_parameter(forms[k], terms).value - value,
+    result.push_back({.off = values_of(valued(forms[k], looks[k], terms)) - values,
                       .behind = std::max(0.0, looks.front().gain - looks[k].gain)});
   }
   return result;
@@ -73,15 +80,17 @@ std::vector<Candidate> with_sharper_forms(std::vector<Candidate> chosen, const S
   return chosen;
 }
 
-double form_error(const std::vector<Candidate::OtherForm>& others, double sharing) {
+Eigen::MatrixXd form_covariance(const std::vector<Candidate::OtherForm>& others, double sharing) {
+  if (others.empty()) return {};
+  const Eigen::Index p = others.front().off.size();
   double likelihoods = 1;
-  double squares = 0;
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(p, p);
   for (const auto& other : others) {
     const double likelihood = std::exp(-other.behind / sharing / 2);
     likelihoods += likelihood;
-    squares += likelihood * other.off * other.off;
+    squares += likelihood * other.off * other.off.transpose();
   }
-  return std::sqrt(squares / likelihoods);
+  return squares / likelihoods;
 }
 
 }  // namespace crisp

@@ -17,11 +17,14 @@ std::vector<Candidate> with_sharper_forms(std::vector<Candidate> chosen, const S
                                           const std::vector<std::size_t>& base, const Evidence& evidence,
                                           const TermRegistry& terms);
 
-/// By how much the form may be another than the best, in the unit of its parameter: the spread of all that
-/// are tried, each as likely as the data make it. A form that a small part of an effect hangs on (a sway
-/// beside a larger drift) has rivals far off, of which its own curvature knows nothing.
+/// By how much another form than the best may be the right one, for all of the term's parameters: the
+/// covariance of those that they have in all forms that are tried, each as likely as the data make it. A form
+/// that a small part of an effect hangs on (a sway beside a larger drift) has rivals far off, of which its
+/// own curvature knows nothing; and how strong an effect is may hang on its form.
 ///
 /// @param sharing  see Look::sharing(), of the candidate where the model has it
-double form_error(const std::vector<Candidate::OtherForm>& others, double sharing);
+/// @return         p × p, in the order and the units of the term's parameters; empty if no other was looked
+/// at
+Eigen::MatrixXd form_covariance(const std::vector<Candidate::OtherForm>& others, double sharing);
 
 }  // namespace crisp

@@ -11,22 +11,28 @@ namespace {
 
 using Others = std::vector<Candidate::OtherForm>;
 
-TEST(FormError, IsNothingWhereOtherFormsExplainMuchLess) {
-  EXPECT_EQ(form_error({}, 1), 0);
-  EXPECT_LT(form_error(Others{{.off = 3, .behind = 100}, {.off = -5, .behind = 200}}, 1), 1e-10);
+Candidate::OtherForm other(double off, double behind) {
+  return {.off = Eigen::Vector2d(off, -2 * off), .behind = behind};
 }
 
-TEST(FormError, IsTheSpreadOfFormsEachAsLikelyAsTheDataMakeIt) {
-  // Another explains as much: half of the time the right one is 3 off.
-  EXPECT_NEAR(form_error(Others{{.off = 3, .behind = 0}}, 1), 3 / std::sqrt(2), 1e-12);
+TEST(FormCovariance, IsNothingWhereOtherFormsExplainMuchLess) {
+  EXPECT_EQ(form_covariance({}, 1).size(), 0);
+  EXPECT_LT(form_covariance(Others{other(3, 100), other(-5, 200)}, 1).norm(), 1e-15);
+}
+
+TEST(FormCovariance, IsThatOfFormsEachAsLikelyAsTheDataMakeIt) {
+  // Another explains as much: half of the time the right one is 3 off, and the other parameter 6.
+  const Eigen::MatrixXd even = form_covariance(Others{other(3, 0)}, 1);
+  EXPECT_NEAR(even(0, 0), 9.0 / 2, 1e-12);
+  EXPECT_NEAR(even(1, 1), 36.0 / 2, 1e-12);
+  EXPECT_NEAR(even(0, 1), -18.0 / 2, 1e-12);
   // e⁻¹ as likely: 1 + e⁻¹ in all.
-  EXPECT_NEAR(form_error(Others{{.off = 3, .behind = 2}}, 1),
-              3 * std::sqrt(std::exp(-1) / (1 + std::exp(-1))), 1e-12);
+  EXPECT_NEAR(form_covariance(Others{other(3, 2)}, 1)(0, 0), 9 * std::exp(-1) / (1 + std::exp(-1)), 1e-12);
 }
 
-TEST(FormError, KnowsThatBeamsShareErrors) {
-  EXPECT_NEAR(form_error(Others{{.off = 3, .behind = 20}}, 10),
-              form_error(Others{{.off = 3, .behind = 2}}, 1), 1e-12);
+TEST(FormCovariance, KnowsThatBeamsShareErrors) {
+  EXPECT_NEAR(form_covariance(Others{other(3, 20)}, 10)(0, 0), form_covariance(Others{other(3, 2)}, 1)(0, 0),
+              1e-12);
 }
 
 }  // namespace

@@ -24,6 +24,13 @@ TEST(SideBySide, TellsNothingApartWhereTheModelIsTheTruth) {
   }
 }
 
+TEST(SideBySide, FindsSurfacesWithTermsThatAskForTheIncidence) {
+  // Found without it, planes seen at grazing incidence are off, and so is the incidence that they tell.
+  const auto left =
+      beside(test::hidden(6, 5, built_in_scene("street"), {{"laser1.range.incidence", {-0.012, 0.156}}}));
+  EXPECT_GT(left.p_value, 0.01);
+}
+
 TEST(SideBySide, SimulatesEachLaserWithNoiseOfItsOwn) {
   ScannerSettings scanner = test::scanner_of(5, 3);
   scanner.laser_effects.resize(3);
