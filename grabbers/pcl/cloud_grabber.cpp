@@ -61,7 +61,7 @@ void CloudGrabber::end() {
 }
 
 void CloudGrabber::place(const Measurements& scan) {
-  revolutions_->add(*deskew(scan, plate_, model_).cloud, plate_);
+  revolutions_->add(*deskew(scan, plate_, model_, mirrors_).cloud, plate_);
 }
 
 LiveCloudGrabber::LiveCloudGrabber(const Rig& rig, Calibration calibration, LiveSettings live,

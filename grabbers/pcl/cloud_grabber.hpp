@@ -7,6 +7,7 @@
 #include "grabbers/pcl/source_grabber.hpp"
 #include "pipeline/data/calibration.hpp"
 #include "pipeline/data/cloud.hpp"
+#include "pipeline/model/known_mirrors.hpp"
 #include "pipeline/model/sensor_model.hpp"
 #include "plugins/assemble/revolutions.hpp"
 #include "plugins/clock/online_aligner.hpp"
@@ -46,6 +47,7 @@ class CloudGrabber : public SourceGrabber {
 
   Rig rig_;
   SensorModel model_;
+  KnownMirrors mirrors_;
   CloudSettings settings_;
   boost::signals2::signal<CloudCallback>* cloud_signal_;
   std::optional<OnlineAligner> aligner_;

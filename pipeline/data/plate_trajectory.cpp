@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "pipeline/data/error.hpp"
 
@@ -42,6 +44,13 @@ PlateTrajectory::PlateTrajectory(std::int64_t epoch_ns, std::vector<double> time
     throw Error("the times of a plate trajectory must ascend");
   }
   rates_ = slopes(times_, angles_);
+  if (times_.size() < 2) return;
+  const std::size_t intervals = times_.size() - 1;
+  first_.assign(intervals + 1, 0);
+  parts_a_second_ = static_cast<double>(intervals) / (times_.back() - times_.front());
+  for (std::size_t i = 0; i < intervals; ++i) first_[part_of(times_[i]) + 1] = static_cast<std::uint32_t>(i);
+  std::partial_sum(first_.begin(), first_.end(), first_.begin(),
+                   [](std::uint32_t before, std::uint32_t own) { return std::max(before, own); });
 }
 
 PlateState PlateArc::at(double t) const {
@@ -52,50 +61,22 @@ PlateState PlateArc::at(double t) const {
           .acceleration = (2 * c[2] + u * 6 * c[3]) / (width * width)};
 }
 
-std::optional<PlateArc> PlateTrajectory::arc(std::size_t interval) const {
-  const double width = times_[interval + 1] - times_[interval];
-  if (width > max_gap_) return std::nullopt;
-  const double rise = angles_[interval + 1] - angles_[interval];
-  const double m0 = rates_[interval] * width;
-  const double m1 = rates_[interval + 1] * width;
-  return PlateArc{.begin = times_[interval],
-                  .end = times_[interval + 1],
+std::optional<PlateArc> PlateTrajectory::arc(double t) const {
+  const auto found = interval(t);
+  if (!found) return std::nullopt;
+  const double width = times_[*found + 1] - times_[*found];
+  const double rise = angles_[*found + 1] - angles_[*found];
+  const double m0 = rates_[*found] * width;
+  const double m1 = rates_[*found + 1] * width;
+  return PlateArc{.begin = times_[*found],
+                  .end = times_[*found + 1],
                   .width = width,
-                  .coefficients = {angles_[interval], m0, 3 * rise - 2 * m0 - m1, m0 + m1 - 2 * rise}};
+                  .coefficients = {angles_[*found], m0, 3 * rise - 2 * m0 - m1, m0 + m1 - 2 * rise}};
 }
 
 std::optional<PlateState> PlateTrajectory::at(double t) const {
-  if (times_.size() < 2 || !(t >= times_.front() && t <= times_.back())) return std::nullopt;
-  const auto next = std::upper_bound(times_.begin() + 1, times_.end() - 1, t);
-  const auto found = arc(static_cast<std::size_t>(next - times_.begin()) - 1);
-  return found ? std::optional(found->at(t)) : std::nullopt;
-}
-
-std::optional<PlateState> PlateTrajectory::Cursor::at(double t) {
   const auto found = arc(t);
   return found ? std::optional(found->at(t)) : std::nullopt;
-}
-
-std::optional<PlateArc> PlateTrajectory::Cursor::arc(double t) {
-  const auto& times = trajectory_->times_;
-  if (times.size() < 2 || !(t >= times.front() && t <= times.back())) return std::nullopt;
-  constexpr int kSteps = 16;  // beyond these a bisection is cheaper than walking
-  const auto last = static_cast<std::ptrdiff_t>(times.size() - 2);
-  const auto most = static_cast<double>(last);
-  for (int step = 0; step < kSteps; ++step) {
-    const double from = times[interval_];
-    const double to = times[interval_ + 1];
-    if (t >= from && t <= to) return trajectory_->arc(interval_);
-    // Readings are about even: as many intervals on as this one's width goes into the way.
-    const double on = std::clamp((t - from) / (to - from), -most, most);
-    auto whole = static_cast<std::ptrdiff_t>(on);  // rounded down, for which std::floor() may be a call
-    if (on < static_cast<double>(whole)) --whole;
-    interval_ = static_cast<std::size_t>(
-        std::clamp(static_cast<std::ptrdiff_t>(interval_) + whole, std::ptrdiff_t{0}, last));
-  }
-  const auto next = std::upper_bound(times.begin() + 1, times.end() - 1, t);
-  interval_ = static_cast<std::size_t>(next - times.begin()) - 1;
-  return trajectory_->arc(interval_);
 }
 
 }  // namespace crisp

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -47,18 +48,11 @@ class PlateTrajectory {
   /// The plate at time t [s since epoch], or nothing where the readings do not cover t.
   std::optional<PlateState> at(double t) const;
 
-  /// A reader for times that mostly ascend: remembers the interval, so that a step costs O(1).
-  class Cursor {
-   public:
-    explicit Cursor(const PlateTrajectory& trajectory) : trajectory_(&trajectory) {}
-    std::optional<PlateState> at(double t);
-    /// What at() takes its answer from; it holds for all times from `begin` to `end`, ends included.
-    std::optional<PlateArc> arc(double t);
+  /// What at() takes its answer from; it holds for all times from `begin` to `end`, ends included.
+  std::optional<PlateArc> arc(double t) const;
 
-   private:
-    const PlateTrajectory* trajectory_;
-    std::size_t interval_ = 0;
-  };
+  /// The reading with which the arc of t begins, or nothing where the readings do not cover t.
+  std::optional<std::size_t> interval(double t) const;
 
   std::int64_t epoch_ns() const { return epoch_ns_; }
   bool empty() const { return times_.empty(); }
@@ -68,10 +62,11 @@ class PlateTrajectory {
   double max_gap() const { return max_gap_; }
   std::span<const double> times() const { return times_; }
   std::span<const double> angles() const { return angles_; }
+  std::span<const double> rates() const { return rates_; }  ///< [rad/s] dφ/dt at each reading
   std::span<const double> new_zeros() const { return new_zeros_; }
 
  private:
-  std::optional<PlateArc> arc(std::size_t interval) const;
+  std::size_t part_of(double t) const;
 
   std::int64_t epoch_ns_ = 0;
   std::vector<double> times_;
@@ -79,6 +74,36 @@ class PlateTrajectory {
   std::vector<double> rates_;
   std::vector<double> new_zeros_;
   double max_gap_ = 0;
+  // As many parts of equal length as there are intervals: where readings are about even, one to a few of
+  // them begin in each, so that a time's interval is found at once.
+  double parts_a_second_ = 0;
+  std::vector<std::uint32_t>
+      first_;  // part → the last interval that begins in a part before it, or the first
 };
+
+// Here, as it is asked for each of many beams.
+inline std::size_t PlateTrajectory::part_of(double t) const {
+  const std::size_t last = first_.size() - 2;
+  const double parts = (t - times_.front()) * parts_a_second_;
+  return parts < static_cast<double>(last) ? static_cast<std::size_t>(parts) : last;
+}
+
+inline std::optional<std::size_t> PlateTrajectory::interval(double t) const {
+  if (first_.empty() || !(t >= times_.front() && t <= times_.back())) return std::nullopt;
+  const double* times = times_.data();
+  const std::size_t part = part_of(t);
+  std::size_t found = first_[part];
+  const std::size_t last = first_[part + 1];
+  // One step or two mostly do, which of them nobody can foretell: without a branch.
+  for (int step = 0; step < 2; ++step) {
+    found += static_cast<std::size_t>(static_cast<unsigned>(found < last) &
+                                      static_cast<unsigned>(t >= times[found + 1]));
+  }
+  if (found < last && t >= times[found + 1]) {
+    found = static_cast<std::size_t>(std::upper_bound(times + found + 1, times + last + 1, t) - times) - 1;
+  }
+  if (times[found + 1] - times[found] > max_gap_) return std::nullopt;
+  return found;
+}
 
 }  // namespace crisp

@@ -13,6 +13,14 @@ namespace {
 /// [m] Between the places of recordings: farther than any beam goes.
 constexpr double kApart = 1000;
 
+Measurements lengthened(Measurements beams) {
+  constexpr float kFurther = 1;  // [m]
+  for (float& range : beams.range) range += kFurther;
+  return beams;
+}
+
+}  // namespace
+
 Vectors place_all(const SensorModel& model, const Measurements& beams, const PlateTrajectory& plate) {
   Vectors points;
   points.assign(beams.size(), 0);
@@ -29,14 +37,6 @@ Vectors place_all(const SensorModel& model, const Measurements& beams, const Pla
   }
   return points;
 }
-
-Measurements lengthened(Measurements beams) {
-  constexpr float kFurther = 1;  // [m]
-  for (float& range : beams.range) range += kFurther;
-  return beams;
-}
-
-}  // namespace
 
 PlacedBeams::PlacedBeams(const SensorModel& model, const Sample& sample) {
   constexpr std::size_t kBlock = 8192;  // beams

@@ -9,6 +9,10 @@
 
 namespace crisp {
 
+/// Where a model puts n beams, all of which the plate's readings cover.
+/// @throws Error  if they do not
+Vectors place_all(const SensorModel& model, const Measurements& beams, const PlateTrajectory& plate);
+
 /// Where a model puts beams, and from which side they came: what surfels are found from. Each recording
 /// (recordings_of()) has a place of its own, a kilometre from the next one's, so that none sees the surfaces
 /// of another.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -45,15 +44,15 @@ double inclusion_factor(const std::vector<double>& areas, double count) {
 /// Whether a trajectory covers times that mostly ascend.
 class Coverage {
  public:
-  explicit Coverage(const PlateTrajectory& plate) : cursor_(plate) {}
+  explicit Coverage(const PlateTrajectory& plate) : plate_(plate) {}
   bool includes(double time) {
     if (arc_ && time >= arc_->begin && time <= arc_->end) return true;
-    arc_ = cursor_.arc(time);
+    arc_ = plate_.arc(time);
     return arc_.has_value();
   }
 
  private:
-  PlateTrajectory::Cursor cursor_;
+  const PlateTrajectory& plate_;
   std::optional<PlateArc> arc_;
 };
 
@@ -95,11 +94,10 @@ Sample covered(const Sample& sample, double earliest, double latest) {
 }
 
 double turned(const Sample& sample) {
-  PlateTrajectory::Cursor plate(*sample.plate);
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
   for (const double time : sample.beams.time) {
-    const auto state = plate.at(time);
+    const auto state = sample.plate->at(time);
     if (!state) continue;
     least = std::min(least, state->angle);
     most = std::max(most, state->angle);
@@ -154,9 +152,12 @@ Sample thin_for(double sigma, const Sample& sample) {
   const std::size_t n = sample.beams.size();
   const double share =
       static_cast<double>(beams_for(sigma, n)) / static_cast<double>(std::max<std::size_t>(1, n));
-  std::map<std::pair<std::uint16_t, bool>, double> due;  // of the front and the back beams of each laser
+  std::vector<double> due;  // of the back and the front beams of each laser
   return select(sample, [&](std::size_t i) {
-    double& own = due[{sample.beams.laser[i], sample.beams.mirror_angle[i] < 0}];
+    const std::size_t whose =
+        2 * std::size_t{sample.beams.laser[i]} + (sample.beams.mirror_angle[i] < 0 ? 1 : 0);
+    if (due.size() <= whose) due.resize(whose + 1);
+    double& own = due[whose];
     own += share;
     if (own < 1) return false;
     own -= 1;

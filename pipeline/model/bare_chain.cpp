@@ -83,9 +83,8 @@ struct Position {
 };
 
 /// Equation (2) for a vector of beams.
-HWY_INLINE Position position_of(Vector range, Vector mirror_angle, const SineCosine& plate, Vector tau,
+HWY_INLINE Position position_of(Vector range, const SineCosine& mirror, const SineCosine& plate, Vector tau,
                                 Vector cos_alpha, Vector sin_alpha) {
-  const SineCosine mirror = sine_cosine_of(mirror_angle);
   const Vector aside = hn::Mul(range, mirror.sine);
   const Vector outwards = hn::NegMulAdd(sin_alpha, aside, tau);
   const Vector onwards = hn::Mul(cos_alpha, aside);
@@ -98,9 +97,27 @@ HWY_INLINE Vector promoted(const float* values) {
   return hn::PromoteTo(kDoubles, hn::LoadU(kFloats, values));
 }
 
+/// Of a vector of mirror angles: from the table, where they have not changed.
+HWY_INLINE SineCosine mirror_of(const BareBeams& beams, std::size_t i, const MirrorTable& known) {
+  const std::size_t first = beams.beam[i];
+  const std::size_t end = first + hn::Lanes(kDoubles);
+  const auto angle = hn::LoadU(kFloats, beams.mirror + i);
+  const bool has_place = beams.beam[i + hn::Lanes(kDoubles) - 1] + std::size_t{1} == end && end <= known.size;
+  if (has_place && hn::AllTrue(kFloats, hn::Eq(angle, hn::LoadU(kFloats, known.angle + first)))) {
+    return {hn::LoadU(kDoubles, known.sine + first), hn::LoadU(kDoubles, known.cosine + first)};
+  }
+  const SineCosine mirror = sine_cosine_of(hn::PromoteTo(kDoubles, angle));
+  if (has_place) {
+    hn::StoreU(angle, kFloats, known.angle + first);
+    hn::StoreU(mirror.sine, kDoubles, known.sine + first);
+    hn::StoreU(mirror.cosine, kDoubles, known.cosine + first);
+  }
+  return mirror;
+}
+
 /// Places whole vectors of beams, until one was not fired along the arc.
 HWY_INLINE std::size_t place_vectors(const BareBeams& beams, const BareLaser& laser, const PlateArc& arc,
-                                     double* x, double* y, double* z) {
+                                     const MirrorTable& mirrors, double* x, double* y, double* z) {
   const auto& c = arc.coefficients;
   const Vector begin = constant(arc.begin);
   const Vector end = constant(arc.end);
@@ -115,8 +132,8 @@ HWY_INLINE std::size_t place_vectors(const BareBeams& beams, const BareLaser& la
     const Vector u = hn::Mul(hn::Sub(time, begin), per_width);
     const Vector phi = along_arc(u, constant(c[0]), constant(c[1]), constant(c[2]), constant(c[3]));
     const SineCosine plate = sine_cosine_of(hn::Add(phi, constant(laser.lambda)));
-    const Position at =
-        position_of(promoted(beams.range + i), promoted(beams.mirror + i), plate, tau, cos_alpha, sin_alpha);
+    const Position at = position_of(promoted(beams.range + i), mirror_of(beams, i, mirrors), plate, tau,
+                                    cos_alpha, sin_alpha);
     hn::StoreU(at.x, kDoubles, x + i);
     hn::StoreU(at.y, kDoubles, y + i);
     hn::StoreU(at.z, kDoubles, z + i);
@@ -128,43 +145,53 @@ HWY_INLINE std::size_t place_vectors(const BareBeams& beams, const BareLaser& la
   return beams.size;
 }
 
-std::size_t place_bare(const BareBeams& beams, const BareLaser& laser, const PlateArc& arc, double* x,
-                       double* y, double* z) {
+std::size_t place_bare(const BareBeams& beams, const BareLaser& laser, const PlateArc& arc,
+                       const MirrorTable& mirrors, double* x, double* y, double* z) {
   const std::size_t rest = beams.size % hn::Lanes(kDoubles);
   BareBeams part = beams;
   part.size -= rest;
-  const std::size_t placed = place_vectors(part, laser, arc, x, y, z);
+  const std::size_t placed = place_vectors(part, laser, arc, mirrors, x, y, z);
   if (placed < part.size || rest == 0) return placed;
 
   // the last beams, filled up to a vector
   float range[kBeyond] = {};
   float mirror[kBeyond] = {};
   double time[kBeyond] = {};
+  const std::uint16_t beam[kBeyond] = {};  // not in a row: they have no place in the table
   std::copy_n(beams.range + placed, rest, range);
   std::copy_n(beams.mirror + placed, rest, mirror);
   std::copy_n(beams.time + placed, rest, time);
-  part = {.range = range, .mirror = mirror, .time = time, .size = hn::Lanes(kDoubles)};
-  return placed + HWY_MIN(rest, place_vectors(part, laser, arc, x + placed, y + placed, z + placed));
+  part = {.range = range, .mirror = mirror, .time = time, .beam = beam, .size = hn::Lanes(kDoubles)};
+  return placed + HWY_MIN(rest, place_vectors(part, laser, arc, mirrors, x + placed, y + placed, z + placed));
 }
 
-void place_strewn(const StrewnArrays& beams, const StrewnPoints& points) {
+void place_strewn(const StrewnArrays& beams, const PlateReadings& plate, const StrewnPoints& points) {
+  constexpr hn::RebindToSigned<Doubles> kIntegers;
   for (std::size_t i = 0; i < beams.size; i += hn::Lanes(kDoubles)) {
     const auto at = [i](const double* values) { return hn::LoadU(kDoubles, values + i); };
-    const Vector inverse = at(beams.inverse);
-    const Vector u = hn::Mul(hn::Sub(at(beams.time), at(beams.begin)), inverse);
-    const Vector c1 = at(beams.coefficients[1]);
-    const Vector c2 = at(beams.coefficients[2]);
-    const Vector c3 = at(beams.coefficients[3]);
-    const Vector phi = along_arc(u, at(beams.coefficients[0]), c1, c2, c3);
+    const auto interval = hn::LoadU(kIntegers, beams.interval + i);
+    const auto of = [&](const double* readings) { return hn::GatherIndex(kDoubles, readings, interval); };
+    // as PlateTrajectory::arc()
+    const Vector begin = of(plate.times);
+    const Vector width = hn::Sub(of(plate.times + 1), begin);
+    const Vector angle = of(plate.angles);
+    const Vector rise = hn::Sub(of(plate.angles + 1), angle);
+    const Vector c1 = hn::Mul(of(plate.rates), width);
+    const Vector m1 = hn::Mul(of(plate.rates + 1), width);
+    const Vector c2 = hn::Sub(hn::Sub(hn::Mul(constant(3), rise), hn::Add(c1, c1)), m1);
+    const Vector c3 = hn::Sub(hn::Add(c1, m1), hn::Add(rise, rise));
+    const Vector inverse = hn::Div(constant(1), width);
+    const Vector u = hn::Mul(hn::Sub(at(beams.time), begin), inverse);
+    const Vector phi = along_arc(u, angle, c1, c2, c3);
     const Vector slope = hn::MulAdd(u, hn::MulAdd(hn::Mul(constant(3), u), c3, hn::Add(c2, c2)), c1);
-    const SineCosine plate = sine_cosine_of(hn::Add(phi, at(beams.lambda)));
-    const Position point = position_of(promoted(beams.range + i), promoted(beams.mirror + i), plate,
-                                       at(beams.tau), at(beams.cos_alpha), at(beams.sin_alpha));
+    const SineCosine azimuth = sine_cosine_of(hn::Add(phi, at(beams.lambda)));
+    const Position point = position_of(promoted(beams.range + i), sine_cosine_of(promoted(beams.mirror + i)),
+                                       azimuth, at(beams.tau), at(beams.cos_alpha), at(beams.sin_alpha));
     hn::StoreU(point.x, kDoubles, points.x + i);
     hn::StoreU(point.y, kDoubles, points.y + i);
     hn::StoreU(point.z, kDoubles, points.z + i);
-    hn::StoreU(plate.cosine, kDoubles, points.cosine + i);
-    hn::StoreU(plate.sine, kDoubles, points.sine + i);
+    hn::StoreU(azimuth.cosine, kDoubles, points.cosine + i);
+    hn::StoreU(azimuth.sine, kDoubles, points.sine + i);
     hn::StoreU(hn::Mul(slope, inverse), kDoubles, points.rate + i);
   }
 }
@@ -187,13 +214,13 @@ HWY_EXPORT(place_bare);
 HWY_EXPORT(place_strewn);
 HWY_EXPORT(sine_cosine);
 
-std::size_t place_bare(const BareBeams& beams, const BareLaser& laser, const PlateArc& arc, double* x,
-                       double* y, double* z) {
-  return HWY_DYNAMIC_DISPATCH(place_bare)(beams, laser, arc, x, y, z);
+std::size_t place_bare(const BareBeams& beams, const BareLaser& laser, const PlateArc& arc,
+                       const MirrorTable& mirrors, double* x, double* y, double* z) {
+  return HWY_DYNAMIC_DISPATCH(place_bare)(beams, laser, arc, mirrors, x, y, z);
 }
 
-void place_strewn(const StrewnArrays& beams, const StrewnPoints& points) {
-  HWY_DYNAMIC_DISPATCH(place_strewn)(beams, points);
+void place_strewn(const StrewnArrays& beams, const PlateReadings& plate, const StrewnPoints& points) {
+  HWY_DYNAMIC_DISPATCH(place_strewn)(beams, plate, points);
 }
 
 void sine_cosine(const double* angle, std::size_t n, double* sine, double* cosine) {

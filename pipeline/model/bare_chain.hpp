@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "pipeline/data/plate_trajectory.hpp"
 
@@ -13,9 +14,18 @@ inline constexpr std::size_t kBeyond = 8;
 
 /// Measurements of one laser.
 struct BareBeams {
-  const float* range;   ///< [m]
-  const float* mirror;  ///< [rad] θ
-  const double* time;   ///< [s since the epoch] hub time
+  const float* range;         ///< [m]
+  const float* mirror;        ///< [rad] θ
+  const double* time;         ///< [s since the epoch] hub time
+  const std::uint16_t* beam;  ///< index of the beam in its scan
+  std::size_t size;
+};
+
+/// Mirror angles of one laser, by the index of the beam, with their sines and cosines: those met last.
+struct MirrorTable {
+  float* angle;  ///< [rad] θ; no number: none was met yet
+  double* sine;
+  double* cosine;
   std::size_t size;
 };
 
@@ -30,24 +40,32 @@ struct BareLaser {
 
 /// Equation (2) with (3) for the leading beams that were fired while the plate went along `arc`: what trace()
 /// in chain.hpp makes of them, to rounding.
+/// @param mirrors  where an angle is still what it was there, its sine and cosine are taken; others are put
+/// in
 /// @return how many beams these are: from the next on, x, y and z hold nothing
-std::size_t place_bare(const BareBeams& beams, const BareLaser& laser, const PlateArc& arc, double* x,
-                       double* y, double* z);
+std::size_t place_bare(const BareBeams& beams, const BareLaser& laser, const PlateArc& arc,
+                       const MirrorTable& mirrors, double* x, double* y, double* z);
 
-/// Measurements of any lasers, each with its laser's parameters and its plate's arc.
-/// All arrays are readable, and those of StrewnPoints writable, kBeyond elements beyond the last beam.
+/// Measurements of any lasers, each with its laser's parameters.
+/// All arrays are readable, and those of StrewnPoints writable, kBeyond elements beyond the last beam; what
+/// `interval` holds there must be of the plate, too.
 struct StrewnArrays {
-  const float* range;     ///< [m]
-  const float* mirror;    ///< [rad] θ
-  const double* time;     ///< [s since the epoch] on the plate's clock
-  const double* begin;    ///< [s since the epoch] of the arc
-  const double* inverse;  ///< [1/s] of the arc's width
-  const double* coefficients[4];
-  const double* lambda;  ///< [rad] λ
-  const double* tau;     ///< [m] τ
+  const float* range;            ///< [m]
+  const float* mirror;           ///< [rad] θ
+  const double* time;            ///< [s since the epoch] on the plate's clock
+  const std::int64_t* interval;  ///< the plate's reading with which the beam's arc begins
+  const double* lambda;          ///< [rad] λ
+  const double* tau;             ///< [m] τ
   const double* cos_alpha;
   const double* sin_alpha;
   std::size_t size;
+};
+
+/// Those of a PlateTrajectory.
+struct PlateReadings {
+  const double* times;   ///< [s since the epoch]
+  const double* angles;  ///< [rad]
+  const double* rates;   ///< [rad/s]
 };
 
 struct StrewnPoints {
@@ -60,7 +78,7 @@ struct StrewnPoints {
 };
 
 /// Equation (2) with (3) for each beam: to the last bit what place_bare() gives.
-void place_strewn(const StrewnArrays& beams, const StrewnPoints& points);
+void place_strewn(const StrewnArrays& beams, const PlateReadings& plate, const StrewnPoints& points);
 
 /// Sine and cosine of n angles [rad], those inside, for the tests.
 void sine_cosine(const double* angle, std::size_t n, double* sine, double* cosine);

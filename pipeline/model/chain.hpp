@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// Where the plate is, as the chain asks for it: by a trajectory's cursor, or by the simulator's true motion.
+/// Where the plate is, as the chain asks for it: by a trajectory, or by the simulator's true motion.
 template <class Plate>
 concept PlateMotion = requires(Plate plate, double t) {
   { plate.at(t) } -> std::convertible_to<std::optional<PlateState>>;

@@ -56,10 +56,10 @@ Placed place_bare(const Measurements& beams, const PlateTrajectory& plate,
   StrewnBeams strewn(lasers, plate);
   for (std::size_t i = 0; i < beams.size();) {
     strewn.clear();
-    for (; i < beams.size() && !strewn.full(); ++i) {
-      chain_of(chains, beams, i);
-      strewn.add(beams, i);
-    }
+    const std::size_t end = std::min(beams.size(), i + strewn.room());
+    for (std::size_t k = i; k < end; ++k) chain_of(chains, beams, k);
+    strewn.add(beams, i, end);
+    i = end;
     strewn.place();
     for (std::size_t k = 0; k < strewn.size(); ++k) {
       const std::size_t point = result.index.size();

@@ -3,6 +3,7 @@
 // blocks.
 #include <cmath>
 
+#include "pipeline/model/known_mirrors.hpp"
 #include "pipeline/model/sensor_model.hpp"
 #include "pipeline/model/strewn_beams.hpp"
 #include "pipeline/model/traced_runs.hpp"
@@ -25,26 +26,32 @@ class Gathering {
 
   /// Places strewn beams, and leaves none.
   void add(StrewnBeams& strewn) {
+    hand_on();
     strewn.place();
-    for (std::size_t k = 0; k < strewn.size(); ++k) {
-      add(strewn.index(k), {strewn.x(k), strewn.y(k), strewn.z(k)});
+    for (std::size_t k = 0; k < strewn.size();) {
+      const std::size_t end = strewn.consecutive_end(k);
+      take_({.first = strewn.index(k), .x = strewn.x(k, end), .y = strewn.y(k, end), .z = strewn.z(k, end)});
+      k = end;
     }
     strewn.clear();
   }
 
   /// Places a run of one laser that starts at `begin` by equation (2) alone. Returns the end of the run.
   std::size_t add_bare(const Measurements& beams, std::size_t begin, const simd::BareLaser& laser,
-                       PlateTrajectory::Cursor& cursor) {
+                       const PlateTrajectory& plate, KnownMirrors& known) {
     const std::size_t end = run_end(beams, begin, kCapacity - size_);
+    const auto mirrors = known.of(beams.laser[begin], beams.beam[end - 1] + std::size_t{1});
     for (std::size_t i = begin; i < end;) {
-      const auto arc = cursor.arc(beams.time[i] + laser.eta);
+      const auto arc = plate.arc(beams.time[i] + laser.eta);
       if (!arc) {
         ++i;
         continue;
       }
       go_on_at(i);
-      const simd::BareBeams rest{&beams.range[i], &beams.mirror_angle[i], &beams.time[i], end - i};
-      const std::size_t placed = simd::place_bare(rest, laser, *arc, &x_[size_], &y_[size_], &z_[size_]);
+      const simd::BareBeams rest{&beams.range[i], &beams.mirror_angle[i], &beams.time[i], &beams.beam[i],
+                                 end - i};
+      const std::size_t placed =
+          simd::place_bare(rest, laser, *arc, mirrors, &x_[size_], &y_[size_], &z_[size_]);
       size_ += placed;
       i += placed;
     }
@@ -82,10 +89,24 @@ bool are_dense(const Measurements& beams, std::size_t begin, std::size_t end, co
   return many >= 1 && many * interval >= std::abs(beams.time[end - 1] - beams.time[begin]);
 }
 
+/// Up to where all beams from `begin` on, at most to `limit`, are of lasers whose chains are bare.
+std::size_t bare_end(const std::vector<LaserChain>& chains, const Measurements& beams, std::size_t begin,
+                     std::size_t limit) {
+  std::size_t end = begin;
+  while (end < std::min(limit, beams.size()) && chain_of(chains, beams, end).bare) ++end;
+  return end;
+}
+
 }  // namespace
 
 void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
                         const TakePlaced& take) const {
+  KnownMirrors known;
+  place(beams, plate, take, known);
+}
+
+void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate, const TakePlaced& take,
+                        KnownMirrors& known) const {
   check_epochs(beams, plate);
   std::vector<std::vector<double>> parameters(fixed_->chains.size());
   for (std::size_t k = 0; k < fixed_->chains.size(); ++k) {
@@ -98,15 +119,19 @@ void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
     const LaserChain& chain = chain_of(fixed_->chains, beams, i);
     const std::size_t laser = beams.laser[i];
     if (chain.bare) {
-      const std::size_t end = run_end(beams, i, StrewnBeams::kCapacity);
+      std::size_t end = run_end(beams, i, StrewnBeams::kCapacity);
       if (are_dense(beams, i, end, plate)) {
         points.add(strewn);
-        i = points.add_bare(beams, i, bare_[laser], tracer.cursor());
+        i = points.add_bare(beams, i, bare_[laser], plate, known);
         continue;
       }
-      for (; i < end; ++i) {
-        if (strewn.full()) points.add(strewn);
-        strewn.add(beams, i);
+      // Where a run is shorter than a vector, those after it mostly are, too.
+      if (end - i < simd::kBeyond) end = bare_end(fixed_->chains, beams, end, i + StrewnBeams::kCapacity);
+      while (i < end) {
+        if (strewn.room() == 0) points.add(strewn);
+        const std::size_t last = std::min(end, i + strewn.room());
+        strewn.add(beams, i, last);
+        i = last;
       }
     } else {
       points.add(strewn);

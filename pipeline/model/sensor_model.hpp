@@ -31,6 +31,8 @@ struct LaserChain {
   bool bare = true;                            ///< equation (2) alone: no terms
 };
 
+class KnownMirrors;
+
 /// Points with their measurements.
 struct Placed {
   Eigen::Matrix3Xd points;           ///< [m] in the base's frame, one a column
@@ -84,6 +86,10 @@ class SensorModel {
   /// The same, run by run in the order of the measurements: for those who have a place of their own for
   /// points.
   void place(const Measurements& beams, const PlateTrajectory& plate, const TakePlaced& take) const;
+
+  /// The same, for those who place scan after scan: `known` spares them sines and cosines.
+  void place(const Measurements& beams, const PlateTrajectory& plate, const TakePlaced& take,
+             KnownMirrors& known) const;
 
   /// The same, with derivatives with respect to the parameters `free` (indices into values()).
   Placed place(const Measurements& beams, const PlateTrajectory& plate, const std::vector<std::size_t>& free,

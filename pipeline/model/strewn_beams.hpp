@@ -2,8 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
-#include <vector>
 
 #include "pipeline/data/measurements.hpp"
 #include "pipeline/data/plate_trajectory.hpp"
@@ -20,12 +20,12 @@ class StrewnBeams {
   /// @param lasers  must outlive this, as must the plate
   StrewnBeams(std::span<const simd::BareLaser> lasers, const PlateTrajectory& plate);
 
-  /// Adds measurement i of `beams`, of a laser that is among those given, unless the plate's readings do not
-  /// cover it.
-  void add(const Measurements& beams, std::size_t i);
-  bool full() const { return index_.size() == kCapacity; }
-  std::size_t size() const { return index_.size(); }
-  void clear() { index_.clear(); }
+  /// Adds the measurements begin … end − 1 of `beams`, of lasers that are among those given, but those that
+  /// the plate's readings do not cover. There must be room for all.
+  void add(const Measurements& beams, std::size_t begin, std::size_t end);
+  std::size_t room() const { return kCapacity - size_; }
+  std::size_t size() const { return size_; }
+  void clear() { size_ = 0; }
 
   /// Places all that were added.
   void place();
@@ -35,6 +35,18 @@ class StrewnBeams {
   double x(std::size_t k) const { return points_[kX][k]; }        ///< [m]
   double y(std::size_t k) const { return points_[kY][k]; }        ///< [m]
   double z(std::size_t k) const { return points_[kZ][k]; }        ///< [m]
+
+  // And of the beams k … end − 1:
+  std::span<const double> x(std::size_t k, std::size_t end) const { return {&points_[kX][k], end - k}; }
+  std::span<const double> y(std::size_t k, std::size_t end) const { return {&points_[kY][k], end - k}; }
+  std::span<const double> z(std::size_t k, std::size_t end) const { return {&points_[kZ][k], end - k}; }
+
+  /// The end of those beams from k on whose measurements follow one another.
+  std::size_t consecutive_end(std::size_t k) const {
+    std::size_t end = k + 1;
+    while (end < size_ && index_[end] == index_[end - 1] + 1) ++end;
+    return end;
+  }
 
   /// ∂(x, y) by λ, τ, α and η; z depends on none of them.
   std::array<std::array<double, 2>, 4> slopes(std::size_t k) const {
@@ -49,29 +61,20 @@ class StrewnBeams {
   }
 
  private:
-  enum Field {
-    kTime,
-    kBegin,
-    kInverse,
-    kCoefficients,
-    kLambda = kCoefficients + 4,
-    kTau,
-    kCosAlpha,
-    kSinAlpha,
-    kFields
-  };
+  enum Field { kTime, kLambda, kTau, kCosAlpha, kSinAlpha, kFields };
   enum PointField { kX, kY, kZ, kCosine, kSine, kRate, kPointFields };
   static constexpr std::size_t kSize = kCapacity + simd::kBeyond;
 
   std::span<const simd::BareLaser> lasers_;
   const PlateTrajectory& plate_;
-  std::vector<PlateTrajectory::Cursor>
-      plates_;  // one a laser, once there is a beam: each has times of its own
-  std::vector<std::uint32_t> index_;
-  std::vector<float> range_;
-  std::vector<float> mirror_;
-  std::vector<std::array<double, kSize>> beams_;   // by Field
-  std::vector<std::array<double, kSize>> points_;  // by PointField
+  std::size_t size_ = 0;
+  // Not cleared: only what was added is looked at, but for the intervals, which are to be of the plate.
+  std::uint32_t index_[kCapacity];
+  std::array<std::int64_t, kSize> interval_{};
+  float range_[kSize];
+  float mirror_[kSize];
+  double beams_[kFields][kSize];
+  double points_[kPointFields][kSize];
 };
 
 }  // namespace crisp

@@ -72,7 +72,7 @@ void fill(const Measurements& beams, std::size_t begin, std::span<Beam<T>> block
 template <class T>
 class Tracer {
  public:
-  Tracer(const Measurements& beams, const PlateTrajectory& plate) : beams_(beams), cursor_(plate) {}
+  Tracer(const Measurements& beams, const PlateTrajectory& plate) : beams_(beams), plate_(plate) {}
 
   /// Traces a run of one laser that starts at `begin`, at most a block, and visits those beams that the plate
   /// covers: visit(index of the measurement, beam). Returns the end of the run.
@@ -83,18 +83,16 @@ class Tracer {
     block_.resize(kTracedBlock);  // at the first run: where all chains are bare, there is none
     const std::span<Beam<T>> run(block_.data(), end - begin);
     fill(beams_, begin, run);
-    trace<T>(chain, parameters, run, cursor_, known_);
+    trace<T>(chain, parameters, run, plate_, known_);
     for (std::size_t i = 0; i < run.size(); ++i) {
       if (known_[i]) visit(begin + i, run[i]);
     }
     return end;
   }
 
-  PlateTrajectory::Cursor& cursor() { return cursor_; }
-
  private:
   const Measurements& beams_;
-  PlateTrajectory::Cursor cursor_;
+  const PlateTrajectory& plate_;
   std::vector<Beam<T>> block_;
   std::array<bool, kTracedBlock> known_{};
 };

@@ -20,11 +20,10 @@ std::int64_t epoch_of(const PcdTable& table) {
 }
 
 std::vector<double> plate_angles(const Measurements& beams, const PlateTrajectory& plate) {
-  PlateTrajectory::Cursor cursor(plate);
   std::vector<double> angles;
   angles.reserve(beams.size());
   for (const double t : beams.time) {
-    const auto state = cursor.at(t);
+    const auto state = plate.at(t);
     angles.push_back(state ? state->angle : std::numeric_limits<double>::quiet_NaN());
   }
   return angles;

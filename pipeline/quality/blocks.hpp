@@ -39,6 +39,8 @@ inline std::size_t blocks_of(std::size_t n, std::size_t size) { return (n + size
 /// nothing but n and size, so that sums made a block at a time do not depend on the threads.
 template <class Work>
 void for_blocks(std::size_t n, std::size_t size, const Work& work) {
+  if (n > 0 && n <= size)
+    return work(std::size_t{0}, std::size_t{0}, n);  // to hand it over costs a microsecond
   const auto one = [&](std::size_t block) {
     detail::to_workers.take();
     work(block, block * size, std::min(n, (block + 1) * size));
@@ -58,6 +60,15 @@ Sum sum_over_blocks(std::size_t n, std::size_t size, const Sum& zero, const Add&
   Sum total = zero;
   for (const Sum& block : blocks) total += block;
   return total;
+}
+
+/// Calls work(i) for each of some arrays, in parallel where what they hold is worth it.
+template <class Work>
+void for_each_array(std::size_t arrays, std::size_t elements, const Work& work) {
+  constexpr std::size_t kMany = 65536;
+  for_blocks(arrays, elements < kMany ? arrays : 1, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) work(i);
+  });
 }
 
 /// Calls work(i) for i = 0 … n − 1, in parallel.

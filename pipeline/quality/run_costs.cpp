@@ -13,8 +13,8 @@ namespace crisp::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 template <class Tag>
-HWY_INLINE void some_run_costs(Tag tag, const LineColumns& beginnings, const double (&here)[6], std::size_t k,
-                               double* cost) {
+HWY_INLINE hn::Vec<Tag> some_run_costs(Tag tag, const LineColumns& beginnings, const double (&here)[6],
+                                       std::size_t k, double* cost) {
   const auto column = [&](std::size_t c) {
     return hn::Sub(hn::Set(tag, here[c]), hn::LoadU(tag, beginnings.sums[c] + k));
   };
@@ -31,15 +31,29 @@ HWY_INLINE void some_run_costs(Tag tag, const LineColumns& beginnings, const dou
   const auto fitted =
       hn::Div(hn::IfThenElse(two, by_two, by_one), hn::IfThenElse(two, determinant, hn::Add(xx, yy)));
   const auto left = hn::Max(hn::Zero(tag), hn::Sub(column(5), fitted));
-  hn::StoreU(hn::Add(hn::LoadU(tag, beginnings.price + k), left), tag, cost + k);
+  const auto costs = hn::Add(hn::LoadU(tag, beginnings.price + k), left);
+  hn::StoreU(costs, tag, cost + k);
+  return costs;
 }
 
-void run_costs(const LineColumns& beginnings, const double (&here)[6], std::size_t n, double* cost) {
+CheapestRun run_costs(const LineColumns& beginnings, const double (&here)[6], std::size_t n, double* cost) {
   const hn::ScalableTag<double> many;
   const hn::CappedTag<double, 1> one;
+  auto least = hn::Set(many, hwy::HighestValue<double>());
   std::size_t k = 0;
-  for (; k + hn::Lanes(many) <= n; k += hn::Lanes(many)) some_run_costs(many, beginnings, here, k, cost);
-  for (; k < n; ++k) some_run_costs(one, beginnings, here, k, cost);
+  for (; k + hn::Lanes(many) <= n; k += hn::Lanes(many)) {
+    least = hn::Min(least, some_run_costs(many, beginnings, here, k, cost));
+  }
+  double lowest = hn::GetLane(hn::MinOfLanes(many, least));
+  for (; k < n; ++k) lowest = HWY_MIN(lowest, hn::GetLane(some_run_costs(one, beginnings, here, k, cost)));
+
+  const auto sought = hn::Set(many, lowest);
+  for (k = 0; k + hn::Lanes(many) <= n; k += hn::Lanes(many)) {
+    const auto found = hn::FindFirstTrue(many, hn::Eq(hn::LoadU(many, cost + k), sought));
+    if (found >= 0) return {k + static_cast<std::size_t>(found), lowest};
+  }
+  while (k + 1 < n && cost[k] != lowest) ++k;
+  return {k, lowest};
 }
 
 }  // namespace crisp::simd::HWY_NAMESPACE
@@ -50,8 +64,8 @@ namespace crisp::simd {
 
 HWY_EXPORT(run_costs);
 
-void run_costs(const LineColumns& beginnings, const double (&here)[6], std::size_t n, double* cost) {
-  HWY_DYNAMIC_DISPATCH(run_costs)(beginnings, here, n, cost);
+CheapestRun run_costs(const LineColumns& beginnings, const double (&here)[6], std::size_t n, double* cost) {
+  return HWY_DYNAMIC_DISPATCH(run_costs)(beginnings, here, n, cost);
 }
 
 }  // namespace crisp::simd

@@ -28,10 +28,10 @@ class Starts {
   /// Of a run that ends here, without the price of a run.
   Cheapest cheapest(const LineSums& here) {
     const auto& [xx, xy, yy, x, y, one, price] = column_;
-    simd::run_costs({{xx.data(), xy.data(), yy.data(), x.data(), y.data(), one.data()}, price.data()},
-                    {here.xx, here.xy, here.yy, here.x, here.y, here.one}, place_.size(), cost_.data());
-    const auto least = std::ranges::min_element(cost_) - cost_.begin();
-    return {place_[static_cast<std::size_t>(least)], cost_[static_cast<std::size_t>(least)]};
+    const auto [beginning, cost] =
+        simd::run_costs({{xx.data(), xy.data(), yy.data(), x.data(), y.data(), one.data()}, price.data()},
+                        {here.xx, here.xy, here.yy, here.x, here.y, here.one}, place_.size(), cost_.data());
+    return {place_[beginning], cost};
   }
 
   /// Forgets the starts that a new one here is better than, whatever comes: a run leaves no less than its

@@ -23,7 +23,7 @@ Slots fill_slots(const Tiles& tiles, std::span<const double> weights, double sca
   Slots slots;
   const std::array<std::vector<float>*, 4> all{slots.offset.data(), &slots.offset[1], &slots.offset[2],
                                                &slots.weight};
-  for_each_index(all.size(), [&](std::size_t i) { all[i]->resize(padded); });
+  for_each_array(all.size(), padded, [&](std::size_t i) { all[i]->resize(padded); });
   for_blocks(tiles.size(), 1024, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       for (std::uint32_t slot = tiles.begin()[t]; slot < tiles.begin()[t + 1]; ++slot) {

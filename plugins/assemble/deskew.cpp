@@ -6,13 +6,13 @@
 namespace crisp {
 
 Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model,
-                std::shared_ptr<Cloud> into) {
+                KnownMirrors& known, std::shared_ptr<Cloud> into) {
   const auto cloud = std::move(into);
   cloud->header.frame_id = "base";
   cloud->header.stamp = static_cast<std::uint64_t>(beams.epoch_ns / 1000);  // PCL's stamps are microseconds
   cloud->points.resize(beams.size());
   Point* points = cloud->points.data();
-  model.place(beams, plate, [&](const PlacedRun& run) {
+  const auto pack = [&](const PlacedRun& run) {
     simd::pack_points({.x = run.x.data(),
                        .y = run.y.data(),
                        .z = run.z.data(),
@@ -23,7 +23,8 @@ Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const S
                        .size = run.x.size()},
                       points);
     points += run.x.size();
-  });
+  };
+  model.place(beams, plate, pack, known);
   const auto placed = static_cast<std::size_t>(points - cloud->points.data());
   cloud->points.resize(placed);
   cloud->width = static_cast<std::uint32_t>(placed);

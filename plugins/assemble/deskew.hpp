@@ -7,6 +7,7 @@
 #include "pipeline/data/cloud.hpp"
 #include "pipeline/data/measurements.hpp"
 #include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/model/known_mirrors.hpp"
 #include "pipeline/model/sensor_model.hpp"
 
 namespace crisp {
@@ -21,10 +22,11 @@ struct Deskewed {
 ///
 /// @param beams  n measurements: range [m], mirror angle [rad], hub time [s since the epoch], laser
 /// @param plate  φ(t) [rad] on the hub's clock, with the same epoch
+/// @param known  what is kept of one scan for the next
 /// @param into   what becomes the cloud: nobody else holds it; its memory is used, not what it held
 /// @return the cloud in the base's frame [m], in the order of the measurements
 /// @throws Error if `beams` names a laser that `model` does not have, or the epochs differ
 Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model,
-                std::shared_ptr<Cloud> into = std::make_shared<Cloud>());
+                KnownMirrors& known, std::shared_ptr<Cloud> into = std::make_shared<Cloud>());
 
 }  // namespace crisp

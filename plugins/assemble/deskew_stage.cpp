@@ -34,8 +34,8 @@ void DeskewStage::describe(StageDescription<DeskewStage>& d) {
 
 void DeskewStage::process(const Inputs& in, Outputs& out, Context& context) {
   const auto& beams = in.get<Measurements>();
-  Deskewed deskewed =
-      deskew(beams, in.get<PlateTrajectory>(), model(in.share<Calibration>(), context.run()), clouds_.get());
+  Deskewed deskewed = deskew(beams, in.get<PlateTrajectory>(), model(in.share<Calibration>(), context.run()),
+                             mirrors_, clouds_.get());
   beams_ += beams.size();
   outside_ += deskewed.outside;
   context.count("beams outside the plate's readings", deskewed.outside);

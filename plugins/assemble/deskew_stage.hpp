@@ -8,6 +8,7 @@
 #include "pipeline/data/calibration.hpp"
 #include "pipeline/data/cloud.hpp"
 #include "pipeline/data/pool.hpp"
+#include "pipeline/model/known_mirrors.hpp"
 #include "pipeline/model/sensor_model.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
@@ -27,6 +28,7 @@ class DeskewStage final : public Stage {
 
   std::shared_ptr<const Calibration> calibration_;  ///< from above, of `model_`; null: the nominal one
   std::optional<SensorModel> model_;
+  KnownMirrors mirrors_;
   Pool<Cloud> clouds_;
   std::uint64_t beams_ = 0;
   std::uint64_t outside_ = 0;

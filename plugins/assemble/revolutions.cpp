@@ -29,13 +29,12 @@ void Revolutions::add(const Cloud& points, const PlateTrajectory& plate) {
     current_ = begin_cloud(points);
     begin_ = points.front().time;
   }
-  PlateTrajectory::Cursor cursor(plate);
-  for (const Point& point : points) add(point, cursor);
+  for (const Point& point : points) add(point, plate);
   const bool late = end_ && points.back().time > *end_ + kStraggling;
   if (end_ && (late || others_follow())) give_current();
 }
 
-void Revolutions::add(const Point& point, PlateTrajectory::Cursor& plate) {
+void Revolutions::add(const Point& point, const PlateTrajectory& plate) {
   if (!end_ && ends_at(point.time, plate)) {
     end_ = point.time;
     next_ = begin_cloud(*current_);
@@ -45,7 +44,7 @@ void Revolutions::add(const Point& point, PlateTrajectory::Cursor& plate) {
   (goes_on ? next_ : current_)->push_back(point);
 }
 
-bool Revolutions::ends_at(double time, PlateTrajectory::Cursor& plate) {
+bool Revolutions::ends_at(double time, const PlateTrajectory& plate) {
   const auto state = plate.at(time);
   if (state && !begin_angle_) begin_angle_ = state->angle;
   const double turned = state ? state->angle - *begin_angle_ : 0;

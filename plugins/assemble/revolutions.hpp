@@ -32,8 +32,8 @@ class Revolutions {
   void finish();
 
  private:
-  bool ends_at(double time, PlateTrajectory::Cursor& plate);
-  void add(const Point& point, PlateTrajectory::Cursor& plate);
+  bool ends_at(double time, const PlateTrajectory& plate);
+  void add(const Point& point, const PlateTrajectory& plate);
   bool others_follow() const;
   void give_current();
 

@@ -2,6 +2,7 @@
 #include "plugins/calibrate/cloud_objective.hpp"
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/estimate/placed_beams.hpp"
 
 namespace crisp {
 namespace {
@@ -43,9 +44,7 @@ ModelQuality model_quality(const SensorModel& model, const Sample& sample,
 }
 
 double model_quality(const SensorModel& model, const Sample& sample, Measure& measure, double scale) {
-  return measure
-      .evaluate(as_arrays(model.place(sample.beams, *sample.plate), sample).view(), {}, scale, false)
-      .value;
+  return measure.evaluate(place_all(model, sample.beams, *sample.plate).view(), {}, scale, false).value;
 }
 
 }  // namespace crisp

@@ -90,10 +90,9 @@ class InPlaneCalibration {
 /// The directions in which beams went that lie in the plate's plane, in turns of the plate, ascending.
 std::vector<double> directions(const Sample& own) {
   std::vector<double> result;
-  PlateTrajectory::Cursor plate(*own.plate);
   for (std::size_t i = 0; i < own.beams.size(); ++i) {
     const double half = own.beams.mirror_angle[i] < 0 ? 0 : 0.5;
-    const double turns = plate.at(own.beams.time[i])->angle / (2 * std::numbers::pi) + half;
+    const double turns = own.plate->at(own.beams.time[i])->angle / (2 * std::numbers::pi) + half;
     result.push_back(turns - std::floor(turns));
   }
   std::ranges::sort(result);

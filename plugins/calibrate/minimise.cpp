@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "pipeline/data/error.hpp"
@@ -16,19 +18,6 @@ namespace {
 
 using Ipopt::Index;
 using Ipopt::Number;
-
-using Solver = Ipopt::SmartPtr<Ipopt::IpoptApplication>;
-
-/// MUMPS, the linear solver, crashes when two solves run at once. Objectives may: see Unlocked.
-struct Solvers {
-  std::mutex mutex;
-  std::vector<Solver> idle;  ///< a new one registers some hundred options: longer than many a solve
-};
-
-Solvers& solvers() {
-  static Solvers all;
-  return all;
-}
 
 /// Lets other solves go on while it lives.
 class Unlocked {
@@ -81,29 +70,38 @@ class SecantHessian {
 
 enum class Borders { kIgnored, kKept };
 
+/// What is asked in one search.
+struct Question {
+  const Objective& objective;
+  Eigen::VectorXd start;
+  const Box& box;
+  const MinimiserSettings& settings;
+  std::unique_lock<std::mutex>& lock;  ///< of the solvers, held while Ipopt works
+};
+
 /// The problem as Ipopt asks for it: variables y, and the box as linear constraints lower ≤ x(y) ≤ upper, or
-/// left out, as a minimum inside does without them.
+/// left out, as a minimum inside does without them. One serves many questions of the same size.
 class BoxProblem final : public Ipopt::TNLP {
  public:
-  /// @param lock  of the solver, held while Ipopt works
-  BoxProblem(const Objective& objective, Eigen::VectorXd start, const Box& box,
-             const MinimiserSettings& settings, Borders borders, std::unique_lock<std::mutex>& lock)
-      : objective_(objective),
-        start_(std::move(start)),
-        box_(box),
-        settings_(settings),
-        borders_(borders),
-        lock_(lock) {
-    best_.x = start_;
-    best_.value = std::numeric_limits<double>::infinity();
-    evaluate(start_);
+  BoxProblem(Index size, Borders borders) : size_(size), borders_(borders) {}
+
+  /// @param question  must outlive what is asked of it
+  void take(const Question& question) {
+    question_ = &question;
+    hessian_ = {};
+    x_.resize(0);
+    best_ = {.x = question.start, .value = std::numeric_limits<double>::infinity()};
+    evaluate(question.start);
     if (!std::isfinite(best_.value)) throw Error("the cost to be minimised is not a number at the start");
+    // As Ipopt's "gradient-based" does, which it would keep from the first question on.
+    constexpr double kSteepest = 100;
+    scale_ = std::min(1.0, kSteepest / slope().lpNorm<Eigen::Infinity>());
   }
 
   const Minimum& best() const { return best_; }
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
-    n = static_cast<Index>(start_.size());
+    n = size_;
     m = borders_ == Borders::kKept ? n : 0;
     jacobian = n * m;
     hessian = n * (n + 1) / 2;
@@ -116,8 +114,8 @@ class BoxProblem final : public Ipopt::TNLP {
     constexpr double kUnbounded = 1e19;  // Ipopt's infinity
     std::fill_n(lower, n, -kUnbounded);
     std::fill_n(upper, n, kUnbounded);
-    Eigen::Map<Eigen::VectorXd>(g_lower, m) = box_.lower.head(m);
-    Eigen::Map<Eigen::VectorXd>(g_upper, m) = box_.upper.head(m);
+    Eigen::Map<Eigen::VectorXd>(g_lower, m) = question_->box.lower.head(m);
+    Eigen::Map<Eigen::VectorXd>(g_upper, m) = question_->box.upper.head(m);
     return true;
   }
 
@@ -127,13 +125,13 @@ class BoxProblem final : public Ipopt::TNLP {
   }
 
   bool eval_f(Index n, const Number* y, bool, Number& value) override {
-    value = evaluate(at(n, y));
+    value = scale_ * evaluate(at(n, y));
     return std::isfinite(value);
   }
 
   bool eval_grad_f(Index n, const Number* y, bool, Number* gradient) override {
     evaluate(at(n, y));
-    Eigen::Map<Eigen::VectorXd>(gradient, n) = box_.basis.transpose() * gradient_;
+    Eigen::Map<Eigen::VectorXd>(gradient, n) = scale_ * slope();
     return gradient_.allFinite();
   }
 
@@ -147,7 +145,7 @@ class BoxProblem final : public Ipopt::TNLP {
     for (Index i = 0, k = 0; i < m; ++i) {
       for (Index j = 0; j < n; ++j, ++k) {
         if (values) {
-          values[k] = box_.basis(i, j);
+          values[k] = question_->box.basis(i, j);
         } else {
           rows[k] = i;
           columns[k] = j;
@@ -161,12 +159,11 @@ class BoxProblem final : public Ipopt::TNLP {
               Index* columns, Number* values) override {
     if (values) evaluate(at(n, y));
     const Eigen::MatrixXd* hessian =
-        values ? &hessian_.at(Eigen::Map<const Eigen::VectorXd>(y, n), box_.basis.transpose() * gradient_)
-               : nullptr;
+        values ? &hessian_.at(Eigen::Map<const Eigen::VectorXd>(y, n), slope()) : nullptr;
     for (Index i = 0, k = 0; i < n; ++i) {
       for (Index j = 0; j <= i; ++j, ++k) {
         if (hessian) {
-          values[k] = factor * (*hessian)(i, j);
+          values[k] = factor * scale_ * (*hessian)(i, j);
         } else {
           rows[k] = i;
           columns[k] = j;
@@ -180,7 +177,7 @@ class BoxProblem final : public Ipopt::TNLP {
                              Number, Number, Number, Index, const Ipopt::IpoptData*,
                              Ipopt::IpoptCalculatedQuantities*) override {
     best_.iterations = iteration;
-    return !settings_.interrupted || !settings_.interrupted();
+    return !question_->settings.interrupted || !question_->settings.interrupted();
   }
 
   void finalize_solution(Ipopt::SolverReturn, Index, const Number*, const Number*, const Number*, Index,
@@ -188,21 +185,24 @@ class BoxProblem final : public Ipopt::TNLP {
                          Ipopt::IpoptCalculatedQuantities*) override {}
 
  private:
+  /// The gradient by y, where the objective was last asked for.
+  Eigen::VectorXd slope() const { return question_->box.basis.transpose() * gradient_; }
+
   Eigen::VectorXd unclamped(Index n, const Number* y) const {
-    return start_ + box_.basis * Eigen::Map<const Eigen::VectorXd>(y, n);
+    return question_->start + question_->box.basis * Eigen::Map<const Eigen::VectorXd>(y, n);
   }
 
   /// Trial steps may leave the box, in which alone the objective need make sense.
   Eigen::VectorXd at(Index n, const Number* y) const {
-    return unclamped(n, y).cwiseMax(box_.lower).cwiseMin(box_.upper);
+    return unclamped(n, y).cwiseMax(question_->box.lower).cwiseMin(question_->box.upper);
   }
 
   /// Value and gradient come together; Ipopt asks for them one after the other at the same x.
   double evaluate(const Eigen::VectorXd& x) {
     if (x_.size() == x.size() && x_ == x) return value_;
     {
-      const Unlocked others(lock_);
-      value_ = objective_(x, &gradient_);
+      const Unlocked others(question_->lock);
+      value_ = question_->objective(x, &gradient_);
     }
     x_ = x;
     if (value_ < best_.value) {
@@ -212,15 +212,13 @@ class BoxProblem final : public Ipopt::TNLP {
     return value_;
   }
 
-  const Objective& objective_;
-  Eigen::VectorXd start_;
-  const Box& box_;
-  const MinimiserSettings& settings_;
+  Index size_;
   Borders borders_;
-  std::unique_lock<std::mutex>& lock_;
+  const Question* question_ = nullptr;
   Eigen::VectorXd x_;
   Eigen::VectorXd gradient_;
   double value_ = 0;
+  double scale_ = 1;  ///< of the objective, as Ipopt sees it
   SecantHessian hessian_;
   Minimum best_;
 };
@@ -242,10 +240,12 @@ std::string in_words(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
+using Application = Ipopt::SmartPtr<Ipopt::IpoptApplication>;
+
 /// With all that is the same for every problem.
-Solver make_solver() {
-  Solver solver = IpoptApplicationFactory();
-  auto options = solver->Options();
+Application make_application() {
+  Application application = IpoptApplicationFactory();
+  auto options = application->Options();
   options->SetIntegerValue("print_level", 0);
   options->SetStringValue("sb", "yes");
   options->SetStringValue("option_file_name", "");  // an ipopt.opt lying about must not change results
@@ -259,43 +259,65 @@ Solver make_solver() {
   options->SetStringValue("mu_strategy",
                           "monotone");        // what adaptive ones gain costs more solves than it saves
   options->SetNumericValue("mu_init", 1e-8);  // the start is believed: the barrier must not push it away
-  solver->Initialize();
-  return solver;
+  options->SetStringValue("nlp_scaling_method", "none");  // BoxProblem scales by itself
+  application->Initialize();
+  return application;
 }
 
-/// A solver, for as long as this lives; made and ended under the lock.
-class Borrowed {
+/// An application that keeps, from one question to the next of the same size, what it has set up: that takes
+/// longer than many a search.
+class Solver {
  public:
-  Borrowed() {
-    auto& idle = solvers().idle;
-    if (idle.empty()) idle.push_back(make_solver());
-    solver_ = idle.back();
-    idle.pop_back();
+  Solver(Index size, Borders borders)
+      : borders_(borders), application_(make_application()), problem_(new BoxProblem(size, borders)) {}
+
+  Minimum answer(const Question& question) {
+    problem_->take(question);
+    const MinimiserSettings& settings = question.settings;
+    application_->Options()->SetIntegerValue("max_iter", settings.max_iterations);
+    // The curvature is below 1: a gradient this small leaves the cost too high by less than the tolerance.
+    application_->Options()->SetNumericValue("tol", 0.03 * std::sqrt(settings.tolerance));
+    application_->Options()->SetNumericValue("acceptable_obj_change_tol", settings.tolerance);
+    application_->Options()->SetStringValue("warm_start_same_structure", is_set_up_ ? "yes" : "no");
+    const Ipopt::SmartPtr<Ipopt::TNLP> problem = GetRawPtr(problem_);
+    const auto status =
+        is_set_up_ ? application_->ReOptimizeTNLP(problem) : application_->OptimizeTNLP(problem);
+    // With borders, the order in which the linear system is solved depends on the numbers in it. What was
+    // made of one question must not change the next one's answer, not in its last digit.
+    is_set_up_ = borders_ == Borders::kIgnored;
+    Minimum minimum = problem_->best();
+    minimum.status = in_words(status);
+    minimum.converged = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level ||
+                        status == Ipopt::Search_Direction_Becomes_Too_Small;
+    return minimum;
   }
-  ~Borrowed() { solvers().idle.push_back(solver_); }
-  Borrowed(const Borrowed&) = delete;
-  Borrowed& operator=(const Borrowed&) = delete;
-  Ipopt::IpoptApplication* operator->() const { return GetRawPtr(solver_); }
 
  private:
-  Solver solver_;
+  Borders borders_;
+  Application application_;
+  Ipopt::SmartPtr<BoxProblem> problem_;
+  bool is_set_up_ = false;
 };
 
-Minimum solve(const Objective& objective, const Eigen::VectorXd& start, const Box& box,
-              const MinimiserSettings& settings, Borders borders, std::unique_lock<std::mutex>& lock) {
-  Ipopt::SmartPtr<BoxProblem> problem = new BoxProblem(objective, start, box, settings, borders, lock);
-  if (start.size() == 0) return problem->best();
-  const Borrowed solver;
-  solver->Options()->SetIntegerValue("max_iter", settings.max_iterations);
-  // The curvature is below 1: a gradient this small leaves the cost too high by less than the tolerance.
-  solver->Options()->SetNumericValue("tol", 0.03 * std::sqrt(settings.tolerance));
-  solver->Options()->SetNumericValue("acceptable_obj_change_tol", settings.tolerance);
-  const auto status = solver->OptimizeTNLP(problem);
+/// MUMPS, the linear solver, crashes when two solves run at once. Objectives may: see Unlocked.
+struct Solvers {
+  std::mutex mutex;
+  std::map<std::pair<Eigen::Index, Borders>, std::vector<Solver>> idle;
+};
 
-  Minimum minimum = problem->best();
-  minimum.status = in_words(status);
-  minimum.converged = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level ||
-                      status == Ipopt::Search_Direction_Becomes_Too_Small;
+Solvers& solvers() {
+  static Solvers all;
+  return all;
+}
+
+/// One that threw is not used again.
+Minimum solve(const Question& question, Borders borders) {
+  auto& idle = solvers().idle[{question.start.size(), borders}];
+  if (idle.empty()) idle.emplace_back(static_cast<Index>(question.start.size()), borders);
+  Solver solver = std::move(idle.back());
+  idle.pop_back();
+  Minimum minimum = solver.answer(question);
+  idle.push_back(std::move(solver));
   return minimum;
 }
 
@@ -311,11 +333,17 @@ Minimum minimise(const Objective& objective, const Eigen::VectorXd& start, const
   if (box.lower.size() != n || box.upper.size() != n || box.basis.rows() != n || box.basis.cols() != n) {
     throw Error("a minimisation was given a start and a box of different sizes");
   }
+  if (n == 0) return {.x = start, .value = objective(start, nullptr)};
   std::unique_lock lock(solvers().mutex);
-  const Eigen::VectorXd within = start.cwiseMax(box.lower).cwiseMin(box.upper);
-  Minimum found = solve(objective, within, box, settings, Borders::kIgnored, lock);
+  Question question{.objective = objective,
+                    .start = start.cwiseMax(box.lower).cwiseMin(box.upper),
+                    .box = box,
+                    .settings = settings,
+                    .lock = lock};
+  Minimum found = solve(question, Borders::kIgnored);
   if (is_inside(found.x, box) || (settings.interrupted && settings.interrupted())) return found;
-  Minimum kept = solve(objective, found.x, box, settings, Borders::kKept, lock);
+  question.start = found.x;
+  Minimum kept = solve(question, Borders::kKept);
   kept.iterations += found.iterations;
   return kept;
 }

@@ -15,12 +15,11 @@ namespace {
 /// [rad] The plate's angle at the first beam of each of a laser's scans.
 std::vector<double> directions(const Sample& sample, std::size_t laser) {
   std::vector<double> angles;
-  PlateTrajectory::Cursor plate(*sample.plate);
   int last = -1;
   for (std::size_t i = 0; i < sample.beams.size(); ++i) {
     if (sample.beams.laser[i] != laser) continue;
     const int beam = sample.beams.beam[i];
-    const auto state = beam <= last ? plate.at(sample.beams.time[i]) : std::nullopt;
+    const auto state = beam <= last ? sample.plate->at(sample.beams.time[i]) : std::nullopt;
     last = beam;
     if (state) angles.push_back(state->angle);
   }

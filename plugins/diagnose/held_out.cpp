@@ -36,12 +36,11 @@ Pieces pieces_of(const Sample& sample) {
   const RecordingNumbers number(*sample.plate);
   Pieces pieces{.turn = {}, .recording = {}, .are_several = number.count() > 1};
   std::vector<double> turned;
-  PlateTrajectory::Cursor plate(*sample.plate);
   double way = 0;
   double last = 0;
   for (const double time : sample.beams.time) {
     const auto recording = static_cast<std::uint32_t>(number.of(time));
-    const auto state = plate.at(time);
+    const auto state = sample.plate->at(time);
     const double angle = state ? state->angle : last;
     const bool goes_on = !turned.empty() && recording == pieces.recording.back();
     if (goes_on) way += std::abs(angle - last);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "pipeline/data/error.hpp"
 
@@ -44,23 +46,38 @@ TEST(PlateTrajectory, DoesNotInterpolateAcrossALongSilence) {
   EXPECT_TRUE(plate.at(3.5));
 }
 
-TEST(PlateTrajectory, ItsCursorAnswersAsItselfInAnyOrder) {
-  std::vector<double> times;
-  std::vector<double> angles;
-  for (int i = 0; i < 200; ++i) {
-    times.push_back(i * 0.01 + 0.001 * (i % 3));
-    angles.push_back(std::sin(times.back()));
-  }
-  const PlateTrajectory plate(0, times, angles, 0.02);
-  PlateTrajectory::Cursor cursor(plate);
-  for (double t : {0.0, 0.5, 0.51, 0.505, 1.9, 0.1, 1.0, 2.5, -1.0, 1.99, 0.0}) {
-    const auto direct = plate.at(t);
-    const auto walked = cursor.at(t);
-    ASSERT_EQ(direct.has_value(), walked.has_value()) << t;
-    if (direct) {
-      EXPECT_DOUBLE_EQ(direct->angle, walked->angle);
+/// The reading with which the arc of t begins, by looking at all.
+std::optional<std::size_t> interval_by_looking(const PlateTrajectory& plate, double t) {
+  const auto times = plate.times();
+  for (std::size_t i = times.size() - 1; i-- > 0;) {
+    if (t >= times[i] && t <= times.back()) {
+      return times[i + 1] - times[i] <= plate.max_gap() ? std::optional(i) : std::nullopt;
     }
   }
+  return std::nullopt;
+}
+
+void expect_intervals_as_by_looking(const std::vector<double>& times, double max_gap) {
+  const PlateTrajectory plate(0, times, std::vector<double>(times.size(), 0.0), max_gap);
+  std::vector<double> asked = {times.front() - 1, times.back() + 1};
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    asked.insert(asked.end(), {times[i], std::nextafter(times[i], -1e9), std::nextafter(times[i], 1e9)});
+    if (i > 0) asked.push_back(0.3 * times[i - 1] + 0.7 * times[i]);
+  }
+  for (const double t : asked) EXPECT_EQ(plate.interval(t), interval_by_looking(plate, t)) << t;
+}
+
+TEST(PlateTrajectory, FindsTheIntervalOfATimeAmongReadingsThatAreAboutEven) {
+  std::vector<double> times;
+  for (int i = 0; i < 500; ++i) times.push_back(1e5 + i * 0.002 + 0.0015 * std::sin(7.0 * i));
+  expect_intervals_as_by_looking(times, 0.02);
+}
+
+TEST(PlateTrajectory, FindsTheIntervalOfATimeAmongReadingsThatCrowd) {
+  std::vector<double> times;  // two recordings an hour apart: all are in the first and the last part
+  for (int i = 0; i < 300; ++i) times.push_back(i * 0.002);
+  for (int i = 0; i < 300; ++i) times.push_back(3600 + i * 0.002);
+  expect_intervals_as_by_looking(times, 0.02);
 }
 
 TEST(PlateTrajectory, RefusesTimesThatDoNotAscend) {

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
+#include <vector>
 
+#include "pipeline/model/known_mirrors.hpp"
 #include "tests/pipeline/model/support.hpp"
 #include "tests/support/instruction_sets.hpp"
 
@@ -102,6 +105,45 @@ TEST_P(BareChain, HasASineAndACosineThatAreRightToRounding) {
     const double rounding = std::numeric_limits<double>::epsilon() * (size < 1.6e6 ? 2 : size);
     ASSERT_NEAR(sine[i], std::sin(angles[i]), rounding) << angles[i];
     ASSERT_NEAR(cosine[i], std::cos(angles[i]), rounding) << angles[i];
+  }
+}
+
+/// A scan whose beams go from `first_angle` on in even steps; of some there is no echo, of others each time.
+Measurements scan_of(std::uint16_t laser, float first_angle, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<float> range(0.05F, 80);
+  Measurements scan;
+  for (int k = 0; k < 541; ++k) {
+    if (random() % 40 == 0) continue;
+    Measurements beam = one_beam(range(random), first_angle + 0.0087F * static_cast<float>(k));
+    beam.laser[0] = laser;
+    beam.beam[0] = static_cast<std::uint16_t>(k);
+    beam.time[0] = 1.5 + 37e-6 * k;
+    scan.append(beam);
+  }
+  return scan;
+}
+
+std::vector<double> coordinates(const SensorModel& model, const Measurements& beams, KnownMirrors& known) {
+  std::vector<double> all;
+  const TakePlaced take = [&](const PlacedRun& run) {
+    for (const auto& axis : {run.x, run.y, run.z}) all.insert(all.end(), axis.begin(), axis.end());
+  };
+  model.place(beams, interrupted_plate(), take, known);
+  return all;
+}
+
+TEST_P(BareChain, KeepsSinesFromScanToScanAndNoticesOtherAngles) {
+  const SensorModel bare(three_lasers());
+  KnownMirrors known;
+  unsigned seed = 0;
+  for (const auto& [laser, first_angle] : std::vector<std::pair<std::uint16_t, float>>{
+           {0, -2.3F}, {0, -2.3F}, {1, -2.3F}, {0, -2.2978F}, {0, -2.3F}, {1, 1.0F}, {0, -2.3F}, {1, 1.0F}}) {
+    const Measurements scan = scan_of(laser, first_angle, ++seed);
+    KnownMirrors none;
+    const auto kept = coordinates(bare, scan, known);
+    EXPECT_EQ(kept.size(), 3 * scan.size());
+    EXPECT_EQ(kept, coordinates(bare, scan, none)) << seed;
   }
 }
 

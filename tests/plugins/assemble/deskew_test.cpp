@@ -23,6 +23,12 @@ PlateTrajectory once_a_second() {
   return {1'700'000'000'000'000'000, times, angles, 0.01};
 }
 
+/// Of a scan before which there was none.
+Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model) {
+  KnownMirrors none;
+  return deskew(beams, plate, model, none);
+}
+
 Measurements two_beams() {
   Measurements beams;
   beams.epoch_ns = 1'700'000'000'000'000'000;
