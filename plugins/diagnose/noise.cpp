@@ -204,18 +204,19 @@ UnnamedFinding unnamed_of(const Finding& finding, const NoiseLaw& law, const Ran
           .accepted = finding.accepted};
 }
 
-/// What was accepted has its parameters of the law with all that was, what was refused of its own.
-void report(std::vector<Found> found, const RangeErrors& errors, NoiseDiagnosis& to) {
+/// @param named  the law where the last cause joined: what has no name is not simulated, so that the causes
+///               describe the ranges as well as they can without what was found behind them
+void report(std::vector<Found> found, const NoiseLaw& named, const RangeErrors& errors, NoiseDiagnosis& to) {
   const std::vector<NoiseLaw> without =
-      found.empty() ? std::vector<NoiseLaw>{} : without_each_part(to.law, errors);
+      found.empty() ? std::vector<NoiseLaw>{} : without_each_part(named, errors);
   for (Found& one : found) {
-    const NoiseLaw& law = one.finding.accepted ? to.law : one.law;
     if (one.way.cause.empty()) {
-      to.unnamed.push_back(unnamed_of(one.finding, law, errors));
+      to.unnamed.push_back(unnamed_of(one.finding, one.law, errors));
       continue;
     }
-    one.finding.parameters =
-        parameters_of(one.way, law, one.finding.accepted ? without : without_each_part(law, errors));
+    one.finding.parameters = one.finding.accepted
+                                 ? parameters_of(one.way, named, without)
+                                 : parameters_of(one.way, one.law, without_each_part(one.law, errors));
     to.findings.push_back(std::move(one.finding));
   }
 }
@@ -227,6 +228,7 @@ NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, 
   const RangeErrors errors = thinned(all);
   NoiseDiagnosis result{.plain = fitted({}, errors), .law = {}, .findings = {}, .unnamed = {}};
   result.law = result.plain;
+  NoiseLaw named = result.plain;
   const double least_rise = std::max(kBic, 2 * least_gain * static_cast<double>(errors.size()));
   auto left = noise_ways(errors, result.plain.sigma());
   std::vector<Found> found;
@@ -240,8 +242,9 @@ NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, 
     if (!found.back().finding.accepted) continue;
     result.law = best.law;
     leave_needless(found, result.law, errors, least_rise);
+    if (!found.back().way.cause.empty()) named = result.law;
   }
-  report(std::move(found), errors, result);
+  report(std::move(found), named, errors, result);
   return result;
 }
 

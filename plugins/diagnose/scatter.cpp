@@ -45,6 +45,13 @@ void balance(const std::vector<float>& errors, double least, double most, std::v
   }
 }
 
+/// Whether two shots of a laser, none of its own between, are of beams side by side: the next in a scan, or
+/// the only one that it has, on a head that turns.
+bool follow_each_other(const Measurements& beams, std::size_t first, std::size_t second) {
+  const int step = int{beams.beam[second]} - int{beams.beam[first]};
+  return step == 1 || step == 0;
+}
+
 constexpr std::size_t kGroups = 10;
 
 /// For each value the group it is of: tenths of all.
@@ -107,12 +114,17 @@ RangeErrors scatter_of(std::size_t laser, const Measurements& beams, const Met& 
   const auto is_on = [&](std::size_t i, std::uint32_t surface) {
     return met.ahead[i] == surface && std::abs(double{met.error[i]}) < kOn * usual;
   };
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (beams.laser[i] == laser) own.push_back(i);
+  }
   std::vector<std::size_t> chosen;
   std::vector<float> errors;
-  for (std::size_t i = 1; i + 1 < beams.size(); ++i) {
-    if (beams.laser[i] != laser || met.ahead[i] == kNoSurface) continue;
-    if (!are_neighbours(beams, i - 1, i) || !are_neighbours(beams, i, i + 1)) continue;
-    if (!is_on(i - 1, met.ahead[i]) || !is_on(i + 1, met.ahead[i])) continue;
+  for (std::size_t k = 1; k + 1 < own.size(); ++k) {
+    const std::size_t i = own[k];
+    if (met.ahead[i] == kNoSurface) continue;
+    if (!follow_each_other(beams, own[k - 1], i) || !follow_each_other(beams, i, own[k + 1])) continue;
+    if (!is_on(own[k - 1], met.ahead[i]) || !is_on(own[k + 1], met.ahead[i])) continue;
     if (std::abs(double{met.error[i]}) > kFarOff.back() * usual) continue;
     chosen.push_back(i);
     errors.push_back(met.error[i]);

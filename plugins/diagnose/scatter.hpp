@@ -15,10 +15,10 @@
 namespace crisp {
 
 /// The errors of one laser's ranges on surfaces that stand before it, about the mean of each beam. A range
-/// counts if the two beams beside it in its scan end on the surface that is ahead of all three: what
-/// stands before a surface, an edge and one who walks by are left out, yet no range is for being far off
-/// itself, up to 25 usual errors. Thin things before the surface remain: of ranges that are too short by five
-/// usual errors as many count as there are those too long.
+/// counts if the two beams beside it in its scan (of a laser with a single beam: before and after it) end on
+/// the surface that is ahead of all three: what stands before a surface, an edge and one who walks by are
+/// left out, yet no range is for being far off itself, up to 25 usual errors. Thin things before the surface
+/// remain: of ranges that are too short by five usual errors as many count as there are those too long.
 ///
 /// @param usual  [m] standard deviation of ranges, by usual_error()
 /// @param block  of each beam: see RangeErrors

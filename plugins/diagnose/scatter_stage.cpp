@@ -97,7 +97,8 @@ void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Fin
   const std::string& name = calibration_->lasers[laser].name;
   const std::size_t named = found.findings.size();
   const std::size_t unnamed = found.unnamed.size();
-  std::vector<Plot> plots = add_noise(laser, all, found, context);
+  std::vector<Plot> plots;
+  const NoiseLaw noise = add_noise(laser, all, found, plots, context);
   std::vector<float> ranges;
   std::vector<std::uint32_t> blocks;
   for (std::size_t i = 0; i < all.beams.size(); ++i) {
@@ -109,7 +110,7 @@ void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Fin
     found.findings.push_back(*comb);
     plots.push_back(comb_plot(name, ranges, comb->parameters.front().value));
   }
-  const Crossings edges = crossings_of(laser, all.beams, all.points, all.met, all.crowd, all.usual);
+  const Crossings edges = crossings_of(laser, all.beams, all.points, all.met, all.crowd, all.usual, noise);
   context.say(fmt::format("{}: {} edges crossed, {:.1f} % of them with a range that ends in thin air", name,
                           edges.mixed.size(), 100 * edges.share()));
   if (const auto mixed = mixed_pixels(name, edges, context.seed())) {
@@ -120,15 +121,15 @@ void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Fin
   if (folder_ && !plots.empty()) write_plots(*folder_ / (name + "_noise.svg"), plots, context);
 }
 
-std::vector<Plot> DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
-                                                  Context& context) const {
+NoiseLaw DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
+                                         std::vector<Plot>& plots, Context& context) const {
   constexpr std::size_t kTooFew = 1000;
   const std::string& name = calibration_->lasers[laser].name;
   const RangeErrors errors = scatter_of(laser, all.beams, all.met, all.usual, all.blocks);
   if (errors.size() < kTooFew) {
     context.say(
         fmt::format("{}: too few beams well inside flat surfaces to say how its ranges scatter", name));
-    return {};
+    return {.size = {all.usual}};
   }
   const NoiseDiagnosis noise = diagnose_noise(name, errors, context.seed(), least_gain_);
   context.say(fmt::format("{}: {} ranges on flat surfaces scatter by {:.2f} mm (RMS)", name, errors.size(),
@@ -141,7 +142,8 @@ std::vector<Plot> DiagnoseScatterStage::add_noise(std::size_t laser, const Follo
     const auto changes = noise_by(covariate, *values, name, errors, noise.law, least_gain_, context.seed());
     if (changes) found.unnamed.push_back(*changes);
   }
-  return noise_plots(name, errors, noise);
+  plots = noise_plots(name, errors, noise);
+  return noise.law;
 }
 
 }  // namespace crisp
