@@ -143,9 +143,10 @@ std::vector<EffectInfo> noises() {
                        .summary = "standard deviation that an echo of remission 1 adds"}},
        .details =
            "The variance grows by `jitter² / I`, where I is the remission in the device's units: n photons "
-           "time an echo √n times better than one. Less than 1 counts as 1. Of powers of I, 1/I is the one "
-           "that comes within a tenth of the best gain in likelihood on each of three real lasers: a "
-           "VLP-16 prefers 1/√I (15 mm), a TiM781S and an LMS511 prefer 1/I²."},
+           "time an echo √n times better than one. Less than 1 counts as 1. Of the powers of I this one "
+           "comes "
+           "within an eighth of the best gain in likelihood on each of three real lasers: a VLP-16 (15 mm) "
+           "would rather have 1/√I, a TiM781S and an LMS511 1/I²."},
       {.name = "noise.heavy_tail",
        .summary = "some of a laser's ranges are much noisier than the others",
        .scope = Scope::kLaser,
