@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/noise.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
@@ -169,7 +171,9 @@ Found found_of(const std::string& scope, const NoiseWay& way, const Tried& tried
                   .p_value = p_value_of(before, tried.law, errors),
                   .confounded_with = {},
                   .gain = {gain_of(before, tried.law, errors, seed)}};
-  for (const std::string& cause : tried.as_probable) finding.confounded_with.push_back(scope + "." + cause);
+  for (const std::string& cause : tried.as_probable) {
+    finding.confounded_with.push_back(fmt::format("{}.{}", scope, cause));
+  }
   finding.accepted = finding.gain[0].surely_rises();
   return {.way = way, .law = tried.law, .finding = std::move(finding)};
 }
