@@ -22,6 +22,8 @@ const std::vector<Row>& rows() {
   static const std::vector<Row> kRows = {
       {"noise.normal", "sigma", [](L& l) -> double& { return l.noise.sigma; }},
       {"noise.range_dependent", "slope", [](L& l) -> double& { return l.noise.slope; }},
+      {"noise.incidence_dependent", "spread", [](L& l) -> double& { return l.noise.spread; }},
+      {"noise.remission_dependent", "jitter", [](L& l) -> double& { return l.noise.jitter; }},
       {"noise.heavy_tail", "share", [](L& l) -> double& { return l.noise.tail_share; }},
       {"noise.heavy_tail", "scale", [](L& l) -> double& { return l.noise.tail_scale; }},
       {"noise.mixed_pixels", "divergence", [](L& l) -> double& { return l.noise.divergence; }},

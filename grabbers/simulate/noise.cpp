@@ -14,8 +14,9 @@ void check(const RangeSettings& range, const NoiseEffects& effects, const std::s
   if (!(range.sigma >= 0 && range.quantum >= 0 && range.max_distance > 0)) {
     throw Error("the noise, the step and the reach of a laser's range must not be negative");
   }
-  if (!(effects.sigma >= 0 && effects.slope >= 0 && effects.tail_scale >= 0 && effects.divergence >= 0 &&
-        effects.aperture >= 0 && effects.merge >= 0 && effects.separation >= 0 && effects.step >= 0)) {
+  if (!(effects.sigma >= 0 && effects.slope >= 0 && effects.spread >= 0 && effects.jitter >= 0 &&
+        effects.tail_scale >= 0 && effects.divergence >= 0 && effects.aperture >= 0 && effects.merge >= 0 &&
+        effects.separation >= 0 && effects.step >= 0)) {
     throw Error("what the noise of " + laser + " is made of must not be negative");
   }
   if (!is_share(effects.tail_share) || !is_share(effects.least_weight) || !is_share(effects.most_weight) ||
@@ -28,7 +29,7 @@ void check(const RangeSettings& range, const NoiseEffects& effects, const std::s
 
 RangeNoise::RangeNoise(const RangeSettings& range, const NoiseEffects& effects, std::size_t beams,
                        std::uint64_t seed, const std::string& laser)
-    : sigma_(effects.sigma > 0 ? effects.sigma : range.sigma),
+    : sizes_{effects.sigma > 0 ? effects.sigma : range.sigma, effects.slope, effects.spread, effects.jitter},
       quantum_(effects.step > 0 ? effects.step : range.quantum),
       effects_(effects),
       normal_(seed, laser + ".noise"),
@@ -49,8 +50,8 @@ RangeNoise::Draw RangeNoise::draw(std::uint16_t beam) {
   return draw;
 }
 
-double RangeNoise::reported(double range, const Draw& draw) const {
-  const double noisy = range + draw.shift + std::hypot(sigma_, effects_.slope * range) * draw.normal;
+double RangeNoise::reported(const EchoConditions& echo, const Draw& draw) const {
+  const double noisy = echo.range + draw.shift + deviation(sizes_, echo) * draw.normal;
   return quantum_ > 0 ? quantum_ * std::round(noisy / quantum_) : noisy;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grabbers/simulate/random.hpp"
+#include "pipeline/model/range_variance.hpp"
 
 namespace crisp {
 
@@ -22,6 +23,8 @@ struct RangeSettings {
 struct NoiseEffects {
   double sigma = 0;           ///< [m] standard deviation; 0: of RangeSettings::sigma
   double slope = 0;           ///< standard deviation a metre of range, far away
+  double spread = 0;          ///< [m] standard deviation at 45° that the incidence adds
+  double jitter = 0;          ///< [m] standard deviation that an echo of remission 1 adds
   double tail_share = 0;      ///< share of the ranges whose noise is `tail_scale` times as large
   double tail_scale = 5;      ///< see tail_share
   double divergence = 0;      ///< [rad] by which the diameter of the spot grows a metre of range
@@ -49,11 +52,11 @@ class RangeNoise {
   };
   Draw draw(std::uint16_t beam);
 
-  /// The range [m] that is reported for one of `range`.
-  double reported(double range, const Draw& draw) const;
+  /// The range [m] that is reported for an echo of `echo.range`.
+  double reported(const EchoConditions& echo, const Draw& draw) const;
 
  private:
-  double sigma_;
+  ByPart sizes_;
   double quantum_;
   NoiseEffects effects_;
   RandomStream normal_;

@@ -140,7 +140,8 @@ void SweepSimulator::measure(Laser& laser, Sweep& sweep) {
     beam.cos_incidence = echo->hit.cos_incidence;
     const double range =
         reported_range(model_.chain(sweep.laser), laser.parameters, beam, echo->hit.distance);
-    const double reported = laser.noise.reported(range, noise);
+    const double reported = laser.noise.reported(
+        {.range = range, .cosine = beam.cos_incidence, .remission = beam.remission}, noise);
     if (!(reported >= kSmallestRange)) continue;
     sweep.ranges[i] = static_cast<float>(reported);
     sweep.remissions[i] = static_cast<float>(beam.remission);

@@ -142,6 +142,32 @@ std::vector<EffectInfo> noises() {
        .details = "`σ(r) = √(σ² + (slope r)²)`. The LMS-151's 12 mm typical and 20 mm at most are a slope of "
                   "8e-4 at "
                   "20 m."},
+      {.name = "noise.incidence_dependent",
+       .summary = "a laser's noise grows where its beams graze",
+       .scope = Scope::kLaser,
+       .parameters = {{.name = "spread",
+                       .unit = "m",
+                       .lower = 0,
+                       .upper = 1,
+                       .summary = "standard deviation that an incidence of 45° adds"}},
+       .details =
+           "The variance grows by `(spread tan β)²`: on a slope the far side of the spot answers later than "
+           "the near one, and the echo is stretched. Beams that graze count as met at 84°, where tan β is "
+           "9.95. A Velodyne VLP-16 in a small room: 3.8 mm."},
+      {.name = "noise.remission_dependent",
+       .summary = "a laser's noise grows where echoes are weak",
+       .scope = Scope::kLaser,
+       .parameters = {{.name = "jitter",
+                       .unit = "m",
+                       .lower = 0,
+                       .upper = 100,
+                       .summary = "standard deviation that an echo of remission 1 adds"}},
+       .details =
+           "The variance grows by `jitter² / I`, where I is the remission in the device's units: n photons "
+           "time an echo √n times better than one. Less than 1 counts as 1. Of the powers of I this one "
+           "comes "
+           "within an eighth of the best gain in likelihood on each of three real lasers: a VLP-16 (15 mm) "
+           "would rather have 1/√I, a TiM781S and an LMS511 1/I²."},
       {.name = "noise.heavy_tail",
        .summary = "some of a laser's ranges are much noisier than the others",
        .scope = Scope::kLaser,

@@ -19,7 +19,11 @@ void AtRest::add(const Scan& scan) {
     ++left_out_;
     return;
   }
+  const auto& remissions = scan.echoes.front().remissions;
+  const bool had_all = remissions_.size() == ranges_.size();
   ranges_.insert(ranges_.end(), ranges.begin(), ranges.end());
+  if (had_all) remissions_.insert(remissions_.end(), remissions.begin(), remissions.end());
+  if (remissions_.size() != ranges_.size()) remissions_.clear();
   receipt_ns_.push_back(scan.receipt_ns);
 }
 
@@ -52,6 +56,7 @@ std::optional<RangeErrors> AtRest::errors() const {
     for (const std::size_t scan : shots) {
       all.value.push_back(static_cast<float>(double{ranges_[scan * beams_ + beam]} - mean));
       all.range.push_back(static_cast<float>(mean));
+      if (!remissions_.empty()) all.remission.push_back(remissions_[scan * beams_ + beam]);
       all.beam.push_back(static_cast<std::uint16_t>(beam));
       all.block.push_back(static_cast<std::uint32_t>(scan));
     }

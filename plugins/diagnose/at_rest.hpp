@@ -29,7 +29,8 @@ class AtRest {
 
  private:
   std::size_t beams_ = 0;
-  std::vector<float> ranges_;  // [m] scan by scan
+  std::vector<float> ranges_;      // [m] scan by scan
+  std::vector<float> remissions_;  // device's units, likewise; empty where a scan had none
   std::vector<std::int64_t> receipt_ns_;
   std::size_t left_out_ = 0;
 };

@@ -12,15 +12,25 @@ namespace crisp {
 namespace {
 
 constexpr double kOnSurface = 4;  // usual errors
+constexpr double kClear = 0.12;   // [m] from either side of an edge: in thin air
 
 class EdgeFinder {
  public:
   EdgeFinder(const Measurements& beams, const PointsView& points, const Met& met, const Crowd& crowd,
-             double usual)
-      : beams_(beams), points_(points), met_(met), crowd_(crowd), near_(kOnSurface * usual) {}
+             double usual, const NoiseLaw& noise)
+      : beams_(beams), points_(points), met_(met), crowd_(crowd), near_(kOnSurface * usual), noise_(noise) {}
 
   bool is_on(std::size_t i) const {
     return met_.end[i] != kNoSurface && std::abs(double{met_.distance[i]}) < near_;
+  }
+
+  /// Whether noise alone throws ranges beside the surface that a beam ended on into thin air.
+  bool is_noisy(std::size_t i) const {
+    constexpr double kMost = kClear / 4;  // [m] of which four are rare
+    const EchoConditions echo{.range = double{beams_.range[i]},
+                              .cosine = double{met_.end_cosine[i]},
+                              .remission = double{beams_.remission[i]}};
+    return deviation(noise_.size, echo) > kMost;
   }
 
   /// The first beam after those between, if an edge begins at `i`; else `i`.
@@ -38,7 +48,6 @@ class EdgeFinder {
 
   /// Where between the near side (0) and the far one (1) a range ends in thin air, if one does.
   std::optional<double> in_the_air(std::size_t first, std::size_t last) const {
-    constexpr double kClear = 0.12;  // [m] from either side
     const auto [low, high] = std::minmax({double{beams_.range[first]}, double{beams_.range[last]}});
     for (std::size_t k = first + 1; k < last; ++k) {
       const double range{beams_.range[k]};
@@ -65,6 +74,7 @@ class EdgeFinder {
   const Met& met_;
   const Crowd& crowd_;
   double near_;
+  const NoiseLaw& noise_;
 };
 
 }  // namespace
@@ -108,13 +118,13 @@ double Crossings::share() const {
 }
 
 Crossings crossings_of(std::size_t laser, const Measurements& beams, const PointsView& points, const Met& met,
-                       const Crowd& crowd, double usual) {
-  const EdgeFinder finder(beams, points, met, crowd, usual);
+                       const Crowd& crowd, double usual, const NoiseLaw& noise) {
+  const EdgeFinder finder(beams, points, met, crowd, usual, noise);
   Crossings crossings;
   for (std::size_t i = 0; i + 1 < beams.size(); ++i) {
     if (beams.laser[i] != laser || !finder.is_on(i)) continue;
     const std::size_t far = finder.far_side(i);
-    if (far == i) continue;
+    if (far == i || finder.is_noisy(i) || finder.is_noisy(far)) continue;
     const auto place = finder.in_the_air(i, far);
     crossings.mixed.push_back(place.has_value());
     if (place) crossings.places.push_back(*place);

@@ -13,6 +13,7 @@
 #include "pipeline/data/measurements.hpp"
 #include "pipeline/quality/points.hpp"
 #include "plugins/diagnose/met.hpp"
+#include "plugins/diagnose/noise_law.hpp"
 
 namespace crisp {
 
@@ -43,12 +44,14 @@ struct Crossings {
 /// Looks for crossings: a beam that ends on a surface, up to three that end on none, one that ends on
 /// another, 0.4 m or more apart in depth. A crossing is mixed if one of those between ends in thin air: more
 /// than 12 cm from either side, where hardly any other beam of the recording ends. Bodies of some depth put
-/// points between two surfaces, too, but again and again at the same place.
+/// points between two surfaces, too, but again and again at the same place. Where the laser's own noise could
+/// throw a range so far off either side, which a spot that grazes may do, a crossing does not count.
 ///
 /// @param points  [m] where the beams end
 /// @param usual   [m] standard deviation of ranges, by usual_error()
+/// @param noise   of the laser
 Crossings crossings_of(std::size_t laser, const Measurements& beams, const PointsView& points, const Met& met,
-                       const Crowd& crowd, double usual);
+                       const Crowd& crowd, double usual, const NoiseLaw& noise);
 
 /// Whether a laser reports ranges between what is before and behind an edge (noise.mixed_pixels), at more of
 /// the edges than thin things explain, three in a hundred.

@@ -99,6 +99,7 @@ void follow(const Ray& ray, const std::vector<KnownSurface>& surfaces, std::size
       least = std::abs(ray.range - there);
       met.end[i] = s;
       met.distance[i] = static_cast<float>(ray.range - there);
+      met.end_cosine[i] = static_cast<float>(cosine);
     }
     if (may_be_ahead && surfaces[s].is_well_inside(foot)) {
       nearest = there;
@@ -120,7 +121,7 @@ Met met_by(const Surfels& surfels, const BeamsView& beams, const std::vector<flo
   Met met;
   met.ahead.assign(n, kNoSurface);
   met.end.assign(n, kNoSurface);
-  for (auto* values : {&met.error, &met.cosine, &met.distance}) values->assign(n, 0);
+  for (auto* values : {&met.error, &met.cosine, &met.distance, &met.end_cosine}) values->assign(n, 0);
   for_blocks(n, kAtOnce, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d direction = vector_of(beams.directions, i);

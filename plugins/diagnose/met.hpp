@@ -20,6 +20,7 @@ struct Met {
   std::vector<float> cosine;       ///< |cos β| there
   std::vector<std::uint32_t> end;  ///< the surface nearest to where it ended; kNoSurface: near none
   std::vector<float> distance;     ///< [m] along the beam from there
+  std::vector<float> end_cosine;   ///< |cos β| there
 
   std::size_t size() const { return ahead.size(); }
 };

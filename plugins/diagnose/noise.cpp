@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/noise.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
@@ -9,14 +11,17 @@
 #include <numbers>
 
 #include "plugins/diagnose/likelihood_gain.hpp"
+#include "plugins/diagnose/noise_ways.hpp"
 
 namespace crisp {
 namespace {
 
+constexpr double kBic = 10;  // least by which it must rise
+
 double log_likelihood(const NoiseLaw& law, const RangeErrors& errors) {
   double sum = 0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    sum += law.log_density(double{errors.value[i]}, double{errors.range[i]}, errors.beam[i]);
+    sum += law.log_density(double{errors.value[i]}, errors.echo(i), errors.beam[i]);
   }
   return sum;
 }
@@ -27,23 +32,29 @@ std::map<std::uint16_t, double> beams_in(const RangeErrors& errors) {
   return counts;
 }
 
-/// What a law's parameters cost, as BIC has it: ln of the number of ranges that each is told by.
-double price(const NoiseLaw& law, const RangeErrors& errors) {
-  const double of_all = std::log(static_cast<double>(errors.size()));
-  double sum = of_all * (1 + (law.has_slope ? 1 : 0) + (law.has_tail ? 2 : 0) + (law.has_peaks() ? 1 : 0));
-  const double of_each = (law.has_peaks() ? 1 : 0) + (law.has_spread() ? 1 : 0);
-  for (const auto& [beam, count] : beams_in(errors)) sum += of_each * std::log(count);
-  return sum;
+/// How many parameters a law has that all ranges tell, and how many that those of each beam do.
+struct Freedoms {
+  double of_all = 0, of_each = 0;
+};
+
+Freedoms freedoms_of(const NoiseLaw& law) {
+  const auto parts = static_cast<double>(std::ranges::count(law.parts, true));
+  return {.of_all = parts + (law.has_tail ? 2 : 0) + (law.has_peaks() ? 1 : 0),
+          .of_each = (law.has_peaks() ? 1.0 : 0.0) + (law.has_relative() ? 1 : 0)};
+}
+
+/// Twice the log-likelihood, less what a law's parameters cost: ln of the number of ranges that tell each.
+double bic_of(const NoiseLaw& law, const RangeErrors& errors) {
+  const Freedoms freedoms = freedoms_of(law);
+  double price = freedoms.of_all * std::log(static_cast<double>(errors.size()));
+  for (const auto& [beam, count] : beams_in(errors)) price += freedoms.of_each * std::log(count);
+  return 2 * log_likelihood(law, errors) - price;
 }
 
 RangeErrors some_of(const RangeErrors& errors, const std::function<bool(std::uint32_t block)>& is_wanted) {
   RangeErrors some;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (!is_wanted(errors.block[i])) continue;
-    some.value.push_back(errors.value[i]);
-    some.range.push_back(errors.range[i]);
-    some.beam.push_back(errors.beam[i]);
-    some.block.push_back(errors.block[i]);
+    if (is_wanted(errors.block[i])) some.append(errors, i);
   }
   return some;
 }
@@ -57,70 +68,35 @@ RangeErrors thinned(const RangeErrors& errors) {
   return some_of(errors, [nth](std::uint32_t block) { return (block * kStrewn >> 16) % nth == 0; });
 }
 
-/// One way of not being normal.
-struct Way {
-  const char* cause;
-  std::function<void(NoiseLaw&)> add;
-  std::function<std::vector<Parameter>(const NoiseLaw&)> parameters;
-};
-
-double quantile_of(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
-std::vector<Way> ways(const RangeErrors& errors, double sigma) {
-  const std::size_t beams = beams_of(errors);
-  return {{"",  // no cause: each beam has a spread of its own, of what it meets or of itself
-           [beams](NoiseLaw& law) { law.spread.assign(beams, 1); },
-           [](const NoiseLaw&) { return std::vector<Parameter>{}; }},
-          {"noise.range_dependent", [](NoiseLaw& law) { law.has_slope = true; },
-           [](const NoiseLaw& law) {
-             return std::vector<Parameter>{{.name = "slope", .unit = "1", .value = law.slope}};
-           }},
-          {"noise.heavy_tail",
-           [](NoiseLaw& law) {
-             law.has_tail = true;
-             law.tail_share = 0.02;
-           },
-           [](const NoiseLaw& law) {
-             return std::vector<Parameter>{{.name = "share", .unit = "1", .value = law.tail_share},
-                                           {.name = "scale", .unit = "1", .value = law.tail_scale}};
-           }},
-          {"noise.two_peaks",
-           [beams, sigma](NoiseLaw& law) {
-             law.weight.assign(beams, 0.5);
-             law.separation = 1.6 * sigma;
-             law.sigma = 0.6 * sigma;
-           },
-           [](const NoiseLaw& law) {
-             return std::vector<Parameter>{
-                 {.name = "separation", .unit = "m", .value = law.separation},
-                 {.name = "least", .unit = "1", .value = quantile_of(law.weight, 0.05)},
-                 {.name = "most", .unit = "1", .value = quantile_of(law.weight, 0.95)}};
-           }}};
-}
-
-/// Standard errors by leaving out one of eight parts of the recording after another (jackknife).
-void add_errors(const NoiseLaw& law, const RangeErrors& errors, const Way& way,
-                std::vector<Parameter>& found) {
+/// The same law, fitted without one of eight parts of the recording after another (jackknife).
+std::vector<NoiseLaw> without_each_part(const NoiseLaw& law, const RangeErrors& errors) {
   constexpr std::uint32_t kParts = 8;
-  std::vector<std::vector<Parameter>> without;
+  std::vector<NoiseLaw> without;
   for (std::uint32_t part = 0; part < kParts; ++part) {
-    const auto rest = some_of(errors, [part](std::uint32_t block) { return block % kParts != part; });
-    without.push_back(way.parameters(fitted(law, rest)));
+    const auto is_other = [part](std::uint32_t block) { return block % kParts != part; };
+    without.push_back(fitted(law, some_of(errors, is_other)));
   }
+  return without;
+}
+
+/// A way's parameters in a law, and their standard errors by how they scatter without each part.
+std::vector<Parameter> parameters_of(const NoiseWay& way, const NoiseLaw& law,
+                                     const std::vector<NoiseLaw>& without) {
+  std::vector<Parameter> found = way.parameters(law);
+  const auto parts = static_cast<double>(without.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
     double sum = 0;
     double squares = 0;
-    for (const auto& one : without) {
-      sum += one[k].value;
-      squares += one[k].value * one[k].value;
+    for (const NoiseLaw& one : without) {
+      const double value = way.parameters(one)[k].value;
+      sum += value;
+      squares += value * value;
     }
-    const double spread = squares / kParts - std::pow(sum / kParts, 2);
-    found[k].std_error = std::sqrt(std::max(0.0, spread) * (kParts - 1));
+    const double spread = squares / parts - std::pow(sum / parts, 2);
+    found[k].std_error = std::sqrt(std::max(0.0, spread) * (parts - 1));
     found[k].free = true;
   }
+  return found;
 }
 
 /// Mean log-likelihood of every other block under laws that were fitted to the rest.
@@ -132,8 +108,8 @@ Gain gain_of(const NoiseLaw& before, const NoiseLaw& after, const RangeErrors& e
   std::vector<double> without;
   std::vector<double> with;
   for (std::size_t i = 0; i < rest.size(); ++i) {
-    without.push_back(first.log_density(double{rest.value[i]}, double{rest.range[i]}, rest.beam[i]));
-    with.push_back(second.log_density(double{rest.value[i]}, double{rest.range[i]}, rest.beam[i]));
+    without.push_back(first.log_density(double{rest.value[i]}, rest.echo(i), rest.beam[i]));
+    with.push_back(second.log_density(double{rest.value[i]}, rest.echo(i), rest.beam[i]));
   }
   return likelihood_gain(without, with, rest.block, seed);
 }
@@ -142,24 +118,29 @@ Gain gain_of(const NoiseLaw& before, const NoiseLaw& after, const RangeErrors& e
 struct Tried {
   std::size_t way = 0;
   NoiseLaw law;
-  double rise = 0;  // of BIC
-  double lead = 0;  // over the next best
+  double rise = 0;                       // of BIC
+  double lead = 0;                       // over the next best
+  std::vector<std::string> as_probable;  // causes within 100 : 1
 };
 
-Tried best_of(const std::vector<Way>& ways, const NoiseLaw& law, const RangeErrors& errors) {
-  const double before = 2 * log_likelihood(law, errors) - price(law, errors);
+Tried best_of(const std::vector<NoiseWay>& ways, const NoiseLaw& law, const RangeErrors& errors) {
+  constexpr double kOdds = 9.2;  // of BIC: 100 : 1
+  const double before = bic_of(law, errors);
+  std::vector<double> rises;
   Tried best;
   for (std::size_t w = 0; w < ways.size(); ++w) {
-    Tried one{.way = w, .law = law};
-    ways[w].add(one.law);
-    one.law = fitted(one.law, errors);
-    one.rise = 2 * log_likelihood(one.law, errors) - price(one.law, errors) - before;
-    one.lead = one.rise - best.rise;
-    if (one.rise > best.rise) {
-      best = std::move(one);
-    } else {
-      best.lead = std::min(best.lead, best.rise - one.rise);
-    }
+    NoiseLaw one = law;
+    ways[w].add(one);
+    one = fitted(one, errors);
+    rises.push_back(bic_of(one, errors) - before);
+    if (rises.back() > best.rise) best = {.way = w, .law = std::move(one), .rise = rises.back()};
+  }
+  best.lead = best.rise;
+  for (std::size_t w = 0; w < ways.size(); ++w) {
+    if (w == best.way) continue;
+    best.lead = std::min(best.lead, best.rise - rises[w]);
+    const bool is_as_probable = rises[w] > 0 && best.rise - rises[w] < kOdds;
+    if (is_as_probable && !ways[w].cause.empty()) best.as_probable.push_back(ways[w].cause);
   }
   return best;
 }
@@ -167,62 +148,107 @@ Tried best_of(const std::vector<Way>& ways, const NoiseLaw& law, const RangeErro
 double p_value_of(const NoiseLaw& before, const NoiseLaw& after, const RangeErrors& errors) {
   const auto beams = static_cast<double>(beams_in(errors).size());
   const auto count = [&](const NoiseLaw& law) {
-    return (law.has_slope ? 1 : 0) + (law.has_tail ? 2 : 0) + (law.has_peaks() ? 1 + beams : 0) +
-           (law.has_spread() ? beams : 0);
+    const Freedoms freedoms = freedoms_of(law);
+    return freedoms.of_all + beams * freedoms.of_each;
   };
   const double fall = 2 * (log_likelihood(after, errors) - log_likelihood(before, errors));
   return fall > 0 ? cdf(complement(boost::math::chi_squared(count(after) - count(before)), fall)) : 1;
 }
 
-Finding finding_of(const std::string& scope, const Way& way, const Tried& tried, const NoiseLaw& before,
-                   const RangeErrors& errors, std::uint64_t seed) {
+/// A way that was found, with all that is to be said of it but its parameters.
+struct Found {
+  NoiseWay way;
+  NoiseLaw law;  // where it was found
+  Finding finding;
+};
+
+Found found_of(const std::string& scope, const NoiseWay& way, const Tried& tried, const NoiseLaw& before,
+               const RangeErrors& errors, std::uint64_t seed) {
   Finding finding{.cause = way.cause,
                   .scope = scope,
-                  .parameters = way.parameters(tried.law),
+                  .parameters = {},
                   .log10_odds = tried.lead / 2 / std::numbers::ln10,
                   .p_value = p_value_of(before, tried.law, errors),
                   .confounded_with = {},
                   .gain = {gain_of(before, tried.law, errors, seed)}};
+  for (const std::string& cause : tried.as_probable) {
+    finding.confounded_with.push_back(fmt::format("{}.{}", scope, cause));
+  }
   finding.accepted = finding.gain[0].surely_rises();
-  add_errors(tried.law, errors, way, finding.parameters);
-  return finding;
+  return {.way = way, .law = tried.law, .finding = std::move(finding)};
 }
 
-UnnamedFinding unnamed_of(const Finding& finding, const NoiseLaw& law) {
+/// Takes out of the law what the one that joined last has made needless.
+void leave_needless(std::vector<Found>& found, NoiseLaw& law, const RangeErrors& errors, double least_rise) {
+  for (std::size_t k = 0; k + 1 < found.size();) {
+    NoiseLaw without = law;
+    found[k].way.take_away(without);
+    without = fitted(without, errors);
+    if (!found[k].finding.accepted || bic_of(law, errors) - bic_of(without, errors) >= least_rise) {
+      ++k;
+      continue;
+    }
+    law = std::move(without);
+    found.erase(found.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+}
+
+UnnamedFinding unnamed_of(const Finding& finding, const NoiseLaw& law, const RangeErrors& errors) {
   double squares = 0;
-  for (const double spread : law.spread) squares += std::pow(law.sigma * (spread - 1), 2);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    squares += std::pow(deviation(law.size, errors.echo(i)) * (law.relative[errors.beam[i]] - 1), 2);
+  }
   return {.covariate = "beam",
           .quantity = "noise",
           .scope = finding.scope,
-          .amplitude = std::sqrt(squares / static_cast<double>(law.spread.size())),
+          .amplitude = std::sqrt(squares / static_cast<double>(errors.size())),
           .unit = "m",
           .p_value = finding.p_value,
           .gain = finding.gain,
           .accepted = finding.accepted};
 }
 
+/// @param named  the law where the last cause joined: what has no name is not simulated, so that the causes
+///               describe the ranges as well as they can without what was found behind them
+void report(std::vector<Found> found, const NoiseLaw& named, const RangeErrors& errors, NoiseDiagnosis& to) {
+  const std::vector<NoiseLaw> without =
+      found.empty() ? std::vector<NoiseLaw>{} : without_each_part(named, errors);
+  for (Found& one : found) {
+    if (one.way.cause.empty()) {
+      to.unnamed.push_back(unnamed_of(one.finding, one.law, errors));
+      continue;
+    }
+    one.finding.parameters = one.finding.accepted
+                                 ? parameters_of(one.way, named, without)
+                                 : parameters_of(one.way, one.law, without_each_part(one.law, errors));
+    to.findings.push_back(std::move(one.finding));
+  }
+}
+
 }  // namespace
 
 NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, std::uint64_t seed,
                               double least_gain) {
-  constexpr double kBic = 10;
   const RangeErrors errors = thinned(all);
   NoiseDiagnosis result{.plain = fitted({}, errors), .law = {}, .findings = {}, .unnamed = {}};
   result.law = result.plain;
-  auto left = ways(errors, result.plain.sigma);
+  NoiseLaw named = result.plain;
+  const double least_rise = std::max(kBic, 2 * least_gain * static_cast<double>(errors.size()));
+  auto left = noise_ways(errors, result.plain.sigma());
+  std::vector<Found> found;
   while (!left.empty()) {
     const Tried best = best_of(left, result.law, errors);
     if (best.rise < kBic) break;
-    const Finding finding = finding_of(scope, left[best.way], best, result.law, errors, seed);
-    if (finding.gain[0].after - finding.gain[0].before < least_gain) break;
-    if (finding.cause.empty()) {
-      result.unnamed.push_back(unnamed_of(finding, best.law));
-    } else {
-      result.findings.push_back(finding);
-    }
-    if (finding.accepted) result.law = best.law;
+    Found one = found_of(scope, left[best.way], best, result.law, errors, seed);
+    if (one.finding.gain[0].after - one.finding.gain[0].before < least_gain) break;
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(best.way));
+    found.push_back(std::move(one));
+    if (!found.back().finding.accepted) continue;
+    result.law = best.law;
+    leave_needless(found, result.law, errors, least_rise);
+    if (!found.back().way.cause.empty()) named = result.law;
   }
+  report(std::move(found), named, errors, result);
   return result;
 }
 

@@ -2,9 +2,10 @@
 #include "plugins/diagnose/noise_law.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+
+#include "plugins/diagnose/non_negative.hpp"
 
 namespace crisp {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 struct Part {
   double share = 1;
   double mean = 0;
-  double scale = 1;  // of σ(r)
+  double scale = 1;  // of the standard deviation
   bool far = false;
   bool tail = false;
 };
@@ -45,24 +46,22 @@ double density(const Part& part, double value, double sigma) {
   return part.share * std::exp(-z * z / 2) / (s * std::sqrt(2 * std::numbers::pi));
 }
 
-double sigma_at(const NoiseLaw& law, double range, std::uint16_t beam) {
-  const double spread = law.has_spread() ? law.spread[beam] : 1;
-  return spread * std::hypot(law.sigma, law.slope * range);
+double relative_of(const NoiseLaw& law, std::uint16_t beam) {
+  return law.has_relative() ? law.relative[beam] : 1;
 }
 
 /// Sums of one round of expectation.
 struct Sums {
   double all = 0, likelihood = 0, tail = 0, tail_squares = 0;
   double separation = 0, separation_weight = 0;
-  // regression of squares on 1 and r²: σ² and slope²
-  double w = 0, wr = 0, wrr = 0, wy = 0, wry = 0;
-  std::vector<double> far, of_beam, squares;  // by beam
+  NonNegativeProblem variance{kVarianceParts};  // squares, as sums of the parts' unit variances
+  std::vector<double> far, of_beam, squares;    // by beam
 };
 
-void add(const NoiseLaw& law, double value, double range, std::uint16_t beam, Sums& sums) {
+void add(const NoiseLaw& law, double value, const EchoConditions& echo, std::uint16_t beam, Sums& sums) {
   const Parts parts = parts_of(law, beam);
-  const double sigma = sigma_at(law, range, beam);
-  const double spread = law.has_spread() ? law.spread[beam] : 1;
+  const double sigma = law.deviation(echo, beam);
+  const double relative = relative_of(law, beam);
   std::array<double, 4> probable{};
   double total = 1e-300;
   for (std::size_t k = 0; k < parts.count; ++k) {
@@ -72,19 +71,13 @@ void add(const NoiseLaw& law, double value, double range, std::uint16_t beam, Su
   sums.all += 1;
   sums.likelihood += std::log(total);
   sums.of_beam[beam] += 1;
-  const double variance = std::pow(sigma / spread, 2);
-  const double square_range = range * range;
+  double square = 0;  // of what is normal and of a usual beam, as is to be expected
+  double weight = 0;
   for (std::size_t k = 0; k < parts.count; ++k) {
     const Part& part = parts.all[k];
     const double p = probable[k] / total;
-    const double square = std::pow((value - part.mean) / (part.scale * spread), 2);
-    const double w = p / (variance * variance);
-    sums.w += w;
-    sums.wr += w * square_range;
-    sums.wrr += w * square_range * square_range;
-    sums.wy += w * square;
-    sums.wry += w * square_range * square;
-    sums.squares[beam] += p * square / variance * spread * spread;
+    square += p * std::pow((value - part.mean) / (part.scale * relative), 2);
+    weight += p;
     if (part.tail) {
       sums.tail += p;
       sums.tail_squares += p * std::pow((value - part.mean) / sigma, 2);
@@ -96,43 +89,40 @@ void add(const NoiseLaw& law, double value, double range, std::uint16_t beam, Su
     sums.separation_weight += precision * lever * lever;
     if (part.far) sums.far[beam] += p;
   }
+  if (!(weight > 0)) return;  // so far out that no part can have made it
+  const double variance = std::pow(sigma / relative, 2);
+  ByPart units = unit_variances(echo);
+  for (std::size_t part = 0; part < kVarianceParts; ++part) units[part] *= law.parts[part] ? 1 : 0;
+  sums.variance.add(units, square / weight, weight / (variance * variance));
+  sums.squares[beam] += square / variance * relative * relative;
 }
 
 void take_variance(const Sums& sums, NoiseLaw& law) {
   constexpr double kLeast = 1e-10;  // [m²]
-  double variance = sums.wy / sums.w;
-  double slope = 0;
-  if (law.has_slope) {
-    const double determinant = sums.w * sums.wrr - sums.wr * sums.wr;
-    if (determinant > 1e-9 * sums.w * sums.wrr) {
-      slope = std::max(0.0, (sums.w * sums.wry - sums.wr * sums.wy) / determinant);
-    }
-    variance = (sums.wy - slope * sums.wr) / sums.w;
-  }
-  law.sigma = std::sqrt(std::max(kLeast, variance));
-  law.slope = std::sqrt(slope);
+  const std::vector<double> squares = sums.variance.solution();
+  for (std::size_t part = 0; part < kVarianceParts; ++part) law.size[part] = std::sqrt(squares[part]);
+  law.size[0] = std::sqrt(std::max(kLeast, squares[0]));
 }
 
-/// About 1, so that sigma is that of a usual beam.
-void take_spread(const Sums& sums, NoiseLaw& law) {
+/// About 1, so that the variance's parts are those of a usual beam.
+void take_relative(const Sums& sums, NoiseLaw& law) {
   double logarithms = 0;
   double beams = 0;
-  for (std::size_t b = 0; b < law.spread.size(); ++b) {
-    law.spread[b] = std::sqrt((sums.squares[b] + 1) / (sums.of_beam[b] + 1));
+  for (std::size_t b = 0; b < law.relative.size(); ++b) {
+    law.relative[b] = std::sqrt((sums.squares[b] + 1) / (sums.of_beam[b] + 1));
     if (sums.of_beam[b] == 0) continue;
-    logarithms += std::log(law.spread[b]);
+    logarithms += std::log(law.relative[b]);
     beams += 1;
   }
   const double usual = std::exp(logarithms / std::max(1.0, beams));
-  for (double& spread : law.spread) spread /= usual;
-  law.sigma *= usual;
-  law.slope *= usual;
+  for (double& relative : law.relative) relative /= usual;
+  for (double& size : law.size) size *= usual;
 }
 
 void take(const Sums& sums, NoiseLaw& law) {
   constexpr double kLeastScale = 1.5;
   take_variance(sums, law);
-  if (law.has_spread()) take_spread(sums, law);
+  if (law.has_relative()) take_relative(sums, law);
   if (law.has_tail) {
     law.tail_share = std::clamp(sums.tail / sums.all, 1e-6, 0.5);
     if (sums.tail > 0) law.tail_scale = std::max(kLeastScale, std::sqrt(sums.tail_squares / sums.tail));
@@ -147,21 +137,45 @@ void take(const Sums& sums, NoiseLaw& law) {
 
 }  // namespace
 
+void RangeErrors::append(const RangeErrors& from, std::size_t i) {
+  value.push_back(from.value[i]);
+  range.push_back(from.range[i]);
+  if (!from.cosine.empty()) cosine.push_back(from.cosine[i]);
+  if (!from.remission.empty()) remission.push_back(from.remission[i]);
+  beam.push_back(from.beam[i]);
+  block.push_back(from.block[i]);
+}
+
+EchoConditions RangeErrors::echo(std::size_t i) const {
+  EchoConditions echo{.range = double{range[i]}};
+  if (!cosine.empty()) echo.cosine = double{cosine[i]};
+  if (!remission.empty()) echo.remission = double{remission[i]};
+  return echo;
+}
+
 std::size_t beams_of(const RangeErrors& errors) {
   return errors.beam.empty() ? 0 : std::ranges::max(errors.beam) + std::size_t{1};
 }
 
-double NoiseLaw::variance(double range, std::uint16_t beam) const {
-  const double tail = has_tail ? tail_share * (tail_scale * tail_scale - 1) : 0;
-  const double far = has_peaks() ? weight[beam] : 0;
-  return std::pow(sigma_at(*this, range, beam), 2) * (1 + tail) + separation * separation * far * (1 - far);
+bool NoiseLaw::is_normal() const {
+  return std::ranges::count(parts, true) == 1 && !has_tail && !has_peaks() && !has_relative();
 }
 
-double NoiseLaw::log_density(double value, double range_m, std::uint16_t beam) const {
-  const Parts parts = parts_of(*this, beam);
-  const double sigma_here = sigma_at(*this, range_m, beam);
+double NoiseLaw::deviation(const EchoConditions& echo, std::uint16_t beam) const {
+  return relative_of(*this, beam) * crisp::deviation(size, echo);
+}
+
+double NoiseLaw::variance(const EchoConditions& echo, std::uint16_t beam) const {
+  const double tail = has_tail ? tail_share * (tail_scale * tail_scale - 1) : 0;
+  const double far = has_peaks() ? weight[beam] : 0;
+  return std::pow(deviation(echo, beam), 2) * (1 + tail) + separation * separation * far * (1 - far);
+}
+
+double NoiseLaw::log_density(double value, const EchoConditions& echo, std::uint16_t beam) const {
+  const Parts all = parts_of(*this, beam);
+  const double sigma_here = deviation(echo, beam);
   double sum = 1e-300;
-  for (std::size_t k = 0; k < parts.count; ++k) sum += density(parts.all[k], value, sigma_here);
+  for (std::size_t k = 0; k < all.count; ++k) sum += density(all.all[k], value, sigma_here);
   return std::log(sum);
 }
 
@@ -175,7 +189,7 @@ NoiseLaw fitted(const NoiseLaw& like, const RangeErrors& errors) {
     Sums sums;
     for (auto* by_beam : {&sums.far, &sums.of_beam, &sums.squares}) by_beam->resize(beams);
     for (std::size_t i = 0; i < errors.size(); ++i) {
-      add(law, double{errors.value[i]}, double{errors.range[i]}, errors.beam[i], sums);
+      add(law, double{errors.value[i]}, errors.echo(i), errors.beam[i], sums);
     }
     take(sums, law);
     if (sums.likelihood - last < kSettled) break;

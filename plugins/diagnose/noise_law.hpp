@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "pipeline/model/range_variance.hpp"
 
 namespace crisp {
 
@@ -11,36 +14,49 @@ namespace crisp {
 struct RangeErrors {
   std::vector<float> value;          ///< [m] about the mean of its beam
   std::vector<float> range;          ///< [m] where the surface is
+  std::vector<float> cosine;         ///< |cos β| there; empty where not known
+  std::vector<float> remission;      ///< device's units; empty where not known
   std::vector<std::uint16_t> beam;   ///< index of its direction in the scan
   std::vector<std::uint32_t> block;  ///< pieces of the recording, to be held out by turns
 
   std::size_t size() const { return value.size(); }
+  void append(const RangeErrors& from, std::size_t i);
+  /// What is known of where range i was measured.
+  EchoConditions echo(std::size_t i) const;
 };
 
 /// How ranges scatter: the normal law of the plain simulator, and what of `noise.*` is added to it.
 ///
-/// `σ(r) = √(sigma² + (slope r)²)`; a share of the ranges scatters `tail_scale` times as much; each beam's
-/// scatter about two values `separation` apart, the farther with a weight of the beam's own.
+/// The variance of a range is the sum of its parts; a share of the ranges scatters `tail_scale` times as
+/// much; each beam's scatter about two values `separation` apart, the farther with a weight of the beam's
+/// own.
 struct NoiseLaw {
-  double sigma = 0.012;        ///< [m]
-  double slope = 0;            ///< [m] a metre
-  double tail_share = 0;       ///< of 1
-  double tail_scale = 5;       ///< see above
-  double separation = 0;       ///< [m]
-  std::vector<double> weight;  ///< by beam; empty without a separation
-  std::vector<double> spread;  ///< by beam: of its own σ over the usual one; empty where all are alike
+  ByPart size{0.012, 0, 0, 0};   ///< of each part of the variance: sigma, slope, spread, jitter
+  double tail_share = 0;         ///< of 1
+  double tail_scale = 5;         ///< see above
+  double separation = 0;         ///< [m]
+  std::vector<double> weight;    ///< by beam; empty without a separation
+  std::vector<double> relative;  ///< by beam: its own σ over the usual one; empty where all are alike
 
-  bool has_slope = false;
+  std::array<bool, kVarianceParts> parts{true};  ///< of which the variance is the sum
   bool has_tail = false;
+
+  bool has(VariancePart part) const { return parts[static_cast<std::size_t>(part)]; }
   bool has_peaks() const { return !weight.empty(); }
-  bool has_spread() const { return !spread.empty(); }
-  bool is_normal() const { return !has_slope && !has_tail && !has_peaks() && !has_spread(); }
+  bool has_relative() const { return !relative.empty(); }
+  bool is_normal() const;
+
+  /// [m] of what does not depend on anything.
+  double sigma() const { return size[static_cast<std::size_t>(VariancePart::kSigma)]; }
+
+  /// [m] Standard deviation of one range, in neither a tail nor two peaks.
+  double deviation(const EchoConditions& echo, std::uint16_t beam) const;
 
   /// ln of the density [1/m].
-  double log_density(double value, double range, std::uint16_t beam) const;
+  double log_density(double value, const EchoConditions& echo, std::uint16_t beam) const;
 
-  /// [m²] of all parts together.
-  double variance(double range, std::uint16_t beam) const;
+  /// [m²] with tails and both peaks.
+  double variance(const EchoConditions& echo, std::uint16_t beam) const;
 };
 
 /// The likeliest law of those that have what `like` has, by expectation and maximisation.

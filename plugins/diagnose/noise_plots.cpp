@@ -9,6 +9,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "plugins/diagnose/noise_ways.hpp"
+
 namespace crisp {
 namespace {
 
@@ -36,7 +38,7 @@ double mean_density(const NoiseLaw& law, const RangeErrors& errors, double value
   double sum = 0;
   double count = 0;
   for (std::size_t i = 0; i < errors.size(); i += stride) {
-    sum += std::exp(law.log_density(value, double{errors.range[i]}, errors.beam[i]));
+    sum += std::exp(law.log_density(value, errors.echo(i), errors.beam[i]));
     count += 1;
   }
   return sum / count;
@@ -98,8 +100,14 @@ std::vector<PlotSeries> beside_even(const Histogram& bins, double unit) {
   return {measured, even};
 }
 
-}  // namespace
+/// A quantity that each of some ranges has.
+struct NoiseCovariate {
+  std::string name;
+  std::string label;  // with its unit
+  std::span<const float> values;
+};
 
+/// RMS of errors in bins of equally many ranges.
 Plot noise_over(const NoiseCovariate& over, const std::string& name, const RangeErrors& errors,
                 const NoiseDiagnosis& noise) {
   constexpr std::size_t kBins = 12;
@@ -119,8 +127,8 @@ Plot noise_over(const NoiseCovariate& over, const std::string& name, const Range
       sum += double{over.values[i]};
       squares += std::pow(double{errors.value[i]}, 2);
       fourths += std::pow(double{errors.value[i]}, 4);
-      of_plain += noise.plain.variance(double{errors.range[i]}, errors.beam[i]);
-      of_found += noise.law.variance(double{errors.range[i]}, errors.beam[i]);
+      of_plain += noise.plain.variance(errors.echo(i), errors.beam[i]);
+      of_found += noise.law.variance(errors.echo(i), errors.beam[i]);
     }
     const auto count = static_cast<double>(end - begin);
     const double rms = 1e3 * std::sqrt(squares / count);
@@ -140,11 +148,20 @@ Plot noise_over(const NoiseCovariate& over, const std::string& name, const Range
   return plot;
 }
 
+}  // namespace
+
 std::vector<Plot> noise_plots(const std::string& name, const RangeErrors& errors,
                               const NoiseDiagnosis& noise) {
   if (errors.size() == 0) return {};
-  return {distribution(name, errors, noise),
-          noise_over({.name = "range", .label = "range [m]", .values = errors.range}, name, errors, noise)};
+  std::vector<Plot> plots = {
+      distribution(name, errors, noise),
+      noise_over({.name = "range", .label = "range [m]", .values = errors.range}, name, errors, noise)};
+  for (const NoiseCovariate& over :
+       {NoiseCovariate{"incidence", "cosine of the incidence", errors.cosine},
+        NoiseCovariate{"remission", "remission [device's units]", errors.remission}}) {
+    if (changes(over.values)) plots.push_back(noise_over(over, name, errors, noise));
+  }
+  return plots;
 }
 
 Plot comb_plot(const std::string& name, std::span<const float> ranges, double step) {

@@ -12,21 +12,10 @@
 
 namespace crisp {
 
-/// A quantity that each of some ranges has.
-struct NoiseCovariate {
-  std::string name;
-  std::string label;  ///< with its unit
-  std::span<const float> values;
-};
-
-/// RMS of one laser's errors in bins of equally many ranges, measured beside the normal law and the one that
-/// was found, if it is another. Bars are two standard errors either way.
-Plot noise_over(const NoiseCovariate& over, const std::string& name, const RangeErrors& errors,
-                const NoiseDiagnosis& noise);
-
 /// How one laser's ranges scatter, measured beside the normal law and the one that was found, if it is
-/// another: the distribution of their errors, as the logarithm of its density, and their RMS over the range.
-/// Bars are two standard errors either way.
+/// another: the distribution of their errors, as the logarithm of its density, and their RMS over the range
+/// and, where they are known and change, over incidence and remission, in bins of equally many ranges. Bars
+/// are two standard errors either way.
 std::vector<Plot> noise_plots(const std::string& name, const RangeErrors& errors,
                               const NoiseDiagnosis& noise);
 

@@ -54,11 +54,10 @@ void DiagnoseNoiseStage::describe(StageDescription<DiagnoseNoiseStage>& d) {
   d.details(
       "Each beam of a laser at rest meets the same spot again and again. What all beams do together (a jump, "
       "`range.step`, a creeping, `range.warmup`, or a slow wander, `unnamed`) is looked for scan by scan. "
-      "What "
-      "is left of each beam about its mean is compared with the normal law of the plain simulator: a spread "
-      "that "
-      "grows with the range, heavy tails, two peaks with a weight of each beam's own (`noise.*`), forward by "
-      "BIC, each judged by scans that it was not fitted to. A laser that moves is passed over with a word.");
+      "What is left of each beam about its mean is compared with the normal law of the plain simulator: a "
+      "spread that grows with the range or with weak echoes, heavy tails, two peaks with a weight of each "
+      "beam's own (`noise.*`), forward by BIC, each judged by scans that it was not fitted to. A laser that "
+      "moves is passed over with a word.");
   d.takes<Scan>().takes<Findings>(Need::optional).gives<Findings>();
   d.option("folder", &DiagnoseNoiseStage::folder_,
            "where plots of each laser's noise go, and of what its ranges did at once; auto: nowhere");
@@ -98,8 +97,8 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
   }
   const NoiseDiagnosis noise = diagnose_noise(name, *errors, context.seed());
   context.say(fmt::format("{}: {} ranges of beams at rest scatter by {:.2f} mm (RMS)", name, errors->size(),
-                          1e3 * noise.plain.sigma));
-  all.noise.push_back({.laser = name, .ranges = errors->size(), .sigma = noise.law.sigma});
+                          1e3 * noise.plain.sigma()));
+  all.noise.push_back({.laser = name, .ranges = errors->size(), .sigma = noise.law.sigma()});
   all.findings.insert(all.findings.end(), noise.findings.begin(), noise.findings.end());
   all.unnamed.insert(all.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
   share_explained(std::span(all.findings).last(noise.findings.size()),

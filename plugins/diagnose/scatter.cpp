@@ -8,6 +8,7 @@
 #include <map>
 
 #include "plugins/diagnose/likelihood_gain.hpp"
+#include "plugins/diagnose/noise_ways.hpp"
 
 namespace crisp {
 namespace {
@@ -42,6 +43,13 @@ void balance(const std::vector<float>& errors, double least, double most, std::v
     counts[i] = (seen + 1) * too_long / too_short > seen * too_long / too_short;  // evenly strewn
     ++seen;
   }
+}
+
+/// Whether two shots of a laser, none of its own between, are of beams side by side: the next in a scan, or
+/// the only one that it has, on a head that turns.
+bool follow_each_other(const Measurements& beams, std::size_t first, std::size_t second) {
+  const int step = int{beams.beam[second]} - int{beams.beam[first]};
+  return step == 1 || step == 0;
 }
 
 constexpr std::size_t kGroups = 10;
@@ -99,19 +107,24 @@ GroupScales scales_of(const std::vector<std::size_t>& groups, const std::vector<
 
 }  // namespace
 
-Scatter scatter_of(std::size_t laser, const Measurements& beams, const Met& met, double usual,
-                   const std::vector<std::uint32_t>& block) {
+RangeErrors scatter_of(std::size_t laser, const Measurements& beams, const Met& met, double usual,
+                       const std::vector<std::uint32_t>& block) {
   constexpr double kOn = 4;  // usual errors
   constexpr std::array<double, 6> kFarOff = {5, 7, 9, 12, 17, 25};
   const auto is_on = [&](std::size_t i, std::uint32_t surface) {
     return met.ahead[i] == surface && std::abs(double{met.error[i]}) < kOn * usual;
   };
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (beams.laser[i] == laser) own.push_back(i);
+  }
   std::vector<std::size_t> chosen;
   std::vector<float> errors;
-  for (std::size_t i = 1; i + 1 < beams.size(); ++i) {
-    if (beams.laser[i] != laser || met.ahead[i] == kNoSurface) continue;
-    if (!are_neighbours(beams, i - 1, i) || !are_neighbours(beams, i, i + 1)) continue;
-    if (!is_on(i - 1, met.ahead[i]) || !is_on(i + 1, met.ahead[i])) continue;
+  for (std::size_t k = 1; k + 1 < own.size(); ++k) {
+    const std::size_t i = own[k];
+    if (met.ahead[i] == kNoSurface) continue;
+    if (!follow_each_other(beams, own[k - 1], i) || !follow_each_other(beams, i, own[k + 1])) continue;
+    if (!is_on(own[k - 1], met.ahead[i]) || !is_on(own[k + 1], met.ahead[i])) continue;
     if (std::abs(double{met.error[i]}) > kFarOff.back() * usual) continue;
     chosen.push_back(i);
     errors.push_back(met.error[i]);
@@ -120,18 +133,18 @@ Scatter scatter_of(std::size_t laser, const Measurements& beams, const Met& met,
   for (std::size_t k = 0; k + 1 < kFarOff.size(); ++k) {
     balance(errors, kFarOff[k] * usual, kFarOff[k + 1] * usual, counts);
   }
-  Scatter scatter;
+  RangeErrors scatter;
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     if (!counts[k]) continue;
     const std::size_t i = chosen[k];
-    scatter.errors.value.push_back(met.error[i]);
-    scatter.errors.range.push_back(beams.range[i] - met.error[i]);
-    scatter.errors.beam.push_back(beams.beam[i]);
-    scatter.errors.block.push_back(block[i]);
+    scatter.value.push_back(met.error[i]);
+    scatter.range.push_back(beams.range[i] - met.error[i]);
+    scatter.beam.push_back(beams.beam[i]);
+    scatter.block.push_back(block[i]);
     scatter.cosine.push_back(met.cosine[i]);
     scatter.remission.push_back(beams.remission[i]);
   }
-  centre_beams(scatter.errors);
+  centre_beams(scatter);
   return scatter;
 }
 
@@ -139,13 +152,12 @@ std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const 
                                        const std::string& scope, const RangeErrors& errors,
                                        const NoiseLaw& law, double least_gain, std::uint64_t seed) {
   constexpr double kUnlikely = 0.002;
-  const auto [least, most] = std::ranges::minmax(values);
-  if (errors.size() < 100 * kGroups || least == most) return std::nullopt;
+  if (errors.size() < 100 * kGroups || !changes(values)) return std::nullopt;
   const auto groups = groups_of(values);
   std::vector<double> squares;
   std::vector<bool> is_even;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const double sigma = std::hypot(law.sigma, law.slope * double{errors.range[i]});
+    const double sigma = law.deviation(errors.echo(i), errors.beam[i]);
     squares.push_back(std::pow(double{errors.value[i]} / sigma, 2));
     is_even.push_back(errors.block[i] % 2 == 0);
   }
@@ -159,23 +171,20 @@ std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const 
     if (is_even[i]) continue;
     const double scale = half.scale[groups[i]];
     const double value{errors.value[i]};
-    const double range{errors.range[i]};
-    before.push_back(law.log_density(value, range, errors.beam[i]));
-    after.push_back(law.log_density(value / scale, range, errors.beam[i]) - std::log(scale));
+    before.push_back(law.log_density(value, errors.echo(i), errors.beam[i]));
+    after.push_back(law.log_density(value / scale, errors.echo(i), errors.beam[i]) - std::log(scale));
     blocks.push_back(errors.block[i]);
   }
   const Gain gain = likelihood_gain(before, after, blocks, seed);
   if (gain.after - gain.before < least_gain) return std::nullopt;
   double change = 0;
-  double count = 0;
-  for (std::size_t g = 0; g < kGroups; ++g) {
-    change += all.count[g] * std::pow(law.sigma * (all.scale[g] - 1), 2);
-    count += all.count[g];
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    change += std::pow(law.deviation(errors.echo(i), errors.beam[i]) * (all.scale[groups[i]] - 1), 2);
   }
   return UnnamedFinding{.covariate = name,
                         .quantity = "noise",
                         .scope = scope,
-                        .amplitude = std::sqrt(change / count),
+                        .amplitude = std::sqrt(change / static_cast<double>(errors.size())),
                         .unit = "m",
                         .p_value = all.p_value,
                         .gain = {gain},

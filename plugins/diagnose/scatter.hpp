@@ -14,22 +14,16 @@
 
 namespace crisp {
 
-/// The errors of one laser's ranges on surfaces that stand before it; element i of all arrays is one of them.
-struct Scatter {
-  RangeErrors errors;            ///< about the mean of each beam
-  std::vector<float> cosine;     ///< |cos β|
-  std::vector<float> remission;  ///< device's units
-};
-
-/// A range counts if the two beams beside it in its scan end on the surface that is ahead of all three: what
-/// stands before a surface, an edge and one who walks by are left out, yet no range is for being far off
-/// itself, up to 25 usual errors. Thin things before the surface remain: of ranges that are too short by five
-/// usual errors as many count as there are those too long.
+/// The errors of one laser's ranges on surfaces that stand before it, about the mean of each beam. A range
+/// counts if the two beams beside it in its scan (of a laser with a single beam: before and after it) end on
+/// the surface that is ahead of all three: what stands before a surface, an edge and one who walks by are
+/// left out, yet no range is for being far off itself, up to 25 usual errors. Thin things before the surface
+/// remain: of ranges that are too short by five usual errors as many count as there are those too long.
 ///
 /// @param usual  [m] standard deviation of ranges, by usual_error()
 /// @param block  of each beam: see RangeErrors
-Scatter scatter_of(std::size_t laser, const Measurements& beams, const Met& met, double usual,
-                   const std::vector<std::uint32_t>& block);
+RangeErrors scatter_of(std::size_t laser, const Measurements& beams, const Met& met, double usual,
+                       const std::vector<std::uint32_t>& block);
 
 /// Whether a laser's noise changes with a covariate, beyond the law that was found for it: the noise of ten
 /// groups of equally many ranges is compared with that of all.

@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
@@ -27,9 +28,10 @@ void DiagnoseScatterStage::describe(StageDescription<DiagnoseScatterStage>& d) {
   d.details(
       "Follows each beam to the flat surface that it should have met, by a calibration that is right: put it "
       "behind diagnose.model. How the ranges of each laser scatter there is compared with the plain "
-      "simulator's normal noise: growing with the range, heavy tails, two peaks, steps (`noise.*`), or with "
-      "incidence or remission (`unnamed`); each is judged by parts of the recording that it was not fitted "
-      "to. At edges it looks for ranges between what is before and behind (`noise.mixed_pixels`), and it "
+      "simulator's normal noise: growing with the range, the incidence or weak echoes, heavy tails, two "
+      "peaks, steps (`noise.*`), or changing with incidence or remission otherwise (`unnamed`); each is "
+      "judged by parts of the recording that it was not fitted to. At edges it looks for ranges between what "
+      "is before and behind (`noise.mixed_pixels`), and it "
       "compares what the same directions show from turn to turn (`scene.moving`).");
   d.takes<Measurements>()
       .takes<Findings>(Need::optional)
@@ -95,7 +97,8 @@ void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Fin
   const std::string& name = calibration_->lasers[laser].name;
   const std::size_t named = found.findings.size();
   const std::size_t unnamed = found.unnamed.size();
-  std::vector<Plot> plots = add_noise(laser, all, found, context);
+  std::vector<Plot> plots;
+  const NoiseLaw noise = add_noise(laser, all, found, plots, context);
   std::vector<float> ranges;
   std::vector<std::uint32_t> blocks;
   for (std::size_t i = 0; i < all.beams.size(); ++i) {
@@ -107,7 +110,7 @@ void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Fin
     found.findings.push_back(*comb);
     plots.push_back(comb_plot(name, ranges, comb->parameters.front().value));
   }
-  const Crossings edges = crossings_of(laser, all.beams, all.points, all.met, all.crowd, all.usual);
+  const Crossings edges = crossings_of(laser, all.beams, all.points, all.met, all.crowd, all.usual, noise);
   context.say(fmt::format("{}: {} edges crossed, {:.1f} % of them with a range that ends in thin air", name,
                           edges.mixed.size(), 100 * edges.share()));
   if (const auto mixed = mixed_pixels(name, edges, context.seed())) {
@@ -118,33 +121,29 @@ void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Fin
   if (folder_ && !plots.empty()) write_plots(*folder_ / (name + "_noise.svg"), plots, context);
 }
 
-std::vector<Plot> DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
-                                                  Context& context) const {
+NoiseLaw DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
+                                         std::vector<Plot>& plots, Context& context) const {
   constexpr std::size_t kTooFew = 1000;
   const std::string& name = calibration_->lasers[laser].name;
-  const Scatter scatter = scatter_of(laser, all.beams, all.met, all.usual, all.blocks);
-  if (scatter.errors.size() < kTooFew) {
+  const RangeErrors errors = scatter_of(laser, all.beams, all.met, all.usual, all.blocks);
+  if (errors.size() < kTooFew) {
     context.say(
         fmt::format("{}: too few beams well inside flat surfaces to say how its ranges scatter", name));
-    return {};
+    return {.size = {all.usual}};
   }
-  const NoiseDiagnosis noise = diagnose_noise(name, scatter.errors, context.seed(), least_gain_);
-  context.say(fmt::format("{}: {} ranges on flat surfaces scatter by {:.2f} mm (RMS)", name,
-                          scatter.errors.size(), 1e3 * noise.plain.sigma));
-  found.noise.push_back({.laser = name, .ranges = scatter.errors.size(), .sigma = noise.law.sigma});
+  const NoiseDiagnosis noise = diagnose_noise(name, errors, context.seed(), least_gain_);
+  context.say(fmt::format("{}: {} ranges on flat surfaces scatter by {:.2f} mm (RMS)", name, errors.size(),
+                          1e3 * noise.plain.sigma()));
+  found.noise.push_back({.laser = name, .ranges = errors.size(), .sigma = noise.law.sigma()});
   found.findings.insert(found.findings.end(), noise.findings.begin(), noise.findings.end());
   found.unnamed.insert(found.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
-  std::vector<Plot> plots = noise_plots(name, scatter.errors, noise);
-  for (const NoiseCovariate& over :
-       {NoiseCovariate{"incidence", "cosine of the incidence", scatter.cosine},
-        NoiseCovariate{"remission", "remission [device's units]", scatter.remission}}) {
-    const auto changes =
-        noise_by(over.name, over.values, name, scatter.errors, noise.law, least_gain_, context.seed());
-    if (!changes) continue;
-    found.unnamed.push_back(*changes);
-    plots.push_back(noise_over(over, name, scatter.errors, noise));
+  for (const auto& [covariate, values] :
+       {std::pair("incidence", &errors.cosine), std::pair("remission", &errors.remission)}) {
+    const auto changes = noise_by(covariate, *values, name, errors, noise.law, least_gain_, context.seed());
+    if (changes) found.unnamed.push_back(*changes);
   }
-  return plots;
+  plots = noise_plots(name, errors, noise);
+  return noise.law;
 }
 
 }  // namespace crisp

@@ -15,6 +15,7 @@
 #include "pipeline/stage/description.hpp"
 #include "plugins/diagnose/edges.hpp"
 #include "plugins/diagnose/met.hpp"
+#include "plugins/diagnose/noise_law.hpp"
 
 namespace crisp {
 
@@ -36,9 +37,9 @@ class DiagnoseScatterStage final : public Stage {
     std::vector<std::uint32_t> blocks;
   };
   void add_laser(std::size_t laser, const Followed& all, Findings& found, Context& context) const;
-  /// @return  what is drawn of what was found
-  std::vector<Plot> add_noise(std::size_t laser, const Followed& all, Findings& found,
-                              Context& context) const;
+  /// @param plots  get what is drawn of what was found
+  NoiseLaw add_noise(std::size_t laser, const Followed& all, Findings& found, std::vector<Plot>& plots,
+                     Context& context) const;
 
   double noise_ = SurfelSettings{}.noise;
   double least_gain_ = 0.001;

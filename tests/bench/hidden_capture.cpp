@@ -87,6 +87,14 @@ const std::map<std::string, Draw>& draws() {
                        .truth = {{"slope", d.uniform(0.0015, 0.004)}},
                        .scenes = {"hall", "street"}};
        }},
+      {"noise.incidence_dependent",
+       [](Drawer& d) {
+         return Hidden{.scope = d.laser(), .truth = {{"spread", d.uniform(0.006, 0.012)}}};
+       }},
+      {"noise.remission_dependent",
+       [](Drawer& d) {
+         return Hidden{.scope = d.laser(), .truth = {{"jitter", d.uniform(0.06, 0.12)}}};
+       }},
       {"noise.two_peaks",
        [](Drawer& d) {
          const std::string laser = d.laser();

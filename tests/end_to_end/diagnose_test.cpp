@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/files/calibration_file.hpp"
+#include "pipeline/files/findings_file.hpp"
 #include "tests/end_to_end/workshop.hpp"
 
 namespace crisp {
@@ -65,6 +66,36 @@ TEST(Configs, DiagnoseTakesAFolderOfCapturesOfOneScanner) {
   const Calibration calibration = read_calibration(workshop / "out/calibration.yaml");
   ASSERT_EQ(calibration.lasers.at(1).terms.size(), 1U);
   EXPECT_NEAR(calibration.lasers[1].terms[0].parameters.at(0).value, 0.02, 0.001);
+}
+
+TEST(Configs, DiagnoseFindsNoiseOverIncidenceAndWeakEchoesThatASimulatedScannerThenHas) {
+  const test::Workshop workshop;
+  const std::vector<std::string> causes = {"noise.incidence_dependent", "noise.remission_dependent"};
+  const auto found_in = [&](const std::string& capture, const std::string& output) {
+    const auto outcome = workshop.run("diagnose.yaml", workshop / capture, output);
+    EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+    return read_findings(workshop / (output + "/diagnosis.json")).findings;
+  };
+  workshop.simulate("made", {"duration=4s",
+                             "effects={laser1.noise.incidence_dependent: {spread: 9mm}, "
+                             "laser2.noise.remission_dependent: {jitter: 90mm}}"});
+  const auto first = found_in("made/hub.pcap", "first");
+  const auto simulated = workshop.run("like_real.yaml", workshop / "first", "again",
+                                      {"grabber.simulate.duration=4s", "grabber.simulate.seed=77"});
+  EXPECT_EQ(simulated.status, ExitStatus::done) << simulated.told;
+  const auto second = found_in("again/hub.pcap", "second");
+  const std::vector<double> truth = {9e-3, 90e-3};
+  ASSERT_EQ(first.size(), truth.size());
+  ASSERT_EQ(second.size(), truth.size());
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    EXPECT_EQ(first[k].cause, causes[k]);
+    EXPECT_EQ(second[k].cause, causes[k]);
+    EXPECT_EQ(first[k].scope, second[k].scope);
+    const Parameter& before = first[k].parameters.at(0);
+    const Parameter& after = second[k].parameters.at(0);
+    EXPECT_NEAR(before.value, truth[k], 4 * before.std_error) << causes[k];
+    EXPECT_NEAR(after.value, before.value, 4 * after.std_error) << causes[k];
+  }
 }
 
 }  // namespace

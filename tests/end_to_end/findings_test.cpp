@@ -100,5 +100,21 @@ TEST(Findings, OfScansThemselvesAreThoseThatWereSimulated) {
   EXPECT_NEAR(parameter_of(findings, "latency.bursts", "wait").value, 0.06, 4 * 0.006);
 }
 
+TEST(Findings, OfLasersAtRestNameWeakEchoesButNoIncidenceWhichNobodyKnows) {
+  const test::Workshop workshop;
+  const Findings found = diagnosed(workshop, "simulate.yaml", {}, "out",
+                                   {"effects={laser1.noise.incidence_dependent: {spread: 8mm}, "
+                                    "laser2.noise.remission_dependent: {jitter: 80mm}}"});
+  const Parameter& jitter = parameter_of(found, "noise.remission_dependent", "jitter");
+  EXPECT_NEAR(jitter.value, 80e-3, 4 * jitter.std_error);
+  for (const Finding& finding : found.findings) {
+    EXPECT_TRUE(finding.scope == "laser2" || !finding.cause.starts_with("noise."))
+        << finding.cause << " of " << finding.scope;
+  }
+  ASSERT_EQ(found.unnamed.size(), 1U);
+  EXPECT_EQ(found.unnamed[0].scope, "laser1");
+  EXPECT_EQ(found.unnamed[0].covariate, "beam") << "each meets its surface at an angle of its own";
+}
+
 }  // namespace
 }  // namespace crisp

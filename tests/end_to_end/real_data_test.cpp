@@ -9,6 +9,7 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/files/calibration_file.hpp"
+#include "pipeline/files/findings_file.hpp"
 
 namespace crisp {
 namespace {
@@ -133,6 +134,24 @@ TEST_F(RealData, VelodynesStandardErrorsHoldWhatItsMakerSays) {
     EXPECT_LT(std::abs(laser.lambda.value), 4 * laser.lambda.std_error)
         << laser.name << ": told against beam02, whose own error all of them share";
   }
+}
+
+TEST_F(RealData, VelodynesNoiseGrowsWithTheIncidenceAndComesInStepsOfTwoMillimetres) {
+  if (!run("vlp16.yaml", kVelodyne)) return;
+  const Findings found = read_findings(workshop_ / "out/diagnosis.json");
+  int grow = 0;
+  int in_steps = 0;
+  for (const Finding& one : found.findings) {
+    if (!one.accepted) continue;
+    const double value = one.parameters.at(0).value;
+    if (one.cause == "noise.quantisation") in_steps += std::abs(value - 0.002) < 1e-6 ? 1 : 0;
+    if (one.cause != "noise.incidence_dependent") continue;
+    ++grow;
+    EXPECT_GT(value, 0.003) << one.scope << ": 3.1 to 4.5 mm by an independent look at all of them";
+    EXPECT_LT(value, 0.010) << one.scope << ": few surfaces, none of them a plane";
+  }
+  EXPECT_EQ(in_steps, 14) << "as its packets have them";
+  EXPECT_GE(grow, 3) << "of nine that meet enough surface";
 }
 
 TEST_F(RealData, ASecondLms1xxHasTwoPeaksAsWell) {

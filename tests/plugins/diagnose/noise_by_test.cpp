@@ -2,6 +2,7 @@
 // Noise that changes with what it is compared with is told from noise that does not.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <functional>
 #include <random>
 
@@ -29,7 +30,7 @@ TEST(NoiseByACovariate, IsFoundWhereItChangesAndNowhereElse) {
   std::vector<float> cosine;
   for (std::size_t i = 0; i < kRanges; ++i) cosine.push_back(0.5F + 0.5F * static_cast<float>(i % 97) / 97);
   NoiseLaw law;
-  law.sigma = 0.012;
+  law.size[0] = 0.012;
   int named = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const auto plain = errors_of(seed, kRanges, [](std::size_t) { return 0.012; });
@@ -43,6 +44,23 @@ TEST(NoiseByACovariate, IsFoundWhereItChangesAndNowhereElse) {
   EXPECT_EQ(found->covariate, "incidence");
   EXPECT_EQ(found->quantity, "noise");
   EXPECT_TRUE(found->accepted);
+}
+
+TEST(NoiseByACovariate, IsWhatTheLawLeavesOfIt) {
+  constexpr std::size_t kRanges = 20'000;
+  NoiseLaw law;
+  law.parts = {true, false, true, false};
+  law.size = {0.012, 0, 0.009, 0};
+  std::vector<float> cosine;
+  for (std::size_t i = 0; i < kRanges; ++i) cosine.push_back(0.5F + 0.5F * static_cast<float>(i % 97) / 97);
+  auto errors = errors_of(1, kRanges, [&](std::size_t i) {
+    const double tangent = std::tan(std::acos(double{cosine[i]}));
+    return std::hypot(0.012, 0.009 * tangent);
+  });
+  errors.cosine = cosine;
+  EXPECT_FALSE(noise_by("incidence", cosine, "laser1", errors, law, 0.001, 1));
+  EXPECT_TRUE(noise_by("incidence", cosine, "laser1", errors, {}, 0.001, 1))
+      << "a law that knows nothing of it";
 }
 
 }  // namespace

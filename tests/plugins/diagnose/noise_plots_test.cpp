@@ -31,8 +31,8 @@ RangeErrors with_tails() {
 
 NoiseDiagnosis known_tails() {
   NoiseDiagnosis noise;
-  noise.plain.sigma = kUsualSigma * std::sqrt(1 + kTailShare * (kTailScale * kTailScale - 1));
-  noise.law.sigma = kUsualSigma;
+  noise.plain.size[0] = kUsualSigma * std::sqrt(1 + kTailShare * (kTailScale * kTailScale - 1));
+  noise.law.size[0] = kUsualSigma;
   noise.law.has_tail = true;
   noise.law.tail_share = kTailShare;
   noise.law.tail_scale = kTailScale;
@@ -74,8 +74,36 @@ TEST(NoisePlots, HaveDensitiesThatAddUpToOne) {
 
 TEST(NoisePlots, ShowTheNormalLawOnceWhereNothingElseWasFound) {
   NoiseDiagnosis normal;
-  normal.plain.sigma = normal.law.sigma = kUsualSigma;
+  normal.plain.size[0] = normal.law.size[0] = kUsualSigma;
   for (const Plot& plot : noise_plots("laser1", with_tails(), normal)) EXPECT_EQ(plot.series.size(), 2U);
+}
+
+TEST(NoisePlots, GoOverIncidenceAndRemissionWhereTheyAreKnownAndChange) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<> normal;
+  NoiseDiagnosis noise;
+  noise.law.parts = {true, false, true, true};
+  noise.law.size = {0.006, 0, 0.006, 0.05};
+  noise.plain.size[0] = 0.011;
+  RangeErrors errors;
+  for (std::uint32_t i = 0; i < 40'000; ++i) {
+    errors.range.push_back(3);
+    errors.cosine.push_back(0.5F + 0.5F * static_cast<float>(i % 89) / 88);
+    errors.remission.push_back(10.0F + static_cast<float>(i % 97));
+    errors.beam.push_back(0);
+    errors.block.push_back(i / 100);
+    errors.value.push_back(static_cast<float>(noise.law.deviation(errors.echo(i), 0) * normal(random)));
+  }
+  const auto plots = noise_plots("laser1", errors, noise);
+  ASSERT_EQ(plots.size(), 4U);
+  EXPECT_THAT(plots[2].title, testing::HasSubstr("incidence"));
+  EXPECT_THAT(plots[3].title, testing::HasSubstr("remission"));
+  for (const std::size_t k : {2U, 3U}) {
+    EXPECT_LT(misfit(plots[k], 2), 2.5) << plots[k].title;  // χ² of 12 bins
+    EXPECT_GT(misfit(plots[k], 1), 20) << "normal law";
+  }
+  errors.remission.assign(errors.size(), 0);
+  EXPECT_EQ(noise_plots("laser1", errors, noise).size(), 3U) << "none came with them";
 }
 
 TEST(NoisePlots, OfNoRangesAreNone) { EXPECT_TRUE(noise_plots("laser1", {}, known_tails()).empty()); }

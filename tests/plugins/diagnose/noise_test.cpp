@@ -60,7 +60,7 @@ TEST(Noise, ThatIsPlainIsGivenNoCause) {
         1);
     EXPECT_THAT(found.findings, IsEmpty()) << seed;
     EXPECT_THAT(found.unnamed, IsEmpty()) << seed;
-    EXPECT_NEAR(found.law.sigma, kSigma, 2e-4);
+    EXPECT_NEAR(found.law.sigma(), kSigma, 2e-4);
   }
 }
 

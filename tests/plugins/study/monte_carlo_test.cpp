@@ -75,6 +75,26 @@ TEST(MonteCarlo, CountsOnTheNoiseThatItsLasersHave) {
   }
 }
 
+TEST(MonteCarlo, CountsOnTheNoiseThatEachOfItsEchoesHas) {
+  TrialSettings settings = small(1).trial;
+  settings.laser_effects.resize(3, {.noise = {.spread = 9e-3, .jitter = 0.1}});
+  const auto made = record(settings, 3).simulated;
+  double squares = 0;
+  double fourths = 0;
+  for (std::size_t i = 0; i < made.beams.size(); ++i) {
+    const double cosine{made.cos_incidence[i]};
+    const double variance = std::pow(settings.noise, 2) + std::pow(settings.quantum, 2) / 12 +
+                            std::pow(9e-3, 2) * (1 - cosine * cosine) / (cosine * cosine) +
+                            std::pow(0.1, 2) / double{made.beams.remission[i]};
+    squares += variance;
+    fourths += 2 * variance * variance;  // variance of a normal law's square
+  }
+  const auto n = static_cast<double>(made.beams.size());
+  const double rms = std::sqrt(squares / n);
+  EXPECT_GT(rms, 1.2 * settings.noise) << "it is more than the plain one";
+  EXPECT_NEAR(noise_in(settings, 3), rms, 4 * std::sqrt(fourths) / n / (2 * rms));
+}
+
 TEST(MonteCarlo, StrewsOutliersBeforeAndBehindWhatWasMet) {
   TrialSettings settings = small(1).trial;
   const auto clean = record(settings, 3).simulated.beams;
