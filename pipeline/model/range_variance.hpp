@@ -15,14 +15,14 @@ struct EchoConditions {
   double remission = 0;  ///< device's units
 };
 
-/// Parts that the variance of a range is the sum of: independent causes, each by its own standard deviation.
+/// Parts that the variance of a range is the sum of, as independent causes:
 ///
-/// | part       | standard deviation    | unit of its size | why |
-/// |------------|-----------------------|------------------|-------------------------------------------------|
-/// | kSigma     | sigma                 | m                | whatever is met | | kRange     | slope r | 1 |
-/// `noise.range_dependent`                         | | kIncidence | spread tan β          | m | a spot on a
-/// slope stretches the echo            | | kRemission | jitter / √I           | m                | n photons
-/// time an echo √n times better than one |
+/// - kSigma: sigma², whatever is met;
+/// - kRange: (slope r)², `noise.range_dependent`;
+/// - kIncidence: (spread tan β)², `noise.incidence_dependent`: a spot on a slope stretches the echo;
+/// - kRemission: jitter² / I, `noise.remission_dependent`: n photons time an echo √n times better than one.
+///
+/// sigma, spread and jitter are in m, slope has no unit.
 enum class VariancePart : std::size_t { kSigma, kRange, kIncidence, kRemission };
 inline constexpr std::size_t kVarianceParts = 4;
 
