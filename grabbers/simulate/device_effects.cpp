@@ -86,9 +86,6 @@ void draw_nothing_beside(const Effect& measured, std::size_t device, RecordingSe
 
 std::vector<EffectInfo> recording_catalogue(const TermRegistry& terms) {
   std::vector<EffectInfo> catalogue = effect_catalogue(terms);
-  std::erase_if(catalogue, [&](const EffectInfo& info) {  // what a diagnosis finds, and no simulator makes
-    return !terms.knows(info.name) && !befalls_devices(info.name) && info.scope != Scope::kScene;
-  });
   for (auto& info : catalogue) {
     if (befalls_clocks(info.name)) info.scope = Scope::kDevice;
   }

@@ -152,7 +152,7 @@ TEST_F(SimulateStageTest, PutsWhatWasFoundInTheScannerBelowWhatIsAskedFor) {
                         .scope = "plate",
                         .parameters = {{.name = "a", .unit = "rad", .value = 1e-3}},
                         .accepted = true},
-                       {.cause = "latency.bursts", .scope = "laser1", .parameters = {}, .accepted = true}};
+                       {.cause = "scene.moving", .scope = "plate", .parameters = {}, .accepted = true}};
   write_file(folder_ / "diagnosis.json", findings_json(findings));
   const auto results = run(
       "duration: 0.1s, truth: truth.yaml, findings: diagnosis.json, effects: {laser2.mirror.cone: {kappa: "
@@ -160,7 +160,7 @@ TEST_F(SimulateStageTest, PutsWhatWasFoundInTheScannerBelowWhatIsAskedFor) {
   const Calibration truth = read_calibration(folder_ / "truth.yaml");
   EXPECT_EQ(truth.plate_terms.at(0).parameters.at(0).value, 1e-3);
   EXPECT_EQ(truth.lasers.at(1).terms.at(0).parameters.at(0).value, 4e-3);
-  EXPECT_THAT(results[0].report.lines, testing::Contains(HasSubstr("latency.bursts of laser1")));
+  EXPECT_THAT(results[0].report.lines, testing::Contains(HasSubstr("scene.moving of plate")));
   EXPECT_EQ(results[0].report.section["findings_simulated"], 2);
 }
 
