@@ -36,8 +36,8 @@ void apply_phase(const LaserChain& chain, Phase phase, std::span<const T> parame
 /// @param beams       with what was measured filled in; the rest is set here
 /// @param plate       φ(t) [rad] on the hub's clock
 template <class T, PlateMotion Plate>
-[[gnu::flatten]] void trace(const LaserChain& chain, std::span<const T> parameters, std::span<Beam<T>> beams, Plate& plate,
-           std::span<bool> known) {
+[[gnu::flatten]] void trace(const LaserChain& chain, std::span<const T> parameters, std::span<Beam<T>> beams,
+                            Plate& plate, std::span<bool> known) {
   const Mounting<T> laser{.lambda = parameters[0], .tau = parameters[1], .alpha = parameters[2]};
   const T& eta = parameters[3];
 
