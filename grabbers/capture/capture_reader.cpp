@@ -11,7 +11,7 @@
 #include "grabbers/capture/dissect.hpp"
 #include "grabbers/capture/fragments.hpp"
 #include "grabbers/capture/item_merge.hpp"
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 
 namespace crisp {
 namespace {

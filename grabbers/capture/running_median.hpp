@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 
 namespace crisp {
 

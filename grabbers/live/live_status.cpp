@@ -3,18 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
+
+#include "pipeline/data/robust.hpp"
 
 namespace crisp {
 namespace {
-
-double quantile_of(std::vector<double>& values, double share) {
-  if (values.empty()) return 0;
-  const auto index = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + index, values.end());
-  return values[static_cast<std::size_t>(index)];
-}
 
 /// Items that never came, by the device's own counter: other losses are of bytes and telegrams of the same.
 std::uint64_t never_came(const DeviceStatistics& device) {
@@ -59,7 +53,7 @@ StageStatus LiveStatus::tell(const CaptureStatistics& statistics, double now, st
   }
   note("", statistics.losses, now, status.events);
   asked_ = now;
-  const double latency = quantile_of(latencies_, 0.99);
+  const double latency = latencies_.empty() ? 0 : quantile_of(latencies_, 0.99);
   latencies_.clear();
   const std::uint64_t lost = lost_items(statistics);
   status.line += fmt::format(", lost {}, queue {}, latency {:.1f} ms", lost, waiting, 1e3 * latency);

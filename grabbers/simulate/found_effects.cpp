@@ -21,11 +21,6 @@ struct Found {
   std::vector<Parameter> parameters;
 };
 
-Found fact(const std::string& where, const std::string& cause, const std::string& device,
-           const Parameter& parameter) {
-  return {.where = where, .cause = cause, .scope = device, .parameters = {parameter}};
-}
-
 /// Weibull's law for delays of a median and a 95th percentile [s]; the exponential one where these are none
 /// of such a law.
 std::vector<Parameter> law_of_delays(double median, double high) {
@@ -42,12 +37,8 @@ void add_clocks_and_links(const Findings& findings, std::vector<Found>& all) {
   for (std::size_t i = 0; i < findings.devices.size(); ++i) {
     const DeviceFacts& facts = findings.devices[i];
     const std::string where = fmt::format("devices[{}]", i);
-    all.push_back(
-        fact(where, "clock.drift", facts.device, {.name = "skew", .unit = "1", .value = facts.skew}));
-    all.push_back({.where = where,
-                   .cause = "latency.jitter",
-                   .scope = facts.device,
-                   .parameters = law_of_delays(facts.delay_median, facts.delay_95)});
+    all.push_back({where, "clock.drift", facts.device, {{.name = "skew", .unit = "1", .value = facts.skew}}});
+    all.push_back({where, "latency.jitter", facts.device, law_of_delays(facts.delay_median, facts.delay_95)});
   }
 }
 
@@ -57,10 +48,10 @@ void add_mirrors(const Findings& findings, std::vector<Found>& all) {
     if (!(facts.period > 0 && facts.nominal_period > 0)) continue;
     // The period was told by the laser's own clock.
     const double excess = facts.period * (1 + facts.skew) - facts.nominal_period;
-    all.push_back(fact(fmt::format("devices[{}]", i), "mirror.period", facts.device,
-                       {.name = "excess", .unit = "s", .value = excess}));
-    all.push_back(fact(fmt::format("devices[{}]", i), "mirror.wander", facts.device,
-                       {.name = "rms", .unit = "1", .value = facts.wander}));
+    const std::string where = fmt::format("devices[{}]", i);
+    all.push_back({where, "mirror.period", facts.device, {{.name = "excess", .unit = "s", .value = excess}}});
+    all.push_back(
+        {where, "mirror.wander", facts.device, {{.name = "rms", .unit = "1", .value = facts.wander}}});
   }
 }
 
@@ -69,16 +60,15 @@ std::vector<Found> all_found(const Findings& findings) {
   add_clocks_and_links(findings, all);
   for (std::size_t i = 0; i < findings.noise.size(); ++i) {
     const NoiseFacts& facts = findings.noise[i];
-    all.push_back(fact(fmt::format("noise[{}]", i), "noise.normal", facts.laser,
-                       {.name = "sigma", .unit = "m", .value = facts.sigma}));
+    all.push_back({fmt::format("noise[{}]", i),
+                   "noise.normal",
+                   facts.laser,
+                   {{.name = "sigma", .unit = "m", .value = facts.sigma}}});
   }
   for (std::size_t i = 0; i < findings.findings.size(); ++i) {
     const Finding& finding = findings.findings[i];
     if (!finding.accepted) continue;
-    all.push_back({.where = fmt::format("findings[{}]", i),
-                   .cause = finding.cause,
-                   .scope = finding.scope,
-                   .parameters = finding.parameters});
+    all.push_back({fmt::format("findings[{}]", i), finding.cause, finding.scope, finding.parameters});
   }
   add_mirrors(findings, all);  // above a finding of the same, which does not know the laser's clock
   return all;

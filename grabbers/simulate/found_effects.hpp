@@ -15,8 +15,9 @@ struct FoundEffects {
   std::vector<std::string> others;  ///< the rest, by name, with the reason, for people
 };
 
-/// What was measured of each device's clock (`clock.drift`), delays (`latency.jitter`) and noise
-/// (`noise.normal`), then the accepted findings in their order, then the mirrors' periods (`mirror.period`).
+/// What was measured of each device's clock (`clock.drift`), delays (`latency.jitter`, by Weibull's law) and
+/// noise (`noise.normal`), then the accepted findings in their order, then the mirrors' periods
+/// (`mirror.period`) and how they wander (`mirror.wander`).
 ///
 /// @param file       where they are from, for messages
 /// @param catalogue  what can be simulated; what is not in it is one of the others

@@ -11,7 +11,7 @@
 
 namespace crisp {
 
-LinkSettings with_bursts(LinkSettings link, const Bursts& bursts) {
+LinkSettings with_bursts(LinkSettings link, const BurstSettings& bursts) {
   if (!(bursts.interval > 0 && bursts.wait > 0)) {
     throw Error("telegrams that come in bursts need an interval and a wait above 0",
                 "give latency.bursts both");

@@ -20,7 +20,7 @@ struct LinkSettings {
 };
 
 /// What is held back and handed on several at a time: `latency.bursts` of the catalogue.
-struct Bursts {
+struct BurstSettings {
   double together = 0;     ///< share of the telegrams that come together with the one before; 0: none
   double interval = 0.02;  ///< [s] between two telegrams, as they are sent
   double wait = 0;         ///< [s] standard deviation of their delays
@@ -29,7 +29,7 @@ struct Bursts {
 /// A link that stalls so often and so long, at random, that telegrams come in such bursts.
 ///
 /// @throws Error if no stalls make so many come together that wait so little
-LinkSettings with_bursts(LinkSettings link, const Bursts& bursts);
+LinkSettings with_bursts(LinkSettings link, const BurstSettings& bursts);
 
 /// The way of one device's telegrams: in order, late by at least a minimum of its own.
 class Link {

@@ -65,7 +65,7 @@ struct DeviceEffects {
   Step latency;
   double jitter = 0;  ///< [s] mean delay beyond the shortest; 0: its link's
   double shape = 1;   ///< of these delays' law; see LinkSettings
-  Bursts bursts;
+  BurstSettings bursts;
 };
 
 /// One device as it is: what clock alignment and calibration should find.

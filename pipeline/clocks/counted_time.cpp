@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 
 namespace crisp {
 namespace {

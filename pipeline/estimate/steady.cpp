@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
 
 namespace crisp {

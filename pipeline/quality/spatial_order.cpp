@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "pipeline/data/error.hpp"
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
 
 namespace crisp {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "pipeline/quality/surfel_sums.hpp"
@@ -57,7 +58,7 @@ NormalEquations without_plane(const SurfelSums& sums, std::span<const SurfelResi
     ++result.beams;
     result.weight += r.weight;
     result.influence += std::pow(r.weight * r.distance / r.spread, 2);
-    result.stiffness += std::sqrt(r.weight) * (5 * std::sqrt(r.weight) - 4);  // Tukey's ψ′, by its w
+    result.stiffness += biweight_slope(r.weight);
   }
   result.freedom = static_cast<double>(result.beams) - 3;
   return result;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/plane.hpp"
 
@@ -115,8 +115,7 @@ std::vector<double> within_views(const Views& views, const Weighing& of) {
 
 /// By how much more the residuals scatter than they should; 1 where it is no more.
 double excess(const std::vector<double>& left) {
-  constexpr double kNormal = 1.4826;  // standard deviation of what is normal, in medians of its size
-  const auto size = [](double value) { return kNormal * std::abs(value); };
+  const auto size = [](double value) { return kSigmaByMedian * std::abs(value); };
   // Most are small enough, as a rule, and that is sooner told than where the median is.
   const auto small = std::ranges::count_if(
       left, [](double value) { return value <= 1; }, size);
@@ -133,8 +132,7 @@ void weigh_each(double outlier, const Views& views, Weighing& of) {
     const auto left = within_views(views, of);
     const double per_end = 1 / (outlier * excess(left));
     for (std::size_t i = 0; i < of.size(); ++i) {
-      const double x = std::min(1.0, std::abs(left[i]) * per_end);
-      of.weight[i] = of.most[i] * (1 - x * x) * (1 - x * x);
+      of.weight[i] = of.most[i] * biweight(left[i] * per_end);
     }
   }
 }

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 
 namespace crisp {
 
@@ -50,8 +50,7 @@ std::optional<RangeErrors> AtRest::errors() const {
     std::vector<double> off;
     for (const std::size_t scan : shots)
       off.push_back(std::abs(double{ranges_[scan * beams_ + beam]} - mean));
-    constexpr double kOfNormal = 1.4826;
-    if (kOfNormal * middle_of(off) > kMostSpread) continue;
+    if (kSigmaByMedian * middle_of(off) > kMostSpread) continue;
     ++steady;
     for (const std::size_t scan : shots) {
       all.value.push_back(static_cast<float>(double{ranges_[scan * beams_ + beam]} - mean));

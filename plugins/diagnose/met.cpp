@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
@@ -135,13 +135,12 @@ Met met_by(const Surfels& surfels, const BeamsView& beams, const std::vector<flo
 }
 
 double usual_error(const Met& met) {
-  constexpr double kOfNormal = 1.4826;
   std::vector<float> sizes;
   for (std::size_t i = 0; i < met.size(); ++i) {
     if (met.ahead[i] != kNoSurface) sizes.push_back(std::abs(met.error[i]));
   }
   if (sizes.empty()) return 0;
-  return kOfNormal * double{middle_of(sizes)};
+  return kSigmaByMedian * double{middle_of(sizes)};
 }
 
 }  // namespace crisp

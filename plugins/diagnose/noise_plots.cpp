@@ -159,7 +159,7 @@ std::vector<Plot> noise_plots(const std::string& name, const RangeErrors& errors
   for (const NoiseCovariate& over :
        {NoiseCovariate{"incidence", "cosine of the incidence", errors.cosine},
         NoiseCovariate{"remission", "remission [device's units]", errors.remission}}) {
-    if (changes(over.values)) plots.push_back(noise_over(over, name, errors, noise));
+    if (are_various(over.values)) plots.push_back(noise_over(over, name, errors, noise));
   }
   return plots;
 }

@@ -3,13 +3,10 @@
 
 #include <algorithm>
 
+#include "pipeline/data/robust.hpp"
+
 namespace crisp {
 namespace {
-
-double quantile_of(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
 
 NoiseWay growing(const char* cause, VariancePart part, const char* parameter, const char* unit) {
   const auto index = static_cast<std::size_t>(part);
@@ -63,16 +60,17 @@ NoiseWay two_peaks(std::size_t beams, double sigma) {
               },
           .parameters =
               [](const NoiseLaw& law) {
+                auto weights = law.weight;
                 return std::vector<Parameter>{
                     {.name = "separation", .unit = "m", .value = law.separation},
-                    {.name = "least", .unit = "1", .value = quantile_of(law.weight, 0.05)},
-                    {.name = "most", .unit = "1", .value = quantile_of(law.weight, 0.95)}};
+                    {.name = "least", .unit = "1", .value = quantile_of(weights, 0.05)},
+                    {.name = "most", .unit = "1", .value = quantile_of(weights, 0.95)}};
               }};
 }
 
 }  // namespace
 
-bool changes(std::span<const float> values) {
+bool are_various(std::span<const float> values) {
   if (values.empty()) return false;
   const auto [least, most] = std::ranges::minmax(values);
   return least < most;
@@ -82,7 +80,7 @@ std::vector<NoiseWay> noise_ways(const RangeErrors& errors, double sigma) {
   const std::size_t beams = beams_of(errors);
   std::vector<NoiseWay> ways = {each_beam_its_own(beams), heavy_tail(), two_peaks(beams, sigma)};
   const auto add_if_seen = [&](std::span<const float> values, NoiseWay way) {
-    if (changes(values)) ways.push_back(std::move(way));
+    if (are_various(values)) ways.push_back(std::move(way));
   };
   add_if_seen(errors.range, growing("noise.range_dependent", VariancePart::kRange, "slope", "1"));
   add_if_seen(errors.cosine, growing("noise.incidence_dependent", VariancePart::kIncidence, "spread", "m"));

@@ -20,7 +20,7 @@ struct NoiseWay {
 };
 
 /// Whether anything can go by these values: there are some, and not all are alike.
-bool changes(std::span<const float> values);
+bool are_various(std::span<const float> values);
 
 /// All that these errors can show: not what goes by something that is not known of them, or does not change.
 ///

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
 #include "plugins/diagnose/residuals.hpp"
 
@@ -104,8 +105,8 @@ std::vector<Layout> layouts(const Evidence& evidence, const Residuals& residuals
   return all;
 }
 
-/// [m] Mean of the residuals in each bin of a profile: a step of Tukey's M-estimate, whose weights w have
-/// been found about what each view sees. What all are off by changes the sum of w v by 5 w − 4 √w each.
+/// [m] Mean of the residuals in each bin of a profile: a step of Tukey's M-estimate, whose weights have been
+/// found about what each view sees.
 std::vector<double> means_in(const Layout& layout, const Weighed& residuals) {
   std::vector<double> means;
   for (std::size_t b = 0; b + 1 < layout.first.size(); ++b) {
@@ -114,7 +115,7 @@ std::vector<double> means_in(const Layout& layout, const Weighed& residuals) {
     for (std::size_t k = layout.first[b]; k < layout.first[b + 1]; ++k) {
       const double weight = residuals.weight[layout.residual[k]];
       sum += weight * residuals.value[layout.residual[k]];
-      slope += 5 * weight - 4 * std::sqrt(weight);
+      slope += biweight_slope(weight);
     }
     means.push_back(slope > 0 ? sum / slope : 0);
   }

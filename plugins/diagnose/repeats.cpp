@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 
 namespace crisp {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 
 namespace crisp {
@@ -55,7 +55,6 @@ Residuals residuals_in(const Evidence& evidence, const SurfelSettings& settings)
 std::vector<double> noise_of(const Residuals& residuals, const Measurements& beams) {
   constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
   constexpr std::size_t kFewPairs = 1000;
-  constexpr double kNormal = 1.4826;  // standard deviation of what is normal, in medians of its size
   const std::size_t lasers = beams.laser.empty() ? 0 : std::ranges::max(beams.laser) + std::size_t{1};
   std::vector<std::vector<double>> pairs(lasers);
   std::vector<std::vector<double>> alone(lasers);
@@ -74,7 +73,7 @@ std::vector<double> noise_of(const Residuals& residuals, const Measurements& bea
   std::vector<double> noise;
   for (std::size_t laser = 0; laser < lasers; ++laser) {
     auto& sizes = pairs[laser].size() > kFewPairs ? pairs[laser] : alone[laser];
-    noise.push_back(sizes.empty() ? 0 : kNormal * middle_of(sizes));
+    noise.push_back(sizes.empty() ? 0 : kSigmaByMedian * middle_of(sizes));
   }
   return noise;
 }
@@ -98,8 +97,7 @@ Weighed simulated(const Residuals& residuals, const std::vector<double>& noise, 
   }
   for (std::size_t k = 0; k < n; ++k) {
     const double end = residuals.end[k] * std::max(1.0, noise[k] / usual);
-    const double inside = std::max(0.0, 1 - std::pow(made.value[k] / end, 2));
-    made.weight[k] = inside * inside;
+    made.weight[k] = biweight(made.value[k] / end);
   }
   return made;
 }

@@ -152,7 +152,7 @@ std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const 
                                        const std::string& scope, const RangeErrors& errors,
                                        const NoiseLaw& law, double least_gain, std::uint64_t seed) {
   constexpr double kUnlikely = 0.002;
-  if (errors.size() < 100 * kGroups || !changes(values)) return std::nullopt;
+  if (errors.size() < 100 * kGroups || !are_various(values)) return std::nullopt;
   const auto groups = groups_of(values);
   std::vector<double> squares;
   std::vector<bool> is_even;

@@ -7,7 +7,7 @@
 #include "pipeline/clocks/envelope.hpp"
 #include "pipeline/clocks/series.hpp"
 #include "pipeline/clocks/unwrap.hpp"
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 #include "plugins/diagnose/series.hpp"
 
 namespace crisp {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/resampling.hpp"
 #include "plugins/scans/alternation.hpp"
 #include "plugins/scans/profiles_at_rest.hpp"

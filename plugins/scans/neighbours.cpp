@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/resampling.hpp"
 
 namespace crisp {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/data/middle.hpp"
+#include "pipeline/data/robust.hpp"
 
 namespace crisp {
 namespace {

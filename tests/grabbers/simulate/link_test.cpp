@@ -47,7 +47,7 @@ TEST(Link, HasDelaysByWeibullsLaw) {
 }
 
 TEST(Link, HandsOnBurstsAsWanted) {
-  const Bursts bursts{.together = 0.56, .interval = 0.0133, .wait = 0.07};
+  const BurstSettings bursts{.together = 0.56, .interval = 0.0133, .wait = 0.07};
   Link link(with_bursts({.jitter = 1e-6, .seconds_per_byte = 0}, bursts), 1e-3, 1, "laser1");
   constexpr int kTelegrams = 200'000;
   int together = 0;

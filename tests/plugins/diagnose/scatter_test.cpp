@@ -141,31 +141,28 @@ TEST(Scatter, OfTheStageIsDrawnForEachLaser) {
   EXPECT_GT(found[0]->findings[0].log10_odds, 10);
 }
 
+/// Expects that noise in the scene has one cause, of one parameter.
+void expect_named(const std::string& scene, const NoiseEffects& noise, const std::string& cause,
+                  const std::string& parameter, double value) {
+  const auto found = Followed(scene, noise).noise().findings;
+  ASSERT_THAT(found, SizeIs(1)) << scene;
+  EXPECT_EQ(found[0].cause, cause) << scene;
+  EXPECT_TRUE(found[0].accepted) << scene;
+  EXPECT_NEAR(value_in(found[0], parameter), value, 4 * error_in(found[0], parameter)) << scene;
+}
+
 TEST(Scatter, ThatGrowsWithTheRangeIsNamedAndMeasured) {
-  const auto found = Followed("hall", {.slope = 0.0015}).noise().findings;
-  ASSERT_THAT(found, SizeIs(1));
-  EXPECT_EQ(found[0].cause, "noise.range_dependent");
-  EXPECT_NEAR(value_in(found[0], "slope"), 0.0015, 4 * error_in(found[0], "slope"));
+  expect_named("hall", {.slope = 0.0015}, "noise.range_dependent", "slope", 0.0015);
 }
 
 TEST(Scatter, ThatGrowsWithTheIncidenceIsNamedAndMeasured) {
-  for (const char* scene : {"office", "street"}) {
-    const auto found = Followed(scene, {.spread = 0.008}).noise().findings;
-    ASSERT_THAT(found, SizeIs(1)) << scene;
-    EXPECT_EQ(found[0].cause, "noise.incidence_dependent");
-    EXPECT_TRUE(found[0].accepted);
-    EXPECT_NEAR(value_in(found[0], "spread"), 0.008, 4 * error_in(found[0], "spread")) << scene;
-  }
+  expect_named("office", {.spread = 0.008}, "noise.incidence_dependent", "spread", 0.008);
+  expect_named("street", {.spread = 0.008}, "noise.incidence_dependent", "spread", 0.008);
 }
 
 TEST(Scatter, ThatGrowsWithWeakEchoesIsNamedAndMeasured) {
-  for (const char* scene : {"office", "hall"}) {
-    const auto found = Followed(scene, {.jitter = 0.08}).noise().findings;
-    ASSERT_THAT(found, SizeIs(1)) << scene;
-    EXPECT_EQ(found[0].cause, "noise.remission_dependent");
-    EXPECT_TRUE(found[0].accepted);
-    EXPECT_NEAR(value_in(found[0], "jitter"), 0.08, 4 * error_in(found[0], "jitter")) << scene;
-  }
+  expect_named("office", {.jitter = 0.08}, "noise.remission_dependent", "jitter", 0.08);
+  expect_named("hall", {.jitter = 0.08}, "noise.remission_dependent", "jitter", 0.08);
 }
 
 TEST(Scatter, OfIncidenceAndWeakEchoesAtOnceIsNamedAsBoth) {
