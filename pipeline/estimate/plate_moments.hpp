@@ -11,8 +11,7 @@
 namespace crisp {
 
 /// The plate's motion cut into moments of a twentieth of a second, in each of which what is left of the
-/// encoder's steps turns all beams by about one angle: smoothing over a tenth of a second (between_steps())
-/// leaves what is slower than that.
+/// encoder's steps turns all beams by about one angle.
 struct PlateMoments {
   std::vector<std::uint32_t> of_beam;  ///< for each beam its moment, from 0
   std::vector<double> variances;       ///< [rad²] of each moment's turn

@@ -71,8 +71,10 @@ void AlignStage::describe_alignment(StageDescription<S>& d) {
       .range(1e-4, 10);
   d.option("plate_smoothing", &AlignStage::settings_, &AlignmentSettings::plate,
            &PlateMotionSettings::smoothing,
-           "readings of the plate so near to one another say together where it was between the steps of its "
-           "encoder; no angle is moved by more than 0.6 steps. 0: as read")
+           "readings of the plate so near to a moment say together where it was between the steps of its "
+           "encoder, or those within a half or a quarter of it where it is shaken; no angle is moved by more "
+           "than "
+           "0.6 steps. 0: as read")
       .unit("s")
       .range(0, 1);
   d.option(
