@@ -24,7 +24,7 @@ class RefineStage final : public Stage {
              Context& context) const;
 
   RefinementSettings settings_;
-  double sigma_ = 0.05;
+  double sigma_ = 0.02;  // [m] near the ranges' noise, where RQE itself is hardly biased
   Collected collected_;
   std::shared_ptr<const Calibration> start_;
 };

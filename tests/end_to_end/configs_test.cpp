@@ -84,6 +84,7 @@ TEST(Configs, CalibrateFindsTheScannerAndMakesTheCloudFromACaptureAlone) {
   EXPECT_LE(errors.eta, 0.4e-3);
   const auto& quality = outcome.stage("calibrate.refine")["report"]["quality"];
   EXPECT_LT(quality["rqe_after"].get<double>(), quality["rqe_before"].get<double>());
+  EXPECT_LT(quality["rqe_after"].get<double>(), quality["rqe_unrefined"].get<double>() + 0.01) << "its judge";
   ASSERT_NE(outcome.cloud, nullptr);
   EXPECT_EQ(outcome.cloud->size(), outcome.stage("assemble.deskew")["report"]["points"]);
 }
