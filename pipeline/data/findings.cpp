@@ -9,6 +9,7 @@ void Findings::append(const Findings& other) {
   const auto add = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
   add(findings, other.findings);
   add(unnamed, other.unnamed);
+  add(departures, other.departures);
   add(unobservable, other.unobservable);
   add(artefacts, other.artefacts);
   add(devices, other.devices);

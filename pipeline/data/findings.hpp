@@ -27,16 +27,24 @@ struct Gain {
 /// Stands for a number that a diagnosis did not look for; null in diagnosis.json.
 inline constexpr double kUnasked = std::numeric_limits<double>::quiet_NaN();
 
+/// Another cause that could stand in the place of one that was found.
+struct OtherCause {
+  std::string cause;
+  std::string scope;
+  double log10_odds = 0;  ///< against it
+};
+
 /// A departure of the measured data from the model, with its physical cause.
 struct Finding {
   std::string cause;                  ///< "mirror.cone": see docs/effects.md
   std::string scope;                  ///< "plate", "laser3"
   std::vector<Parameter> parameters;  ///< in SI, with standard errors
-  double explained_fraction = 0;      ///< share of all that was found (in squared residuals)
+  double explained_fraction = 0;      ///< share of the whole departure (in squared residuals)
   double log10_odds = kUnasked;       ///< against the likeliest other cause
   double p_value = 1;                 ///< that noise alone makes as much, corrected for the number of looks
   std::vector<std::string> confounded_with;     ///< causes that these data cannot tell from it
   std::vector<std::string> told_apart_by = {};  ///< what a recording needs to tell them from it
+  std::vector<OtherCause> alternatives = {};    ///< a few, the likeliest first; empty: none were compared
   std::vector<Gain> gain;
   bool accepted = false;  ///< whether it is part of the model from now on: it paid on held-out data
 };
@@ -51,6 +59,18 @@ struct UnnamedFinding {
   double p_value = 1;
   std::vector<Gain> gain;
   bool accepted = false;
+};
+
+/// Where measured residuals are not those of the simulation, whatever the cause.
+struct ResidualDeparture {
+  std::string covariate;  ///< over which it shows: "mirror angle", "laser"
+  std::string quantity;   ///< what is off: "range"
+  std::string scope;      ///< "laser3"; "scanner": of all lasers together
+  double amplitude = 0;   ///< RMS of the means over the covariate, less what noise makes
+  std::string unit;
+  double p_value = 1;                 ///< corrected for the number of looks
+  double amplitude_after = kUnasked;  ///< with the extended model …
+  double p_value_after = kUnasked;
 };
 
 /// What the stamps of one device say of its clock, its link and its mirror.
@@ -85,7 +105,8 @@ struct Artefact {
 struct Findings {
   std::vector<Finding> findings;  ///< in the order in which they were taken into the model
   std::vector<UnnamedFinding> unnamed;
-  std::vector<Unobservable> unobservable;  ///< causes that these data could not show
+  std::vector<ResidualDeparture> departures = {};  ///< that the model as it came, or the extended one, shows
+  std::vector<Unobservable> unobservable;          ///< causes that these data could not show
   std::vector<Artefact> artefacts;
   std::vector<DeviceFacts> devices;
   std::vector<NoiseFacts> noise;

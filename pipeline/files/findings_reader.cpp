@@ -44,6 +44,11 @@ class FindingsMap {
     }
     for (std::size_t i = 0; i < node->items.size(); ++i) read(node->items[i], fmt::format("{}[{}]", key, i));
   }
+  /// The same, where files of an earlier program lack the key.
+  template <class Read>
+  void each_if_there(const std::string& key, Read read) {
+    if (map_.find(key)) each(key, read);
+  }
   std::vector<std::string> texts(const std::string& key) {
     std::vector<std::string> all;
     each(key, [&](const YamlNode& item, const std::string& where) {
@@ -110,6 +115,17 @@ std::vector<Parameter> read_parameters(FindingsMap& parent, const std::string& w
   return all;
 }
 
+std::vector<OtherCause> read_alternatives(FindingsMap& parent, const std::string& what) {
+  std::vector<OtherCause> all;
+  parent.each_if_there("alternatives", [&](const YamlNode& node, const std::string& where) {
+    FindingsMap map(node, what + ", " + where, parent.errors());
+    all.push_back(
+        {.cause = map.text("cause"), .scope = map.text("scope"), .log10_odds = map.number("log10_odds")});
+    map.map().refuse_others();
+  });
+  return all;
+}
+
 Finding finding_in(FindingsMap& map, const std::string& what) {
   return {.cause = map.text("cause"),
           .scope = map.text("scope"),
@@ -119,6 +135,7 @@ Finding finding_in(FindingsMap& map, const std::string& what) {
           .p_value = map.number("p_value"),
           .confounded_with = map.texts("confounded_with"),
           .told_apart_by = map.texts("told_apart_by"),
+          .alternatives = read_alternatives(map, what),
           .gain = read_gains(map, what),
           .accepted = map.boolean("accepted")};
 }
@@ -132,6 +149,17 @@ UnnamedFinding unnamed_in(FindingsMap& map, const std::string& what) {
           .p_value = map.number("p_value"),
           .gain = read_gains(map, what),
           .accepted = map.boolean("accepted")};
+}
+
+ResidualDeparture departure_in(FindingsMap& map, const std::string&) {
+  return {.covariate = map.text("covariate"),
+          .quantity = map.text("quantity"),
+          .scope = map.text("scope"),
+          .amplitude = map.number("amplitude"),
+          .unit = map.text("unit"),
+          .p_value = map.number("p_value"),
+          .amplitude_after = map.number("amplitude_after"),
+          .p_value_after = map.number("p_value_after")};
 }
 
 Unobservable unobservable_in(FindingsMap& map, const std::string&) {
@@ -162,12 +190,17 @@ NoiseFacts noise_in(FindingsMap& map, const std::string&) {
 
 template <class Thing>
 void read_list(FindingsMap& parent, const char* key, Thing (*read)(FindingsMap&, const std::string&),
-               std::vector<Thing>& all) {
-  parent.each(key, [&](const YamlNode& node, const std::string& where) {
+               std::vector<Thing>& all, bool required = true) {
+  const auto read_one = [&](const YamlNode& node, const std::string& where) {
     FindingsMap map(node, where, parent.errors());
     all.push_back(read(map, where));
     map.map().refuse_others();
-  });
+  };
+  if (required) {
+    parent.each(key, read_one);
+  } else {
+    parent.each_if_there(key, read_one);
+  }
 }
 
 }  // namespace
@@ -179,6 +212,7 @@ Findings parse_findings(const YamlNode& root) {
   Findings all;
   read_list(map, "findings", finding_in, all.findings);
   read_list(map, "unnamed", unnamed_in, all.unnamed);
+  read_list(map, "departures", departure_in, all.departures, false);
   read_list(map, "unobservable", unobservable_in, all.unobservable);
   read_list(map, "artefacts", artefact_in, all.artefacts);
   read_list(map, "devices", device_in, all.devices);

@@ -27,6 +27,14 @@ Json json_of(const std::vector<Parameter>& parameters) {
   return all;
 }
 
+Json json_of(const std::vector<OtherCause>& causes) {
+  Json all = Json::array();
+  for (const OtherCause& other : causes) {
+    all.push_back({{"cause", other.cause}, {"scope", other.scope}, {"log10_odds", other.log10_odds}});
+  }
+  return all;
+}
+
 Json json_of(const Finding& finding) {
   return {{"cause", finding.cause},
           {"scope", finding.scope},
@@ -36,6 +44,7 @@ Json json_of(const Finding& finding) {
           {"p_value", finding.p_value},
           {"confounded_with", finding.confounded_with},
           {"told_apart_by", finding.told_apart_by},
+          {"alternatives", json_of(finding.alternatives)},
           {"gain", json_of(finding.gain)},
           {"accepted", finding.accepted}};
 }
@@ -44,6 +53,17 @@ Json json_of(const UnnamedFinding& finding) {
   return {{"covariate", finding.covariate}, {"quantity", finding.quantity}, {"scope", finding.scope},
           {"amplitude", finding.amplitude}, {"unit", finding.unit},         {"p_value", finding.p_value},
           {"gain", json_of(finding.gain)},  {"accepted", finding.accepted}};
+}
+
+Json json_of(const ResidualDeparture& departure) {
+  return {{"covariate", departure.covariate},
+          {"quantity", departure.quantity},
+          {"scope", departure.scope},
+          {"amplitude", departure.amplitude},
+          {"unit", departure.unit},
+          {"p_value", departure.p_value},
+          {"amplitude_after", departure.amplitude_after},
+          {"p_value_after", departure.p_value_after}};
 }
 
 Json json_of(const Unobservable& unobservable) {
@@ -87,6 +107,7 @@ std::string findings_json(const Findings& findings) {
   const Json all = {{"crisp", 1},
                     {"findings", list_of(findings.findings)},
                     {"unnamed", list_of(findings.unnamed)},
+                    {"departures", list_of(findings.departures)},
                     {"unobservable", list_of(findings.unobservable)},
                     {"artefacts", list_of(findings.artefacts)},
                     {"devices", list_of(findings.devices)},

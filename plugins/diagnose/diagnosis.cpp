@@ -64,7 +64,11 @@ std::vector<Departure::Rival> rivals(const Choice& choice, const Dictionary& dic
   std::vector<Departure::Rival> result;
   for (const Alternative& other : choice.alternatives) {
     if (result.size() == kMost) break;
-    result.push_back({.name = dictionary.candidates()[other.candidate].name, .behind = other.behind});
+    const Candidate& candidate = dictionary.candidates()[other.candidate];
+    result.push_back({.name = candidate.name,
+                      .behind = other.behind,
+                      .term = candidate.term.term,
+                      .owner = candidate.owner});
   }
   return result;
 }

@@ -27,6 +27,8 @@ struct Departure {
   struct Rival {
     std::string name;
     double behind = 0;  ///< by how much its BIC is less
+    std::string term = {};
+    std::size_t owner = 0;
   };
   std::vector<Rival> rivals;  ///< what else could explain it, the likeliest first
   std::vector<Gain> gains;    ///< on turns of the plate that the model was not fitted to

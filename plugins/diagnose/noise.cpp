@@ -121,9 +121,11 @@ struct Tried {
   double rise = 0;                       // of BIC
   double lead = 0;                       // over the next best
   std::vector<std::string> as_probable;  // causes within 100 : 1
+  std::vector<OtherCause> others;        // all causes, the likeliest first
 };
 
-Tried best_of(const std::vector<NoiseWay>& ways, const NoiseLaw& law, const RangeErrors& errors) {
+Tried best_of(const std::string& scope, const std::vector<NoiseWay>& ways, const NoiseLaw& law,
+              const RangeErrors& errors) {
   constexpr double kOdds = 9.2;  // of BIC: 100 : 1
   const double before = bic_of(law, errors);
   std::vector<double> rises;
@@ -139,9 +141,13 @@ Tried best_of(const std::vector<NoiseWay>& ways, const NoiseLaw& law, const Rang
   for (std::size_t w = 0; w < ways.size(); ++w) {
     if (w == best.way) continue;
     best.lead = std::min(best.lead, best.rise - rises[w]);
-    const bool is_as_probable = rises[w] > 0 && best.rise - rises[w] < kOdds;
-    if (is_as_probable && !ways[w].cause.empty()) best.as_probable.push_back(ways[w].cause);
+    if (ways[w].cause.empty()) continue;
+    const double behind = best.rise - rises[w];
+    if (rises[w] > 0 && behind < kOdds) best.as_probable.push_back(ways[w].cause);
+    best.others.push_back(
+        {.cause = ways[w].cause, .scope = scope, .log10_odds = behind / 2 / std::numbers::ln10});
   }
+  std::ranges::stable_sort(best.others, {}, &OtherCause::log10_odds);
   return best;
 }
 
@@ -170,6 +176,7 @@ Found found_of(const std::string& scope, const NoiseWay& way, const Tried& tried
                   .log10_odds = tried.lead / 2 / std::numbers::ln10,
                   .p_value = p_value_of(before, tried.law, errors),
                   .confounded_with = {},
+                  .alternatives = tried.others,
                   .gain = {gain_of(before, tried.law, errors, seed)}};
   for (const std::string& cause : tried.as_probable) {
     finding.confounded_with.push_back(fmt::format("{}.{}", scope, cause));
@@ -237,7 +244,7 @@ NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, 
   auto left = noise_ways(errors, result.plain.sigma());
   std::vector<Found> found;
   while (!left.empty()) {
-    const Tried best = best_of(left, result.law, errors);
+    const Tried best = best_of(scope, left, result.law, errors);
     if (best.rise < kBic) break;
     Found one = found_of(scope, left[best.way], best, result.law, errors, seed);
     if (one.finding.gain[0].after - one.finding.gain[0].before < least_gain) break;

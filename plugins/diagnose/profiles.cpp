@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
@@ -84,6 +85,24 @@ Layout laid_out(const std::vector<std::uint32_t>& members, const std::vector<dou
   return layout;
 }
 
+/// The mean residual of each laser. What all surfaces of a laser miss others' by is no plane's.
+std::optional<Layout> layout_over_lasers(const Measurements& beams, const Residuals& residuals) {
+  std::vector<std::uint32_t> all(residuals.beam.size());
+  std::iota(all.begin(), all.end(), std::uint32_t{0});
+  std::map<std::size_t, std::size_t> counts;
+  for (const std::uint32_t beam : residuals.beam) ++counts[beams.laser[beam]];
+  if (counts.size() < 2) return std::nullopt;
+  std::ranges::stable_sort(all, {}, [&](std::uint32_t k) { return beams.laser[residuals.beam[k]]; });
+  Layout layout{.profile = {.covariate = "laser", .unit = "", .laser = kAllLasers, .bins = {}},
+                .residual = std::move(all),
+                .first = {0}};
+  for (const auto& [laser, count] : counts) {
+    layout.profile.bins.push_back({.at = static_cast<double>(laser + 1)});
+    layout.first.push_back(layout.first.back() + count);
+  }
+  return layout;
+}
+
 std::vector<Layout> layouts(const Evidence& evidence, const Residuals& residuals) {
   const Measurements& beams = evidence.sample().beams;
   std::map<std::size_t, std::vector<std::uint32_t>> of_laser;
@@ -102,6 +121,7 @@ std::vector<Layout> layouts(const Evidence& evidence, const Residuals& residuals
       all.push_back(std::move(layout));
     }
   }
+  if (auto over_lasers = layout_over_lasers(beams, residuals)) all.push_back(std::move(*over_lasers));
   return all;
 }
 
@@ -166,10 +186,14 @@ SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings
   const auto all = layouts(evidence, residuals);
 
   std::vector<SimulatedMeans> means(all.size(), SimulatedMeans(kSimulations));
+  std::vector<double> squares(kSimulations);
   for_each_index(kSimulations, [&](std::size_t s) {
     const Weighed made = simulated(residuals, noise, settings.noise, seed + s);
+    squares[s] = shared_square(residuals, made, beams);
     for (std::size_t p = 0; p < all.size(); ++p) means[p][s] = means_in(all[p], made);
   });
+  result.excess = shared_square(residuals, residuals.measured, beams) -
+                  std::accumulate(squares.begin(), squares.end(), 0.0) / double{kSimulations};
   std::vector<double> least(kSimulations, 1.0);
   for (const SimulatedMeans& of_profile : means) {
     const auto errors = errors_of(of_profile);

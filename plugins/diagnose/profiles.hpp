@@ -8,11 +8,15 @@
 
 namespace crisp {
 
-/// Residuals of one laser against one quantity, in bins of equally many beams.
+/// In place of a laser: all of them.
+inline constexpr std::size_t kAllLasers = ~std::size_t{0};
+
+/// Residuals of one laser against one quantity, in bins of equally many beams. That of all lasers together
+/// has a bin for each.
 struct Profile {
   std::string covariate;
-  std::string unit;  ///< of the covariate, SI; empty: it has none
-  std::size_t laser = 0;
+  std::string unit;       ///< of the covariate, SI; empty: it has none
+  std::size_t laser = 0;  ///< or kAllLasers
   struct Bin {
     double at = 0;         ///< mean of the covariate, in SI
     double measured = 0;   ///< [m] mean residual, along the beam
@@ -32,6 +36,7 @@ struct SideBySide {
   std::vector<Profile> profiles;
   std::vector<double> noise;  ///< [m] standard deviation of each laser's ranges that the residuals show
   double p_value = 1;         ///< that nothing but noise is in the residuals: the least of the profiles'
+  double excess = 0;          ///< [m²] mean square of the residuals beyond what noise leaves of them
 };
 
 /// Lays the residuals of the measured data beside those of the scanner simulated again, measurement by

@@ -18,8 +18,12 @@ std::vector<Parameter> parameters_of(const Departure& departure, const Calibrati
   return found ? found->parameters : candidate.term.parameters;
 }
 
-std::string scope_of(const Candidate& candidate, const Calibration& calibration) {
-  return candidate.owner < calibration.lasers.size() ? calibration.lasers[candidate.owner].name : "plate";
+std::string name_of(std::size_t owner, const Calibration& calibration) {
+  return owner < calibration.lasers.size() ? calibration.lasers[owner].name : "plate";
+}
+
+std::string scope_of(const Profile& profile, const Calibration& calibration) {
+  return profile.laser == kAllLasers ? "scanner" : calibration.lasers[profile.laser].name;
 }
 
 /// What a recording needs to tell a candidate, "laser2.mirror.cone", from what resembles it.
@@ -43,14 +47,22 @@ std::vector<std::string> told_apart_by(const Finding& finding, const TermRegistr
   return needs;
 }
 
-Finding finding_of(const Departure& departure, const Calibration& calibration, const Diagnosis& diagnosis,
-                   const TermRegistry& terms, double odds) {
+/// Of the squares of the residuals beyond noise, before anything was found, those that one departure takes
+/// which the others leave. In what all of them take is all that is beyond noise, at least.
+double explained_by(const Departure& departure, const Diagnosis& diagnosis, double noise) {
+  const auto square = [noise](const Departure& one) { return std::pow(one.look.visible * noise, 2); };
   double all = 0;
-  for (const Departure& other : diagnosis.departures) all += other.look.gain;
+  for (const Departure& other : diagnosis.departures) all += square(other);
+  const double whole = std::max(all, diagnosis.left_before.excess);
+  return whole > 0 ? square(departure) / whole : 0;
+}
+
+Finding finding_of(const Departure& departure, const Calibration& calibration, const Diagnosis& diagnosis,
+                   const TermRegistry& terms, double odds, double noise) {
   Finding finding{.cause = departure.candidate.term.term,
-                  .scope = scope_of(departure.candidate, calibration),
+                  .scope = name_of(departure.candidate.owner, calibration),
                   .parameters = parameters_of(departure, calibration),
-                  .explained_fraction = all > 0 ? departure.look.gain / all : 0,
+                  .explained_fraction = explained_by(departure, diagnosis, noise),
                   .p_value = std::min(1.0, departure.look.p_value * static_cast<double>(diagnosis.looks)),
                   .confounded_with = {},
                   .told_apart_by = {},
@@ -60,6 +72,9 @@ Finding finding_of(const Departure& departure, const Calibration& calibration, c
   finding.log10_odds = behind / 2 / std::numbers::ln10;
   for (const auto& rival : departure.rivals) {
     if (rival.behind < odds) finding.confounded_with.push_back(rival.name);
+    finding.alternatives.push_back({.cause = rival.term,
+                                    .scope = name_of(rival.owner, calibration),
+                                    .log10_odds = rival.behind / 2 / std::numbers::ln10});
   }
   finding.told_apart_by = told_apart_by(finding, terms);
   return finding;
@@ -73,7 +88,7 @@ UnnamedFinding unnamed_of(const Departure& departure, const Calibration& calibra
   std::ranges::replace(quantity, '_', ' ');
   return {.covariate = departure.candidate.covariate,
           .quantity = quantity,
-          .scope = scope_of(departure.candidate, calibration),
+          .scope = name_of(departure.candidate.owner, calibration),
           .amplitude = departure.look.visible * noise,
           .unit = "m",
           .p_value = std::min(1.0, departure.look.p_value * static_cast<double>(diagnosis.looks)),
@@ -125,11 +140,19 @@ std::string reason_of(const Diagnosis::Limit& limit, const std::string& told_by)
       1e3 * limit.size, needs);
 }
 
+/// What the odds are against.
+std::string next_in_words(const Finding& finding) {
+  if (finding.alternatives.empty()) return "the next cause";
+  const OtherCause& next = finding.alternatives.front();
+  if (next.log10_odds > finding.log10_odds) return "no named cause";
+  return fmt::format("the next cause, {} of {},", next.cause, next.scope);
+}
+
 /// What the extended model leaves over a covariate, unless something is said of that already.
 void add_left_over(const SideBySide& left, const Calibration& calibration, double visible, Findings& all) {
   for (const Profile& profile : left.profiles) {
     if (!profile.departs() || profile.rms < visible) continue;
-    const std::string& laser = calibration.lasers[profile.laser].name;
+    const std::string laser = scope_of(profile, calibration);
     const bool is_known = std::ranges::any_of(all.unnamed, [&](const UnnamedFinding& known) {
       return known.covariate == profile.covariate && (known.scope == laser || known.scope == "plate");
     });
@@ -144,12 +167,34 @@ void add_left_over(const SideBySide& left, const Calibration& calibration, doubl
   }
 }
 
+/// What departs from the simulation, before or after.
+std::vector<ResidualDeparture> departures_of(const Diagnosis& diagnosis, const Calibration& calibration) {
+  std::vector<ResidualDeparture> all;
+  for (const Profile& before : diagnosis.left_before.profiles) {
+    const auto after = std::ranges::find_if(diagnosis.left_after.profiles, [&](const Profile& other) {
+      return other.laser == before.laser && other.covariate == before.covariate;
+    });
+    const bool is_there = after != diagnosis.left_after.profiles.end();
+    if (!before.departs() && !(is_there && after->departs())) continue;
+    all.push_back({.covariate = before.covariate,
+                   .quantity = "range",
+                   .scope = scope_of(before, calibration),
+                   .amplitude = before.rms,
+                   .unit = "m",
+                   .p_value = before.p_value});
+    if (!is_there) continue;
+    all.back().amplitude_after = after->rms;
+    all.back().p_value_after = after->p_value;
+  }
+  return all;
+}
+
 /// The profiles that depart from the simulation.
 std::string profiles_in_words(const SideBySide& left, const Calibration& calibration) {
   std::string words;
   for (const Profile& profile : left.profiles) {
     if (!profile.departs()) continue;
-    words += fmt::format("  {} against {:<14}{:>8.3f} mm   {}\n", calibration.lasers[profile.laser].name,
+    words += fmt::format("  {} against {:<14}{:>8.3f} mm   {}\n", scope_of(profile, calibration),
                          profile.covariate, profile.rms * 1e3, chance_in_words(profile.p_value));
   }
   return words;
@@ -170,12 +215,13 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
                      const SelectionSettings& settings, double noise) {
   Findings all{.findings = {},
                .unnamed = {},
+               .departures = departures_of(diagnosis, calibration),
                .unobservable = {},
                .before_p = diagnosis.left_before.p_value,
                .after_p = diagnosis.left_after.p_value};
   for (const Departure& departure : diagnosis.departures) {
     if (departure.candidate.is_cause()) {
-      all.findings.push_back(finding_of(departure, calibration, diagnosis, terms, settings.odds));
+      all.findings.push_back(finding_of(departure, calibration, diagnosis, terms, settings.odds, noise));
     } else {
       all.unnamed.push_back(unnamed_of(departure, calibration, diagnosis, noise));
     }
@@ -215,10 +261,12 @@ std::string headline(const UnnamedFinding& finding) {
 std::string in_words(const Finding& finding) {
   std::string words = headline(finding);
   if (finding.explained_fraction > 0) {
-    words += fmt::format("\n  explains {:.0f} % of what was found", 100 * finding.explained_fraction);
+    const bool is_noise = finding.cause.starts_with("noise.");
+    words += fmt::format("\n  explains {:.0f} % of {}", 100 * finding.explained_fraction,
+                         is_noise ? "what all laws of its noise bring" : "the departure");
   }
   if (std::isfinite(finding.log10_odds)) {
-    words += fmt::format("\n  odds against the next cause 10^{:.0f}", finding.log10_odds);
+    words += fmt::format("\n  odds against {} 10^{:.0f}", next_in_words(finding), finding.log10_odds);
   }
   if (!finding.confounded_with.empty()) {
     words += fmt::format("; these data cannot tell it from {}", fmt::join(finding.confounded_with, ", "));

@@ -27,6 +27,20 @@ Eigen::MatrixX3d span_of_plane(const std::vector<SurfelResidual>& residuals) {
   return span;
 }
 
+/// Calls pair(k): residuals k − 1 and k are of beams of one scan, one after the other on one surface.
+template <class Pair>
+void for_each_neighbours(const Residuals& residuals, const Measurements& beams, Pair pair) {
+  constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
+  for (std::size_t s = 0; s + 1 < residuals.first.size(); ++s) {
+    for (std::size_t k = residuals.first[s] + 1; k < residuals.first[s + 1]; ++k) {
+      const std::uint32_t own = residuals.beam[k];
+      const std::uint32_t before = residuals.beam[k - 1];
+      if (beams.laser[before] == beams.laser[own] && beams.time[own] - beams.time[before] <= kOneScan)
+        pair(k);
+    }
+  }
+}
+
 }  // namespace
 
 Residuals residuals_in(const Evidence& evidence, const SurfelSettings& settings) {
@@ -53,29 +67,34 @@ Residuals residuals_in(const Evidence& evidence, const SurfelSettings& settings)
 }
 
 std::vector<double> noise_of(const Residuals& residuals, const Measurements& beams) {
-  constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
   constexpr std::size_t kFewPairs = 1000;
   const std::size_t lasers = beams.laser.empty() ? 0 : std::ranges::max(beams.laser) + std::size_t{1};
   std::vector<std::vector<double>> pairs(lasers);
   std::vector<std::vector<double>> alone(lasers);
-  for (std::size_t s = 0; s + 1 < residuals.first.size(); ++s) {
-    for (std::size_t k = residuals.first[s]; k < residuals.first[s + 1]; ++k) {
-      const std::uint32_t own = residuals.beam[k];
-      alone[beams.laser[own]].push_back(std::abs(residuals.measured.value[k]));
-      if (k == residuals.first[s]) continue;
-      const std::uint32_t before = residuals.beam[k - 1];
-      if (beams.laser[before] != beams.laser[own] || beams.time[own] - beams.time[before] > kOneScan)
-        continue;
-      pairs[beams.laser[own]].push_back(
-          std::abs(residuals.measured.value[k] - residuals.measured.value[k - 1]) / std::numbers::sqrt2);
-    }
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    alone[beams.laser[residuals.beam[k]]].push_back(std::abs(residuals.measured.value[k]));
   }
+  for_each_neighbours(residuals, beams, [&](std::size_t k) {
+    pairs[beams.laser[residuals.beam[k]]].push_back(
+        std::abs(residuals.measured.value[k] - residuals.measured.value[k - 1]) / std::numbers::sqrt2);
+  });
   std::vector<double> noise;
   for (std::size_t laser = 0; laser < lasers; ++laser) {
     auto& sizes = pairs[laser].size() > kFewPairs ? pairs[laser] : alone[laser];
     noise.push_back(sizes.empty() ? 0 : kSigmaByMedian * middle_of(sizes));
   }
   return noise;
+}
+
+double shared_square(const Residuals& residuals, const Weighed& values, const Measurements& beams) {
+  double sum = 0;
+  double weights = 0;
+  for_each_neighbours(residuals, beams, [&](std::size_t k) {
+    const double weight = std::sqrt(values.weight[k] * values.weight[k - 1]);
+    sum += weight * values.value[k] * values.value[k - 1];
+    weights += weight;
+  });
+  return weights > 0 ? sum / weights : 0;
 }
 
 Weighed simulated(const Residuals& residuals, const std::vector<double>& noise, double usual,

@@ -36,6 +36,12 @@ Residuals residuals_in(const Evidence& evidence, const SurfelSettings& settings)
 /// hardly any neighbours, from all residuals.
 std::vector<double> noise_of(const Residuals& residuals, const Measurements& beams);
 
+/// [m²] Mean product of the residuals of neighbours: what all of one scan that meet one surface are off by
+/// together. Noise of each range by itself, of whatever law, is not in it. 0 without any.
+///
+/// @param values  of `residuals`: those measured, or others in their place
+double shared_square(const Residuals& residuals, const Weighed& values, const Measurements& beams);
+
 /// What noise leaves of a simulated recording, once planes have been fitted to it: normal noise, weighed as
 /// measured residuals are.
 ///

@@ -23,6 +23,7 @@ Findings some_findings() {
                                .p_value = 1e-9,
                                .confounded_with = {"laser2.mount.tangential_offset"},
                                .told_apart_by = {"surfaces near and far"},
+                               .alternatives = {{"range.offset", "laser3", 1.5}},
                                .gain = {{.metric = "cloud thickness",
                                          .unit = "m",
                                          .before = 0.009,
@@ -35,6 +36,13 @@ Findings some_findings() {
                               .amplitude = 0.002,
                               .unit = "m",
                               .p_value = 1e-4});
+  findings.departures.push_back({.covariate = "remission",
+                                 .quantity = "range",
+                                 .scope = "scanner",
+                                 .amplitude = 0.004,
+                                 .unit = "m",
+                                 .p_value = 1e-12,
+                                 .amplitude_after = 2e-4});
   findings.unobservable.push_back({.parameter = "encoder.backlash", .reason = "no reversal"});
   findings.artefacts.push_back({.name = "density",
                                 .parameters = {{"laser2.tau", "m", 0.002, 1e-4, true}},
@@ -53,12 +61,19 @@ std::vector<std::string> keys_of(const nlohmann::json& object) {
 TEST(FindingsFile, HoldsWhatProgramsAreToldToExpect) {
   const auto json = nlohmann::json::parse(findings_json(some_findings()));
   EXPECT_THAT(keys_of(json),
-              testing::UnorderedElementsAre("crisp", "findings", "unnamed", "unobservable", "artefacts",
-                                            "devices", "noise", "indistinguishable"));
+              testing::UnorderedElementsAre("crisp", "findings", "unnamed", "departures", "unobservable",
+                                            "artefacts", "devices", "noise", "indistinguishable"));
   const auto& finding = json["findings"][0];
-  EXPECT_THAT(keys_of(finding), testing::UnorderedElementsAre(
-                                    "cause", "scope", "parameters", "explained_fraction", "log10_odds",
-                                    "p_value", "confounded_with", "told_apart_by", "gain", "accepted"));
+  EXPECT_THAT(keys_of(finding),
+              testing::UnorderedElementsAre("cause", "scope", "parameters", "explained_fraction",
+                                            "log10_odds", "p_value", "confounded_with", "told_apart_by",
+                                            "alternatives", "gain", "accepted"));
+  EXPECT_THAT(keys_of(finding["alternatives"][0]),
+              testing::UnorderedElementsAre("cause", "scope", "log10_odds"));
+  EXPECT_THAT(keys_of(json["departures"][0]),
+              testing::UnorderedElementsAre("covariate", "quantity", "scope", "amplitude", "unit", "p_value",
+                                            "amplitude_after", "p_value_after"));
+  EXPECT_TRUE(json["departures"][0]["p_value_after"].is_null()) << "nothing was extended";
   EXPECT_THAT(keys_of(finding["parameters"][0]),
               testing::UnorderedElementsAre("name", "value", "unit", "std_error"));
   EXPECT_THAT(keys_of(finding["gain"][0]),
@@ -75,7 +90,8 @@ TEST(FindingsFile, HoldsWhatSeveralDiagnosesSay) {
   all.append(some_findings());
   all.append({.before_p = 0.5, .after_p = 0.1});
   const auto json = nlohmann::json::parse(findings_json(all));
-  for (const char* list : {"findings", "unnamed", "unobservable", "artefacts", "devices", "noise"}) {
+  for (const char* list :
+       {"findings", "unnamed", "departures", "unobservable", "artefacts", "devices", "noise"}) {
     EXPECT_EQ(json[list].size(), 2U) << list;
   }
   EXPECT_EQ(json["indistinguishable"]["before_p"], 0.005) << "the smallest";
@@ -91,7 +107,9 @@ TEST(FindingsFile, IsDocumentedKeyByKey) {
                                          json["findings"][0],
                                          json["findings"][0]["parameters"][0],
                                          json["findings"][0]["gain"][0],
+                                         json["findings"][0]["alternatives"][0],
                                          json["unnamed"][0],
+                                         json["departures"][0],
                                          json["unobservable"][0],
                                          json["artefacts"][0],
                                          json["devices"][0],
@@ -120,11 +138,23 @@ TEST(FindingsFile, IsReadAsItWasWritten) {
   EXPECT_EQ(finding.gain.at(0).ci95[0], -3e-4);
   EXPECT_TRUE(finding.accepted);
   EXPECT_EQ(read.unnamed.at(0).quantity, "range");
+  EXPECT_EQ(finding.alternatives.at(0).scope, "laser3");
+  EXPECT_EQ(read.departures.at(0).amplitude, 0.004);
+  EXPECT_TRUE(std::isnan(read.departures.at(0).p_value_after)) << "null";
   EXPECT_EQ(read.unobservable.at(0).parameter, "encoder.backlash");
   EXPECT_EQ(read.artefacts.at(0).parameters.at(0).value, 0.002);
   EXPECT_EQ(read.devices.at(0).stamps, 172U);
   EXPECT_EQ(read.noise.at(0).sigma, 4.6e-3);
   EXPECT_EQ(read.before_p, 0.005);
+}
+
+TEST(FindingsFile, OfAnEarlierProgramIsReadWithoutWhatItDidNotTell) {
+  auto json = nlohmann::ordered_json::parse(findings_json(some_findings()));
+  json.erase("departures");
+  json["findings"][0].erase("alternatives");
+  const Findings read = parse_findings(parse_yaml(json.dump(2), "diagnosis.json"));
+  EXPECT_THAT(read.departures, testing::IsEmpty());
+  EXPECT_EQ(read.findings.at(0).cause, "mirror.cone");
 }
 
 TEST(FindingsFile, ReplacesBytesThatAreNoUtf8) {

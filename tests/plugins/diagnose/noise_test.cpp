@@ -96,6 +96,11 @@ TEST(Noise, ThatGrowsWithTheRangeIsFoundWithItsSlope) {
   ASSERT_THAT(found.findings, SizeIs(1));
   EXPECT_EQ(found.findings[0].cause, "noise.range_dependent");
   EXPECT_NEAR(value_of(found.findings[0], "slope"), 8e-4, 4 * error_of(found.findings[0], "slope"));
+  const auto& others = found.findings[0].alternatives;
+  ASSERT_FALSE(others.empty()) << "other laws were compared";
+  EXPECT_EQ(others.front().scope, "laser1");
+  EXPECT_GE(others.front().log10_odds, found.findings[0].log10_odds);
+  EXPECT_TRUE(std::ranges::is_sorted(others, {}, &OtherCause::log10_odds));
 }
 
 TEST(Noise, OfWhichAShareIsLargerIsFoundWithThatShare) {

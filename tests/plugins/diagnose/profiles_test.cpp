@@ -73,6 +73,39 @@ TEST(SideBySide, ShowsHalvesOfASweepThatDisagree) {
   EXPECT_GT(halves->bins[1].measured - halves->bins[0].measured, 0.001);
 }
 
+TEST(SideBySide, ShowsALaserWhoseRangesAreOffTheOthers) {
+  test::Recording recording = test::hidden(6, 3, office(), {});
+  for (std::size_t i = 0; i < recording.made.beams.size(); ++i) {
+    if (recording.made.beams.laser[i] == 1) recording.made.beams.range[i] += 0.006F;
+  }
+  const SideBySide left = beside(recording);
+  const auto lasers = std::ranges::find(left.profiles, "laser", &Profile::covariate);
+  ASSERT_NE(lasers, left.profiles.end());
+  EXPECT_EQ(lasers->laser, kAllLasers);
+  ASSERT_EQ(lasers->bins.size(), 3U);
+  EXPECT_TRUE(lasers->departs());
+  EXPECT_EQ(lasers->bins[1].at, 2) << "as people count";
+  for (const std::size_t other : {0U, 2U}) {
+    EXPECT_GT(lasers->bins[1].measured - lasers->bins[other].measured, 0.002) << other;
+  }
+}
+
+TEST(SideBySide, KnowsHowMuchOfTheResidualsIsNoNoise) {
+  const SideBySide clean = beside(test::hidden(6, 3, office(), {}));
+  EXPECT_NEAR(clean.excess, 0, 1.9e-6) << "60 000 ranges with a noise of 144 mm^2 tell it to 0.6 mm^2";
+  ScannerSettings scanner = test::scanner_of(6, 3);
+  scanner.laser_effects.resize(3);
+  scanner.laser_effects[1].noise.sigma = 0.024;
+  EXPECT_NEAR(beside(test::recorded(scanner, office())).excess, 0, 4.8e-6) << "1.6 mm^2, whatever the noise is";
+  test::Recording recording = test::hidden(6, 3, office(), {});
+  for (std::size_t i = 0; i < recording.made.beams.size(); ++i) {
+    recording.made.beams.range[i] += 0.008F * std::sin(4 * recording.made.beams.mirror_angle[i]);
+  }
+  const double most = 0.5 * 0.008 * 0.008;
+  EXPECT_GT(beside(recording).excess, 0.5 * most) << "less what planes take of it";
+  EXPECT_LT(beside(recording).excess, 1.1 * most);
+}
+
 TEST(SideBySide, GivesPlainNoiseAnyPValue) {
   constexpr std::size_t kRecordings = 16;
   std::vector<double> p_values;

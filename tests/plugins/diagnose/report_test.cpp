@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -103,6 +104,85 @@ TEST(Report, HasNothingUnnamedThatChanceOrAWallsBumpsMayHaveMade) {
   Diagnosis bumps = diagnosis;
   for (Profile& profile : bumps.left_after.profiles) profile.rms = 0.9 * SelectionSettings{}.visible * kNoise;
   EXPECT_THAT(reported(bumps).unnamed, IsEmpty());
+}
+
+TEST(Report, ListsWhatDepartsFromTheSimulationWithItsSize) {
+  const Findings findings = reported(without_candidates(with_a_third_harmonic()));
+  const auto found = std::ranges::find_if(findings.departures, [](const ResidualDeparture& departure) {
+    return departure.covariate == "mirror angle" && departure.scope == "laser3";
+  });
+  ASSERT_NE(found, findings.departures.end());
+  EXPECT_EQ(found->quantity, "range");
+  EXPECT_NEAR(found->amplitude, 0.006 / std::sqrt(2), 0.0025) << "less what planes take of it";
+  EXPECT_LE(found->p_value, 0.01);
+  EXPECT_EQ(found->amplitude_after, found->amplitude) << "nothing was taken";
+  const auto clean = reported(without_candidates(test::hidden(4, 3, office(), {})));
+  EXPECT_THAT(clean.departures, IsEmpty());
+}
+
+/// An offset of one laser, a cone in another, and what no cause describes in the third.
+const Diagnosis& of_two_causes_and_a_shape() {
+  static const Diagnosis diagnosis = [] {
+    test::Recording recording =
+        test::hidden(7, 4, office(), {{"laser1.range.offset", {0.012}}, {"laser2.mirror.cone", {0.004}}});
+    Measurements& beams = recording.made.beams;
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      if (beams.laser[i] == 2) beams.range[i] += 0.012F * std::sin(3 * beams.mirror_angle[i]);
+    }
+    DiagnosisSettings settings;
+    settings.beams = 60'000;
+    return test::diagnosed(recording, settings);
+  }();
+  return diagnosis;
+}
+
+std::map<std::string, double> shares_in(const Findings& findings) {
+  std::map<std::string, double> shares;
+  for (const Finding& finding : findings.findings) shares[finding.cause] = finding.explained_fraction;
+  return shares;
+}
+
+TEST(Report, SharesOutTheWholeDepartureAndNotWhatWasFoundOfIt) {
+  const Diagnosis& all = of_two_causes_and_a_shape();
+  const auto shares = shares_in(reported(all));
+  ASSERT_THAT(shares,
+              testing::UnorderedElementsAre(testing::Key("range.offset"), testing::Key("mirror.cone")));
+  double named = 0;
+  for (const auto& [cause, share] : shares) named += share;
+  EXPECT_LT(named, 0.9) << "the shape has a share, too";
+  EXPECT_GT(named, 0.2);
+
+  // Whether the shape was described or not, there is as much of it.
+  Diagnosis fewer = all;
+  std::erase_if(fewer.departures, [](const Departure& one) { return !one.candidate.is_cause(); });
+  ASSERT_THAT(fewer.departures, SizeIs(2));
+  for (const auto& [cause, share] : shares_in(reported(fewer))) {
+    EXPECT_NEAR(share, shares.at(cause), 0.15 * shares.at(cause)) << cause;
+  }
+}
+
+TEST(Report, GivesTwoCausesNearlyAllOfWhatTheyDo) {
+  const auto recording =
+      test::hidden(8, 4, office(), {{"laser1.range.offset", {0.012}}, {"laser2.mirror.cone", {0.004}}});
+  const Diagnosis diagnosis = test::diagnosed(recording);
+  ASSERT_THAT(test::names_in(diagnosis),
+              testing::UnorderedElementsAre("laser1.range.offset", "laser2.mirror.cone"));
+  double named = 0;
+  for (const auto& [cause, share] : shares_in(reported(diagnosis))) named += share;
+  EXPECT_GT(named, 0.9);
+  EXPECT_LE(named, 1 + 1e-9);
+}
+
+TEST(Report, NamesWhatTheOddsAreAgainst) {
+  const Findings findings = reported(of_two_causes_and_a_shape());
+  for (const Finding& finding : findings.findings) {
+    ASSERT_FALSE(finding.alternatives.empty()) << finding.cause;
+    const OtherCause& next = finding.alternatives.front();
+    EXPECT_EQ(next.log10_odds, finding.log10_odds) << "the likeliest";
+    EXPECT_TRUE(std::ranges::is_sorted(finding.alternatives, {}, &OtherCause::log10_odds));
+    EXPECT_THAT(in_words(finding),
+                HasSubstr("odds against the next cause, " + next.cause + " of " + next.scope + ", 10^"));
+  }
 }
 
 /// "+ 4.9" of "laser2.lambda + 4.9 * laser2.mount.tangential_offset.y, …"; NaN if it is not there.
