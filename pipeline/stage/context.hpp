@@ -55,6 +55,7 @@ struct StageReport {
   std::map<std::string, std::uint64_t> counts;
   std::vector<std::string> warnings;
   std::vector<std::string> doubts;
+  std::map<std::string, std::string> lifted;  ///< of which kind doubts no longer hold, and why
   nlohmann::json section = nlohmann::json::object();
   std::vector<std::string> lines;
   std::vector<std::filesystem::path> read;
@@ -80,6 +81,11 @@ class Context {
   void warn(std::string text) { report_->warnings.push_back(std::move(text)); }
   /// The run goes on, but its result cannot be trusted: the summary says why, and the exit status is not 0.
   void distrust(std::string why) { report_->doubts.push_back(std::move(why)); }
+  /// The doubts of the stages above that gave the item of this kind which its own now replaces no longer
+  /// hold: they become warnings that say why. Not those of stages whose item goes elsewhere, too.
+  void lift_doubts(std::string_view kind, std::string why) {
+    report_->lifted.insert_or_assign(std::string(kind), std::move(why));
+  }
   /// Adds the keys of this object to the stage's section of summary.json; keys given before are replaced.
   void report(const nlohmann::json& section) { report_->section.update(section); }
   /// Adds lines to what people read at the end of the run; may hold line breaks (a table).

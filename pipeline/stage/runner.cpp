@@ -6,6 +6,7 @@
 #include <mutex>
 #include <new>
 #include <thread>
+#include <utility>
 
 #include "pipeline/stage/stopwatch.hpp"
 
@@ -93,6 +94,9 @@ class Runner {
   }
 
   std::vector<NodeResult> results() {
+    for (std::size_t i = 0; i < workers_.size(); ++i) {
+      for (const auto& [kind, why] : workers_[i].result.report.lifted) lift_doubts(i, kind, why);
+    }
     std::vector<NodeResult> list;
     for (auto& worker : workers_) {
       const StageType& type = *worker.node->type;
@@ -103,6 +107,28 @@ class Runner {
       list.push_back(std::move(worker.result));
     }
     return list;
+  }
+
+  /// Turns the doubts of all whose items of this kind ended in what one stage gave in their place into
+  /// warnings: stages feed such as come behind them only.
+  void lift_doubts(std::size_t by, const std::string& kind, const std::string& why) {
+    std::vector<bool> replaced(workers_.size(), false);
+    replaced[by] = true;
+    for (std::size_t i = by; i-- > 0;) {
+      std::size_t fed = 0;
+      bool elsewhere = false;
+      for (const auto& edge : workers_[i].edges) {
+        if (edge.kind.name() != kind) continue;
+        ++fed;
+        elsewhere = elsewhere || !replaced[edge.to];
+      }
+      replaced[i] = fed > 0 && !elsewhere;
+      if (!replaced[i]) continue;
+      StageReport& report = workers_[i].result.report;
+      for (const std::string& doubt : std::exchange(report.doubts, {})) {
+        report.warnings.push_back(doubt + "; " + workers_[by].result.tag + ": " + why);
+      }
+    }
   }
 
   static void add(std::map<std::string, std::uint64_t>& items, const Kind& kind, std::uint64_t n) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/model_stage.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "pipeline/data/recordings.hpp"
@@ -20,6 +23,18 @@ void draw(const std::filesystem::path& folder, const Diagnosis& diagnosis, Conte
     const auto plots = residual_plots(laser, lasers[laser].name, diagnosis.left_before, diagnosis.left_after);
     if (!plots.empty()) write_plots(folder / (lasers[laser].name + "_residuals.svg"), plots, context);
   }
+}
+
+bool extends(const Diagnosis& diagnosis) {
+  return std::ranges::any_of(diagnosis.departures, &Departure::accepted);
+}
+
+/// Whether what was doubtful of a model that lacked something is answered: the extended one leaves nothing
+/// but noise, and has no doubts of its own.
+bool answers_doubts(const Diagnosis& diagnosis) {
+  constexpr double kLikely = 0.01;
+  return extends(diagnosis) && diagnosis.settled && diagnosis.after.outcome.doubts.empty() &&
+         diagnosis.left_after.p_value > kLikely;
 }
 
 }  // namespace
@@ -78,6 +93,12 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
     context.distrust("the extended model still asked for something else after the last round");
   }
   for (const auto& doubt : diagnosis.after.outcome.doubts) context.distrust(doubt);
+  if (answers_doubts(diagnosis)) {
+    context.lift_doubts(
+        KindName<Calibration>::value,
+        fmt::format("with what it lacked in it, the model leaves what the simulation does ({})",
+                    chance_in_words(diagnosis.left_after.p_value)));
+  }
   Calibration calibration = calibration_of(diagnosis.after.outcome, context.rig());
   calibration.provenance = start_->provenance;
   calibration.provenance["diagnosis"] = "diagnose.model";
@@ -93,9 +114,12 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
     if (artefact) findings.artefacts.push_back(*artefact);
   }
   context.say(in_words(diagnosis, findings));
+  // What stages above printed is no longer what the calibration holds.
+  if (extends(diagnosis)) context.say(table_of(calibration, context.rig()));
   if (folder_) draw(*folder_, diagnosis, context);
   context.report({{"findings", findings.findings.size()},
                   {"unnamed", findings.unnamed.size()},
+                  {"departures", findings.departures.size()},
                   {"before_p", findings.before_p},
                   {"after_p", findings.after_p}});
   all_.append(findings);

@@ -39,6 +39,7 @@ class RunnerTest : public testing::Test {
   }
 
   static OptionValue number(int value) { return OptionScalar(std::int64_t{value}); }
+  static OptionValue yes() { return OptionScalar(true); }
   static OptionValue text(const std::string& value) { return OptionScalar(value); }
   static OptionValue words(const std::vector<std::string>& list) {
     return std::vector<OptionScalar>(list.begin(), list.end());
@@ -101,6 +102,26 @@ TEST_F(RunnerTest, CountsWhatEachStageTookAndGave) {
   EXPECT_EQ(results[1].taken.at("Number"), 3u);
   EXPECT_EQ(results[1].report.counts.at("entries"), 3u);
   EXPECT_GE(results[0].seconds, 0);
+}
+
+TEST_F(RunnerTest, TurnsDoubtsAboutWhatWasReplacedIntoWarnings) {
+  const auto results = run({{.stage = "toy.count"},
+                            {.stage = "toy.doubt", .tag = "first"},
+                            {.stage = "toy.doubt", .tag = "second"},
+                            {.stage = "toy.doubt", .tag = "last", .with = {{"lift", yes()}}}});
+  for (const std::size_t i : {1U, 2U}) {
+    EXPECT_THAT(results[i].report.doubts, testing::IsEmpty());
+    EXPECT_THAT(results[i].report.warnings, ElementsAre("are these numbers?; last: they add up"));
+  }
+}
+
+TEST_F(RunnerTest, KeepsDoubtsAboutWhatGoesElsewhereToo) {
+  const auto results = run({{.stage = "toy.count"},
+                            {.stage = "toy.doubt", .tag = "first"},
+                            {.stage = "toy.doubt", .tag = "last", .with = {{"lift", yes()}}},
+                            {.stage = "toy.log", .inputs = {{{"first", {}}}}}});
+  EXPECT_THAT(results[1].report.doubts, ElementsAre("are these numbers?"));
+  EXPECT_THAT(results[1].report.warnings, testing::IsEmpty());
 }
 
 TEST_F(RunnerTest, TellsTheStageThatThrewAndNotTheOneThatFedIt) {

@@ -177,6 +177,23 @@ class ThrowStage final : public Stage {
   How how_ = How::error;
 };
 
+/// Hands numbers on, and doubts them, or says that doubts about what it replaces are settled.
+class DoubtStage final : public Stage {
+ public:
+  static void describe(StageDescription<DoubtStage>& d) {
+    d.name("toy.doubt").summary("doubts").takes<Number>().gives<Number>();
+    d.option("lift", &DoubtStage::lift_, "whether it settles the doubts of others");
+  }
+  void process(const Inputs& in, Outputs& out, Context&) override { out.give(*in.find<Number>()); }
+  void finish(Outputs&, Context& context) override {
+    if (lift_) return context.lift_doubts(KindName<Number>::value, "they add up");
+    context.distrust("are these numbers?");
+  }
+
+ private:
+  bool lift_ = false;
+};
+
 inline void register_toys(Registrar& registrar) {
   registrar.stage<CountStage>();
   registrar.stage<EndlessStage>();
@@ -186,6 +203,7 @@ inline void register_toys(Registrar& registrar) {
   registrar.stage<ShareStage>();
   registrar.stage<LogStage>();
   registrar.stage<ThrowStage>();
+  registrar.stage<DoubtStage>();
 }
 
 }  // namespace crisp::toy

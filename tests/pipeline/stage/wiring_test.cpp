@@ -42,7 +42,8 @@ TEST_F(WiringTest, FeedsAnInputFromTheNearestStageAboveThatGivesItsKind) {
 TEST_F(WiringTest, NamesTheStagesThatGiveWhatIsMissing) {
   EXPECT_THAT(errors_of({{.stage = "toy.sum"}}),
               ElementsAre("error: toy.sum: nothing above it gives the Number that it takes; put one of these "
-                          "above it: toy.count, toy.endless, toy.share, toy.throw"));
+                          "above it: toy.count, toy.doubt, toy.endless, toy.share, "
+                          "toy.throw"));
 }
 
 TEST_F(WiringTest, PointsAtAStageAboveThatInputsLeavesOut) {

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/model_stage.hpp"
+
+#include <gmock/gmock.h>
+
+#include "pipeline/stage/registry.hpp"
+#include "tests/plugins/diagnose/hidden.hpp"
+#include "tests/support/stage_driver.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+/// What diagnose.model says of a recording that was calibrated without terms.
+StageReport report_of(const test::Recording& recording) {
+  TermRegistry terms = built_in_terms();
+  Registrar registrar;
+  registrar.attach(terms);
+  auto stage = test::StageDriver::of<DiagnoseModelStage>({{"beams", OptionScalar(std::int64_t{40'000})}});
+  stage.run().rig = recording.scanner.rig;
+  stage.run().registrar = &registrar;
+  stage.feed(recording.made.beams, recording.made.plate, nominal_calibration(recording.scanner.rig));
+  stage.finish();
+  return stage.report();
+}
+
+TEST(DiagnoseModel, PrintsTheCalibrationThatItExtendsAndAnswersDoubtsAboutTheOneBefore) {
+  const StageReport report = report_of(test::hidden(7, 4, office(), {{"laser1.range.offset", {0.012}}}));
+  EXPECT_THAT(report.doubts, testing::IsEmpty());
+  EXPECT_THAT(report.lines, Contains(testing::AllOf(HasSubstr("std error"), HasSubstr("laser1.tau"),
+                                                    HasSubstr("laser1.range.offset.c"))));
+  ASSERT_THAT(report.lifted, testing::SizeIs(1));
+  EXPECT_EQ(report.lifted.begin()->first, "Calibration");
+}
+
+TEST(DiagnoseModel, LeavesTheCalibrationAndDoubtsAboutItWhereNothingIsMissing) {
+  const StageReport report = report_of(test::hidden(7, 4, office(), {}));
+  EXPECT_THAT(report.lines, testing::Not(Contains(HasSubstr("std error"))));
+  EXPECT_THAT(report.lifted, testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace crisp
