@@ -29,6 +29,7 @@ using test::Drawn;
 /// What became of one recording.
 struct Outcome {
   std::size_t hidden = 0, named = 0, in_class = 0;
+  std::size_t all_named = 0, all_in_class = 0;  ///< 1 if all that hides has its name; its name or its class
   std::size_t in_span = 0;     ///< said, by name, to be what the parameters without it can do as well
   std::size_t said_small = 0;  ///< said, by name, to show in these data from a larger size on only
   std::size_t wrong = 0, unnamed = 0, right_covariate = 0;
@@ -65,6 +66,9 @@ void count_hidden(const Drawn& drawn, const Diagnosis& diagnosis, const std::str
 Outcome outcome_of(const Drawn& drawn, const Diagnosis& diagnosis) {
   Outcome outcome;
   for (const std::string& name : drawn.names) count_hidden(drawn, diagnosis, name, outcome);
+  const auto is_all = [&](std::size_t count) { return outcome.hidden > 0 && count == outcome.hidden; };
+  outcome.all_named = is_all(outcome.named) ? 1 : 0;
+  outcome.all_in_class = is_all(outcome.named + outcome.in_class) ? 1 : 0;
   for (const Departure& departure : diagnosis.departures) {
     if (!departure.accepted) continue;
     if (departure.candidate.is_cause()) {
@@ -102,9 +106,10 @@ struct Row {
   void add(const Outcome& one, bool is_settled) {
     ++recordings;
     settled += is_settled ? 1 : 0;
-    for (auto part : {&Outcome::hidden, &Outcome::named, &Outcome::in_class, &Outcome::in_span,
-                      &Outcome::said_small, &Outcome::wrong, &Outcome::unnamed, &Outcome::right_covariate,
-                      &Outcome::parameters, &Outcome::within_three}) {
+    for (auto part :
+         {&Outcome::hidden, &Outcome::named, &Outcome::in_class, &Outcome::all_named, &Outcome::all_in_class,
+          &Outcome::in_span, &Outcome::said_small, &Outcome::wrong, &Outcome::unnamed,
+          &Outcome::right_covariate, &Outcome::parameters, &Outcome::within_three}) {
       sum.*part += one.*part;
     }
   }
@@ -160,10 +165,11 @@ class Trial {
 
   void print() const {
     fmt::print(
-        "\n| what hides | recordings | hidden | named | its class | the base's class | said to be too small "
+        "\n| what hides | recordings | all named | all named or in their class | hidden | named | its class "
+        "| the base's class | said to be too small "
         "| wrong "
         "names | unnamed | of these right | parameters within 3 s.e. |\n"
-        "|---|---|---|---|---|---|---|---|---|---|---|\n");
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     Row all;
     for (const auto& [what, row] : rows_) {
       print(what, row);
@@ -176,9 +182,9 @@ class Trial {
  private:
   static void print(const std::string& what, const Row& row) {
     const Outcome& s = row.sum;
-    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} of {} |\n", what, row.recordings,
-               s.hidden, s.named, s.in_class, s.in_span, s.said_small, s.wrong, s.unnamed, s.right_covariate,
-               s.within_three, s.parameters);
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} of {} |\n", what,
+               row.recordings, s.all_named, s.all_in_class, s.hidden, s.named, s.in_class, s.in_span,
+               s.said_small, s.wrong, s.unnamed, s.right_covariate, s.within_three, s.parameters);
   }
   std::map<std::string, Row> rows_;
 };
