@@ -60,56 +60,86 @@ double top_near(double frequency, double width, std::span<const float> ranges) {
   return (low + high) / 2;
 }
 
-/// ln of a range's density over that without a comb: nearly all lie within half a telegram's unit of it.
-double log_density_ratio(double range, double step) {
-  constexpr double kStray = 0.01;
-  const double width = std::min(1.0, kTelegram / step);
-  const double off = std::abs(range - step * std::round(range / step));
-  return std::log(off <= kTelegram / 2 * (1 + 1e-3) ? (1 - kStray) / width : kStray / (1 - width));
+/// Whether a range is a multiple of the step, to what the telegram's own unit leaves of it.
+bool is_on(double range, double step) {
+  return std::abs(range - step * std::round(range / step)) <= kTelegram / 2 * (1 + 1e-3);
 }
 
-}  // namespace
+constexpr double kFinest = 1.5e-3, kCoarsest = 0.05;  // [m]
+constexpr std::size_t kMost = 20'000;                 // to find the top by
 
-std::optional<Finding> quantisation(const std::string& scope, std::span<const float> ranges,
-                                    std::span<const std::uint32_t> block, std::uint64_t seed) {
-  constexpr double kFinest = 1.5e-3, kCoarsest = 0.05;  // [m]
-  constexpr double kWeakest = 0.3;                      // line, of 1
-  constexpr double kAsStrong = 0.7;                     // of the strongest: a comb has lines at all multiples
-  constexpr std::size_t kEnough = 1000;
-  constexpr std::size_t kMost = 20'000;  // to find the top by
+/// A line in the spectrum of ranges.
+struct Comb {
+  double step = 0;      // [m]
+  double strength = 0;  // of the strongest line, of 1
+  double looks = 0;     // at how many frequencies
+};
+
+std::optional<Comb> comb_of(std::span<const float> ranges) {
+  constexpr double kWeakest = 0.3;   // line, of 1
+  constexpr double kAsStrong = 0.7;  // of the strongest: a comb has lines at all multiples
+  constexpr std::size_t kEnough = 500;
   if (ranges.size() < kEnough) return std::nullopt;
   const auto sizes = spectrum_of(ranges);
   const double apart = 1 / (kCells * kCell);  // [1/m]
-  const auto first = static_cast<std::ptrdiff_t>(1 / (kCoarsest * apart));
-  const auto last = static_cast<std::ptrdiff_t>(1 / (kFinest * apart));
-  const auto begin = sizes.begin() + first;
-  const auto end = sizes.begin() + last;
+  const auto begin = sizes.begin() + static_cast<std::ptrdiff_t>(1 / (kCoarsest * apart));
+  const auto end = sizes.begin() + static_cast<std::ptrdiff_t>(1 / (kFinest * apart));
   const double strongest = *std::max_element(begin, end);
   if (strongest < kWeakest) return std::nullopt;
   auto line = std::find_if(begin, end, [&](double size) { return size >= kAsStrong * strongest; });
   while (line + 1 != end && *(line + 1) > *line) ++line;
   const double frequency = top_near(static_cast<double>(line - sizes.begin()) * apart, apart,
                                     ranges.first(std::min(ranges.size(), kMost)));
-  const double step = 1 / frequency;
-  std::vector<double> before;
+  return Comb{.step = 1 / frequency, .strength = strongest, .looks = static_cast<double>(end - begin)};
+}
+
+/// What a comb that was found in every other block says of the rest: ln of a range's density over that of the
+/// same ranges without steps. Of those that it was fitted to a few are not on it; as many of the others are
+/// expected beside it, and those on it within the telegram's unit.
+Gain held_out_gain(std::span<const float> ranges, std::span<const std::uint32_t> block, std::uint64_t seed) {
+  std::vector<float> fitted;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    if (block[i] % 2 == 0) fitted.push_back(ranges[i]);
+  }
+  const auto comb = comb_of(fitted);
+  if (!comb) return likelihood_gain({}, {}, {}, seed);
+  const auto on =
+      std::ranges::count_if(fitted, [&](float range) { return is_on(double{range}, comb->step); });
+  const double stray = 1 - (static_cast<double>(on) + 1) / (static_cast<double>(fitted.size()) + 2);
+  const double width = std::min(1.0, kTelegram / comb->step);
   std::vector<double> after;
+  std::vector<std::uint32_t> blocks;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    if (block[i] % 2 == 0) continue;
+    after.push_back(
+        std::log(is_on(double{ranges[i]}, comb->step) ? (1 - stray) / width : stray / (1 - width)));
+    blocks.push_back(block[i]);
+  }
+  return likelihood_gain(std::vector<double>(after.size(), 0), after, blocks, seed);
+}
+
+}  // namespace
+
+std::optional<Finding> quantisation(const std::string& scope, std::span<const float> ranges,
+                                    std::span<const std::uint32_t> block, std::uint64_t seed) {
+  constexpr std::size_t kEnough = 1000;
+  if (ranges.size() < kEnough) return std::nullopt;
+  const auto comb = comb_of(ranges);
+  if (!comb) return std::nullopt;
+  const double step = comb->step;
+  const Gain gain = held_out_gain(ranges, block, seed);
+  const double count = static_cast<double>(ranges.size());
   double mean = 0;
   double squares = 0;
-  double likelihood = 0;
   for (const float range : ranges) {
-    before.push_back(0);
-    after.push_back(log_density_ratio(double{range}, step));
-    likelihood += after.back();
-    mean += double{range} / static_cast<double>(ranges.size());
-    squares += double{range} * double{range} / static_cast<double>(ranges.size());
+    mean += double{range} / count;
+    squares += double{range} * double{range} / count;
   }
-  const Gain gain = likelihood_gain(before, after, {block.begin(), block.end()}, seed);
   // The phase of a line is known to about the telegram's rounding; its slope over the ranges is the
   // frequency.
-  const double rounding = kTelegram / std::sqrt(12.0) * 2 * std::numbers::pi * frequency;
+  const double rounding = kTelegram / std::sqrt(12.0) * 2 * std::numbers::pi / step;
   const double slope_error = rounding / std::sqrt(static_cast<double>(std::min(ranges.size(), kMost)) *
                                                   std::max(1e-6, squares - mean * mean));
-  const double count = static_cast<double>(ranges.size());
   Finding finding{
       .cause = "noise.quantisation",
       .scope = scope,
@@ -118,8 +148,8 @@ std::optional<Finding> quantisation(const std::string& scope, std::span<const fl
                       .value = step,
                       .std_error = step * step * slope_error / (2 * std::numbers::pi),
                       .free = true}},
-      .log10_odds = (likelihood - std::log(count) / 2) / std::numbers::ln10,
-      .p_value = std::min(1.0, static_cast<double>(last - first) * std::exp(-count * strongest * strongest)),
+      .log10_odds = (count * (gain.after - gain.before) - std::log(count) / 2) / std::numbers::ln10,
+      .p_value = std::min(1.0, comb->looks * std::exp(-count * comb->strength * comb->strength)),
       .confounded_with = {},
       .gain = {gain},
       .accepted = gain.surely_rises()};

@@ -28,5 +28,29 @@ TEST(AStep, IsNotSeenInRangesOfAnyKindButMultiples) {
   EXPECT_NEAR(found->log10_odds, 20'000 * std::log10(4), 300);
 }
 
+TEST(AStep, PaysByWhatItSaysOfOtherBlocks) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<float> range(1, 9);
+  std::bernoulli_distribution stray(0.1);
+  std::vector<float> ranges;
+  std::vector<std::uint32_t> blocks;
+  for (std::uint32_t i = 0; i < 20'000; ++i) {
+    const float one = range(random);
+    ranges.push_back(stray(random) ? one : 0.004F * std::round(one / 0.004F));
+    blocks.push_back(i / 100);
+  }
+  const auto found = quantisation("laser1", ranges, blocks, 1);
+  ASSERT_TRUE(found);
+  const Gain& gain = found->gain.at(0);
+  // A quarter of the strays is on a step by chance.
+  constexpr double kOn = 0.9 + 0.1 / 4;
+  EXPECT_NEAR(gain.after - gain.before, kOn * std::log(kOn / 0.25) + (1 - kOn) * std::log((1 - kOn) / 0.75),
+              0.03);
+  EXPECT_GT(gain.ci95[1] - gain.ci95[0], 0.005);
+  EXPECT_TRUE(found->accepted);
+  EXPECT_FALSE(quantisation("laser1", ranges, std::vector<std::uint32_t>(ranges.size(), 0), 1)->accepted)
+      << "none is held out";
+}
+
 }  // namespace
 }  // namespace crisp
