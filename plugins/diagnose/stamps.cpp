@@ -40,6 +40,18 @@ std::size_t largest_jump(std::span<const CountedStamp> stamps, std::size_t begin
   return best;
 }
 
+/// Whether least delays are late for a while but come to no other level: behind a link that has become longer
+/// they scatter as they did before.
+bool is_backlog(const Envelope& envelope, Eigen::Index before, const Eigen::VectorXd& line) {
+  constexpr double kNoLevel = 0.25;  // of the step
+  const Eigen::Index n = envelope.lead.size();
+  const double step = line[2];
+  const Eigen::VectorXd levelled = envelope.lead - envelope.straight() * line.head(2);
+  const auto late = step > 0 ? levelled.tail(n - before) : levelled.head(before);
+  const double scatter = std::sqrt((late.array() - late.mean()).square().mean());
+  return scatter > kNoLevel * std::abs(step);
+}
+
 void tell_step(std::span<const CountedStamp> stamps, const Envelope& envelope, std::size_t window,
                const Eigen::VectorXd& line, ClockDeparture& departure) {
   const std::size_t begin = envelope.first[window - 1];
@@ -144,15 +156,21 @@ std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stam
     departure.skew_std_error = std::hypot(look.errors[1], departure.std_error * envelope.time.mean());
     return departure;
   }
-  const auto window = static_cast<std::size_t>(before_step(columns.col(look.column)));
+  const Eigen::Index before = before_step(columns.col(look.column));
+  const auto window = static_cast<std::size_t>(before);
   tell_step(stamps, envelope, window, look.values, departure);
+  if (departure.kind == ClockDeparture::Kind::latency_step && is_backlog(envelope, before, look.values)) {
+    departure.kind = ClockDeparture::Kind::backlog;
+    const double share = static_cast<double>(before) / static_cast<double>(envelope.lead.size());
+    departure.size = std::abs(departure.size) * std::sqrt(share * (1 - share));
+  }
   return departure;
 }
 
 std::vector<CountedStamp> without_step(std::span<const CountedStamp> stamps,
                                        const ClockDeparture& departure) {
   std::vector<CountedStamp> mended(stamps.begin(), stamps.end());
-  if (departure.kind == ClockDeparture::Kind::drift) return mended;
+  if (!departure.is_step()) return mended;
   for (CountedStamp& s : mended) {
     if (receipt_of(s.stamp) < departure.at) continue;
     if (departure.kind == ClockDeparture::Kind::latency_step) {

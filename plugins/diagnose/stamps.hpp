@@ -38,9 +38,10 @@ class StampTrack {
 
 /// A way in which a clock or its link is not what a straight line above constant shortest delay describes.
 struct ClockDeparture {
-  enum class Kind { drift, clock_step, latency_step };
+  /// A backlog: telegrams that wait, and come in less and less late until all have been handed on.
+  enum class Kind { drift, clock_step, latency_step, backlog };
   Kind kind = Kind::drift;
-  double size = 0;       ///< drift: [1/s] of the skew; steps: [s] forwards, or later
+  double size = 0;       ///< drift: [1/s] of the skew; steps: [s] forwards, or later; backlog: [s] RMS
   double std_error = 0;  ///< of it
   double skew = 0;       ///< at the first stamp
   double skew_std_error = 0;
@@ -49,6 +50,8 @@ struct ClockDeparture {
   double at_std_error = 0;  ///< [s]
   double p_value = 1;       ///< by permutations of the least delays
   Gain gain;                ///< RMS of held-out least delays about the clock
+
+  bool is_step() const { return kind == Kind::clock_step || kind == Kind::latency_step; }
 };
 
 /// What is usual of a device's clock and link.

@@ -54,7 +54,7 @@ Plot clock_plot(const std::string& device, std::span<const CountedStamp> stamps,
     found.y.push_back(delay_ms(stamp, leads[static_cast<Eigen::Index>(w)]));
   }
   plot.series.push_back(std::move(least));
-  plot.series.push_back(std::move(found));
+  if (departure->kind != ClockDeparture::Kind::backlog) plot.series.push_back(std::move(found));
   return plot;
 }
 

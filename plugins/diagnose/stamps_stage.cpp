@@ -29,6 +29,8 @@ const char* cause_of(ClockDeparture::Kind kind) {
       return "clock.step";
     case ClockDeparture::Kind::latency_step:
       return "latency.step";
+    case ClockDeparture::Kind::backlog:
+      break;
   }
   return "";
 }
@@ -78,7 +80,9 @@ void DiagnoseStampsStage::describe(StageDescription<DiagnoseStampsStage>& d) {
       "clock "
       "of constant rate behind a link with a constant shortest delay: a clock whose rate changes "
       "(`clock.drift`), one that jumps (`clock.step`: the device's own time between two telegrams jumps), a "
-      "link whose shortest delay becomes another (`latency.step`). Significance is by permutations of the "
+      "link whose shortest delay becomes another (`latency.step`). A backlog that is caught up, late "
+      "telegrams "
+      "without a level of their own, stays `unnamed` over the time. Significance is by permutations of the "
       "least delays, the gain by every other one of them. It also lists what is usual: skews, delays, and "
       "how "
       "mirrors turn against their nominal rate. Of several recordings (what pauses of 5 s divide) the one "
@@ -165,7 +169,15 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, Con
       plots.push_back(mirror_plot(device.name, *mirror, device.nominal_period));
     write_plots(*folder_ / (device.name + "_stamps.svg"), plots, context);
   }
-  if (departure) {
+  if (departure && departure->kind == ClockDeparture::Kind::backlog) {
+    all.unnamed.push_back({.covariate = "time",
+                           .quantity = "delay",
+                           .scope = device.name,
+                           .amplitude = departure->size,
+                           .unit = "s",
+                           .p_value = departure->p_value,
+                           .gain = {}});
+  } else if (departure) {
     departure->at += 1e-9 * static_cast<double>(device.telegrams.first_ns() - epoch_of_run(*first_ns_));
     all.findings.push_back(finding_of(*departure, device.name));
   }
@@ -198,7 +210,8 @@ void DiagnoseStampsStage::finish(Outputs& out, Context& context) {
   }
   context.say(facts_in_words(all.devices));
   for (const Finding& finding : all.findings) context.say(in_words(finding));
-  context.report({{"findings", all.findings.size()}});
+  for (const UnnamedFinding& finding : all.unnamed) context.say(in_words(finding));
+  context.report({{"findings", all.findings.size()}, {"unnamed", all.unnamed.size()}});
   all_.append(all);
   out.give(std::move(all_));
 }

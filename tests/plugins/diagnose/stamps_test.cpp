@@ -21,6 +21,8 @@ struct Hidden {
   double clock_step = 0;
   double latency_step = 0;
   double at = 1e9;
+  double backlog = 0;    // [s] that telegrams are late by at first …
+  double caught_up = 1;  // [s] … and no longer from then on
 };
 
 /// Telegrams of a device with what is hidden, made by hand: hub time t, device time, receipt.
@@ -32,7 +34,8 @@ StampTrack track_of(std::uint64_t seed, const Hidden& hidden, const testing::Del
     const bool stepped = t >= hidden.at;
     const double device =
         t / (1 + hidden.skew) - hidden.drift * t * t / 2 + (stepped ? hidden.clock_step : 0);
-    const double receipt = t + 0.001 + delays(random) + (stepped ? hidden.latency_step : 0);
+    const double receipt = t + 0.001 + delays(random) + (stepped ? hidden.latency_step : 0) +
+                           hidden.backlog * std::max(0.0, 1 - t / hidden.caught_up);
     track.add(counter++, kStart_us + static_cast<std::uint32_t>(static_cast<std::int64_t>(device * 1e6)),
               kEpoch_ns + static_cast<std::int64_t>(receipt * 1e9));
   }
@@ -105,6 +108,19 @@ TEST(Stamps, OfALinkWhoseShortestDelayStepsAreNotTakenForAClock) {
     EXPECT_EQ(found->kind, ClockDeparture::Kind::latency_step) << step;
     EXPECT_NEAR(found->size, step, std::max(20e-6, 4 * found->std_error));
     EXPECT_NEAR(found->at, 41.2, 0.1) << step;
+  }
+}
+
+TEST(Stamps, OfABacklogThatIsCaughtUpAreNotTakenForALinkThatBecameShorter) {
+  for (const double caught_up : {4.0, 15.0}) {
+    const auto track = track_of(9, {.backlog = 0.4, .caught_up = caught_up}, kDelays);
+    const auto found = clock_departure(track.stamps(), 4, 1);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->kind, ClockDeparture::Kind::backlog);
+    EXPECT_GT(found->size, 0.4 * std::sqrt(caught_up / kDuration) / 4) << "seconds, RMS over all";
+    EXPECT_LT(found->size, 0.4 * std::sqrt(caught_up / kDuration));
+    const auto as_they_were = without_step(track.stamps(), *found);
+    EXPECT_EQ(as_they_were.front().stamp.lead, track.stamps().front().stamp.lead);
   }
 }
 
