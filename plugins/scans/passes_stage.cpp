@@ -29,29 +29,47 @@ std::optional<std::pair<Pass, Pass>> opposite(const std::vector<Pass>& passes) {
   return std::pair(*up, *down);
 }
 
+/// A number as the format shows it, or that it could not be told.
+std::string shown(double value, const char* format) {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "unknown";
+}
+
 std::string in_degrees(const std::vector<std::pair<double, double>>& values) {
   std::string text;
-  for (const auto& [value, error] : values)
-    text += fmt::format("{}{:+.3f} ± {:.3f}", text.empty() ? "" : ", ", value / kDegree, error / kDegree);
+  for (const auto& [value, error] : values) {
+    text += fmt::format("{}{} ± {}", text.empty() ? "" : ", ", shown(value / kDegree, "{:+.3f}"),
+                        shown(error / kDegree, "{:.3f}"));
+  }
   return text;
 }
 
+}  // namespace
+
+std::string in_words(const std::string& laser, const PassShift& found, double step, std::size_t beams) {
+  std::string answers;
+  for (const auto& [put_in, answer] : found.answers) {
+    answers += fmt::format("{}{:+.4f}: {}", answers.empty() ? "" : ", ", put_in / kDegree,
+                           shown(answer / kDegree, "{:+.4f}"));
+  }
+  const Gain& gain = found.gain;
+  return fmt::format(
+      "{}: down = up shifted by {} ± {} deg ({} steps), ranges off by {} mm, over {} beams\n"
+      "  quarters of the angles: {} deg; of the beams: {} deg; p {} that it is the same everywhere\n"
+      "  on other angles the passes differ by {} -> {} mm (change {} .. {})\n"
+      "  put in by hand: what it answered [deg]: {}; in all {} times",
+      laser, shown(found.shift / kDegree, "{:+.4f}"), shown(found.std_error / kDegree, "{:.4f}"),
+      shown(found.shift / step, "{:.2f}"), shown(1e3 * found.offset, "{:+.1f}"), beams,
+      in_degrees(found.by_angle), in_degrees(found.by_beam), shown(found.constant_p, "{:.3g}"),
+      shown(1e3 * gain.before, "{:.2f}"), shown(1e3 * gain.after, "{:.2f}"),
+      shown(1e3 * gain.ci95[0], "{:.2f}"), shown(1e3 * gain.ci95[1], "{:.2f}"), answers,
+      shown(found.answer_ratio, "{:.3f}"));
+}
+
+namespace {
+
 void tell(const std::string& laser, const PassShift& found, double step, std::size_t beams,
           Context& context) {
-  std::string answers;
-  for (const auto& [put_in, answer] : found.answers)
-    answers +=
-        fmt::format("{}{:+.4f}: {:+.4f}", answers.empty() ? "" : ", ", put_in / kDegree, answer / kDegree);
-  context.say(fmt::format(
-      "{}: down = up shifted by {:+.4f} ± {:.4f} deg ({:.2f} steps), ranges off by {:+.1f} mm, over {} "
-      "beams\n"
-      "  quarters of the angles: {} deg; of the beams: {} deg; p {:.3g} that it is the same everywhere\n"
-      "  on other angles the passes differ by {:.2f} -> {:.2f} mm (change {:.2f} .. {:.2f})\n"
-      "  put in by hand: what it answered [deg]: {}; in all {:.3f} times",
-      laser, found.shift / kDegree, found.std_error / kDegree, found.shift / step, 1e3 * found.offset, beams,
-      in_degrees(found.by_angle), in_degrees(found.by_beam), found.constant_p, 1e3 * found.gain.before,
-      1e3 * found.gain.after, 1e3 * found.gain.ci95[0], 1e3 * found.gain.ci95[1], answers,
-      found.answer_ratio));
+  context.say(in_words(laser, found, step, beams));
   context.report({{laser,
                    {{"shift", found.shift},
                     {"std_error", found.std_error},
@@ -75,9 +93,8 @@ void add_findings(const std::string& laser, const PassShift& found, Findings& fi
   if (!is_believed(found)) {
     findings.unobservable.push_back(
         {"shift between passes (" + laser + ")",
-         fmt::format(
-             "shifts put in by hand do not come back; {:+.3f} deg was read, with an error of {:.3f} deg",
-             found.shift / kDegree, found.std_error / kDegree),
+         fmt::format("shifts put in by hand do not come back; {} deg was read, with an error of {} deg",
+                     shown(found.shift / kDegree, "{:+.3f}"), shown(found.std_error / kDegree, "{:.3f}")),
          ""});
     return;
   }

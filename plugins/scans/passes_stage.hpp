@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "pipeline/data/measurements.hpp"
@@ -11,6 +12,12 @@
 #include "plugins/scans/passes.hpp"
 
 namespace crisp {
+
+/// What two passes say of one another, for people; what could not be told is "unknown".
+///
+/// @param step   [rad] of the actuator
+/// @param beams  that were compared
+std::string in_words(const std::string& laser, const PassShift& found, double step, std::size_t beams);
 
 /// `diagnose.passes`: whether the actuator is where it says on its way up and on its way down.
 class DiagnosePassesStage final : public Stage {

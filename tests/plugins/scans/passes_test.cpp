@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
+#include "plugins/scans/passes_stage.hpp"
 #include "tests/plugins/scans/tilting_scene.hpp"
 
 namespace crisp {
@@ -71,6 +74,19 @@ TEST(PassShift, AnOffsetOfTheRangesBetweenThePassesIsNoShift) {
   const auto found = find_shift(passes[0], passes[1], 1);
   EXPECT_NEAR(found.shift, 0, 3 * found.std_error);
   EXPECT_NEAR(found.offset, 0.01, 0.002);
+}
+
+TEST(PassShift, ThatCouldNotBeToldIsUnknownToPeople) {
+  const double unknown = std::nan("");
+  PassShift found{.shift = unknown, .std_error = unknown, .offset = unknown};
+  found.by_angle = found.by_beam = found.answers = {{unknown, unknown}};
+  found.answers = {{0.001, unknown}};
+  found.gain = {.metric = "", .unit = "m", .before = unknown, .after = unknown, .ci95 = {unknown, unknown}};
+  found.answer_ratio = unknown;
+  const std::string words = in_words("urg", found, kStep, 100);
+  EXPECT_THAT(words, testing::Not(testing::HasSubstr("nan")));
+  EXPECT_THAT(words, testing::HasSubstr("shifted by unknown ± unknown deg"));
+  EXPECT_THAT(words, testing::HasSubstr("+0.0573: unknown"));
 }
 
 TEST(PassShift, SaysWhenItIsNotTheSameEverywhere) {
