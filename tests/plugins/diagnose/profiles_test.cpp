@@ -96,7 +96,8 @@ TEST(SideBySide, KnowsHowMuchOfTheResidualsIsNoNoise) {
   ScannerSettings scanner = test::scanner_of(6, 3);
   scanner.laser_effects.resize(3);
   scanner.laser_effects[1].noise.sigma = 0.024;
-  EXPECT_NEAR(beside(test::recorded(scanner, office())).excess, 0, 4.8e-6) << "1.6 mm^2, whatever the noise is";
+  EXPECT_NEAR(beside(test::recorded(scanner, office())).excess, 0, 4.8e-6)
+      << "1.6 mm^2, whatever the noise is";
   test::Recording recording = test::hidden(6, 3, office(), {});
   for (std::size_t i = 0; i < recording.made.beams.size(); ++i) {
     recording.made.beams.range[i] += 0.008F * std::sin(4 * recording.made.beams.mirror_angle[i]);
