@@ -5,3 +5,4 @@
 
 void register_near_stage(crisp::Registrar& registrar);
 void register_drift_term(crisp::Registrar& registrar);
+void register_ripple_term(crisp::Registrar& registrar);

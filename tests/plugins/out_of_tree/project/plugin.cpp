@@ -8,6 +8,7 @@ namespace {
 void register_all(crisp::Registrar& registrar) {
   register_near_stage(registrar);
   register_drift_term(registrar);
+  register_ripple_term(registrar);
 }
 
 }  // namespace
