@@ -75,10 +75,10 @@ Scan to_scan(const LaserTelegram& telegram) {
   return scan;
 }
 
-Recording simulate_recording(const RecordingSettings& settings, const Scene& scene,
-                             const TermRegistry& terms) {
+SimulatedRecording simulate_recording(const RecordingSettings& settings, const Scene& scene,
+                                      const TermRegistry& terms) {
   RecordingSimulator simulator(settings, scene, terms);
-  Recording recording{.scans = {}, .readings = {}, .truth = simulator.truth()};
+  SimulatedRecording recording{.scans = {}, .readings = {}, .truth = simulator.truth()};
   while (const auto event = simulator.next()) {
     if (const auto* telegram = std::get_if<LaserTelegram>(&*event)) {
       recording.scans.push_back(to_scan(*telegram));

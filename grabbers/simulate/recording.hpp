@@ -57,15 +57,15 @@ class RecordingSimulator {
 };
 
 /// The scans and readings of a whole recording.
-struct Recording {
+struct SimulatedRecording {
   std::vector<Scan> scans;
   std::vector<PlateReading> readings;
   RecordingTruth truth;
 };
 
 /// Simulates a recording in memory. @throws Error as RecordingSimulator
-Recording simulate_recording(const RecordingSettings& settings, const Scene& scene,
-                             const TermRegistry& terms = {});
+SimulatedRecording simulate_recording(const RecordingSettings& settings, const Scene& scene,
+                                      const TermRegistry& terms = {});
 
 /// The scan of a telegram, as a capture's reader makes it.
 Scan to_scan(const LaserTelegram& telegram);

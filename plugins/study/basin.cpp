@@ -129,14 +129,14 @@ class Exploration {
 
   const BasinSettings& settings_;
   Measure& measure_;
-  Recording recording_;
+  TrialRecording recording_;
   std::uint64_t seed_;
 };
 
 }  // namespace
 
 std::vector<BasinRecording> explore_basin(const BasinSettings& settings, const MakeMeasure& make_measure,
-                                          const RunHooks& hooks) {
+                                          const StudyHooks& hooks) {
   const std::size_t each = std::max<std::size_t>(1, settings.starts_a_recording);
   const std::size_t recordings = (settings.starts + each - 1) / each;
   return run_in_parallel<BasinRecording>(recordings, settings.threads, hooks, [&](std::size_t k) {

@@ -61,6 +61,6 @@ struct BasinRecording {
 /// Calibrates recordings from starts all over the range: calibrate.rqe, then calibrate.refine. What a
 /// recording gives depends on its seed alone.
 std::vector<BasinRecording> explore_basin(const BasinSettings& settings, const MakeMeasure& make_measure,
-                                          const RunHooks& hooks = {});
+                                          const StudyHooks& hooks = {});
 
 }  // namespace crisp

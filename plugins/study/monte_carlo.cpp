@@ -4,7 +4,7 @@
 namespace crisp {
 
 std::vector<Trial> run_trials(const MonteCarloSettings& settings, const MakeMeasure& make_measure,
-                              const RunHooks& hooks) {
+                              const StudyHooks& hooks) {
   return run_in_parallel<Trial>(settings.runs, settings.threads, hooks, [&](std::size_t run) {
     return run_trial(settings.trial, settings.first_seed + run, make_measure);
   });

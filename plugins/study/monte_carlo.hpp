@@ -18,6 +18,6 @@ struct MonteCarloSettings {
 /// Runs all trials, in the order of their seeds. What each gives depends on its seed alone, and not on the
 /// number of threads. Interrupted, it returns early, with trials missing.
 std::vector<Trial> run_trials(const MonteCarloSettings& settings, const MakeMeasure& make_measure,
-                              const RunHooks& hooks = {});
+                              const StudyHooks& hooks = {});
 
 }  // namespace crisp

@@ -23,7 +23,7 @@ nlohmann::json json_of(const Table& table) {
                          {"rqe_astray", table.rqe_astray},
                          {"refined_astray", table.refined_astray},
                          {"refined_failed", table.refined_failed}};
-  for (const TableRow& row : table.rows) {
+  for (const ErrorRow& row : table.rows) {
     nlohmann::json entry = {{"unit", row.unit},
                             {"bound", row.bound},
                             {"bound_with_steps", row.bound_with_steps},

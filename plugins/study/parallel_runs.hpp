@@ -15,7 +15,7 @@
 namespace crisp {
 
 /// How the work can be watched and stopped from outside.
-struct RunHooks {
+struct StudyHooks {
   std::function<void(std::size_t done)> progress = {};  ///< called in the calling thread
   std::function<bool()> interrupted = {};               ///< called in any thread
 };
@@ -26,7 +26,7 @@ class ParallelRuns {
  public:
   using Run = std::function<Result(std::size_t)>;
 
-  ParallelRuns(std::size_t runs, const Run& run, const RunHooks& hooks)
+  ParallelRuns(std::size_t runs, const Run& run, const StudyHooks& hooks)
       : run_(run), hooks_(hooks), results_(runs) {}
 
   /// @param tell  whether to report progress
@@ -70,7 +70,7 @@ class ParallelRuns {
   }
 
   const Run& run_;
-  const RunHooks& hooks_;
+  const StudyHooks& hooks_;
   std::vector<std::optional<Result>> results_;
   std::atomic<std::size_t> next_ = 0;
   std::atomic<std::size_t> done_ = 0;
@@ -82,7 +82,7 @@ class ParallelRuns {
 /// run(0) to run(runs − 1), in this order. Interrupted, it returns early, with some missing.
 /// @throws what the first run to fail threw
 template <class Result>
-std::vector<Result> run_in_parallel(std::size_t runs, unsigned threads, const RunHooks& hooks,
+std::vector<Result> run_in_parallel(std::size_t runs, unsigned threads, const StudyHooks& hooks,
                                     const std::function<Result(std::size_t)>& run) {
   ParallelRuns<Result> all(runs, run, hooks);
   {

@@ -100,11 +100,11 @@ std::string cell(const std::optional<Scatter>& scatter) {
 }
 
 bool has_paper(const Table& table) {
-  return std::ranges::any_of(table.rows, [](const TableRow& row) { return row.paper.has_value(); });
+  return std::ranges::any_of(table.rows, [](const ErrorRow& row) { return row.paper.has_value(); });
 }
 
 bool has_rqe(const Table& table) {
-  return std::ranges::any_of(table.rows, [](const TableRow& row) { return row.rqe.has_value(); });
+  return std::ranges::any_of(table.rows, [](const ErrorRow& row) { return row.rqe.has_value(); });
 }
 
 }  // namespace
@@ -115,7 +115,7 @@ Table table_of(const std::vector<Trial>& trials, bool papers) {
   for (const ParameterKind& kind : parameter_kinds()) {
     const double bound = mean_size(kind, trials, &Trial::bound);
     if (std::isnan(bound)) continue;
-    TableRow& row = table.rows.emplace_back(TableRow{
+    ErrorRow& row = table.rows.emplace_back(ErrorRow{
         .parameter = kind.name,
         .unit = kind.unit,
         .paper = papers ? in_the_paper(kind.name) : std::nullopt,
@@ -144,7 +144,7 @@ std::string table_text(const Table& table) {
   if (rqe) text += fmt::format("{:^18}  ", "RQE");
   text += fmt::format("{:^18}{:>8}  {:>8}  {:>8}  {:>10}  {:>12}  {:>10}\n", "refined", "bound", "mean/sd",
                       "sd/bound", "s.e./bound", "in 1, 2 s.e.", "with steps");
-  for (const TableRow& row : table.rows) {
+  for (const ErrorRow& row : table.rows) {
     const Scatter& refined = row.refined;
     text += fmt::format("{:<7}{:<9}", row.parameter, row.unit);
     if (paper) text += cell(row.paper) + "  ";

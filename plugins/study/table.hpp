@@ -19,7 +19,7 @@ struct Scatter {
 };
 
 /// One row of Table 1, all lasers together. In the unit that is named.
-struct TableRow {
+struct ErrorRow {
   std::string parameter;         ///< "tau"
   std::string unit;              ///< "mm"
   std::optional<Scatter> paper;  ///< Table 1 of the paper, where it is known
@@ -31,7 +31,7 @@ struct TableRow {
 
 /// Table 1 of Sheehan, Harrison and Newman, made anew.
 struct Table {
-  std::vector<TableRow> rows;  ///< λ, τ, α, η; those that were estimated
+  std::vector<ErrorRow> rows;  ///< λ, τ, α, η; those that were estimated
   std::size_t runs = 0;
   std::size_t rqe_astray = 0;  ///< runs left out of the estimator's columns: they ended in another valley,
   std::size_t refined_astray = 0;  ///< some parameter being off by more than 5 cm, 5° or 20 ms,

@@ -102,9 +102,9 @@ TrialSettings::TrialSettings()
     : start{.tau = 0.02, .alpha = 3 * kDegree, .lambda = std::numbers::pi, .eta = 0},
       near{.tau = 0.005, .alpha = 0.7 * kDegree, .lambda = 0.7 * kDegree, .eta = 3e-4} {}
 
-Recording record(const TrialSettings& settings, std::uint64_t seed) {
+TrialRecording record(const TrialSettings& settings, std::uint64_t seed) {
   const ScannerSettings scanner = scanner_of(settings, seed);
-  Recording recording{
+  TrialRecording recording{
       .simulated = simulate_beams(settings.beams, scanner, settings.scene, motion_of(settings, seed)),
       .start = start_of(settings, scanner.truth, seed)};
   if (settings.outliers > 0) strew_outliers(recording.simulated.beams, settings.outliers, seed);
@@ -133,7 +133,7 @@ double noise_in(const TrialSettings& settings, std::uint64_t seed) {
 }
 
 Trial run_trial(const TrialSettings& settings, std::uint64_t seed, const MakeMeasure& make_measure) {
-  const Recording recording = record(settings, seed);
+  const TrialRecording recording = record(settings, seed);
   const SensorModel truth(recording.simulated.truth);
   const Sample sample = recording.sample();
   SensorModel model(recording.start);

@@ -48,14 +48,14 @@ struct TrialSettings {
 };
 
 /// A simulated recording.
-struct Recording {
+struct TrialRecording {
   SimulatedMeasurements simulated;
   Calibration start;
   Sample sample() const { return {.beams = simulated.beams, .plate = &simulated.plate}; }
 };
 
 /// True: the rig's nominal τ, α and λ, η drawn. The start is drawn around it.
-Recording record(const TrialSettings& settings, std::uint64_t seed);
+TrialRecording record(const TrialSettings& settings, std::uint64_t seed);
 
 /// Standard deviation [m] of the ranges of a recording, whatever the law of their noise: of their difference
 /// from those of the same recording without noise.

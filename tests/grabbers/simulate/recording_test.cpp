@@ -104,7 +104,7 @@ double plate_angle(const std::vector<PlateReading>& readings, std::int64_t hub_n
 
 /// Mean distance to the true surfaces of the points that equations (2) and (3) make of a recording, written
 /// out here by hand, with η off by `eta_error`.
-double mean_distance(const Recording& recording, const Scene& scene, double eta_error) {
+double mean_distance(const SimulatedRecording& recording, const Scene& scene, double eta_error) {
   const RayCaster surfaces(scene);
   double sum = 0;
   int n = 0;
@@ -245,7 +245,7 @@ TEST(SimulateRecording, IsTheSameForTheSameSeedOnly) {
   const auto same = simulate_recording(settings, office());
   settings.scanner.seed = 2;
   const auto other = simulate_recording(settings, office());
-  const auto stamps = [](const Recording& recording) {
+  const auto stamps = [](const SimulatedRecording& recording) {
     std::vector<std::int64_t> all;
     for (const auto& scan : recording.scans) all.push_back(scan.receipt_ns);
     for (const auto& reading : recording.readings) all.push_back(reading.receipt_ns + reading.count);

@@ -121,7 +121,7 @@ struct Aligned {
   AlignmentReport report;
 };
 
-Aligned align(const Recording& recording, const Rig& rig) {
+Aligned align(const SimulatedRecording& recording, const Rig& rig) {
   Aligned aligned;
   ClockAligner aligner(
       rig, {},

@@ -119,7 +119,7 @@ TEST(MonteCarlo, StartsWithLambdaAnywhereAndTheTruthWhereThePaperHasIt) {
   double farthest = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     settings.duration = 1;
-    const Recording recording = record(settings, seed);
+    const TrialRecording recording = record(settings, seed);
     for (std::size_t laser = 0; laser < 3; ++laser) {
       const LaserCalibration& truth = recording.simulated.truth.lasers[laser];
       const LaserCalibration& start = recording.start.lasers[laser];
@@ -161,7 +161,7 @@ TEST(MonteCarlo, SimulatesTheRigThatItIsGiven) {
   settings.lasers = 2;
   settings.rig.lasers[1].nominal.tau.value = 0.31;
   settings.rig.plate.counts_per_revolution = 8;
-  const Recording recording = record(settings, 1);
+  const TrialRecording recording = record(settings, 1);
   ASSERT_EQ(recording.simulated.truth.lasers.size(), 2U);
   EXPECT_EQ(recording.simulated.truth.lasers[1].tau.value, 0.31);
   const double counts = recording.simulated.plate.angles()[100] / (std::numbers::pi / 4);
@@ -172,7 +172,7 @@ TEST(MonteCarlo, StartsNearTheTruthWhereRqeIsLeftOut) {
   TrialSettings settings;
   settings.duration = 1;
   settings.estimators = Estimators::kRefined;
-  const Recording recording = record(settings, 1);
+  const TrialRecording recording = record(settings, 1);
   for (std::size_t laser = 0; laser < 3; ++laser) {
     const LaserCalibration& truth = recording.simulated.truth.lasers[laser];
     const LaserCalibration& start = recording.start.lasers[laser];
@@ -186,8 +186,8 @@ TEST(MonteCarlo, StartsNearTheTruthWhereRqeIsLeftOut) {
 
 TEST(MonteCarlo, StopsWhenInterrupted) {
   std::size_t done = 0;
-  const RunHooks hooks{.progress = [&](std::size_t n) { done = n; },
-                       .interrupted = [&] { return done >= 1; }};
+  const StudyHooks hooks{.progress = [&](std::size_t n) { done = n; },
+                         .interrupted = [&] { return done >= 1; }};
   EXPECT_EQ(run_trials(small(100), make_rqe, hooks).size(), 1U);
 }
 

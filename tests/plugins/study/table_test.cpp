@@ -29,7 +29,7 @@ TEST(Table, HoldsMeansAndStandardDeviationsInMillimetresAndDegrees) {
       table_of({trial(-0.002, 0.001, 0.04), trial(-0.004, 0.002, 0.06), trial(0, 0.003, 0.2)});
   EXPECT_EQ(table.runs, 3U);
   ASSERT_EQ(table.rows.size(), 2U);
-  const TableRow& tau = table.rows[0];
+  const ErrorRow& tau = table.rows[0];
   EXPECT_EQ(tau.parameter, "tau");
   EXPECT_NEAR(tau.rqe->mean, -2, 1e-12);
   EXPECT_NEAR(tau.rqe->std_dev, 2, 1e-12);
