@@ -2,6 +2,7 @@
 #include "grabbers/table/table_items.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -23,12 +24,14 @@ std::int64_t microseconds(double s) { return std::llround(s * kMicro); }
 }  // namespace
 
 TableItems::TableItems(const TableFormat& format, const TableScanSettings& settings, Rig rig)
-    : format_(format), settings_(settings), rig_(std::move(rig)) {}
+    : format_(format), settings_(settings), rig_(std::move(rig)) {
+  ends_.assign(rig_.lasers.size(), -std::numeric_limits<double>::infinity());
+}
 
 /// False for a row whose counter says that it came before.
 bool TableItems::count_turns(const TableRow& row) {
   if (!row.counter) {
-    turn_ = static_cast<std::int64_t>(rows_);
+    ++turn_;
     return true;
   }
   const std::int64_t modulus = format_.counter_modulus;
@@ -36,6 +39,8 @@ bool TableItems::count_turns(const TableRow& row) {
     const std::int64_t on = (((*row.counter - *last_counter_) % modulus) + modulus) % modulus;
     if (on == 0) return false;
     turn_ += on;
+  } else {
+    turn_ = 0;
   }
   last_counter_ = row.counter;
   return true;
@@ -100,7 +105,14 @@ void TableItems::add_beams(const TableRow& row, double time) {
   }
 }
 
-std::optional<TableScan> TableItems::add(const TableRow& row) {
+void TableItems::note_end(const TableRow& row, double time) {
+  if (row.ranges.empty()) return;
+  const double lasts = static_cast<double>(row.ranges.size() - 1) * settings_.beam_interval;
+  overlapping_ += time < ends_[row.laser];
+  ends_[row.laser] = time + lasts;
+}
+
+std::optional<std::int64_t> TableItems::admit(const TableRow& row) {
   if (row.laser >= rig_.lasers.size()) {
     ++losses_["rows of a laser that the rig does not have"];
     return {};
@@ -112,10 +124,20 @@ std::optional<TableScan> TableItems::add(const TableRow& row) {
   const std::int64_t time_ns = time_of(row);
   if (last_ns_ && time_ns < *last_ns_) {
     ++losses_["rows that are earlier than the row before"];
+    if (first_early_line_ == 0) first_early_line_ = row.line;
     return {};
   }
-  if (!last_ns_) epoch_ns_ = time_ns - time_ns % kSecond;
   last_ns_ = time_ns;
+  return time_ns;
+}
+
+std::optional<TableScan> TableItems::add(const TableRow& row) {
+  const auto time_ns = admit(row);
+  return time_ns ? std::optional(add(row, *time_ns)) : std::nullopt;
+}
+
+TableScan TableItems::add(const TableRow& row, std::int64_t time_ns) {
+  if (rows_ == 0) epoch_ns_ = time_ns - time_ns % kSecond;
   const double time = seconds(time_ns);
   const double angle = unwrapped(row.angle);
   last_angle_ = angle;
@@ -123,6 +145,7 @@ std::optional<TableScan> TableItems::add(const TableRow& row) {
   const double lasts = static_cast<double>(row.ranges.size()) * settings_.beam_interval;
   note_angle(time, angle);
   if (stands) note_angle(time + lasts, angle);
+  note_end(row, time);
   add_beams(row, time);
 
   TableScan item;

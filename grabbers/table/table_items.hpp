@@ -44,8 +44,12 @@ class TableItems {
   /// @param rig  its plate is the actuator: angles are rounded to its encoder's steps
   TableItems(const TableFormat& format, const TableScanSettings& settings, Rig rig);
 
-  /// Takes the next row. Nothing comes of one that is out of order, repeated, or of a laser that the rig does
-  /// not have, which is counted.
+  /// When the next row was measured, by whatever tells it. Nothing for one that is out of order, repeated, or
+  /// of a laser that the rig does not have, which is counted.
+  std::optional<std::int64_t> admit(const TableRow& row);
+  /// Takes a row that was just admitted. @param time_ns  what admit() said
+  TableScan add(const TableRow& row, std::int64_t time_ns);
+  /// Both, for those who want every row.
   std::optional<TableScan> add(const TableRow& row);
 
   /// Of all rows so far. @throws Error if there are fewer than two angles at different times
@@ -54,9 +58,15 @@ class TableItems {
   std::vector<std::shared_ptr<const Measurements>> take_measurements();
 
   const std::map<std::string, std::uint64_t>& losses() const { return losses_; }
+  /// Line of the first row that is earlier than the one before; 0: there is none.
+  int first_early_line() const { return first_early_line_; }
+  std::uint64_t rows() const { return rows_; }  ///< taken so far
+  /// Rows that began before the last beam of the row before, of the same laser, was fired.
+  std::uint64_t overlapping() const { return overlapping_; }
 
  private:
   bool count_turns(const TableRow& row);
+  void note_end(const TableRow& row, double time);
   std::int64_t time_of(const TableRow& row) const;
   double unwrapped(double angle) const;
   void note_angle(double time, double angle);
@@ -68,9 +78,12 @@ class TableItems {
   TableScanSettings settings_;
   Rig rig_;
   std::uint64_t rows_ = 0;
+  std::uint64_t overlapping_ = 0;
+  std::vector<double> ends_;  ///< [s] last beam of each laser so far
+  int first_early_line_ = 0;
   std::uint16_t readings_ = 0;  ///< wraps, as a device's counter does
   std::optional<std::int64_t> last_counter_;
-  std::int64_t turn_ = 0;  ///< the device's count, unwrapped
+  std::int64_t turn_ = -1;  ///< of the row admitted last: the device's count, unwrapped, or the row's number
   std::optional<std::int64_t> last_ns_;
   std::int64_t epoch_ns_ = 0;
   std::optional<double> last_angle_;

@@ -11,12 +11,11 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kLongestLine = 1 << 20;
 constexpr std::size_t kMostRanges = 65536;  // as many beams as a measurement's index can tell
 constexpr double kLargestAngle = 1e6;       // [rad]
 constexpr double kLargestRange = 1e5;       // [m]
 
-bool separates(char c) { return c == ',' || c == ';' || c == '\t' || c == ' ' || c == '\r'; }
+bool separates(char c) { return c == ',' || c == ';' || c == '\t' || c == ' '; }
 
 /// What is wrong with a row, and at which character of it.
 struct Fault {
@@ -30,13 +29,13 @@ class Fields {
   explicit Fields(std::string_view text) {
     std::size_t at = 0;
     while (at < text.size()) {
-      while (at < text.size() && (text[at] == ' ' || text[at] == '\r')) ++at;
+      while (at < text.size() && text[at] == ' ') ++at;
       if (at == text.size()) break;
       const std::size_t begin = at;
       while (at < text.size() && !separates(text[at])) ++at;
       fields_.push_back(text.substr(begin, at - begin));
       starts_.push_back(begin);
-      while (at < text.size() && (text[at] == ' ' || text[at] == '\r')) ++at;
+      while (at < text.size() && text[at] == ' ') ++at;
       if (at < text.size() && separates(text[at])) ++at;
     }
     end_ = text.size();
@@ -138,11 +137,11 @@ void read_ranges(const Fields& fields, const TableFormat& format, TableRow& row)
 
 std::optional<TableRow> TableReader::parse(std::string_view text) {
   try {
-    if (text.size() > kLongestLine) throw Fault{"rows of more than 1 MiB", kLongestLine};
+    if (text.size() > TableLines::kLongest) throw Fault{"rows of more than 1 MiB", TableLines::kLongest};
     const Fields fields(text);
     const auto column = [](int number) { return static_cast<std::size_t>(number); };
     TableRow row;
-    row.line = line_;
+    row.line = lines_.number();
     if (format_.time_column) {
       row.time_ns = fields.decimal(column(*format_.time_column), exponent_of(format_.time_unit));
     }
@@ -165,8 +164,8 @@ std::optional<TableRow> TableReader::parse(std::string_view text) {
     ++losses_[fault.what];
     if (!first_fault_) {
       constexpr std::size_t kFarthest = 1'000'000'000;
-      first_fault_.emplace(fault.what, "",
-                           Place{name_, line_, static_cast<int>(std::min(fault.at, kFarthest)) + 1});
+      first_fault_.emplace(
+          fault.what, "", Place{name_, lines_.number(), static_cast<int>(std::min(fault.at, kFarthest)) + 1});
     }
     return std::nullopt;
   }
@@ -174,12 +173,12 @@ std::optional<TableRow> TableReader::parse(std::string_view text) {
 
 std::optional<TableRow> TableReader::next() {
   std::string text;
-  while (std::getline(in_, text)) {
-    ++line_;
-    const auto begin = text.find_first_not_of(" \t\r");
+  while (lines_.next(text)) {
+    const auto begin = text.find_first_not_of(" \t");
     if (begin == std::string::npos || text[begin] == '#') continue;
     // names of columns: the first line, and it begins with a letter or a quote
-    if (line_ == 1 && (std::isalpha(static_cast<unsigned char>(text[begin])) || text[begin] == '"')) continue;
+    if (lines_.number() == 1 && (std::isalpha(static_cast<unsigned char>(text[begin])) || text[begin] == '"'))
+      continue;
     if (auto row = parse(text)) {
       ++rows_;
       return row;

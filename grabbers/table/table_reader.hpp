@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "grabbers/table/table_format.hpp"
+#include "grabbers/table/table_lines.hpp"
 #include "pipeline/data/error.hpp"
 
 namespace crisp {
@@ -20,9 +21,9 @@ class TableReader {
  public:
   /// @param name  of the table, for places
   TableReader(std::istream& in, std::string name, const TableFormat& format)
-      : in_(in), name_(std::move(name)), format_(format) {}
+      : lines_(in, name), name_(std::move(name)), format_(format) {}
 
-  /// The next row that can be read, or nothing at the end.
+  /// The next row that can be read, or nothing at the end. @throws Error as TableLines
   std::optional<TableRow> next();
 
   /// How many rows were left out, by what is wrong with them.
@@ -34,10 +35,9 @@ class TableReader {
  private:
   std::optional<TableRow> parse(std::string_view text);
 
-  std::istream& in_;
+  TableLines lines_;
   std::string name_;
   TableFormat format_;
-  int line_ = 0;
   std::uint64_t rows_ = 0;
   std::map<std::string, std::uint64_t> losses_;
   std::optional<Error> first_fault_;

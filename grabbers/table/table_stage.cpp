@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <fstream>
+#include <utility>
 
 #include "pipeline/data/error.hpp"
 
@@ -93,7 +95,29 @@ void TableStage::describe(StageDescription<TableStage>& d) {
       .at_least(0);
 }
 
+/// Each column means one thing. Only the time may be that of the receipt.
+void TableStage::check_columns() const {
+  const std::array<std::pair<const char*, std::optional<int>>, 9> roles = {
+      {{"time_column", format_.time_column},
+       {"receipt_column", format_.receipt_column},
+       {"counter_column", format_.counter_column},
+       {"angle_column", format_.angle_column},
+       {"range_column", format_.range_column},
+       {"count_column", format_.count_column},
+       {"remission_column", format_.remission_column},
+       {"mirror_column", format_.mirror_column},
+       {"laser_column", format_.laser_column}}};
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    for (std::size_t j = i == 0 ? 2 : i + 1; j < roles.size(); ++j) {
+      if (!roles[i].second || roles[i].second != roles[j].second) continue;
+      throw Error(fmt::format("{} and {} are both {}", roles[i].first, roles[j].first, *roles[i].second),
+                  "columns count from 1; give each role its own");
+    }
+  }
+}
+
 void TableStage::check(const RunSettings& run) const {
+  check_columns();
   const bool timed = format_.time_column || format_.receipt_column;
   if (!timed && format_.period == 0) {
     throw Error("nothing says when the rows were measured", "give time_column, receipt_column or the period");
@@ -117,19 +141,17 @@ void TableStage::read(TableReader& reader, TableItems& items, Outputs& out, Cont
   std::optional<std::int64_t> first_ns;
   std::uint64_t rows = 0;
   while (auto row = reader.next()) {
-    const auto time_ns = row->time_ns ? row->time_ns : row->receipt_ns;
-    if (time_ns) {
-      if (!first_ns) first_ns = time_ns;
-      const double since = 1e-9 * static_cast<double>(*time_ns - *first_ns) - begin_;
-      if (since < 0 || (duration_ && since >= *duration_)) {
-        context.count("rows left out because of begin and duration");
-        continue;
-      }
+    const auto time_ns = items.admit(*row);
+    if (!time_ns) continue;
+    if (!first_ns) first_ns = time_ns;
+    const double since = 1e-9 * static_cast<double>(*time_ns - *first_ns) - begin_;
+    if (since < 0 || (duration_ && since >= *duration_)) {
+      context.count("rows left out because of begin and duration");
+      continue;
     }
-    if (const auto item = items.add(*row)) {
-      if (item->reading) out.give(*item->reading);
-      if (item->scan) out.give(item->scan);
-    }
+    const auto item = items.add(*row, *time_ns);
+    if (item.reading) out.give(*item.reading);
+    if (item.scan) out.give(item.scan);
     constexpr std::uint64_t kTellEvery = 1000;
     if (++rows % kTellEvery == 0) {
       if (context.interrupted()) return;
@@ -139,6 +161,9 @@ void TableStage::read(TableReader& reader, TableItems& items, Outputs& out, Cont
 }
 
 void TableStage::process(const Inputs&, Outputs& out, Context& context) {
+  if (std::filesystem::is_directory(file_)) {
+    throw Error(file_.string() + " is a folder, not a table", "name the file in it");
+  }
   std::ifstream in(file_);
   if (!in) throw Error("cannot read " + file_.string(), "is it there, and may it be read?");
   context.reads(file_);
@@ -166,6 +191,17 @@ void TableStage::report(const TableReader& reader, const TableItems& items, std:
                 "is it the right table, and are its columns right?");
   }
   if (fault) context.warn(to_string(fault->place()) + ": here is the first of the " + fault->message());
+  if (const int line = items.first_early_line(); line > 0) {
+    context.warn(
+        to_string(Place{file_.string(), line, 1}) +
+        ": here is the first of the rows that are earlier than the row before. If the row before leaps "
+        "ahead, take it out; if rows are in another order, sort them by their time");
+  }
+  if (2 * items.overlapping() > items.rows()) {
+    context.warn(fmt::format(
+        "{} of {} rows begin before the last beam of the row before was fired; is beam_interval right?",
+        items.overlapping(), items.rows()));
+  }
   context.report({{"rows", reader.rows()}, {"beams", beams}});
   context.say(fmt::format("{} rows with {} ranges", reader.rows(), beams));
 }

@@ -20,6 +20,7 @@ class TableStage final : public Stage {
   void process(const Inputs& in, Outputs& out, Context& context) override;
 
  private:
+  void check_columns() const;
   void read(TableReader& reader, TableItems& items, Outputs& out, Context& context) const;
   void report(const TableReader& reader, const TableItems& items, std::uint64_t beams,
               Context& context) const;

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <sstream>
+#include <stdexcept>
+#include <streambuf>
 
 #include "grabbers/table/decimal.hpp"
 #include "pipeline/data/degree.hpp"
@@ -99,6 +101,56 @@ TEST(TableReader, RefusesRowsWithFewerRangesThanTheySay) {
   const TableFormat format{.angle_column = 1, .range_column = 3, .count_column = 2};
   EXPECT_THAT(read("0,3,1,1\n0,2,1,1\n0,-1,1\n", format).losses,
               ElementsAre(Pair("rows with fewer ranges than they say", 2)));
+}
+
+TEST(TableReader, ReadsLinesInWhateverWayTheyEndAndPassesOverAByteOrderMark) {
+  EXPECT_EQ(read("0,0,1\r1,0,1\r2,0,1", kPlain).rows.size(), 3U);
+  EXPECT_EQ(read("\xEF\xBB\xBF"
+                 "0,0,1\r\n1,0,1\r\n",
+                 kPlain)
+                .rows.size(),
+            2U);
+  EXPECT_EQ(read("\xEF\xBB\xBFtime,angle,range\n0,0,1\n", kPlain).losses.size(), 0U);
+  EXPECT_THAT(read("0,0,1\r\n\r\n1,0,x\r\n", kPlain).fault, testing::HasSubstr("t.csv:3:5"));
+}
+
+TEST(TableReader, ReadsOnAfterALineThatIsTooLong) {
+  const auto all = read("0,0,1\n" + std::string(5 << 20, '1') + "\n1,0,1\n", kPlain);
+  EXPECT_EQ(all.rows.size(), 2U);
+  EXPECT_THAT(all.losses, ElementsAre(Pair("rows of more than 1 MiB", 1)));
+}
+
+TEST(TableReader, ReadsTheSameWhereverItsPiecesEnd) {
+  std::string text;
+  for (int row = 0; row < 20000; ++row) text += std::to_string(row) + ",0,1\r\n";
+  EXPECT_EQ(read(text, kPlain).rows.size(), 20000U);
+}
+
+/// Gives a few bytes, then nothing but errors or zeros.
+class Broken : public std::streambuf {
+ public:
+  explicit Broken(bool zeros) : zeros_(zeros) {
+    setg(text_.data(), text_.data(), text_.data() + text_.size());
+  }
+
+ private:
+  int underflow() override {
+    if (!zeros_) throw std::runtime_error("the disk is broken");
+    text_.assign(1 << 16, 0);
+    setg(text_.data(), text_.data(), text_.data() + text_.size());
+    return 0;
+  }
+  std::string text_ = "0,0,1\n";
+  bool zeros_;
+};
+
+TEST(TableReader, ThrowsWhereTheTextCannotBeReadToItsEnd) {
+  for (const bool zeros : {false, true}) {
+    Broken broken(zeros);
+    std::istream in(&broken);
+    TableReader reader(in, "t.csv", kPlain);
+    EXPECT_THROW(while (reader.next()){}, Error) << "a table that is cut off is not whole";
+  }
 }
 
 TEST(ShiftedDecimal, IsExactWhereADoubleIsNot) {

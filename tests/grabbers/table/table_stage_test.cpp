@@ -90,13 +90,62 @@ TEST_F(TableStageTest, RefusesOptionsThatLeaveATimeOrAnAngleUnknown) {
   EXPECT_THAT(complaint("", "angle_column: 1, range_column: 2, angle_step: 1deg"),
               HasSubstr("give time_column"));
   EXPECT_THAT(complaint("", "time_column: 1, remission_column: 3"), HasSubstr("give range_column"));
-  EXPECT_THAT(complaint("", "time_column: 1, angle_column: 1, range_column: 2"),
+  EXPECT_THAT(complaint("", "time_column: 1, angle_column: 2, range_column: 3"),
               HasSubstr("give angle_step"));
   EXPECT_THAT(
       complaint("", "time_column: 3, counter_column: 4, angle_column: 1, range_column: 2, angle_step: 1deg"),
       HasSubstr("give the period"));
   rig_ = CRISP_SOURCE_DIR "/configs/rig.yaml";
   EXPECT_THAT(complaint("", kColumns), HasSubstr("give laser_column"));
+}
+
+TEST_F(TableStageTest, AColumnHasOneMeaning) {
+  EXPECT_THAT(complaint("", "time_column: 1, angle_column: 1, range_column: 1, angle_step: 1deg"),
+              HasSubstr("time_column and angle_column are both 1"));
+  EXPECT_THAT(complaint("", std::string(kColumns) + ", remission_column: 3"), HasSubstr("are both 3"));
+  EXPECT_EQ(run("0,0,1\n1,0,1\n", std::string(kColumns) + ", receipt_column: 1").report.section["beams"], 2);
+}
+
+TEST_F(TableStageTest, ReadsAPartOfATableThatOnlyThePeriodTimes) {
+  const auto result = run("0,1\n0,1\n0,1\n0,1\n",
+                          "angle_column: 1, range_column: 2, angle_step: 1deg, period: 1s, begin: 1s, "
+                          "duration: 2s");
+  EXPECT_EQ(result.report.section["beams"], 2);
+  EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows left out because of begin and duration", 2)));
+}
+
+TEST_F(TableStageTest, SaysWhereTheRowsFirstAreOutOfOrder) {
+  const auto result = run("0,0,1\n1,0,1\n90,0,1\n2,0,1\n3,0,1\n", kColumns);
+  EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows that are earlier than the row before", 2)));
+  EXPECT_THAT(result.report.warnings,
+              ElementsAre(HasSubstr("t.csv:4:1: here is the first of the rows that are")));
+}
+
+TEST_F(TableStageTest, RowsBeforeTheFirstAreNotLeftOutBecauseOfBegin) {
+  const auto result = run("5,0,1\n4,0,1\n6,0,1\n", kColumns);
+  EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows that are earlier than the row before", 1)));
+}
+
+TEST_F(TableStageTest, WarnsWhereTheBeamsOfARowLastBeyondTheNext) {
+  const std::string table = "0,0,1,1,1\n1,0,1,1,1\n2,0,1,1,1\n3,0,1,1,1\n";
+  EXPECT_THAT(run(table, std::string(kColumns) + ", beam_interval: 0.4s").report.warnings,
+              testing::IsEmpty());
+  EXPECT_THAT(run(table, std::string(kColumns) + ", beam_interval: 0.6s").report.warnings,
+              ElementsAre(HasSubstr("3 of 4 rows begin before the last beam")));
+}
+
+TEST_F(TableStageTest, RefusesAFolder) {
+  std::ofstream(folder_ / "pipeline.yaml")
+      << "crisp: 1\nrig: " << rig_
+      << "\npipeline:\n  - stage: grabber.table\n    with: {file: " << (folder_ / ".").string() << ", "
+      << kColumns << "}\n";
+  auto loaded = load_pipeline(folder_ / "pipeline.yaml", {}, run_);
+  try {
+    run_pipeline(loaded.pipeline, run_, {});
+    ADD_FAILURE() << "it was read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is a folder"));
+  }
 }
 
 }  // namespace
