@@ -13,6 +13,7 @@
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/findings_file.hpp"
+#include "pipeline/model/term_faults.hpp"
 #include "pipeline/stage/registry.hpp"
 
 namespace crisp {
@@ -41,7 +42,7 @@ Calibration TruthChoice::drawn(const RunSettings& run, std::uint64_t seed) const
 
 Calibration TruthChoice::load(Context& context, std::uint64_t seed) const {
   if (calibration_file.empty()) return drawn(context.run(), seed);
-  Calibration truth = read_calibration(calibration_file);
+  Calibration truth = read_calibration(calibration_file, judge_by(known_terms(context.run())));
   context.reads(calibration_file);
   check_lasers(truth, context.rig(), calibration_file);
   return truth;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -22,6 +23,18 @@ struct TermParameters {
   std::string term;  ///< "mirror.cone"
   std::vector<Parameter> parameters;
 };
+
+/// What is wrong with the parameters of a term, or with one of them.
+struct TermFault {
+  std::string parameter;  ///< "kappa"; empty: it is the term as a whole
+  std::string what;
+  std::string advice;
+};
+
+/// Whose a term is.
+enum class TermOwner { laser, plate };
+/// What is wrong with the parameters of a term: asked by who reads a calibration of who knows the terms.
+using JudgeTerm = std::function<std::vector<TermFault>(const TermParameters&, TermOwner)>;
 
 /// Where one laser sits on the plate: equation (2), and its lag of equation (3).
 struct LaserCalibration {

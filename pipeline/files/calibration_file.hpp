@@ -10,11 +10,12 @@
 namespace crisp {
 
 /// Reads a calibration.
+/// @param judge  none: any term with any parameters will do
 /// @throws Errors  all that is wrong, with file:line:column
-Calibration parse_calibration(const YamlNode& root);
+Calibration parse_calibration(const YamlNode& root, const JudgeTerm& judge = {});
 
 /// Reads the file and parses it. @throws Error if it cannot be read; Errors as parse_calibration
-Calibration read_calibration(const std::filesystem::path& file);
+Calibration read_calibration(const std::filesystem::path& file, const JudgeTerm& judge = {});
 
 /// The calibration as YAML. Numbers are printed so that reading them back gives the same doubles.
 /// @throws Error  if a number is not finite, or the covariance does not fit its order

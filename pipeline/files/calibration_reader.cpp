@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
 namespace crisp {
 namespace {
 
+/// Sizes beyond which a value cannot be meant, in SI.
+constexpr double kLargestAngle = 100, kLargestOffset = 10, kLargestLag = 10;
+
 class CalibrationReader {
  public:
+  explicit CalibrationReader(const JudgeTerm& judge) : judge_(judge) {}
+
   Calibration read(const YamlNode& root) {
     YamlMap map(root, "calibration", errors_);
     check_schema(map, 1);
@@ -30,30 +37,52 @@ class CalibrationReader {
       YamlMap laser_map(value, "laser '" + name + "'", errors_);
       LaserCalibration laser;
       laser.name = name;
-      for (Parameter* parameter : {&laser.lambda, &laser.tau, &laser.alpha, &laser.eta}) {
-        const YamlNode* found = laser_map.require(parameter->name);
-        if (found) *parameter = read_parameter(*found, parameter->name, laser_map.what(), parameter->unit);
+      read_base(laser_map, laser.lambda, kLargestAngle);
+      read_base(laser_map, laser.tau, kLargestOffset);
+      read_base(laser_map, laser.alpha, kLargestAngle);
+      read_base(laser_map, laser.eta, kLargestLag);
+      if (const YamlNode* terms = laser_map.find("terms")) {
+        laser.terms = read_terms(*terms, laser_map.what(), TermOwner::laser);
       }
-      if (const YamlNode* terms = laser_map.find("terms")) laser.terms = read_terms(*terms, laser_map.what());
       laser_map.refuse_others();
       calibration_.lasers.push_back(std::move(laser));
     }
   }
 
+  /// One of λ, τ, α, η.
+  void read_base(YamlMap& laser, Parameter& parameter, double largest) {
+    const YamlNode* found = laser.require(parameter.name);
+    if (!found) return;
+    parameter = read_parameter(*found, parameter.name, laser.what(), parameter.unit);
+    if (std::abs(parameter.value) <= largest) return;
+    laser.fail(found->place,
+               fmt::format("'{}': {:g} {} cannot be meant", parameter.name, parameter.value, parameter.unit),
+               fmt::format("its size is at most {:g} {}", largest, parameter.unit));
+  }
+
   void read_plate(const YamlNode& node) {
     YamlMap map(node, "plate", errors_);
-    if (const YamlNode* terms = map.find("terms")) calibration_.plate_terms = read_terms(*terms, "plate");
+    if (const YamlNode* terms = map.find("terms")) {
+      calibration_.plate_terms = read_terms(*terms, "plate", TermOwner::plate);
+    }
     map.refuse_others();
   }
 
-  std::vector<TermParameters> read_terms(const YamlNode& node, const std::string& what) {
+  std::vector<TermParameters> read_terms(const YamlNode& node, const std::string& what, TermOwner owner) {
     YamlMap map(node, what + ", terms", errors_);
     std::vector<TermParameters> terms;
     for (const auto& [name, place, value] : node.entries) {
       YamlMap term_map(value, fmt::format("{}, term '{}'", what, name), errors_);
       TermParameters term{name, {}};
+      const std::size_t wrong_before = errors_.size();
       for (const auto& entry : value.entries) {
         term.parameters.push_back(read_parameter(entry.value, entry.key, term_map.what(), {}));
+      }
+      if (judge_ && errors_.size() == wrong_before) {
+        for (const auto& fault : judge_(term, owner)) {
+          const YamlNode* parameter = value.find(fault.parameter);
+          term_map.fail(parameter ? parameter->place : place, fault.what, fault.advice);
+        }
       }
       terms.push_back(std::move(term));
     }
@@ -74,6 +103,8 @@ class CalibrationReader {
     if (written && !unit.empty() && parameter.unit != unit) {
       map.fail(written->place, describe(*written) + " is not its unit", "convert the value to " + unit);
     }
+    if (written && parameter.unit.empty())
+      map.fail(written->place, "there is no unit", "write 1 for a plain number");
     if (parameter.std_error < 0) map.fail(node.find("std_error")->place, "a standard error is not negative");
     map.refuse_others();
     return parameter;
@@ -159,14 +190,19 @@ class CalibrationReader {
     }
   }
 
+  const JudgeTerm& judge_;
   Calibration calibration_;
   std::vector<Error> errors_;
 };
 
 }  // namespace
 
-Calibration parse_calibration(const YamlNode& root) { return CalibrationReader().read(root); }
+Calibration parse_calibration(const YamlNode& root, const JudgeTerm& judge) {
+  return CalibrationReader(judge).read(root);
+}
 
-Calibration read_calibration(const std::filesystem::path& file) { return parse_calibration(read_yaml(file)); }
+Calibration read_calibration(const std::filesystem::path& file, const JudgeTerm& judge) {
+  return parse_calibration(read_yaml(file), judge);
+}
 
 }  // namespace crisp

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/model/term_faults.hpp"
 #include "pipeline/model/traced_runs.hpp"
 
 namespace crisp {
@@ -12,22 +13,12 @@ namespace {
 constexpr std::size_t kPhases = static_cast<std::size_t>(Phase::kRange) + 1;
 constexpr std::size_t kBaseParameters = 4;  // λ, τ, α, η
 
-void check_parameters(const TermInfo& info, const TermParameters& given) {
-  const bool same = std::equal(
-      info.parameters.begin(), info.parameters.end(), given.parameters.begin(), given.parameters.end(),
-      [](const auto& declared, const auto& have) { return declared.name == have.name; });
-  if (same) return;
-  std::string expected;
-  for (const auto& parameter : info.parameters) expected += (expected.empty() ? "" : ", ") + parameter.name;
-  throw Error("the calibration's parameters of " + info.name + " are not those of the term",
-              "expected " + expected);
-}
-
 void add_terms(LaserChain& chain, const std::vector<TermParameters>& terms, std::size_t first_value,
                Scope scope, const TermRegistry& registry) {
   for (const auto& given : terms) {
     auto term = registry.get(given.term);
-    check_parameters(term->info(), given);
+    const auto faults = faults_of(given, term->info());
+    if (!faults.empty()) throw Error(faults.front().what, faults.front().advice);
     if (term->info().scope != scope) {
       throw Error("the term " + given.term + " stands under the wrong heading of the calibration",
                   scope == Scope::kLaser ? "put it under plate" : "put it under each laser");

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pipeline/files/calibration_file.hpp"
+#include "pipeline/model/term_faults.hpp"
 
 namespace crisp {
 
@@ -31,7 +32,7 @@ void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context
   if (!std::filesystem::exists(file_)) {
     throw Error("there is no calibration " + file_.string(), "calibrate first, or name another file");
   }
-  const Calibration read = read_calibration(file_);
+  const Calibration read = read_calibration(file_, judge_by(context.run().registrar->get<TermRegistry>()));
   context.reads(file_);
   Calibration calibration = ordered_as(context.rig(), read);
   if (read.lasers.size() > calibration.lasers.size()) {

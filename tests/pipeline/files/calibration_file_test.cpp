@@ -65,6 +65,29 @@ TEST(CalibrationFile, ReadsEveryPartOfTheFormat) {
   EXPECT_EQ(c.provenance.at("seed"), "7");
 }
 
+std::string example_with(const std::string& old, const std::string& replacement) {
+  std::string text = kExample;
+  return text.replace(text.find(old), old.size(), replacement);
+}
+
+TEST(CalibrationFile, RefusesSizesThatCannotBeMeant) {
+  EXPECT_THAT(errors_of_calibration(example_with("0.19914", "1000")),
+              ElementsAre(HasSubstr("c.yaml:5:13: error: laser 'laser1': 'tau': 1000 m cannot be meant")));
+  EXPECT_THAT(errors_of_calibration(example_with("value: 0.0, unit: rad", "value: 1e300, unit: rad")),
+              ElementsAre(HasSubstr("'lambda': 1e+300 rad cannot be meant")));
+  EXPECT_THAT(errors_of_calibration(example_with("-0.03010", "20")), ElementsAre(HasSubstr("'eta': 20 s")));
+}
+
+TEST(CalibrationFile, NamesThePlaceOfWhatWhoKnowsTheTermsFindsWrong) {
+  const JudgeTerm judge = [](const TermParameters& term, TermOwner owner) -> std::vector<TermFault> {
+    if (owner == TermOwner::plate) return {{"", "no such term", "leave it out"}};
+    return {{"kappa", "too many " + term.parameters.at(0).unit, "take fewer"}};
+  };
+  EXPECT_THAT(errors_of([&] { parse_calibration(parse_yaml(kExample, "c.yaml"), judge); }),
+              ElementsAre(HasSubstr("c.yaml:9:28: error: laser 'laser1', term 'mirror.cone': too many rad"),
+                          HasSubstr("c.yaml:12:5: error: plate, term 'encoder.eccentricity': no such term")));
+}
+
 TEST(CalibrationFile, WritesWhatItReads) {
   const std::string written = to_yaml(parse(kExample));
   EXPECT_EQ(to_yaml(parse(written)), written);

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "pipeline/data/calibration.hpp"
+#include "pipeline/model/term.hpp"
+
+namespace crisp {
+
+/// How a calibration's parameters differ from those that their term has, by name, order and unit: with any of
+/// these, the term would be given numbers that mean something else.
+std::vector<TermFault> faults_of(const TermParameters& given, const TermInfo& term);
+
+/// Judges the same in a calibration that somebody wrote, and whether there is such a term, whether it is the
+/// laser's or the plate's, and whether the values lie within its bounds.
+/// @param terms  is referred to
+JudgeTerm judge_by(const TermRegistry& terms);
+
+}  // namespace crisp
