@@ -5,6 +5,7 @@
 
 #include "pipeline/files/calibration_file.hpp"
 #include "pipeline/model/term_faults.hpp"
+#include "pipeline/stage/registry.hpp"
 
 namespace crisp {
 
