@@ -14,7 +14,9 @@
 namespace crisp {
 namespace {
 
-nlohmann::json json_of(const Scatter& scatter) {
+/// Null where no run told anything.
+nlohmann::json json_of_runs(const Scatter& scatter) {
+  if (scatter.estimates == 0) return nullptr;
   return {{"mean", scatter.mean}, {"std_dev", scatter.std_dev}};
 }
 
@@ -27,12 +29,13 @@ nlohmann::json json_of(const Table& table) {
     nlohmann::json entry = {{"unit", row.unit},
                             {"bound", row.bound},
                             {"bound_with_steps", row.bound_with_steps},
-                            {"refined", json_of(row.refined)},
-                            {"std_error", row.refined.claimed},
-                            {"within_68", row.refined.one},
-                            {"within_95", row.refined.two}};
-    if (row.rqe) entry["rqe"] = json_of(*row.rqe);
-    if (row.paper) entry["paper"] = json_of(*row.paper);
+                            {"refined", json_of_runs(row.refined)}};
+    const bool told = row.refined.estimates > 0;
+    entry["std_error"] = told ? nlohmann::json(row.refined.claimed) : nullptr;
+    entry["within_68"] = told ? nlohmann::json(row.refined.one) : nullptr;
+    entry["within_95"] = told ? nlohmann::json(row.refined.two) : nullptr;
+    if (row.rqe) entry["rqe"] = json_of_runs(*row.rqe);
+    if (row.paper) entry["paper"] = {{"mean", row.paper->mean}, {"std_dev", row.paper->std_dev}};
     json[row.parameter] = std::move(entry);
   }
   return json;
@@ -172,6 +175,10 @@ void MonteCarloStage::finish(Outputs&, Context& context) {
   const std::string text = table_text(table);
   context.say(text);
   context.report(json_of(table));
+  if (table.runs > 0 && !tells_of_refinement(table)) {
+    context.distrust(fmt::format(
+        "not one of {} runs was refined to near the truth: nothing is told of the errors", table.runs));
+  }
   context.count("runs that could not be refined", table.refined_failed);
   context.count("runs that ended in another valley", table.refined_astray);
   if (!runs_file_.empty()) {

@@ -67,6 +67,7 @@ Scatter scatter_of(const ParameterKind& kind, const std::vector<Trial>& trials, 
   });
   Scatter scatter;
   if (errors.empty()) return scatter;
+  scatter.estimates = errors.size();
   const auto n = static_cast<double>(errors.size());
   for (const double error : errors) scatter.mean += error / n;
   double squares = 0;
@@ -99,6 +100,36 @@ std::string cell(const std::optional<Scatter>& scatter) {
                  : fmt::format("{:^18}", "not told");
 }
 
+/// What no run told is no 0.
+std::string cell_of_runs(const Scatter& scatter) {
+  return scatter.estimates > 0 ? cell(scatter) : fmt::format("{:^18}", "none");
+}
+
+std::string figure(double value, int width, int digits) {
+  return std::isfinite(value) ? fmt::format("{:>{}.{}f}", value, width, digits)
+                              : fmt::format("{:>{}}", "-", width);
+}
+
+/// A cell of CSV: empty where there is no number.
+std::string csv_cell(const Eigen::VectorXd& values, Eigen::Index i) {
+  if (i >= values.size() || !std::isfinite(values[i])) return {};
+  return fmt::format("{:.6g}", values[i]);
+}
+
+/// What the refinement's errors are beside their bound.
+std::string refined_figures(const ErrorRow& row) {
+  const Scatter& refined = row.refined;
+  std::string text = cell_of_runs(refined) + figure(row.bound, 8, 4) + "  ";
+  if (refined.estimates > 0) {
+    text += figure(refined.std_dev > 0 ? refined.mean / refined.std_dev : 0, 8, 2) + "  " +
+            figure(refined.std_dev / row.bound, 8, 2) + "  " + figure(refined.claimed / row.bound, 10, 2) +
+            fmt::format("  {:>5.1f} {:>4.1f} %", 100 * refined.one, 100 * refined.two);
+  } else {
+    text += fmt::format("{:>8}  {:>8}  {:>10}  {:>12}", "-", "-", "-", "-");
+  }
+  return text + "  " + figure(row.bound_with_steps, 10, 4) + "\n";
+}
+
 bool has_paper(const Table& table) {
   return std::ranges::any_of(table.rows, [](const ErrorRow& row) { return row.paper.has_value(); });
 }
@@ -108,6 +139,10 @@ bool has_rqe(const Table& table) {
 }
 
 }  // namespace
+
+bool tells_of_refinement(const Table& table) {
+  return std::ranges::any_of(table.rows, [](const ErrorRow& row) { return row.refined.estimates > 0; });
+}
 
 Table table_of(const std::vector<Trial>& trials, bool papers) {
   const bool with_rqe = ran_rqe(trials);
@@ -145,14 +180,10 @@ std::string table_text(const Table& table) {
   text += fmt::format("{:^18}{:>8}  {:>8}  {:>8}  {:>10}  {:>12}  {:>10}\n", "refined", "bound", "mean/sd",
                       "sd/bound", "s.e./bound", "in 1, 2 s.e.", "with steps");
   for (const ErrorRow& row : table.rows) {
-    const Scatter& refined = row.refined;
     text += fmt::format("{:<7}{:<9}", row.parameter, row.unit);
     if (paper) text += cell(row.paper) + "  ";
-    if (rqe) text += cell(row.rqe) + "  ";
-    text += fmt::format("{}{:>8.4f}  {:>8.2f}  {:>8.2f}  {:>10.2f}  {:>5.1f} {:>4.1f} %  {:>10.4f}\n",
-                        cell(refined), row.bound, refined.std_dev > 0 ? refined.mean / refined.std_dev : 0,
-                        refined.std_dev / row.bound, refined.claimed / row.bound, 100 * refined.one,
-                        100 * refined.two, row.bound_with_steps);
+    if (rqe) text += cell_of_runs(row.rqe.value_or(Scatter{})) + "  ";
+    text += refined_figures(row);
   }
   text += fmt::format("{} runs; ended in another valley and left out: ", table.runs);
   if (rqe) text += fmt::format("{} (RQE), ", table.rqe_astray);
@@ -168,11 +199,11 @@ std::string runs_csv(const std::vector<Trial>& trials) {
     for (std::size_t k = 0; k < trial.parameters.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       const std::string& parameter = trial.parameters[k];
-      text += fmt::format("{},{},{},{:.6g},{:.6g},{},", trial.seed, parameter, kind_of(parameter).si,
-                          trial.bound[i], trial.bound_with_steps[i],
-                          trial.rqe ? fmt::format("{:.6g}", trial.rqe->error[i]) : "");
+      text += fmt::format("{},{},{},{},{},{},", trial.seed, parameter, kind_of(parameter).si,
+                          csv_cell(trial.bound, i), csv_cell(trial.bound_with_steps, i),
+                          trial.rqe ? csv_cell(trial.rqe->error, i) : "");
       if (refined.failure.empty()) {
-        text += fmt::format("{:.6g},{:.6g},\n", refined.error[i], refined.std_error[i]);
+        text += fmt::format("{},{},\n", csv_cell(refined.error, i), csv_cell(refined.std_error, i));
       } else {
         text += fmt::format(",,\"{}\"\n", refined.failure);
       }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ struct Scatter {
   double claimed = 0;  ///< RMS of the standard errors that the estimator gave itself; 0 where it gave none
   double one = 0;      ///< share of errors within 1 of these;
   double two = 0;      ///< within 1.96
+  std::size_t estimates =
+      0;  ///< that were counted: without any, the figures are none. Not known of the paper's
 };
 
 /// One row of Table 1, all lasers together. In the unit that is named.
@@ -40,6 +43,9 @@ struct Table {
 
 /// @param papers  whether the trials are those of the paper, so that its figures can stand beside them
 Table table_of(const std::vector<Trial>& trials, bool papers = true);
+
+/// Whether any run was refined, and ended in the true valley.
+bool tells_of_refinement(const Table& table);
 
 /// For people.
 std::string table_text(const Table& table);

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <limits>
+
 #include "pipeline/data/degree.hpp"
 
 namespace crisp {
@@ -79,6 +82,27 @@ TEST(Table, WritesEveryRunAsALineAParameter) {
   EXPECT_THAT(csv, HasSubstr("seed,parameter,unit,bound,bound_with_steps,rqe_error,error,std_error,failure\n"
                              "7,laser1.tau,m,0.003,0.004,-0.002,0.001,0.0015,\n"));
   EXPECT_THAT(csv, HasSubstr("7,laser1.tau,m,0.003,0.004,0.001,,,\"no walls\"\n"));
+}
+
+TEST(Table, WithoutAnEstimateHasNoFigures) {
+  Trial failed = trial(0.3, 0, 0);
+  failed.refined = {.error = {}, .std_error = {}, .failure = "no walls"};
+  const Table table = table_of({failed, trial(0.3, 0.3, 0)});
+  EXPECT_FALSE(tells_of_refinement(table));
+  EXPECT_EQ(table.rows[0].refined.estimates, 0U);
+  const std::string text = table_text(table);
+  EXPECT_THAT(text, HasSubstr("none"));
+  EXPECT_THAT(text, Not(AnyOf(HasSubstr("0.000 ± 0.000"), HasSubstr("0.0  0.0 %"))));
+  EXPECT_TRUE(tells_of_refinement(table_of({failed, trial(0, 0.001, 0)})));
+}
+
+TEST(Table, LeavesCellsEmptyWhereThereIsNoNumber) {
+  Trial one = trial(0, 0.001, 0);
+  one.bound[0] = one.refined.std_error[0] = std::numeric_limits<double>::infinity();
+  one.bound_with_steps[0] = std::nan("");
+  one.rqe->error.resize(0);
+  EXPECT_THAT(runs_csv({one}), HasSubstr("\n7,laser1.tau,m,,,,0.001,,\n"));
+  EXPECT_THAT(table_text(table_of({one})), Not(AnyOf(HasSubstr("inf"), HasSubstr("nan"))));
 }
 
 TEST(Table, OfNoRunsIsEmpty) { EXPECT_TRUE(table_of({}).rows.empty()); }
