@@ -201,16 +201,26 @@ void DiagnosePassesStage::process(const Inputs& in, Outputs&, Context&) {
 double DiagnosePassesStage::diagnose(Findings& findings, Context& context) const {
   const std::string& name = context.rig().lasers.front().name;
   const auto actuator = series_.actuator(context.rig().plate.counts_per_revolution);
-  const auto both = opposite(find_passes(series_, actuator, shortest_));
-  if (!both) {
-    findings.unobservable.push_back({"shift between passes (" + name + ")",
-                                     "the actuator goes only one way: each surface is seen once", ""});
-    context.say(name + ": the actuator goes only one way, so its angles cannot be checked by passes");
-    return 0;
+  const auto say_nothing = [&](const std::string& why) {
+    findings.unobservable.push_back({"shift between passes (" + name + ")", why, ""});
+    context.say(name + ": its angles cannot be checked by passes: " + why);
+    return 0.0;
+  };
+  const auto passes = find_passes(series_, actuator, shortest_);
+  if (passes.empty()) {
+    return say_nothing(
+        fmt::format("the actuator is never on its way for {:g} deg at a stretch", shortest_ / kDegree));
   }
+  const auto both = opposite(passes);
+  if (!both) return say_nothing("the actuator goes only one way: each surface is seen once");
   const auto& [up, down] = *both;
   const auto comparison = compare_passes(up, down);
   const PassShift found = find_shift(up, down, context.seed());
+  if (!std::isfinite(found.shift)) {
+    return say_nothing(
+        fmt::format("the differences between the ways, of {} beams, have no least value within {:.3g} deg",
+                    comparison.beams, kReach * comparison.step / kDegree));
+  }
   tell(name, found, comparison.step, comparison.beams, context);
   add_findings(name, found, findings);
   findings.unobservable.push_back(

@@ -111,6 +111,41 @@ TEST(DiagnosePassesStage, SaysThatASingleSweepTellsNothing) {
   EXPECT_THAT(stage.given<PlateTrajectory>(), SizeIs(1));
 }
 
+/// A plane across the actuator's axis: at every angle all ranges are alike, so that no shift can be seen.
+TEST(DiagnosePassesStage, SaysWithoutNumbersThatThePassesTellNothing) {
+  const test::TemporaryFolder folder;
+  auto stage = driver<DiagnosePassesStage>({{"folder", folder.path().string()}});
+  for (std::uint16_t i = 0; i < 200; ++i) {
+    const double angle = 0.01 * (i < 100 ? i : 200 - i);
+    auto scan = std::make_shared<Scan>();
+    scan->scan_counter = i;
+    scan->receipt_ns = static_cast<std::int64_t>(1e9 * kScanPeriod * i);
+    scan->echoes.push_back({.ranges = std::vector<float>(30, 2.0F), .remissions = {}});
+    stage.feed(test::reading_at(angle, kScanPeriod * i));
+    stage.feed(std::shared_ptr<const Scan>(scan));
+  }
+  stage.feed(PlateTrajectory(0, {0, 1, 2}, {0, 1, 0}, 10));
+  stage.finish();
+  const auto& findings = *stage.given<Findings>().at(0);
+  EXPECT_THAT(findings.findings, IsEmpty());
+  EXPECT_THAT(findings.unobservable,
+              ElementsAre(Field(&Unobservable::reason, HasSubstr("have no least value"))));
+  for (const auto& line : stage.report().lines) EXPECT_THAT(line, testing::Not(HasSubstr("nan")));
+}
+
+TEST(DiagnosePassesStage, AnActuatorAtRestDoesNotGoOneWay) {
+  test::TiltingScene scene(0.005);
+  auto stage = driver<DiagnosePassesStage>();
+  for (std::uint16_t i = 0; i < 60; ++i) {
+    stage.feed(test::reading_at(0.5, kScanPeriod * i));
+    stage.feed(std::shared_ptr<const Scan>(scene.scan(0.5, 20 * kDegree, 141, i, kScanPeriod * i)));
+  }
+  stage.feed(PlateTrajectory(0, {0, 1}, {0.5, 0.5}, 10));
+  stage.finish();
+  EXPECT_THAT(stage.given<Findings>()[0]->unobservable,
+              ElementsAre(Field(&Unobservable::reason, HasSubstr("is never on its way for"))));
+}
+
 TEST(DiagnosePassesStage, NamesPlayTogetherWithALagAndMendsHalfOfItOnEitherWay) {
   constexpr double kStep = 0.1 * kDegree;
   test::TiltingScene scene(0.01);
