@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "pipeline/files/yaml_map.hpp"
 
@@ -49,6 +50,9 @@ class RigReader {
       if (!is_device_name(entry.key)) {
         map.fail(entry.place, "'" + entry.key + "' is not a name of letters, digits, _ and -");
       }
+      if (entry.key == "plate") {
+        map.fail(entry.place, "no laser can be called 'plate'", "effects and findings mean the plate by it");
+      }
       read_laser(entry);
     }
   }
@@ -83,11 +87,15 @@ class RigReader {
     constexpr int kDefaultPort = 4000;
     YamlMap map(node, "plate", errors_);
     rig_.plate.name = map.text("name", "plate");
-    rig_.plate.address = read_address(map, kDefaultPort);
-    rig_.plate.counts_per_revolution = map.number("counts_per_revolution", "", 16384);
-    if (!(rig_.plate.counts_per_revolution >= 1)) {
-      map.fail(node.find("counts_per_revolution")->place, "'counts_per_revolution' is not at least 1");
+    if (!is_device_name(rig_.plate.name)) {
+      map.fail(map.find("name")->place,
+               "'" + rig_.plate.name + "' is not a name of letters, digits, _ and -");
     }
+    rig_.plate.address = read_address(map, kDefaultPort);
+    // Its counter has 32 bits; of one step a turn it could not be said which way it turned.
+    constexpr std::int64_t kMostSteps = std::int64_t{1} << 31;
+    rig_.plate.counts_per_revolution =
+        static_cast<double>(map.integer("counts_per_revolution", 16384, 2, kMostSteps));
     map.refuse_others();
     places_.push_back(node.place);
   }

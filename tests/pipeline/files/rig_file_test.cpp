@@ -69,15 +69,45 @@ lasers:
     nominal: {lambda: 45m, tau: 200}
 plate: {counts_per_revolution: 0}
 )"),
-      ElementsAre(HasSubstr("rig.yaml:3:3: error: lasers: 'laser 1' is not a name of letters"),
-                  HasSubstr("rig.yaml:4:14: error: laser 'laser 1': '192.168.0.300' is not an IP address"),
-                  HasSubstr("rig.yaml:5:11: error: laser 'laser 1': 'port': 99999 is not from 0 to 65535"),
-                  HasSubstr("rig.yaml:7:23: error: laser 'laser 1', nominal: 'lambda': '45m' cannot be "
-                            "converted to rad"),
-                  HasSubstr("rig.yaml:7:33: error: laser 'laser 1', nominal: 'tau': 200 m cannot be meant"),
-                  HasSubstr("rig.yaml:6:5: error: laser 'laser 1': there is no key 'muont'; did you mean "
-                            "'mount'?"),
-                  HasSubstr("rig.yaml:8:32: error: plate: 'counts_per_revolution' is not at least 1")));
+      ElementsAre(
+          HasSubstr("rig.yaml:3:3: error: lasers: 'laser 1' is not a name of letters"),
+          HasSubstr("rig.yaml:4:14: error: laser 'laser 1': '192.168.0.300' is not an IP address"),
+          HasSubstr("rig.yaml:5:11: error: laser 'laser 1': 'port': 99999 is not from 0 to 65535"),
+          HasSubstr("rig.yaml:7:23: error: laser 'laser 1', nominal: 'lambda': '45m' cannot be "
+                    "converted to rad"),
+          HasSubstr("rig.yaml:7:33: error: laser 'laser 1', nominal: 'tau': 200 m cannot be meant"),
+          HasSubstr("rig.yaml:6:5: error: laser 'laser 1': there is no key 'muont'; did you mean "
+                    "'mount'?"),
+          HasSubstr("rig.yaml:8:32: error: plate: 'counts_per_revolution': 0 is not from 2 to 2147483648")));
+}
+
+std::vector<std::string> errors_of_plate(const std::string& plate, const std::string& laser = "a") {
+  return errors_of([&] {
+    parse_rig(parse_yaml(
+        "crisp: 1\nlasers: {" + laser + ": {nominal: {lambda: 0, tau: 0}}}\nplate: " + plate + "\n",
+        "rig.yaml"));
+  });
+}
+
+TEST(RigFile, NamesAreOfWhatFilesCanBeNamedAfter) {
+  for (const char* name : {"../../escaped", "/tmp/x", "a b", "", "a\\nb"}) {
+    EXPECT_THAT(errors_of_plate("{name: \"" + std::string(name) + "\"}"),
+                ElementsAre(HasSubstr("is not a name of letters, digits, _ and -")))
+        << name;
+  }
+  EXPECT_THAT(errors_of_plate("{name: servo-1}"), testing::IsEmpty());
+  EXPECT_THAT(errors_of_plate("{name: servo}", "plate"),
+              ElementsAre(HasSubstr("no laser can be called 'plate'")));
+}
+
+TEST(RigFile, AnEncoderHasAWholeNumberOfSteps) {
+  for (const char* counts : {"1", "16384.5", "-4", "1e19", "4294967296"}) {
+    EXPECT_THAT(errors_of_plate("{counts_per_revolution: " + std::string(counts) + "}"),
+                ElementsAre(HasSubstr("rig.yaml:3:32: error: plate: 'counts_per_revolution'")))
+        << counts;
+  }
+  EXPECT_THAT(errors_of_plate("{counts_per_revolution: 2}"), testing::IsEmpty());
+  EXPECT_THAT(errors_of_plate("{counts_per_revolution: 2147483648}"), testing::IsEmpty());
 }
 
 TEST(RigFile, RefusesDevicesThatCouldNotBeToldApart) {
@@ -85,8 +115,8 @@ TEST(RigFile, RefusesDevicesThatCouldNotBeToldApart) {
   EXPECT_THAT(errors_of_rig("crisp: 1\nlasers:\n  a: " + laser + "\n  b: " + laser +
                             "\nplate: {address: 10.0.0.2}\n"),
               ElementsAre(HasSubstr("rig.yaml:4:3: error: rig: 'a' and 'b' have the same address 10.0.0.1")));
-  EXPECT_THAT(errors_of_rig("crisp: 1\nlasers:\n  plate: " + laser + "\nplate: {address: 10.0.0.2}\n"),
-              ElementsAre(HasSubstr("two devices are named 'plate'")));
+  EXPECT_THAT(errors_of_rig("crisp: 1\nlasers:\n  a: " + laser + "\nplate: {name: a, address: 10.0.0.2}\n"),
+              ElementsAre(HasSubstr("two devices are named 'a'")));
 }
 
 TEST(RigFile, NeedsNoAddressesForWhatIsReadFromATable) {
