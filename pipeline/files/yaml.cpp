@@ -67,7 +67,9 @@ void check_characters(std::string_view text, const std::string& file) {
 /// Builds the tree from the parser's events; keeps all errors that leave the rest readable.
 class TreeBuilder final : public YAML::EventHandler {
  public:
-  explicit TreeBuilder(std::string file) : file_(std::move(file)) {}
+  explicit TreeBuilder(std::string file) : file_(std::move(file)) {
+    root.place = {file_, 1, 1};  // of a file that is empty
+  }
 
   YamlNode root;
   std::vector<Error> errors;
@@ -80,8 +82,7 @@ class TreeBuilder final : public YAML::EventHandler {
     add(node(mark, YamlNode::Kind::null));
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    errors.emplace_back("aliases (*name) are not understood",
-                        "write the value out, or use vars:", place(mark));
+    fail("aliases (*name) are not understood", "write the value out, or use vars:", place(mark));
     add(node(mark, YamlNode::Kind::null));
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,

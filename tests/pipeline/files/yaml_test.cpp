@@ -54,6 +54,12 @@ TEST(Yaml, StopsReportingAfterAHundredMistakes) {
   EXPECT_EQ(errors_of_yaml(text).size(), 100u);
 }
 
+TEST(Yaml, StopsReportingAfterAHundredAliases) {
+  std::string text = "a: &x 1\nb: [";
+  for (int i = 0; i < 100000; ++i) text += "*x,";
+  EXPECT_EQ(errors_of_yaml(text + "]\n").size(), 100u);
+}
+
 TEST(Yaml, RefusesWhatCouldReferToSomethingElse) {
   EXPECT_THAT(errors_of_yaml("a: &x 1\nb: *x\n"),
               ElementsAre(HasSubstr("f.yaml:1:4: error: anchors"), HasSubstr("f.yaml:2:4: error: aliases")));
@@ -81,6 +87,7 @@ TEST(Yaml, RefusesDepthThatCouldExhaustTheStack) {
 TEST(Yaml, ReadsAnEmptyFileAsNothing) {
   EXPECT_EQ(parse_yaml("", "f.yaml").kind, YamlNode::Kind::null);
   EXPECT_EQ(parse_yaml("# only a comment\n", "f.yaml").kind, YamlNode::Kind::null);
+  EXPECT_EQ(to_string(parse_yaml("", "f.yaml").place), "f.yaml:1:1") << "where readers say what is missing";
 }
 
 TEST(Yaml, SaysWhyAFileCannotBeRead) {
