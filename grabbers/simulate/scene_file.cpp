@@ -21,6 +21,8 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kMostSurfaces = 200'000;  // of all shapes together, so that memory stays bounded
 constexpr std::int64_t kMostCopies = 10'000;
+constexpr double kMostSpeed = 1000;  // [m/s]
+constexpr double kMostTimes = 1e4;   // larger, or smaller, than what is strewn
 
 struct Stand {
   Vector3d position;
@@ -54,7 +56,8 @@ class SceneReader {
 
   Stand read_stand(const YamlNode& node) {
     YamlMap map(node, "scanner", errors_);
-    Stand stand{.position = require_vector(map, "position", errors_), .yaw = map.number("yaw", "rad", 0)};
+    Stand stand{.position = require_vector(map, "position", errors_),
+                .yaw = read_bounded(map, "yaw", "rad", 0, kMostYaw)};
     map.refuse_others();
     return stand;
   }
@@ -79,7 +82,7 @@ class SceneReader {
     read_look(map, scene);
     read_body(map, scene);
     check(scene, node.place);
-    place(scene, map.number("yaw", "rad", 0), Vector3d::Zero());
+    place(scene, read_bounded(map, "yaw", "rad", 0, kMostYaw), Vector3d::Zero());
     place(scene, 0, read_vector(map, "at", Vector3d::Zero(), errors_));
     if (const YamlNode* repetition = map.find("repeat")) scene = repeated(*repetition, scene);
     if (const YamlNode* strewing = map.find("strew")) scene = strewn(*strewing, scene);
@@ -113,7 +116,7 @@ class SceneReader {
       map.fail((depth ? depth : walk)->place, "flat surfaces are neither foliage nor do they walk",
                "say so of each box, cylinder, sphere or ellipsoid of the shape");
     }
-    const double reach = map.number("depth", "m", 0);
+    const double reach = read_bounded(map, "depth", "m", 0, kMostLength);
     if (depth && !(reach > 0)) map.fail(depth->place, "'depth' is not above 0");
     const Walk way = walk ? read_walk(*walk) : Walk{};
     for (auto& body : scene.bodies) {
@@ -126,7 +129,7 @@ class SceneReader {
     YamlMap map(node, "walk", errors_);
     Walk walk;
     if (const YamlNode* along = map.require("along")) walk.along = read_points(*along, "along", 3, errors_);
-    walk.speed = map.number("speed", "m/s", 1.4);
+    walk.speed = read_bounded(map, "speed", "m/s", 1.4, kMostSpeed);
     map.refuse_others();
     double length = 0;
     for (std::size_t i = 1; i < walk.along.size(); ++i) length += (walk.along[i] - walk.along[i - 1]).norm();
@@ -157,12 +160,13 @@ class SceneReader {
     const Vector3d from = require_vector(map, "from", errors_);
     const Vector3d to = require_vector(map, "to", errors_);
     const auto seed = static_cast<std::uint64_t>(map.integer("seed", 1, 0, 1'000'000'000));
-    const double smallest = map.number("smallest", "", 1);
-    const double largest = map.number("largest", "", 1);
-    const double clear = map.number("clear", "m", 0);
+    const double smallest = read_bounded(map, "smallest", "", 1, kMostTimes);
+    const double largest = read_bounded(map, "largest", "", 1, kMostTimes);
+    const double clear = read_bounded(map, "clear", "m", 0, kMostLength);
     map.refuse_others();
-    if (!(smallest > 0 && largest >= smallest)) {
-      fail(node.place, "sizes are to be strewn with 0 < smallest <= largest, as multiples of what is strewn");
+    if (!(smallest >= 1 / kMostTimes && largest >= smallest)) {
+      fail(node.place,
+           "sizes are to be strewn with 0.0001 <= smallest <= largest, as multiples of what is strewn");
       return scene;
     }
     RandomStream random(seed, "strew");

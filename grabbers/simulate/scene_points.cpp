@@ -11,7 +11,6 @@ using Eigen::Vector3d;
 
 Vector3d read_point(const YamlNode& node, const std::string& what, std::size_t dimensions,
                     std::vector<Error>& errors) {
-  constexpr double kFarthest = 1e5;  // [m] nothing stands farther off
   Vector3d result = Vector3d::Zero();
   if (node.kind != YamlNode::Kind::sequence || node.items.size() != dimensions) {
     errors.emplace_back(
@@ -22,7 +21,7 @@ Vector3d read_point(const YamlNode& node, const std::string& what, std::size_t d
   for (std::size_t i = 0; i < dimensions; ++i) {
     std::string wrong;
     const auto value = read_number(node.items[i], "m", wrong);
-    if (value && std::abs(*value) > kFarthest) wrong = fmt::format("{:g} m cannot be meant", *value);
+    if (value && std::abs(*value) > kMostLength) wrong = fmt::format("{:g} m cannot be meant", *value);
     if (!wrong.empty()) {
       errors.emplace_back(fmt::format("{}: {}", what, wrong), "", node.items[i].place);
     } else {
@@ -51,6 +50,16 @@ Vector3d read_vector(YamlMap& map, const std::string& key, const Vector3d& fallb
 Vector3d require_vector(YamlMap& map, const std::string& key, std::vector<Error>& errors) {
   map.require(key);
   return read_vector(map, key, Vector3d::Zero(), errors);
+}
+
+double read_bounded(YamlMap& map, const std::string& key, const std::string& unit, double fallback,
+                    double most) {
+  const double value = map.number(key, unit, fallback);
+  if (std::abs(value) <= most) return value;
+  map.fail(map.find(key)->place,
+           fmt::format("'{}': {:g}{} cannot be meant", key, value, unit.empty() ? "" : " " + unit),
+           fmt::format("its size is at most {:g}{}", most, unit.empty() ? "" : " " + unit));
+  return fallback;
 }
 
 }  // namespace crisp

@@ -151,6 +151,19 @@ TEST(SceneFile, TellsEveryMistakeAtItsPlace) {
   EXPECT_THAT(text, HasSubstr("between 0 and 1"));
 }
 
+TEST(SceneFile, RefusesSizesThatCannotBeMeant) {
+  for (const char* item :
+       {"{box: {from: [0, 0, 0], to: [1, 1, 1]}, yaw: 1e308}", "{sphere: {middle: [0, 0, 0], radius: 1e308}}",
+        "{cylinder: {from: [0, 0, 0], to: [0, 0, 1], radius: 1e200}}",
+        "{sphere: {middle: [0, 0, 0], radius: 1}, depth: 1e300}",
+        "{sphere: {middle: [0, 0, 0], radius: 1}, walk: {along: [[0, 0, 0], [1, 0, 0]], speed: "
+        "1e300}}",
+        "{sphere: {middle: [0, 0, 0], radius: 1}, strew: {count: 2, from: [0, 0, 0], to: [1, 1, "
+        "1], largest: 1e300}}"}) {
+    EXPECT_THAT(complaint(kHead + "  - " + item + "\n"), HasSubstr("cannot be meant")) << item;
+  }
+}
+
 TEST(SceneFile, BoundsHowMuchARepetitionCanMake) {
   EXPECT_THAT(complaint("crisp: 1\nscanner: {position: [0, 0, 0]}\n"
                         "shapes:\n  a:\n    - {box: {from: [0, 0, 0], to: [1, 1, 1]}, repeat: {count: 10000, "
