@@ -109,6 +109,9 @@ FoundEffects effects_of(const Findings& findings, const std::string& file, const
     if (found.cause == "noise.mixed_pixels") {
       result.others.push_back(fmt::format(
           "{} of {}: the file has the share of edges, not the width of the spot", found.cause, found.scope));
+    } else if (std::ranges::any_of(found.parameters, [](const auto& p) { return std::isnan(p.value); })) {
+      result.others.push_back(
+          fmt::format("{} of {}, which the file does not know", found.cause, found.scope));
     } else if (info != catalogue.end() && info->scope != Scope::kScene) {
       wanted.push_back(as_option(found, file));
     } else {

@@ -33,6 +33,11 @@ Inspection inspect_findings(const std::filesystem::path& file, const Rig&) {
     inspection.text += fmt::format("\n  the estimator's own: {}", artefact.name);
   }
   for (const DeviceFacts& facts : all.devices) {
+    if (std::isnan(facts.skew)) {
+      inspection.text +=
+          fmt::format("\n  {}: {} stamps, which do not tell its clock", facts.device, facts.stamps);
+      continue;
+    }
     inspection.text += fmt::format(
         "\n  {}: {} stamps, skew {:+.2f} ± {:.2f} ppm, delays of {:.3f} ms (median)", facts.device,
         facts.stamps, 1e6 * facts.skew, 1e6 * facts.skew_std_error, 1e3 * facts.delay_median);

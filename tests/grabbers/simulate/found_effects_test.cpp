@@ -83,6 +83,24 @@ std::vector<double> spreads_at_rest(ScannerSettings settings) {
   return squares;
 }
 
+TEST_F(FoundEffectsTest, LeavesOutWhatIsUnknownAndNamesIt) {
+  Findings all;
+  all.devices = {{.device = "laser1",
+                  .skew = kUnasked,
+                  .delay_median = kUnasked,
+                  .delay_95 = kUnasked,
+                  .period = kUnasked,
+                  .wander = kUnasked}};
+  all.noise = {{.laser = "laser1", .sigma = kUnasked}};
+  all.findings = {finding("mirror.cone", "laser2", {{.name = "kappa", .unit = "rad", .value = kUnasked}})};
+  const FoundEffects found = effects(all);
+  EXPECT_TRUE(found.effects.empty());
+  EXPECT_THAT(found.others,
+              ElementsAre(HasSubstr("clock.drift of laser1, which the file does not know"),
+                          HasSubstr("latency.jitter of laser1"), HasSubstr("noise.normal of laser1"),
+                          HasSubstr("mirror.cone of laser2")));
+}
+
 TEST_F(FoundEffectsTest, HaveRangesScatterAsTheLawSaysThatWasFound) {
   const auto spreads = spreads_at_rest(settings_with(some()).scanner);
   const double step = 1e-3 / std::sqrt(12);
@@ -164,7 +182,7 @@ TEST_F(FoundEffectsTest, OfDevicesAndValuesThatCannotBeAreRefused) {
   EXPECT_THAT(complaint(one("laser1", {.name = "kappa", .unit = "m", .value = 1e-3})), HasSubstr("0.001 m"));
   EXPECT_THAT(complaint(one("laser1", {.name = "kappa", .unit = "rad", .value = 3})),
               HasSubstr("out of range"));
-  EXPECT_THAT(complaint(one("laser1", {.name = "kappa", .unit = "rad", .value = std::nan("")})),
+  EXPECT_THAT(complaint(one("laser1", {.name = "kappa", .unit = "rad", .value = HUGE_VAL})),
               HasSubstr("not a number"));
 }
 

@@ -40,6 +40,16 @@ TEST(FindingsInspector, SaysInAFewLinesWhatADiagnosisHolds) {
   EXPECT_EQ(inspection.data["after_p"], 0.6);
 }
 
+TEST(FindingsInspector, SaysWhatIsUnknownInWords) {
+  const test::TemporaryFolder folder;
+  Findings all;
+  all.devices = {{.device = "laser1", .stamps = 3, .skew = kUnasked, .skew_std_error = kUnasked}};
+  test::put_bytes(folder / "diagnosis.json", findings_json(all));
+  const Inspection inspection = findings_inspector().inspect(folder / "diagnosis.json", {});
+  EXPECT_THAT(inspection.text, HasSubstr("laser1: 3 stamps, which do not tell its clock"));
+  EXPECT_THAT(inspection.text, testing::Not(HasSubstr("nan")));
+}
+
 TEST(FindingsInspector, KnowsADiagnosisByItsHead) {
   EXPECT_TRUE(findings_inspector().recognises(findings_json(some_findings())));
   EXPECT_TRUE(findings_inspector().recognises(findings_json({})));
