@@ -82,7 +82,14 @@ double slope_spread(std::span<const Stamp> vertices, const ClockLine& line, doub
     const double rise = vertices[i].lead - vertices[i - 1].lead;
     return std::clamp(rise / (vertices[i].device - vertices[i - 1].device), -kMostSkew, kMostSkew);
   };
-  Moments moments;
+  struct Piece {
+    double height;
+    double edge;
+    double away;
+    double rate;
+    double length;
+  };
+  std::vector<Piece> pieces;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const double low = i == 0 ? -kMostSkew : slope_before(i);
     const double high = i + 1 == vertices.size() ? kMostSkew : slope_before(i + 1);
@@ -90,9 +97,19 @@ double slope_spread(std::span<const Stamp> vertices, const ClockLine& line, doub
     const double ahead = line.center - vertices[i].device;
     const double edge = ahead > 0 ? high : low;
     const double height = vertices[i].lead + edge * ahead - line.at_center;
-    moments.add_falling(std::exp(height / scale), edge - line.slope, ahead > 0 ? -1 : 1,
-                        std::abs(ahead) / scale, high - low);
+    pieces.push_back(
+        {height, edge - line.slope, ahead > 0 ? -1.0 : 1.0, std::abs(ahead) / scale, high - low});
   }
+  // Weights are relative. The highest line is the fitted one, but for rounding, which stamps of years apart
+  // make large: all weights but its own may be nothing.
+  double highest = -HUGE_VAL;
+  for (const Piece& piece : pieces) highest = std::max(highest, piece.height);
+  Moments moments;
+  for (const Piece& piece : pieces) {
+    moments.add_falling(std::exp((piece.height - highest) / scale), piece.edge, piece.away, piece.rate,
+                        piece.length);
+  }
+  if (!(moments.mass > 0)) return kMostSkew;
   return std::sqrt(moments.second / moments.mass);
 }
 

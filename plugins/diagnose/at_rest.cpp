@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/at_rest.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/data/robust.hpp"
@@ -27,11 +30,27 @@ void AtRest::add(const Scan& scan) {
   receipt_ns_.push_back(scan.receipt_ns);
 }
 
-std::optional<RangeErrors> AtRest::errors() const {
+void PlateRest::add(const PlateReading& reading) {
+  if (!first_) first_ = reading.count;
+  const auto since = static_cast<std::int32_t>(reading.count - *first_);
+  least_ = std::min(least_, since);
+  most_ = std::max(most_, since);
+}
+
+bool PlateRest::turned() const {
+  constexpr std::int64_t kShakes = 3;  // [encoder steps] a plate that is held may be read so far apart
+  return std::int64_t{most_} - least_ > kShakes;
+}
+
+std::variant<RangeErrors, NothingSaid> AtRest::errors() const {
+  constexpr std::size_t kFewestScans = 10;
   constexpr double kMostSpread = 0.03;   // [m]
   constexpr double kLeastCame = 0.8;     // of a beam's shots
   constexpr double kLeastSteady = 0.25;  // of the beams that come back
   constexpr float kLeastRange = 0.016F;  // [m] below there are codes
+  if (scans() < kFewestScans) {
+    return NothingSaid{fmt::format("{} scans are too few: {} are needed", scans(), kFewestScans)};
+  }
   RangeErrors all;
   std::size_t steady = 0;
   std::size_t seen = 0;
@@ -60,8 +79,9 @@ std::optional<RangeErrors> AtRest::errors() const {
       all.block.push_back(static_cast<std::uint32_t>(scan));
     }
   }
+  if (seen == 0) return NothingSaid{"no beam came back in four of five scans"};
   if (static_cast<double>(steady) < kLeastSteady * static_cast<double>(seen) || steady == 0)
-    return std::nullopt;
+    return NothingSaid{"it moves, or all before it does"};
   return all;
 }
 

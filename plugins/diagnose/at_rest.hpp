@@ -4,12 +4,30 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "pipeline/data/scan.hpp"
 #include "plugins/diagnose/noise_law.hpp"
 
 namespace crisp {
+
+/// Why scans say nothing of the noise.
+struct NothingSaid {
+  std::string why;
+};
+
+/// Whether a plate turned: a laser on it does not stand still, however slowly its ranges change.
+class PlateRest {
+ public:
+  void add(const PlateReading& reading);
+  bool turned() const;
+
+ private:
+  std::optional<std::uint32_t> first_;  // [encoder steps]
+  std::int32_t least_ = 0, most_ = 0;   // since then
+};
 
 /// The scans of one laser that stands still: the same beams again and again.
 class AtRest {
@@ -21,8 +39,9 @@ class AtRest {
   /// By how much each range is off the mean of its beam. Beams that seldom come back, and those along edges,
   /// are left out: those that scatter by more than 3 cm.
   ///
-  /// @return  nothing if hardly a beam stays the same: the laser, or all before it, moves
-  std::optional<RangeErrors> errors() const;
+  /// @return  why they say nothing: there are too few scans, hardly a beam came back, or hardly one stays the
+  ///          same, as the laser, or all before it, moves
+  std::variant<RangeErrors, NothingSaid> errors() const;
 
   std::int64_t receipt_ns(std::size_t scan) const { return receipt_ns_[scan]; }
   std::size_t left_out() const { return left_out_; }

@@ -56,15 +56,19 @@ void DiagnoseNoiseStage::describe(StageDescription<DiagnoseNoiseStage>& d) {
       "`range.step`, a creeping, `range.warmup`, or a slow wander, `unnamed`) is looked for scan by scan. "
       "What is left of each beam about its mean is compared with the normal law of the plain simulator: a "
       "spread that grows with the range or with weak echoes, heavy tails, two peaks with a weight of each "
-      "beam's own (`noise.*`), forward by BIC, each judged by scans that it was not fitted to. A laser that "
-      "moves is passed over with a word.");
-  d.takes<Scan>().takes<Findings>(Need::optional).gives<Findings>();
+      "beam's own (`noise.*`), forward by BIC, each judged by scans that it was not fitted to. Of a laser "
+      "that "
+      "moves (its plate turns, or its ranges change), has no echoes or sent fewer than 10 scans it is said "
+      "that "
+      "nothing can be said.");
+  d.takes<Scan>().takes<PlateReading>(Need::optional).takes<Findings>(Need::optional).gives<Findings>();
   d.option("folder", &DiagnoseNoiseStage::folder_,
            "where plots of each laser's noise go, and of what its ranges did at once; auto: nowhere");
 }
 
 void DiagnoseNoiseStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const Findings* before = in.find<Findings>()) all_.append(*before);
+  if (const PlateReading* reading = in.find<PlateReading>()) plate_.add(*reading);
   const Scan* scan = in.find<Scan>();
   if (!scan) return;
   if (lasers_.empty()) {
@@ -77,11 +81,15 @@ void DiagnoseNoiseStage::process(const Inputs& in, Outputs&, Context& context) {
 void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans, Findings& all,
                                    Context& context) const {
   context.count("scans left out of the diagnosis", scans.left_out());
-  auto errors = scans.errors();
-  if (!errors) {
-    context.say(fmt::format("{} moves, or all before it does: nothing is said of its noise", name));
+  auto judged = plate_.turned()
+                    ? std::variant<RangeErrors, NothingSaid>(NothingSaid{"the plate that it sits on turned"})
+                    : scans.errors();
+  if (const auto* nothing = std::get_if<NothingSaid>(&judged)) {
+    context.say(fmt::format("nothing is said of the noise of {}: {}", name, nothing->why));
+    all.unobservable.push_back({"noise.normal of " + name, nothing->why, ""});
     return;
   }
+  RangeErrors* errors = &std::get<RangeErrors>(judged);
   const std::int64_t epoch_ns = epoch_of_run(first_ns_);
   std::vector<double> seconds;
   for (std::size_t scan = 0; scan < scans.scans(); ++scan) {

@@ -25,8 +25,9 @@ class DiagnoseNoiseStage final : public Stage {
 
   std::optional<std::filesystem::path> folder_;
   std::vector<AtRest> lasers_;  // of the rig
-  std::int64_t first_ns_ = 0;   // receipt of the first scan
-  Findings all_;                // what other diagnoses said before
+  PlateRest plate_;
+  std::int64_t first_ns_ = 0;  // receipt of the first scan
+  Findings all_;               // what other diagnoses said before
 };
 
 }  // namespace crisp

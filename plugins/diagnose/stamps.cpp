@@ -119,7 +119,7 @@ void StampTrack::add(std::uint16_t counter, std::uint32_t device_us, std::int64_
 }
 
 ClockFacts clock_facts(std::span<const CountedStamp> stamps) {
-  if (stamps.size() < 2) return {};
+  if (stamps.size() < kFewestOfClock) return {};
   const std::vector<Stamp> all = bare(stamps);
   const ClockLine line = line_of(all);
   std::vector<double> delays;
@@ -183,25 +183,52 @@ std::vector<CountedStamp> without_step(std::span<const CountedStamp> stamps,
   return mended;
 }
 
-std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes) {
-  if (passes.size() < 2 * kTurnsOfPiece) return std::nullopt;
-  MirrorFacts facts;
-  const auto turns = [&](std::size_t from, std::size_t to) {
-    return static_cast<double>(passes[to].count - passes[from].count);
+std::vector<std::span<const CountedStamp>> unbroken(std::span<const CountedStamp> passes) {
+  constexpr double kLeap = 0.1;  // of a turn; no mirror's rate changes so much from turn to turn
+  const auto turn = [&](std::size_t i) {
+    const auto turns = static_cast<double>(std::max<std::int64_t>(1, passes[i].count - passes[i - 1].count));
+    return (passes[i].stamp.device - passes[i - 1].stamp.device) / turns;
   };
-  const auto period = [&](std::size_t from, std::size_t to) {
-    return (passes[to].stamp.device - passes[from].stamp.device) / turns(from, to);
-  };
-  facts.period = period(0, passes.size() - 1);
-  double squares = 0;
-  for (std::size_t i = 0; i + kTurnsOfPiece < passes.size(); i += kTurnsOfPiece) {
-    facts.periods.push_back(period(i, i + kTurnsOfPiece));
-    squares += std::pow(facts.periods.back() - facts.period, 2);
+  std::vector<double> periods;
+  for (std::size_t i = 1; i < passes.size(); ++i) periods.push_back(turn(i));
+  if (periods.empty()) return {passes};
+  const double usual = middle_of(periods);
+  std::vector<std::span<const CountedStamp>> runs;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < passes.size(); ++i) {
+    if (std::abs(turn(i) - usual) <= kLeap * usual) continue;
+    runs.push_back(passes.subspan(begin, i - begin));
+    begin = i;
   }
+  runs.push_back(passes.subspan(begin));
+  return runs;
+}
+
+std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes) {
+  constexpr std::size_t kFewestPieces = 8;  // from fewer no spread is known
+  constexpr double kQuantum = 1e-6;         // [s] of the stamps
+  MirrorFacts facts;
+  double time = 0;
+  double turns = 0;
+  for (const auto run : unbroken(passes)) {
+    for (std::size_t i = 0; i + kTurnsOfPiece < run.size(); i += kTurnsOfPiece) {
+      const CountedStamp& from = run[i];
+      const CountedStamp& to = run[i + kTurnsOfPiece];
+      const double lasted = to.stamp.device - from.stamp.device;
+      const auto turned = static_cast<double>(to.count - from.count);
+      facts.periods.push_back(lasted / turned);
+      time += lasted;
+      turns += turned;
+    }
+  }
+  if (facts.periods.size() < kFewestPieces) return std::nullopt;
+  facts.period = time / turns;
+  double squares = 0;
+  for (const double period : facts.periods) squares += std::pow(period - facts.period, 2);
   const auto pieces = static_cast<double>(facts.periods.size());
-  const double spread = std::sqrt(squares / pieces);
+  const double spread = std::sqrt(squares / (pieces - 1));
   facts.wander = spread / facts.period;
-  facts.period_std_error = spread / std::sqrt(pieces);
+  facts.period_std_error = std::hypot(spread / std::sqrt(pieces), kQuantum / turns);
   return facts;
 }
 

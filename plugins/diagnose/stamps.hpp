@@ -54,13 +54,15 @@ struct ClockDeparture {
   bool is_step() const { return kind == Kind::clock_step || kind == Kind::latency_step; }
 };
 
-/// What is usual of a device's clock and link.
+/// What is usual of a device's clock and link; kUnasked where there are too few stamps to say.
 struct ClockFacts {
-  double skew = 0;  ///< hub seconds a device second − 1
-  double skew_std_error = 0;
-  double delay_median = 0;  ///< [s] beyond the shortest
-  double delay_95 = 0;      ///< [s]
+  double skew = kUnasked;  ///< hub seconds a device second − 1
+  double skew_std_error = kUnasked;
+  double delay_median = kUnasked;  ///< [s] beyond the shortest
+  double delay_95 = kUnasked;      ///< [s]
 };
+
+inline constexpr std::size_t kFewestOfClock = 10;  ///< stamps that say anything of a clock
 
 ClockFacts clock_facts(std::span<const CountedStamp> stamps);
 
@@ -94,8 +96,13 @@ struct MirrorFacts {
   std::vector<double> periods;  ///< [s] of pieces of eight turns
 };
 
-/// @param passes  when the mirror passed its index, with the turn that it was; ascending
-/// @return  nothing for fewer than 16 turns
+/// Passes between which the device's clock went on as the mirror turned: none is across a restart, or across
+/// a step of that clock.
+std::vector<std::span<const CountedStamp>> unbroken(std::span<const CountedStamp> passes);
+
+/// @param passes  when the mirror passed its index, with the turn that it was; those across a break are
+///                passed over
+/// @return  nothing for fewer than eight pieces: from them no spread is known
 std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes);
 
 /// What it brings for every other piece's period to expect that of the others in place of the nominal one

@@ -58,15 +58,48 @@ std::string facts_in_words(const std::vector<DeviceFacts>& devices) {
   std::string words =
       "stamps              skew ppm       delay median, 95 %    mirror against nominal   wander";
   for (const DeviceFacts& facts : devices) {
-    words +=
-        fmt::format("\n  {:<12}{:>+9.2f} ± {:<6.2f} {:>8.3f}, {:>7.3f} ms", facts.device, facts.skew * 1e6,
-                    facts.skew_std_error * 1e6, facts.delay_median * 1e3, facts.delay_95 * 1e3);
+    words += fmt::format("\n  {:<12}", facts.device);
+    if (std::isnan(facts.skew)) {
+      words += fmt::format("  not told by {} stamps", facts.stamps);
+      continue;
+    }
+    words += fmt::format("{:>+9.2f} ± {:<6.2f} {:>8.3f}, {:>7.3f} ms", facts.skew * 1e6,
+                         facts.skew_std_error * 1e6, facts.delay_median * 1e3, facts.delay_95 * 1e3);
     if (facts.period > 0 && facts.nominal_period > 0) {
       words += fmt::format("{:>+14.3f} ± {:.3f} %{:>9.3f} %", 100 * (facts.nominal_period / facts.period - 1),
                            100 * facts.period_std_error / facts.period, 100 * facts.wander);
     }
   }
   return words;
+}
+
+/// What too few stamps leave unknown of a device.
+void tell_unknown(const DeviceFacts& facts, Findings& all) {
+  const auto why = fmt::format("{} stamps say nothing of it", facts.stamps);
+  if (std::isnan(facts.skew)) all.unobservable.push_back({"clock.drift of " + facts.device, why, ""});
+  if (std::isnan(facts.period)) all.unobservable.push_back({"mirror.period of " + facts.device, why, ""});
+}
+
+/// Why the clock that was found cannot be one; empty if it can. One wrong receipt can be the reason: the line
+/// lies below all stamps, and so it rests on that one.
+std::string doubt_of(const DeviceFacts& facts, double recorded) {
+  constexpr double kFar = 1e-3;      // [s] as where clock stages doubt
+  constexpr double kNoDelay = 1;     // [s] half of all telegrams never wait so long
+  constexpr double kLongPiece = 30;  // [s] that a clock stage's line is used for, about its middle
+  const bool steep = std::abs(facts.skew) >= 0.99 * kMostSkew && facts.delay_median > kFar;
+  const double error = facts.skew_std_error * std::min(kLongPiece, recorded / 2);
+  if (!steep && !(facts.delay_median > kNoDelay) && !(error > kFar)) return {};
+  return fmt::format(
+      "{}: its stamps fit no steady clock ({:+.0f} ± {:.0f} ppm; half of them more than {:.1f} ms from it). "
+      "One "
+      "wrong receipt or device time is enough: see the plot",
+      facts.device, 1e6 * facts.skew, 1e6 * facts.skew_std_error, 1e3 * facts.delay_median);
+}
+
+double recorded_time(std::span<const CountedStamp> stamps) {
+  const auto [first, last] =
+      std::ranges::minmax(stamps, {}, [](const auto& s) { return receipt_of(s.stamp); });
+  return receipt_of(last.stamp) - receipt_of(first.stamp);
 }
 
 }  // namespace
@@ -154,7 +187,11 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, Con
                     .skew_std_error = clock.skew_std_error,
                     .delay_median = clock.delay_median,
                     .delay_95 = clock.delay_95};
-  const auto mirror = mirror_facts(as_usual(device.passes.stamps()));
+  const auto mirror = mirror_facts(device.passes.stamps());
+  if (!mirror && !device.passes.stamps().empty()) {
+    facts.period = facts.period_std_error = facts.wander = kUnasked;
+    facts.nominal_period = device.nominal_period;
+  }
   if (mirror) {
     facts.period = mirror->period;
     facts.period_std_error = mirror->period_std_error;
@@ -162,6 +199,8 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, Con
     facts.wander = mirror->wander;
     if (nominal_mirrors_ && device.nominal_period > 0) add_mirror(device, *mirror, context.seed(), all);
   }
+  tell_unknown(facts, all);
+  if (auto doubt = doubt_of(facts, recorded_time(stamps)); !doubt.empty()) context.distrust(std::move(doubt));
   all.devices.push_back(facts);
   if (folder_ && stamps.size() > 1) {
     std::vector<Plot> plots = {clock_plot(device.name, stamps, departure)};

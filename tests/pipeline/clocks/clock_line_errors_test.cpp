@@ -53,6 +53,18 @@ TEST(ErrorsOfLine, AreWideWhereThereAreOnlyTwoStamps) {
   EXPECT_GT(errors_of_line(stamps, line).slope, 200e-6);
 }
 
+TEST(ErrorsOfLine, AreNumbersWhereStampsAreYearsApart) {
+  for (const double far : {1e4, 1.7e9, 1e12}) {
+    std::vector<Stamp> stamps = {{-far, 700}};
+    for (int i = 0; i < 46; ++i) stamps.push_back({0.25 * i, 1e-4 * ((i * 7919) % 97)});
+    double sum = 0;
+    for (const auto& stamp : stamps) sum += stamp.device;
+    const auto line = line_by_convex_hull(stamps, sum / static_cast<double>(stamps.size()));
+    const double error = errors_of_line(stamps, line).slope;
+    EXPECT_TRUE(std::isfinite(error) && error > 0) << far << ": " << error;
+  }
+}
+
 TEST(ErrorsOfLine, AreNotBelowTheResolutionOfTheStamps) {
   std::vector<Stamp> stamps;
   for (int i = 0; i < 500; ++i) stamps.push_back({0.02 * i, 1e-3});

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "plugins/diagnose/stamps_plots.hpp"
 #include "tests/support/simulated_stamps.hpp"
 
@@ -176,6 +178,38 @@ TEST(Stamps, GiveTheRateOfAMirror) {
   EXPECT_TRUE(gain.surely_falls());
   EXPECT_GT(gain.explained(), 0.99);
   EXPECT_LT(gain_over_nominal(*facts, facts->period, 1).before, 1e-7) << "the stamps' microsecond";
+}
+
+TEST(Stamps, OfAMirrorAcrossARestartAreNoTurns) {
+  StampTrack passes;
+  std::int64_t hub_us = 0;
+  for (const std::uint16_t first : {50'000, 0}) {  // the device starts again after a second and a half
+    const auto begin_us = hub_us;
+    for (int k = 0; k < 100; ++k, hub_us += 20'000) {
+      passes.add(static_cast<std::uint16_t>(first + k), static_cast<std::uint32_t>(hub_us - begin_us),
+                 kEpoch_ns + hub_us * 1000);
+    }
+    hub_us += 1'500'000;
+  }
+  EXPECT_EQ(unbroken(passes.stamps()).size(), 2U);
+  const auto facts = mirror_facts(passes.stamps());
+  ASSERT_TRUE(facts);
+  EXPECT_NEAR(facts->period, 0.02, 1e-9);
+  EXPECT_LT(facts->wander, 1e-6);
+}
+
+TEST(Stamps, ThatAreFewSayNothing) {
+  StampTrack few;
+  for (int k = 0; k < 9; ++k) {
+    few.add(static_cast<std::uint16_t>(k), static_cast<std::uint32_t>(20'000 * k),
+            kEpoch_ns + k * 20'000'000);
+  }
+  for (const double fact : {clock_facts(few.stamps()).skew, clock_facts(few.stamps()).skew_std_error,
+                            clock_facts(few.stamps()).delay_median, clock_facts(few.stamps()).delay_95}) {
+    EXPECT_TRUE(std::isnan(fact));
+  }
+  EXPECT_FALSE(mirror_facts(few.stamps()));
+  EXPECT_FALSE(mirror_facts({}));
 }
 
 }  // namespace

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/stamps_stage.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "pipeline/data/scan.hpp"
+#include "tests/support/stage_driver.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr std::int64_t kFirst_ns = 1'747'663'389'412'884'322;
+
+/// Scan k of a laser that sends four a second, up to 9.6 ms late.
+Scan scan_at(int k) {
+  Scan scan;
+  scan.telegram_counter = scan.scan_counter = static_cast<std::uint16_t>(k);
+  scan.scan_time_us = scan.transmission_time_us = static_cast<std::uint32_t>(250'000 * k);
+  scan.receipt_ns = kFirst_ns + k * 250'000'000LL + ((k * 7919) % 97) * 100'000LL;
+  return scan;
+}
+
+struct Told {
+  Findings findings;
+  StageReport report;
+};
+
+/// @param change  of a scan
+template <class Change>
+Told told_by(int scans, Change change) {
+  auto driver = test::StageDriver::of<DiagnoseStampsStage>({});
+  driver.run().rig.lasers = {{.name = "a"}};
+  for (int k = 0; k < scans; ++k) {
+    Scan scan = scan_at(k);
+    change(k, scan);
+    driver.feed(scan);
+  }
+  driver.finish();
+  return {*driver.given<Findings>().at(0), driver.report()};
+}
+
+TEST(StampsStage, FewStampsAreNoFacts) {
+  for (const int scans : {1, 3, 9}) {
+    const Told told = told_by(scans, [](int, Scan&) {});
+    const DeviceFacts& facts = told.findings.devices.at(0);
+    EXPECT_TRUE(std::isnan(facts.skew) && std::isnan(facts.skew_std_error) && std::isnan(facts.delay_95));
+    EXPECT_TRUE(std::isnan(facts.period) && std::isnan(facts.wander));
+    ASSERT_EQ(told.findings.unobservable.size(), 2U);
+    EXPECT_EQ(told.findings.unobservable[0].parameter, "clock.drift of a");
+    EXPECT_EQ(told.findings.unobservable[1].parameter, "mirror.period of a");
+    for (const auto& line : told.report.lines) EXPECT_THAT(line, Not(HasSubstr("nan")));
+  }
+}
+
+TEST(StampsStage, TrustsAClockWithoutFault) {
+  const Told told = told_by(200, [](int, Scan&) {});
+  EXPECT_THAT(told.report.doubts, IsEmpty());
+  EXPECT_THAT(told.findings.unobservable, IsEmpty());
+}
+
+TEST(StampsStage, OneWrongReceiptIsNotTrusted) {
+  constexpr int kWrong = 20;
+  constexpr std::int64_t kHour_ns = 3'600'000'000'000;
+  for (const std::int64_t wrong_ns : {kFirst_ns - kHour_ns, std::int64_t{1'747'663'399}}) {
+    const Told told = told_by(46, [&](int k, Scan& scan) {
+      if (k == kWrong) scan.receipt_ns = wrong_ns;
+    });
+    EXPECT_THAT(told.report.doubts, ElementsAre(HasSubstr("a: its stamps fit no steady clock")));
+    EXPECT_TRUE(std::isfinite(told.findings.devices.at(0).skew_std_error));
+  }
+}
+
+TEST(StampsStage, ReceiptsThatStandStillAreNotTrusted) {
+  const Told told = told_by(46, [&](int, Scan& scan) { scan.receipt_ns = kFirst_ns; });
+  EXPECT_THAT(told.report.doubts, ElementsAre(HasSubstr("no steady clock")));
+}
+
+}  // namespace
+}  // namespace crisp
