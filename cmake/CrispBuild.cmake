@@ -52,6 +52,9 @@ endif()
 file(RELATIVE_PATH CRISP_LIB_FROM_BIN "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
 set(CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/${CRISP_LIB_FROM_BIN}")
 
+# All that `cmake --install` installs, and nothing else: no tests.
+add_custom_target(crisp_installed)
+
 # crisp_library(<folder's name> [SHARED|STATIC|INTERFACE] [SOURCES ...] [PUBLIC ...] [PRIVATE ...])
 # makes the target crisp_<name> with the alias crisp::<name>, and installs it with the folder's headers.
 # Includes are written from the top of the tree ("pipeline/data/scan.hpp"), here and in an installed package
@@ -77,6 +80,7 @@ function(crisp_library name)
   target_link_libraries(${target} ${public} ${arg_PUBLIC})
   if(NOT arg_INTERFACE)
     target_link_libraries(${target} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:crisp_settings>)
+    add_dependencies(crisp_installed ${target})
   endif()
 
   file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")

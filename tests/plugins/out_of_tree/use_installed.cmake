@@ -26,6 +26,29 @@ function(expect_output text)
 endfunction()
 
 file(REMOVE_RECURSE "${work}")
+
+# What ./demo builds is all that is installed.
+run(${ninja} -C "${build}" -t inputs crisp_installed)
+set(built "${output}")
+file(GLOB_RECURSE scripts "${build}/cmake_install.cmake")
+set(installed)
+foreach(script IN LISTS scripts)
+  file(STRINGS "${script}" lines REGEX "\"${build}/[^\"]*\\.(a|so|bash)\"")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^.*\"${build}/([^\"]*)\".*$" "\\1" file "${line}")
+    list(APPEND installed "${file}")
+  endforeach()
+endforeach()
+if(NOT installed)
+  message(FATAL_ERROR "no library is installed")
+endif()
+foreach(file IN LISTS installed)
+  string(FIND "${built}" "${file}" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "${file} is installed, but crisp_installed does not build it")
+  endif()
+endforeach()
+
 run(${CMAKE_COMMAND} --install "${build}" --prefix "${work}/installed")
 file(RENAME "${work}/installed" "${prefix}")  # nothing may depend on where it was installed
 
