@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "pipeline/files/yaml_map.hpp"
 
@@ -62,7 +63,7 @@ class RigReader {
     RigLaser laser;
     laser.name = entry.key;
     laser.address = read_address(map, 0);
-    laser.mount = bounded(map, "mount", "rad", 0, 100);
+    laser.mount = angle(map, "mount");
     laser.time_offset = bounded(map, "time_offset", "s", 0, 10);
     laser.period_offset = static_cast<int>(map.integer("period_offset", 0, -100, 100));
     laser.nominal.name = laser.name;
@@ -76,9 +77,9 @@ class RigReader {
     YamlMap map(node, what + ", nominal", errors_);
     map.require("lambda");
     map.require("tau");
-    nominal.lambda.value = bounded(map, "lambda", "rad", 0, 100);
+    nominal.lambda.value = angle(map, "lambda");
     nominal.tau.value = bounded(map, "tau", "m", 0, 10);
-    nominal.alpha.value = bounded(map, "alpha", "rad", 0, 100);
+    nominal.alpha.value = angle(map, "alpha");
     nominal.eta.value = bounded(map, "eta", "s", 0, 10);
     map.refuse_others();
   }
@@ -109,6 +110,19 @@ class RigReader {
     }
     address.port = static_cast<std::uint16_t>(map.integer("port", default_port, 0, 65535));
     return address;
+  }
+
+  /// An angle of at most a turn, in rad: a larger one was meant in degrees.
+  static double angle(YamlMap& map, const std::string& key) {
+    constexpr double kMost = 2 * std::numbers::pi * (1 + 1e-9);  // 360deg is still meant
+    const double value = map.number(key, "rad", 0);
+    if (std::abs(value) <= kMost) return value;
+    const YamlNode& node = *map.find(key);
+    std::string wrong;
+    const bool plain = read_number(node, "", wrong).has_value();
+    map.fail(node.place, fmt::format("'{}': {}{} is more than a turn", key, node.text, plain ? " rad" : ""),
+             plain ? fmt::format("did you mean {}deg?", node.text) : "angles are -360deg to 360deg");
+    return 0;
   }
 
   /// A number whose size cannot be more than `limit`, in SI: beyond it, somebody forgot a unit.

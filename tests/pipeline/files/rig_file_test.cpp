@@ -110,6 +110,23 @@ TEST(RigFile, AnEncoderHasAWholeNumberOfSteps) {
   EXPECT_THAT(errors_of_plate("{counts_per_revolution: 2147483648}"), testing::IsEmpty());
 }
 
+TEST(RigFile, RefusesAnglesWhoseUnitWasForgotten) {
+  EXPECT_THAT(
+      errors_of_rig("crisp: 1\nplate: {}\nlasers:\n  a:\n    mount: 45\n"
+                    "    nominal: {lambda: -60, tau: 0, alpha: 400deg}\n"),
+      ElementsAre(HasSubstr("rig.yaml:5:12: error: laser 'a': 'mount': 45 rad is more than a turn; did you "
+                            "mean 45deg?"),
+                  HasSubstr("rig.yaml:6:23: error: laser 'a', nominal: 'lambda': -60 rad is more than a "
+                            "turn; did you mean -60deg?"),
+                  HasSubstr("rig.yaml:6:43: error: laser 'a', nominal: 'alpha': 400deg is more than a turn; "
+                            "angles are -360deg to 360deg")));
+  const Rig rig =
+      parse_rig(parse_yaml("crisp: 1\nplate: {}\nlasers: {a: {mount: -360deg, nominal: "
+                           "{lambda: 1turn, tau: 0, alpha: 6.28}}}\n",
+                           "rig.yaml"));
+  EXPECT_DOUBLE_EQ(rig.lasers[0].nominal.lambda.value, 360 * kDegree);
+}
+
 TEST(RigFile, RefusesDevicesThatCouldNotBeToldApart) {
   const std::string laser = "{address: 10.0.0.1, nominal: {lambda: 0, tau: 0}}";
   EXPECT_THAT(errors_of_rig("crisp: 1\nlasers:\n  a: " + laser + "\n  b: " + laser +
