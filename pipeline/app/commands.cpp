@@ -57,12 +57,19 @@ void print_errors(const Error& error) {
   }
 }
 
+void print_warnings(const Pipeline& pipeline) {
+  for (const auto& warning : pipeline.warnings) {
+    std::cerr << to_string(warning.place) << ": warning: " << warning.text << "\n";
+  }
+}
+
 ExitStatus validate_command(const fs::path& file, PipelineArguments arguments, const Registrar& registrar) {
   RunSettings run;
   run.registrar = &registrar;
   arguments.only_validate = true;
   try {
     const auto loaded = load_pipeline(file, arguments, run);
+    print_warnings(loaded.pipeline);
     std::cout << fmt::format("{}: right, {} stages\n", file.string(), loaded.pipeline.nodes.size());
   } catch (const Error& error) {
     print_errors(error);

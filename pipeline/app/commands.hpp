@@ -70,4 +70,7 @@ ExitStatus info_command(const std::filesystem::path& path, const std::optional<s
 /// Prints what is wrong, all of it, to stderr.
 void print_errors(const Error& error);
 
+/// Prints to stderr what of a pipeline is probably not meant.
+void print_warnings(const Pipeline& pipeline);
+
 }  // namespace crisp

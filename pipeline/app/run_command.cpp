@@ -132,6 +132,7 @@ ExitStatus run_command(const RunRequest& request, const Registrar& registrar) {
                                   : load_pipeline(request.text, request.file, request.arguments, run);
     check_input(request.arguments.input);
     if (!run.output.empty()) make_output_folder(run.output);
+    print_warnings(loaded->pipeline);
   } catch (const Error& error) {
     print_errors(error);
     return ExitStatus::misused;

@@ -107,6 +107,7 @@ Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run, st
   connect(pipeline, specs, run.registrar->stages(), errors);
   if (!errors.empty()) return pipeline;  // checks may rely on options that are right one by one
   for (const auto& node : pipeline.nodes) builder.check(node);
+  pipeline.warnings = put_too_low(pipeline);
   return pipeline;
 }
 

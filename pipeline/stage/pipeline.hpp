@@ -45,9 +45,16 @@ struct PipelineNode {
   OptionValue value(const Option& option) const { return option.get(type->options_object(*stage)); }
 };
 
+/// Something that is probably not meant, but can be run.
+struct PipelineWarning {
+  std::string text;
+  Place place;
+};
+
 /// Stages in an order in which each is fed only by those before it.
 struct Pipeline {
   std::vector<PipelineNode> nodes;
+  std::vector<PipelineWarning> warnings;
 };
 
 /// Makes the stages, sets their options and connects them by kind. Opens no file.

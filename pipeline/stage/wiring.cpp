@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "pipeline/files/nearest.hpp"
 
@@ -130,7 +131,71 @@ class Connector {
   std::vector<Error>& errors_;
 };
 
+class LowStages {
+ public:
+  explicit LowStages(const std::vector<PipelineNode>& nodes) : nodes_(nodes) {}
+
+  /// The topmost stage that this one could feed if it stood above it, where all that it gives could be taken
+  /// there and is taken nowhere; nothing otherwise.
+  std::optional<std::size_t> belongs_above(std::size_t index) const {
+    const auto& outputs = nodes_[index].type->outputs;
+    if (outputs.empty() || feeds_any(index)) return std::nullopt;
+    const std::vector<bool> needed = ancestors(index);
+    std::optional<std::size_t> topmost;
+    for (const Kind& kind : outputs) {
+      std::size_t taker = 0;
+      while (taker < index && (needed[taker] || !takes(taker, kind))) ++taker;
+      if (taker == index) return std::nullopt;
+      topmost = std::min(topmost.value_or(taker), taker);
+    }
+    return topmost;
+  }
+
+ private:
+  bool feeds_any(std::size_t index) const {
+    return std::any_of(nodes_.begin(), nodes_.end(), [&](const PipelineNode& node) {
+      return std::any_of(node.feeders.begin(), node.feeders.end(), [&](const auto& feeders) {
+        return std::find(feeders.begin(), feeders.end(), index) != feeders.end();
+      });
+    });
+  }
+
+  bool takes(std::size_t index, const Kind& kind) const {
+    const auto& inputs = nodes_[index].type->inputs;
+    return std::any_of(inputs.begin(), inputs.end(), [&](const auto& input) { return input.kind == kind; });
+  }
+
+  /// Whether each of those above is what this one cannot do without.
+  std::vector<bool> ancestors(std::size_t index) const {
+    std::vector<bool> found(index + 1, false);
+    found[index] = true;
+    for (std::size_t i = index + 1; i-- > 0;) {
+      if (!found[i]) continue;
+      for (const auto& feeders : nodes_[i].feeders) {
+        for (const auto feeder : feeders) found[feeder] = true;
+      }
+    }
+    return found;
+  }
+
+  const std::vector<PipelineNode>& nodes_;
+};
+
 }  // namespace
+
+std::vector<PipelineWarning> put_too_low(const Pipeline& pipeline) {
+  std::vector<PipelineWarning> warnings;
+  const LowStages low(pipeline.nodes);
+  for (std::size_t i = 0; i < pipeline.nodes.size(); ++i) {
+    const auto above = low.belongs_above(i);
+    if (!above) continue;
+    const std::string& tag = pipeline.nodes[i].tag;
+    warnings.push_back({fmt::format("{}: nothing below takes what {} gives; put it above {}, which could",
+                                    tag, tag, pipeline.nodes[*above].tag),
+                        pipeline.nodes[i].place});
+  }
+  return warnings;
+}
 
 void connect(Pipeline& pipeline, const std::vector<StageSpec>& specs, const StageRegistry& registry,
              std::vector<Error>& errors) {

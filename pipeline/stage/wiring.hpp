@@ -13,4 +13,8 @@ namespace crisp {
 void connect(Pipeline& pipeline, const std::vector<StageSpec>& specs, const StageRegistry& registry,
              std::vector<Error>& errors);
 
+/// A warning for each stage below all that would take what it gives: a filter under the writer, say. To be
+/// asked of a pipeline that is connected.
+std::vector<PipelineWarning> put_too_low(const Pipeline& pipeline);
+
 }  // namespace crisp

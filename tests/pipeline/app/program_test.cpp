@@ -141,6 +141,17 @@ TEST_F(ProgramTest, ValidatesWithoutOpeningInputOrOutput) {
   EXPECT_EQ(outcome.out, path("sum.yaml") + ": right, 3 stages\n");
 }
 
+TEST_F(ProgramTest, WarnsOfAStageThatWasPutTooLow) {
+  write_file(folder_ / "low.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n  - {stage: toy.throw}\n");
+  const auto outcome = crisp({"validate", path("low.yaml")});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.error, path("low.yaml") +
+                               ":5:13: warning: toy.throw: nothing below takes what toy.throw gives; put it "
+                               "above toy.sum, which could\n");
+  EXPECT_THAT(crisp({"run", path("low.yaml")}).error, HasSubstr(":5:13: warning: toy.throw: nothing below"));
+}
+
 TEST_F(ProgramTest, EndsWithOneWhenAStageFailsAndWritesNothing) {
   write_file(folder_ / "fail.yaml",
              "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.throw}\n  - {stage: toy.sum}\n"

@@ -10,6 +10,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 class WiringTest : public testing::Test {
  protected:
@@ -82,6 +83,27 @@ TEST_F(WiringTest, RefusesATagThatIsUsedTwice) {
 TEST_F(WiringTest, DoesNotBlameStagesForAMisspeltOneAboveThem) {
   EXPECT_THAT(errors_of({{.stage = "toy.nothing_alike_at_all"}, {.stage = "toy.sum"}}),
               ElementsAre(HasSubstr("there is no stage 'toy.nothing_alike_at_all'")));
+}
+
+TEST_F(WiringTest, WarnsOfAStageBelowThoseThatItWasToFeed) {
+  const auto warnings_of = [&](const std::vector<StageSpec>& specs) {
+    std::vector<std::string> texts;
+    for (const auto& warning : build_pipeline(specs, run_).warnings)
+      texts.push_back(to_string(warning.place) + " " + warning.text);
+    return texts;
+  };
+  const StageSpec count{.stage = "toy.count"};
+  const StageSpec filter{.stage = "toy.throw", .place = {"p.yaml", 5, 3}};  // Number to Number
+  const StageSpec sum{.stage = "toy.sum"};
+  EXPECT_THAT(
+      warnings_of({count, sum, filter}),
+      ElementsAre("p.yaml:5:3 toy.throw: nothing below takes what toy.throw gives; put it above toy.sum, "
+                  "which could"));
+  EXPECT_THAT(warnings_of({count, filter, sum}), IsEmpty());
+  EXPECT_THAT(warnings_of({count, sum, filter, {.stage = "toy.log"}}), IsEmpty());
+  EXPECT_THAT(warnings_of({count, filter}), IsEmpty()) << "what it gives, nothing would take";
+  EXPECT_THAT(warnings_of({count, filter, {.stage = "toy.throw", .tag = "last"}}), IsEmpty())
+      << "it takes what it gives from the one above it";
 }
 
 TEST_F(WiringTest, FindsAllMistakesAtOnce) {
