@@ -19,7 +19,7 @@ void RecordStage::describe(StageDescription<RecordStage>& d) {
       "recording, "
       "and the run's summary says so; the other stages go on.");
   d.takes<Scan>().takes<PlateReading>();
-  d.option("file", &RecordStage::file_, "the capture").required();
+  d.option("file", &RecordStage::file_, "the capture").writes().required();
   d.option("most_bytes", &RecordStage::settings_, &RecorderSettings::most_bytes,
            "about so large a file may become; then file-2.pcap is begun, and so on; 0: no limit")
       .range(0, 1e15);

@@ -31,8 +31,9 @@ void SimulateStage::describe_scanner(Description& d) {
       .range(0.01, 1e5);
   d.option("start", &S::start_, "the hub's clock at the begin, since 1970").unit("s").range(0, 9e9);
   d.option("seed", &S::seed_, "of all that is drawn at random; auto: the run's");
-  d.option("capture", &S::capture_file_, "pcap file to write what the network would have carried to");
-  d.option("truth", &S::truth_file_, "file to write the true calibration, clocks and delays to");
+  d.option("capture", &S::capture_file_, "pcap file to write what the network would have carried to")
+      .writes();
+  d.option("truth", &S::truth_file_, "file to write the true calibration, clocks and delays to").writes();
 }
 
 void SimulateStage::describe_plate(Description& d) {

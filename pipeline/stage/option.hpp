@@ -44,6 +44,7 @@ struct Option {
   bool list = false;         ///< takes a list of values (a single one is a list of length 1)
   bool may_be_auto = false;  ///< `auto` is a value
   bool required = false;     ///< there is no default
+  bool writes = false;       ///< of a path: the stage writes that file, in place of reading it
   std::string unit;          ///< SI unit of the value ("m", "rad", "s", "Hz", "1"), empty if it has none
   double min = -std::numeric_limits<double>::infinity();  ///< smallest number, in `unit`
   double max = std::numeric_limits<double>::infinity();   ///< largest number, in `unit`

@@ -137,6 +137,12 @@ class OptionDeclaration {
     option_->required = true;
     return *this;
   }
+  /// The path is of a file that the stage writes, in place of reading it: a pipeline in which another stage
+  /// reads it, or writes it too, is wrong.
+  OptionDeclaration& writes() requires std::same_as<V, std::filesystem::path> {
+    option_->writes = true;
+    return *this;
+  }
   /// The names of an enumeration's values; every enumeration needs them.
   OptionDeclaration& choices(
       std::initializer_list<std::pair<std::string_view, V>> table) requires detail::OptionEnum<V> {

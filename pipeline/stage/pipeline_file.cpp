@@ -10,6 +10,7 @@
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/rig_file.hpp"
 #include "pipeline/files/yaml_map.hpp"
+#include "pipeline/stage/files_written.hpp"
 #include "pipeline/stage/option_yaml.hpp"
 #include "pipeline/stage/settings.hpp"
 #include "pipeline/stage/variables.hpp"
@@ -216,6 +217,7 @@ LoadedPipeline load(const YamlNode& root, const fs::path& file, const PipelineAr
   run.rig = std::move(plan.rig);
   run.output = arguments.output ? fs::absolute(*arguments.output).lexically_normal() : fs::path();
   Pipeline pipeline = build_pipeline(plan.stages, run, errors);
+  if (errors.empty()) check_files_written(pipeline, {file, plan.rig_file}, errors);
   sort_by_place(errors);
   if (!errors.empty()) throw Errors(std::move(errors));
   return {std::move(pipeline), file, std::move(plan.rig_file)};

@@ -59,7 +59,7 @@ void BasinStage::describe(StageDescription<BasinStage>& d) {
       .unit("rad")
       .range(0, 3.2);
   d.option("eta", &BasinStage::settings_, range, &StartRange::eta, "and eta").unit("s").range(0, 1);
-  d.option("file", &BasinStage::file_, "where every start goes, as CSV");
+  d.option("file", &BasinStage::file_, "where every start goes, as CSV").writes();
 }
 
 void BasinStage::check(const RunSettings& run) const {

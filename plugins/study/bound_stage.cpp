@@ -84,7 +84,7 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
   describe_truth(d, &BoundStage::truth_);
   describe_field(d, &BoundStage::scanner_);
   d.option("refine", &BoundStage::refine_, "whether to try as well what calibrate.refine reaches");
-  d.option("file", &BoundStage::file_, "where the bounds go, as CSV");
+  d.option("file", &BoundStage::file_, "where the bounds go, as CSV").writes();
 }
 
 std::vector<Effect> BoundStage::effects(const RunSettings& run) const {

@@ -104,8 +104,8 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
       .unit("m")
       .range(1e-3, 10)
       .count(2, 2);
-  d.option("runs_file", &MonteCarloStage::runs_file_, "where every run goes, as CSV");
-  d.option("table_file", &MonteCarloStage::table_file_, "where the table goes, as text");
+  d.option("runs_file", &MonteCarloStage::runs_file_, "where every run goes, as CSV").writes();
+  d.option("table_file", &MonteCarloStage::table_file_, "where the table goes, as text").writes();
 }
 
 void MonteCarloStage::check(const RunSettings& run) const {

@@ -8,7 +8,7 @@ namespace crisp {
 void WriteCalibrationStage::describe(StageDescription<WriteCalibrationStage>& d) {
   d.name("write.calibration").summary("writes the calibration as YAML");
   d.takes<Calibration>();
-  d.option("file", &WriteCalibrationStage::file_, "where to write it").required();
+  d.option("file", &WriteCalibrationStage::file_, "where to write it").writes().required();
 }
 
 void WriteCalibrationStage::process(const Inputs& in, Outputs&, Context&) { last_ = in.share<Calibration>(); }

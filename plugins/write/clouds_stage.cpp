@@ -22,7 +22,7 @@ void WriteCloudsStage::describe(StageDescription<WriteCloudsStage>& d) {
       "for "
       "the disk waits as well, and with it the stages above.");
   d.takes<Cloud>();
-  d.option("file", &WriteCloudsStage::file_, "where to write them, NAME.pcd").required();
+  d.option("file", &WriteCloudsStage::file_, "where to write them, NAME.pcd").writes().required();
   d.option("format", &WriteCloudsStage::format_, "how the points follow the header")
       .choices({{"binary_compressed", PcdFormat::binary_compressed},
                 {"binary", PcdFormat::binary},

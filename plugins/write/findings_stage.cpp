@@ -9,7 +9,7 @@ namespace crisp {
 void WriteFindingsStage::describe(StageDescription<WriteFindingsStage>& d) {
   d.name("write.findings").summary("writes what a diagnosis says as JSON");
   d.takes<Findings>();
-  d.option("file", &WriteFindingsStage::file_, "where to write it").required();
+  d.option("file", &WriteFindingsStage::file_, "where to write it").writes().required();
 }
 
 void WriteFindingsStage::process(const Inputs& in, Outputs&, Context&) { last_ = in.share<Findings>(); }

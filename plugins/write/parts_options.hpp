@@ -28,7 +28,7 @@ struct PartsOptions {
 
 template <class S>
 void describe_parts(StageDescription<S>& d, PartsOptions S::*options) {
-  d.option("file", options, &PartsOptions::file, "where to write it, NAME.pcd").required();
+  d.option("file", options, &PartsOptions::file, "where to write it, NAME.pcd").writes().required();
   d.option("format", options, &PartsOptions::format, "how the points follow the header")
       .choices({{"binary_compressed", PcdFormat::binary_compressed},
                 {"binary", PcdFormat::binary},

@@ -141,6 +141,30 @@ TEST_F(ProgramTest, ValidatesWithoutOpeningInputOrOutput) {
   EXPECT_EQ(outcome.out, path("sum.yaml") + ": right, 3 stages\n");
 }
 
+TEST_F(ProgramTest, RefusesToOverwriteWhatItReadsOrHasWritten) {
+  const auto error_of = [&](const std::string& stages) {
+    write_file(folder_ / "files.yaml", "crisp: 1\npipeline:\n" + stages);
+    const auto outcome = crisp({"run", path("files.yaml"), "-i", path("in.yaml"), "-o", path("out")});
+    EXPECT_EQ(outcome.status, 2);
+    return outcome.error;
+  };
+  write_file(folder_ / "in.yaml", "kept");
+  fs::create_symlink(folder_, folder_ / "link");
+  EXPECT_EQ(error_of("  - {stage: calibrate.load, with: {file: \"${input}\"}}\n"
+                     "  - {stage: write.calibration, with: {file: link/in.yaml}}\n"),
+            path("files.yaml") + ":4:13: error: write.calibration: it would overwrite " + path("in.yaml") +
+                ", which calibrate.load reads; let it write another file\n");
+  EXPECT_EQ(content("in.yaml"), "kept");
+  EXPECT_THAT(error_of("  - stage: toy.count\n  - stage: toy.sum\n"
+                       "  - {stage: toy.write, with: {file: \"${output}/x\"}}\n"
+                       "  - {stage: toy.write, with: {file: \"${output}/./x\"}}\n"),
+              HasSubstr(":6:13: error: toy.write-2: it would overwrite " + path("out/x") +
+                        ", which toy.write writes;"));
+  EXPECT_THAT(error_of("  - stage: toy.count\n  - stage: toy.sum\n"
+                       "  - {stage: toy.write, with: {file: files.yaml}}\n"),
+              HasSubstr("toy.write: it would overwrite " + path("files.yaml") + ", which this run reads;"));
+}
+
 TEST_F(ProgramTest, WarnsOfAStageThatWasPutTooLow) {
   write_file(folder_ / "low.yaml",
              "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n  - {stage: toy.throw}\n");

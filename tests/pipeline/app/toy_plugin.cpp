@@ -14,7 +14,7 @@ class WriteStage final : public Stage {
  public:
   static void describe(StageDescription<WriteStage>& d) {
     d.name("toy.write").summary("writes the sum").takes<Sum>();
-    d.option("file", &WriteStage::file_, "where to").required();
+    d.option("file", &WriteStage::file_, "where to").writes().required();
     d.option("doubt", &WriteStage::doubt_, "whether to doubt it");
   }
   void process(const Inputs& in, Outputs&, Context& context) override {
@@ -42,7 +42,7 @@ class WaitStage final : public Stage {
  public:
   static void describe(StageDescription<WaitStage>& d) {
     d.name("toy.wait").summary("waits for a signal").gives<Number>();
-    d.option("file", &WaitStage::file_, "what it is about to write").required();
+    d.option("file", &WaitStage::file_, "what it is about to write").writes().required();
   }
   void process(const Inputs&, Outputs&, Context& context) override {
     AtomicFile out(file_);
