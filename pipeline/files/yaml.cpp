@@ -64,6 +64,18 @@ void check_characters(std::string_view text, const std::string& file) {
   }
 }
 
+/// The first line up to `last` that has a tab before its text.
+std::optional<int> indented_by_tab(std::string_view text, int last) {
+  int number = 1;
+  for (std::size_t begin = 0; begin < text.size() && number <= last; ++number) {
+    const std::string_view line = text.substr(begin, text.find('\n', begin) - begin);
+    const std::string_view blank = line.substr(0, line.find_first_not_of(" \t"));
+    if (blank.size() < line.size() && blank.find('\t') != std::string_view::npos) return number;
+    begin += line.size() + 1;
+  }
+  return std::nullopt;
+}
+
 /// Builds the tree from the parser's events; keeps all errors that leave the rest readable.
 class TreeBuilder final : public YAML::EventHandler {
  public:
@@ -236,7 +248,10 @@ YamlNode parse_yaml(std::string_view text, const std::string& file) {
     if (parser.HandleNextDocument(ignore)) throw Error("there is more than one document in it", {}, {file});
   } catch (const YAML::Exception& error) {
     const Place place = {file, error.mark.line + 1, error.mark.column + 1};
-    builder.errors.emplace_back("this is not YAML: " + error.msg, std::string(), place);
+    const auto tab = indented_by_tab(text, place.line);
+    builder.errors.push_back(
+        tab ? Error("a tab indents this line, which YAML does not allow", "indent by blanks", {file, *tab, 1})
+            : Error("this is not YAML: " + error.msg, {}, place));
   }
   if (!builder.errors.empty()) throw Errors(std::move(builder.errors));
   return std::move(builder.root);
@@ -244,7 +259,9 @@ YamlNode parse_yaml(std::string_view text, const std::string& file) {
 
 YamlNode read_yaml(const std::filesystem::path& file) {
   constexpr std::size_t kLimit = 4 << 20;
-  return parse_yaml(read_text_file(file, kLimit), file.string());
+  YamlNode root = parse_yaml(read_text_file(file, kLimit), file.string());
+  if (root.kind == YamlNode::Kind::null) throw Error("the file is empty", {}, {file.string()});
+  return root;
 }
 
 std::string read_text_file(const std::filesystem::path& file, std::size_t limit) {

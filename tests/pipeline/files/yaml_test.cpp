@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "tests/pipeline/files/errors_of.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace crisp {
 namespace {
@@ -76,6 +77,15 @@ TEST(Yaml, SaysWhereATextIsNotYaml) {
               ElementsAre("f.yaml:2:1: error: there is a control character (0x00); is this a text file?"));
 }
 
+TEST(Yaml, SaysWhichLineIsIndentedByATab) {
+  EXPECT_THAT(
+      errors_of_yaml("a: 1\nb:\n\t- c\n"),
+      ElementsAre("f.yaml:3:1: error: a tab indents this line, which YAML does not allow; indent by blanks"));
+  EXPECT_THAT(errors_of_yaml("a: 1\nb:\n  c: 1\n \td: 2\n"),
+              ElementsAre(StartsWith("f.yaml:4:1: error: a tab")));
+  EXPECT_EQ(parse_yaml("a:\t1\t# not before the text\n", "f.yaml").find("a")->text, "1");
+}
+
 TEST(Yaml, RefusesDepthThatCouldExhaustTheStack) {
   for (const std::string bracket : {"[", "{", "- ", "? ", "a: [", "{a: "}) {
     std::string deep;
@@ -100,6 +110,9 @@ TEST(Yaml, SaysWhyAFileCannotBeRead) {
     return "";
   };
   EXPECT_EQ(message("/nowhere/x.yaml"), "error: cannot read /nowhere/x.yaml: No such file or directory");
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "empty.yaml") << "# only a comment\n";
+  EXPECT_EQ(message(folder / "empty.yaml"), (folder / "empty.yaml").string() + ": error: the file is empty");
   EXPECT_EQ(message("/tmp"), "error: cannot read /tmp: it is a folder");
 }
 
