@@ -2,6 +2,7 @@
 #include "grabbers/simulate/effects.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <variant>
@@ -23,6 +24,7 @@ class Reader {
       Effect effect{.name = group.name, .owner = {}, .values = {}, .place = group.place};
       take_owner(effect);
       const EffectInfo* info = find(effect.name);
+      if (!info && names_no_device(group)) continue;
       if (!info) {
         fail(group.place, fmt::format("there is no effect '{}'", group.name), suggestion(effect.name));
         continue;
@@ -65,6 +67,19 @@ class Reader {
       return;
     }
     effect.name.erase(0, dot + 1);
+  }
+
+  /// Of an effect that there is, put behind something that the rig does not have.
+  bool names_no_device(const OptionGroup& group) {
+    const auto dot = group.name.find('.');
+    if (dot == std::string::npos || !find(group.name.substr(dot + 1))) return false;
+    std::vector<std::string> devices;
+    for (const auto& laser : rig_.lasers) devices.push_back(laser.name);
+    devices.push_back(rig_.plate.name);
+    const std::string owner = group.name.substr(0, dot);
+    fail(group.place, fmt::format("{}: the rig has no '{}'", group.name, owner),
+         did_you_mean(owner, devices, fmt::format("it has {}", fmt::join(devices, ", "))));
+    return true;
   }
 
   void check_owner(const Effect& effect, const EffectInfo& info) {

@@ -127,7 +127,9 @@ TEST_F(Effects, SayWhatIsNotUnderstoodAndWhere) {
   EXPECT_THAT(complaint(one("mirror.coin", {})), HasSubstr("x.yaml:7:3"));
   EXPECT_THAT(complaint(one("mirror.coin", {})), HasSubstr("did you mean 'mirror.cone'?"));
   EXPECT_THAT(complaint(one("laser2.mirror.coin", {})), HasSubstr("did you mean 'mirror.cone'?"));
-  EXPECT_THAT(complaint(one("laser9.mirror.cone", {})), HasSubstr("no effect 'laser9.mirror.cone'"));
+  EXPECT_THAT(complaint(one("laser9.mirror.cone", {})), HasSubstr("the rig has no 'laser9'; did you mean"));
+  EXPECT_THAT(complaint(one("sick.mirror.cone", {})),
+              HasSubstr("sick.mirror.cone: the rig has no 'sick'; it has laser1, laser2, laser3, plate"));
   EXPECT_THAT(complaint(one("mirror.cone", {{"kapa", "1deg"}})), HasSubstr("it has kappa"));
   EXPECT_THAT(complaint(one("mirror.cone", {{"kappa", "3mm"}})), HasSubstr("x.yaml:7:20"));
   EXPECT_THAT(complaint(one("mirror.cone", {{"kappa", "3mm"}})), HasSubstr("mirror.cone.kappa: '3mm'"));
