@@ -68,6 +68,10 @@ void RecordStage::end() {
 }
 
 void RecordStage::finish(Outputs&, Context& context) {
+  if (given_ == 0) {
+    throw Error("nothing was received, so that there is no capture to write",
+                "see whether the devices are switched on and at the rig's addresses");
+  }
   try {
     if (recorder_) recorder_->close();
   } catch (const Error& error) {

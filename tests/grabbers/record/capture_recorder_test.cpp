@@ -154,6 +154,18 @@ TEST_F(CaptureRecorderTest, EndsOnAFullDiskWithoutThePipeline) {
   EXPECT_LT(missing, fed);
 }
 
+TEST_F(CaptureRecorderTest, FailsWhereNothingWasReceived) {
+  const fs::path file = folder_ / "hub.pcap";
+  auto stage = test::StageDriver::of<RecordStage>({{"file", OptionValue(OptionScalar(file.string()))}});
+  try {
+    stage.finish();
+    FAIL() << "a recording of nothing is one";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("nothing was received"));
+  }
+  EXPECT_FALSE(fs::exists(file));
+}
+
 TEST_F(CaptureRecorderTest, BeginsANewFileAfterATimeOrASize) {
   const auto items = test::simulated_items(0.5);
   for (const RecorderSettings& settings :
