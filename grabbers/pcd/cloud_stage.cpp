@@ -21,6 +21,9 @@ void GrabCloudStage::describe(StageDescription<GrabCloudStage>& d) {
 
 void GrabCloudStage::process(const Inputs&, Outputs& out, Context& context) {
   read_parts(file_, [&](const PcdTable& table, const std::filesystem::path& file) {
+    if (!table.has("x") && table.has("range")) {
+      throw Error(file.string() + " holds measurements, no cloud", "read it with grabber.pcd");
+    }
     auto [cloud, not_finite] = about(file, [&] { return cloud_of(table); });
     context.reads(file);
     context.count("points that are not numbers", not_finite);

@@ -56,6 +56,9 @@ void GrabMeasurementsStage::describe(StageDescription<GrabMeasurementsStage>& d)
 void GrabMeasurementsStage::process(const Inputs&, Outputs& out, Context& context) {
   read_parts(file_, [&](const PcdTable& table, const std::filesystem::path& file) {
     context.reads(file);
+    if (!table.has("range") && table.has("x")) {
+      throw Error(file.string() + " holds a cloud, no measurements", "read it with grabber.cloud");
+    }
     const auto read = about(file, [&] { return measurements_of(table); });
     const Measurements& beams = read.beams;
     context.count("measurements that cannot be", read.impossible);

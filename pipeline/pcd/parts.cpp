@@ -15,6 +15,9 @@ const std::string kNext = "next_part";
 
 /// The file that a recording begins with.
 fs::path first_file(const fs::path& file) {
+  if (fs::is_directory(file)) {
+    throw Error(file.string() + " is a folder, not a PCD file", "name one file, and run crisp once for each");
+  }
   fs::path part = part_path(file, 1);
   if (!fs::exists(part)) return file;  // if that is not there either, reading it says so
   if (fs::exists(file)) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/filter/limits_stages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "pipeline/data/error.hpp"
@@ -41,7 +43,13 @@ void CropStage::process(const Inputs& in, Outputs& out, Context& context) {
   const Cloud& cloud = in.get<Cloud>();
   Cloud kept = crop(cloud, limits_);
   context.count("points outside the limits", cloud.size() - kept.size());
+  all_ += cloud.size();
+  kept_ += kept.size();
   out.give(std::move(kept));
+}
+
+void CropStage::finish(Outputs&, Context& context) {
+  context.say(fmt::format("kept {} of {} points", kept_, all_));
 }
 
 void RangeStage::describe(StageDescription<RangeStage>& d) {
@@ -83,7 +91,13 @@ void RangeStage::process(const Inputs& in, Outputs& out, Context& context) {
   const auto& beams = in.get<Measurements>();
   Measurements kept = within(beams, limits(context.rig()));
   context.count("measurements outside the limits", beams.size() - kept.size());
+  all_ += beams.size();
+  kept_ += kept.size();
   out.give(std::move(kept));
+}
+
+void RangeStage::finish(Outputs&, Context& context) {
+  context.say(fmt::format("kept {} of {} measurements", kept_, all_));
 }
 
 }  // namespace crisp

@@ -16,9 +16,12 @@ class CropStage final : public Stage {
   static void describe(StageDescription<CropStage>& d);
   void check(const RunSettings& run) const override;
   void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
 
  private:
   CropLimits limits_;
+  std::size_t all_ = 0;
+  std::size_t kept_ = 0;
 };
 
 /// `filter.range`: some of the measurements, by what was measured.
@@ -27,6 +30,7 @@ class RangeStage final : public Stage {
   static void describe(StageDescription<RangeStage>& d);
   void check(const RunSettings& run) const override;
   void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
 
  private:
   RangeLimits limits(const Rig& rig) const;
@@ -34,6 +38,8 @@ class RangeStage final : public Stage {
   Limits range_;
   Limits mirror_angle_;
   std::vector<std::string> lasers_;
+  std::size_t all_ = 0;
+  std::size_t kept_ = 0;
 };
 
 }  // namespace crisp

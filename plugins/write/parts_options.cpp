@@ -12,9 +12,10 @@ void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what,
     names.push_back(file.string());
     context.wrote(file);
   }
-  const std::string where =
-      files.size() == 1 ? files.front().string()
-                        : fmt::format("{} to {}", files.front().string(), files.back().filename().string());
+  std::string where = files.front().string();
+  if (files.size() > 1) {
+    where += fmt::format(" {} {}", files.size() == 2 ? "and" : "to", files.back().filename().string());
+  }
   context.say(fmt::format("{} {} in {}", count, what, where));
   context.report({{std::string(what), count}, {"files", names}});
 }

@@ -146,7 +146,27 @@ TEST_F(GrabMeasurements, ACloudInPlaceOfMeasurementsIsRefusedByName) {
   PartsWriter writer(folder_ / "run.pcd", PcdFormat::binary);
   writer.write(to_table(test::sample_cloud(3)), false);
   writer.commit();
-  EXPECT_THAT(complaint(), HasSubstr("run.pcd: there is no field 'range'"));
+  EXPECT_THAT(complaint(), HasSubstr("run.pcd holds a cloud, no measurements; read it with grabber.cloud"));
+}
+
+TEST_F(GrabMeasurements, MeasurementsInPlaceOfACloudAreRefusedByName) {
+  written({{sample_measurements(10), plate(1)}});
+  try {
+    StageDriver::of<GrabCloudStage>(file("run.pcd")).feed();
+    FAIL() << "took measurements for a cloud";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("run.pcd holds measurements, no cloud; read it with grabber.pcd"));
+  }
+}
+
+TEST_F(GrabMeasurements, AFolderIsRefused) {
+  fs::create_directory(folder_ / "run.pcd");
+  EXPECT_THAT(complaint(), HasSubstr("run.pcd is a folder, not a PCD file; name one file"));
+}
+
+TEST_F(GrabMeasurements, TheTwoFilesOfARecordingAreNamedAsTwo) {
+  const auto stage = written({{sample_measurements(10), plate(1)}});
+  EXPECT_THAT(stage.report().lines.back(), testing::EndsWith("run.pcd and run.plate.pcd"));
 }
 
 TEST_F(GrabMeasurements, ACloudIsReadByItsOwnGrabber) {

@@ -128,6 +128,8 @@ TEST(Range, KeepsMeasurementsWholeWithinTheLimits) {
   EXPECT_THAT(kept->laser, ElementsAre(1));
   EXPECT_THAT(kept->remission, ElementsAre(20));
   EXPECT_THAT(kept->beam, ElementsAre(8));
+  stage.finish();
+  EXPECT_THAT(stage.report().lines, ElementsAre("kept 1 of 3 measurements"));
 }
 
 TEST(Range, KeepsTheLasersThatAreNamed) {
