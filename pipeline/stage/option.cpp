@@ -46,6 +46,16 @@ std::string bounds(const Option& option) {
   return {};
 }
 
+/// How many elements a list has.
+std::string counts(const Option& option) {
+  const bool limited = option.max_count != std::numeric_limits<std::size_t>::max();
+  if (option.min_count == option.max_count) return fmt::format(", {} of them", option.min_count);
+  std::string text;
+  if (option.min_count > 0) text += fmt::format(", {} or more of them", option.min_count);
+  if (limited) text += fmt::format(", {} at most", option.max_count);
+  return text;
+}
+
 std::string group_text(const OptionGroup& group) {
   std::vector<std::string> entries;
   for (const auto& [name, value, place] : group.entries)
@@ -134,10 +144,7 @@ std::string expectation(const Option& option) {
   if (const auto limits = bounds(option); !limits.empty() && option.choices.empty()) text += ", " + limits;
   if (option.list) {
     text = "a list, each " + text;
-    if (option.min_count > 0) text += fmt::format(", {} or more of them", option.min_count);
-    if (option.max_count != std::numeric_limits<std::size_t>::max()) {
-      text += fmt::format(", {} at most", option.max_count);
-    }
+    text += counts(option);
   }
   if (option.may_be_auto) text += ", or auto";
   return text;

@@ -25,7 +25,8 @@ class Builder {
     node.type = run_.registrar->stages().find(spec.stage);
     if (!node.type) {
       fail(spec.place, fmt::format("there is no stage '{}'", spec.stage),
-           did_you_mean(spec.stage, run_.registrar->stages().names(), "crisp stages lists them"));
+           did_you_mean(spec.stage, run_.registrar->stages().names(),
+                        "crisp stages lists them; a plugin's are known with --plugin FILE"));
       return node;
     }
     node.stage = node.type->make();

@@ -126,6 +126,8 @@ TEST_F(Fixture, ComplainsOfValuesThatDoNotFit) {
   EXPECT_THAT(complaint(last(), std::vector<OptionScalar>{std::nan("")}),
               Optional(std::string("is not a finite number")));
   EXPECT_EQ(expectation(last()), "a list, each a number in m, 0.1 to 1, 1 or more of them, 2 at most");
+  options.add("both", &Thing::widths, "-").unit("m").count(2, 2);
+  EXPECT_EQ(expectation(last()), "a list, each a number in m, 2 of them");
 }
 
 }  // namespace

@@ -64,6 +64,13 @@ TEST_F(WiringTest, SuggestsTheNearestStageAndTag) {
                           "'left'?"));
 }
 
+TEST_F(WiringTest, RemindsOfPluginsWhereNoStageIsNear) {
+  EXPECT_THAT(
+      errors_of({{.stage = "example.near"}}),
+      ElementsAre("error: there is no stage 'example.near'; crisp stages lists them; a plugin's are known "
+                  "with --plugin FILE"));
+}
+
 TEST_F(WiringTest, RefusesInputsFromBelowAndInputsOfNoUse) {
   EXPECT_THAT(errors_of({{.stage = "toy.log", .inputs = {{{"toy.count", {}}}}}, {.stage = "toy.count"}}),
               ElementsAre(HasSubstr("its input 'toy.count' is not above it")));
