@@ -151,9 +151,11 @@ class Diagnoser {
     const Refinement plain = refined(with_terms(start_, {}), sample_);
     Diagnosis result{.before = plain, .after = plain};
     extend(result);
-    if (goes_on(1, "judging by held-out turns")) judge(result);
+    if (!goes_on(1, "judging by held-out turns")) return result;
+    judge(result);
+    if (!goes_on(1, "simulating the scanner again")) return result;
     add_form_errors(result);
-    if (goes_on(1, "simulating the scanner again")) compare(result);
+    compare(result);
     return result;
   }
 
@@ -162,9 +164,13 @@ class Diagnoser {
     RefinementSettings settings = settings_.refinement;
     settings.terms = names_of_terms(calibration);
     settings.forms = true;
-    return refine_by_surfels(SensorModel(calibration, terms_), sample, settings);
+    return refine_by_surfels(SensorModel(calibration, terms_), sample, settings,
+                             [this](int) { return goes_on(told_.first, told_.second); });
   }
-  bool goes_on(double share, const std::string& what) const { return !report_ || report_(share, what); }
+  bool goes_on(double share, const std::string& what) const {
+    told_ = {share, what};
+    return !report_ || report_(share, what);
+  }
 
   /// Adds what is needed, until nothing is missing.
   void extend(Diagnosis& result) const {
@@ -236,6 +242,7 @@ class Diagnoser {
     auto score = held_out.score(
         refined(with_terms(result.before.outcome.model.calibration(), {}), held_out.fitted()).outcome.model);
     for (Departure& departure : result.departures) {
+      if (!goes_on(1, "judging by held-out turns")) return;
       auto tried = accepted;
       tried.push_back(departure.candidate);
       tried = with_values_of(found, tried);
@@ -274,6 +281,7 @@ class Diagnoser {
   const DiagnosisReporter& report_;
   Calibration start_;
   Sample inside_;
+  mutable std::pair<double, std::string> told_;  ///< last: told again with each round of a refinement
 };
 
 }  // namespace
