@@ -37,7 +37,8 @@ ExitStatus print_one_stage(const StagesRequest& request, const StageRegistry& st
   const StageType* type = stages.find(request.name);
   if (!type) {
     print_errors(Error("there is no stage '" + request.name + "'",
-                       did_you_mean(request.name, stages.names(), "crisp stages lists them")));
+                       did_you_mean(request.name, stages.names(),
+                                    "crisp stages lists them; a plugin's are known with --plugin FILE")));
     return ExitStatus::misused;
   }
   std::cout << (request.markdown ? stage_markdown(*type) : stage_text(*type));

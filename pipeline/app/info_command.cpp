@@ -42,7 +42,22 @@ std::optional<KnownFile> known_by(const Inspectors& inspectors, const fs::path& 
   return KnownFile{file.string(), inspector->kind, inspector->inspect(file, rig)};
 }
 
+/// What a YAML file is that only other commands read, and what to do with it; nothing if it is none.
+std::optional<Error> of_other_commands(const fs::path& file) {
+  const std::string head = "\n" + head_of(file);
+  if (head.find("\ncrisp:") == std::string::npos) return std::nullopt;
+  if (head.find("\npipeline:") != std::string::npos)
+    return Error(file.string() + " is a pipeline", "crisp validate checks it, crisp run runs it");
+  if (head.find("\nlasers:") != std::string::npos)
+    return Error(file.string() + " is a rig", "crisp validate PIPELINE --rig FILE checks it");
+  return std::nullopt;
+}
+
 Error none_known(const fs::path& path, const Inspectors& inspectors) {
+  if (fs::is_regular_file(path)) {
+    if (fs::file_size(path) == 0) return Error(path.string() + " is empty");
+    if (const auto other = of_other_commands(path)) return *other;
+  }
   std::string kinds;
   for (const auto& inspector : inspectors) kinds += (kinds.empty() ? "" : ", ") + inspector.kind;
   const char* what = fs::is_directory(path) ? " holds no file of a kind that is known"

@@ -2,6 +2,7 @@
 // The program's command line; the only file that knows CLI11.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
@@ -12,6 +13,7 @@
 #include "pipeline/app/commands.hpp"
 #include "pipeline/app/completion.hpp"
 #include "pipeline/app/own_pipelines.hpp"
+#include "pipeline/files/nearest.hpp"
 
 namespace crisp {
 namespace {
@@ -24,6 +26,22 @@ constexpr const char* kFooter =
     "nothing was run; 3 the run came to its end but its result cannot be trusted (the summary says why);\n"
     "130 or 143 interrupted. Plugins are also loaded from <libdir>/crisp/plugins, and from the files\nand "
     "folders that CRISP_PLUGINS lists.";
+
+constexpr const char* kScenes = "What stands around: office, hall, street, workshop, garden, people or paper";
+
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+  const std::string range = std::to_string(least) + " to " + std::to_string(most);
+  const auto refuse = [=](const std::string& text) -> std::string {
+    std::uint64_t number = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (failure != std::errc::result_out_of_range &&
+        (failure != std::errc() || end != text.data() + text.size()))
+      return "'" + text + "' is not a whole number, " + range;
+    if (failure == std::errc() && number >= least && number <= most) return {};
+    return text + " is not from " + range;
+  };
+  return CLI::Validator(refuse, "", "whole_number");
+}
 
 /// Everything that can stand on the command line, and where CLI11 puts it.
 struct CommandLine {
@@ -121,7 +139,7 @@ struct CommandLine {
   static void add_run_options(CLI::App* to, const std::string& threads, RunRequest& request) {
     request.threads = std::max(1U, std::thread::hardware_concurrency());
     to->add_option(threads, request.threads, "How many threads to use; the result does not depend on it")
-        ->check(CLI::Range(1, 1024))
+        ->check(whole_number(1, 1024))
         ->capture_default_str();
     to->add_option("--seed", request.seed, "Seed of all that is drawn at random")->capture_default_str();
     to->add_option("--metrics", request.metrics,
@@ -161,10 +179,10 @@ struct CommandLine {
 
   void add_bound() {
     bound_app = command("bound", "Say before a recording how well it would determine the parameters");
-    add_own_pipeline(bound_app, "bound.yaml", kBoundPipeline, "out", "--threads", bound);
+    add_own_pipeline(bound_app, "bound.yaml", kBoundPipeline, "out/bound", "--threads", bound);
     add_rig(bound_app, bound.arguments);
     add_stage_options(bound_app, "study.bound", bound,
-                      {{"scene", "What stands around: office, hall, street, paper"},
+                      {{"scene", kScenes},
                        {"scene_file", "A scene of your own in YAML"},
                        {"duration", "How long to record: 10s"},
                        {"motion", "How the plate turns: constant, varying, reversal, stop_and_go"},
@@ -178,12 +196,12 @@ struct CommandLine {
   void add_basin() {
     basin_app = command("basin", "Calibrate from starts all over the range, and see where each ends");
     basin_app->add_option("-n,--starts", basin_starts, "How many")
-        ->check(CLI::Range(1, 1000000))
+        ->check(whole_number(1, 1000000))
         ->capture_default_str();
-    add_own_pipeline(basin_app, "basin.yaml", kBasinPipeline, "out", "-j,--threads", basin);
+    add_own_pipeline(basin_app, "basin.yaml", kBasinPipeline, "out/basin", "-j,--threads", basin);
     add_rig(basin_app, basin.arguments);
     add_stage_options(basin_app, "study.basin", basin,
-                      {{"scene", "What stands around: paper, office, hall, street"},
+                      {{"scene", kScenes},
                        {"scene_file", "A scene of your own in YAML"},
                        {"beams", "in_plane: of each laser the two in the plate's plane; or all"}});
   }
@@ -205,11 +223,11 @@ struct CommandLine {
   void add_emulate() {
     emulate_app =
         command("emulate", "Be a simulated scanner's lasers and plate, at 127.0.0.1 or the rig's addresses");
-    add_own_pipeline(emulate_app, "emulate.yaml", kEmulatePipeline, "out", "--threads", emulate);
+    add_own_pipeline(emulate_app, "emulate.yaml", kEmulatePipeline, "out/emulate", "--threads", emulate);
     add_rig(emulate_app, emulate.arguments);
     add_stage_options(emulate_app, "grabber.simulate", emulate,
                       {{"duration", "How long: 60s"},
-                       {"scene", "What stands around: office, hall, street"},
+                       {"scene", kScenes},
                        {"motion", "How the plate turns: constant, varying, reversal, stop_and_go"}});
     add_stage_options(emulate_app, "emulate.rig", emulate,
                       {{"speed", "Times real time; 0: as fast as the clients take it"},
@@ -226,13 +244,13 @@ struct CommandLine {
         command("monte-carlo", "Calibrate many simulated recordings: the paper's Table 1, made anew");
     CLI::Option* runs = monte_carlo_app->add_option("-n,--runs", monte_carlo_runs,
                                                     "How many; run k has the seed --seed + k - 1");
-    runs->check(CLI::Range(1, 1000000))->capture_default_str();
-    add_own_pipeline(monte_carlo_app, "monte_carlo.yaml", kMonteCarloPipeline, "out", "-j,--threads",
-                     monte_carlo);
+    runs->check(whole_number(1, 1000000))->capture_default_str();
+    add_own_pipeline(monte_carlo_app, "monte_carlo.yaml", kMonteCarloPipeline, "out/monte_carlo",
+                     "-j,--threads", monte_carlo);
     add_rig(monte_carlo_app, monte_carlo.arguments);
     add_stage_options(
         monte_carlo_app, "study.monte_carlo", monte_carlo,
-        {{"scene", "What stands around: paper, office, hall, street"},
+        {{"scene", kScenes},
          {"scene_file", "A scene of your own in YAML"},
          {"beams", "in_plane: of each laser the two in the plate's plane; or all"},
          {"estimators", "both; or refined: the refinement alone, from where RQE would end"},
@@ -361,8 +379,20 @@ ExitStatus run_program(const CommandLine& line) {
   return ExitStatus::done;
 }
 
+/// Whether the first word is one of the commands, if it is no option.
+bool is_known_command(const CommandLine& line, int count, char** words) {
+  if (count < 2 || words[1][0] == '-') return true;
+  std::vector<std::string> known;
+  for (const CLI::App* sub : line.app.get_subcommands({})) known.push_back(sub->get_name());
+  if (std::ranges::find(known, words[1]) != known.end()) return true;
+  print_errors(Error("there is no command '" + std::string(words[1]) + "'",
+                     did_you_mean(words[1], known, "crisp --help lists them")));
+  return false;
+}
+
 int guarded_main(int count, char** words) {
   CommandLine line;
+  if (!is_known_command(line, count, words)) return static_cast<int>(ExitStatus::misused);
   try {
     line.app.parse(count, words);
   } catch (const CLI::ParseError& stop) {
@@ -374,11 +404,23 @@ int guarded_main(int count, char** words) {
 }  // namespace
 }  // namespace crisp
 
+namespace {
+
+/// The program's status, unless what it said did not arrive.
+int after_output(int status) {
+  std::cout.flush();
+  if (std::cout) return status;
+  crisp::print_errors(crisp::Error("cannot write to the standard output", "make room on the disk"));
+  return status == 0 ? static_cast<int>(crisp::ExitStatus::failed) : status;
+}
+
+}  // namespace
+
 int main(int count, char** words) {
   std::signal(SIGXFSZ,
               SIG_IGN);  // a file beyond the shell's limit is an error as on a full disk, not the end
   try {
-    return crisp::guarded_main(count, words);
+    return after_output(crisp::guarded_main(count, words));
   } catch (const crisp::Error& error) {
     crisp::print_errors(error);
   } catch (const std::exception& error) {

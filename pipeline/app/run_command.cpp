@@ -71,6 +71,8 @@ std::vector<NodeResult> run_with_progress(Pipeline& pipeline, const RunSettings&
   std::optional<MetricsServer> metrics;
   if (request.metrics) metrics.emplace(*request.metrics, [&board] { return board.prometheus(); });
   ProgressPrinter printer(std::cerr, isatty(STDERR_FILENO) == 1, seconds_now, terminal_width());
+  std::optional<StopNotice> notice;
+  if (!request.quiet) notice.emplace(std::cerr);
   RunHooks hooks{.stop = StopOnSignal::flag()};
   hooks.failed = [&](std::vector<NodeResult> until_then) { record.nodes = std::move(until_then); };
   if (!request.quiet || metrics) {
@@ -87,19 +89,38 @@ std::vector<NodeResult> run_with_progress(Pipeline& pipeline, const RunSettings&
   return run_pipeline(pipeline, run, hooks);
 }
 
+/// Whether it could be written.
+bool keep_record(RunRecord& record, const fs::path& folder) {
+  try {
+    if (record.failure.empty() || record.wrote_any()) record.inputs = hash_inputs(record);
+    write_records(record, folder);
+    return true;
+  } catch (const Error& error) {
+    print_errors(error);
+    return false;
+  }
+}
+
 ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const RunSettings& run) {
   const StopOnSignal stop;
   RunRecord record = begin_record(loaded, run);
   const double began = seconds_now();
+  const auto end_early = [&](std::string why, ExitStatus status) {
+    record.seconds = seconds_now() - began;
+    record.failure = std::move(why);
+    keep_record(record, run.output);
+    return status;
+  };
   try {
     record.nodes = run_with_progress(loaded.pipeline, run, request, record);
   } catch (const Interrupted&) {
     std::cerr << "interrupted: files that were not complete were not written\n";
-    return StopOnSignal::signal() == SIGTERM ? ExitStatus::terminated : ExitStatus::interrupted;
+    return end_early("interrupted",
+                     StopOnSignal::signal() == SIGTERM ? ExitStatus::terminated : ExitStatus::interrupted);
   } catch (const Error& error) {
     std::cerr << failure_text(record);
     print_errors(error);
-    return ExitStatus::failed;
+    return end_early(error.what(), ExitStatus::failed);
   }
   record.seconds = seconds_now() - began;
   // Before the records, for which a disk that became full has no room.
@@ -107,13 +128,7 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
     std::cerr << warnings_text(record);
   else
     std::cout << summary_text(record, request.verbose) << std::flush;
-  try {
-    record.inputs = hash_inputs(record);
-    write_records(record, run.output);
-  } catch (const Error& error) {
-    print_errors(error);
-    return ExitStatus::failed;
-  }
+  if (!keep_record(record, run.output)) return ExitStatus::failed;
   return record.is_trusted() ? ExitStatus::done : ExitStatus::not_trusted;
 }
 

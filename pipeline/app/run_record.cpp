@@ -56,7 +56,13 @@ std::string dump(const Json& json) {
 }  // namespace
 
 bool RunRecord::is_trusted() const {
-  return std::all_of(nodes.begin(), nodes.end(), [](const auto& node) { return node.report.doubts.empty(); });
+  return failure.empty() &&
+         std::all_of(nodes.begin(), nodes.end(), [](const auto& node) { return node.report.doubts.empty(); });
+}
+
+bool RunRecord::wrote_any() const {
+  return std::any_of(nodes.begin(), nodes.end(),
+                     [](const auto& node) { return !node.report.written.empty(); });
 }
 
 Json effective_options(const PipelineNode& node) {
@@ -105,6 +111,7 @@ Json provenance_json(const RunRecord& record, const fs::path& file) {
   Json json = {{"file", file.filename().string()}};
   json.update(head_json(record));
   json["trusted"] = record.is_trusted();
+  if (!record.failure.empty()) json["failure"] = record.failure;
   json["stages"] = Json::array();
   for (std::size_t i = 0; i < record.nodes.size(); ++i) {
     json["stages"].push_back(stage_json(record, i));
@@ -113,12 +120,17 @@ Json provenance_json(const RunRecord& record, const fs::path& file) {
 }
 
 void write_records(const RunRecord& record, const fs::path& folder) {
+  if (!record.failure.empty() && !record.wrote_any()) return;  // all that is there is as it was
   for (const auto& node : record.nodes) {
     for (const auto& file : node.report.written) {
       write_file(file.string() + ".provenance.json", dump(provenance_json(record, file)));
     }
   }
-  if (!folder.empty()) write_file(folder / "summary.json", dump(summary_json(record)));
+  if (folder.empty()) return;
+  const fs::path summary = folder / "summary.json";
+  if (record.failure.empty()) return write_file(summary, dump(summary_json(record)));
+  std::error_code not_there;
+  fs::remove(summary, not_there);
 }
 
 }  // namespace crisp

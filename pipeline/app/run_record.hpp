@@ -26,11 +26,13 @@ struct RunRecord {
   unsigned threads = 0;
   std::string started;  ///< ISO 8601, UTC
   double seconds = 0;
+  std::string failure;                          ///< why it did not come to its end; empty if it did
   std::vector<nlohmann::ordered_json> options;  ///< the effective ones of each stage
   std::vector<NodeResult> nodes;
   std::vector<InputRecord> inputs;  ///< the pipeline's file, the rig's, and what the stages read; each once
 
-  bool is_trusted() const;  ///< whether no stage had a doubt
+  bool is_trusted() const;  ///< whether it came to its end and no stage had a doubt
+  bool wrote_any() const;   ///< whether a stage wrote a file
 };
 
 /// The effective options of a stage: all of them, with the values that it runs with, in SI.
@@ -46,7 +48,8 @@ nlohmann::ordered_json summary_json(const RunRecord& record);
 nlohmann::ordered_json provenance_json(const RunRecord& record, const std::filesystem::path& file);
 
 /// Writes summary.json into the folder (if it is not empty), and FILE.provenance.json beside every file that
-/// the stages wrote.
+/// the stages wrote. Of a run that failed there is no summary; that of an earlier one is removed where files
+/// were written, as it does not belong to what lies there now.
 void write_records(const RunRecord& record, const std::filesystem::path& folder);
 
 }  // namespace crisp

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/app/signals.hpp"
 
+#include <chrono>
+#include <condition_variable>
 #include <csignal>
+#include <mutex>
+#include <ostream>
 
 namespace crisp {
 namespace {
@@ -36,5 +40,17 @@ StopOnSignal::~StopOnSignal() { handle(SIG_DFL); }
 const std::atomic<bool>* StopOnSignal::flag() { return &stop_requested; }
 
 int StopOnSignal::signal() { return last_signal; }
+
+StopNotice::StopNotice(std::ostream& out)
+    : watch_([&out](const std::stop_token& over) {
+        constexpr auto kLookEvery = std::chrono::milliseconds(50);
+        std::mutex mutex;
+        std::condition_variable_any pause;
+        std::unique_lock lock(mutex);
+        while (!stop_requested && !over.stop_requested()) {
+          pause.wait_for(lock, over, kLookEvery, [] { return stop_requested.load(); });
+        }
+        if (stop_requested) out << "\nstopping; a second signal ends the program at once" << std::endl;
+      }) {}
 
 }  // namespace crisp

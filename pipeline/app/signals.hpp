@@ -2,6 +2,8 @@
 #pragma once
 
 #include <atomic>
+#include <iosfwd>
+#include <thread>
 
 namespace crisp {
 
@@ -16,6 +18,15 @@ class StopOnSignal {
 
   static const std::atomic<bool>* flag();
   static int signal();  ///< the signal that came, or 0
+};
+
+/// While it lives, says at once that the run is about to stop: a stage may be long at work before it asks.
+class StopNotice {
+ public:
+  explicit StopNotice(std::ostream& out);
+
+ private:
+  std::jthread watch_;
 };
 
 }  // namespace crisp

@@ -46,8 +46,12 @@ class Runner {
   std::vector<NodeResult> run() {
     try {
       run_all();
+    } catch (const Interrupted&) {
+      if (hooks_.failed) hooks_.failed(results());
+      throw;
     } catch (const Error&) {
       if (hooks_.failed) hooks_.failed(results());
+      if (is_stopped()) throw Interrupted();  // what a stage that stopped halfway complains of is no news
       throw;
     }
     return results();

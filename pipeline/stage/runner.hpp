@@ -37,7 +37,8 @@ struct RunHooks {
   std::function<void(const std::string& tag, const StageStatus& status)> status = {};
   /// Called with each item before it runs through the stages below.
   std::function<void(const std::string& tag, const Item& item)> given = {};
-  /// What the stages had done and reported when one of them threw; called before run_pipeline throws.
+  /// What the stages had done and reported when one of them threw, or all were told to stop; called before
+  /// run_pipeline throws.
   std::function<void(std::vector<NodeResult> until_then)> failed = {};
 };
 

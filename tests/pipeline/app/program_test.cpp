@@ -186,6 +186,32 @@ TEST_F(ProgramTest, EndsWithOneWhenAStageFailsAndWritesNothing) {
   EXPECT_TRUE(fs::is_empty(folder_ / "out"));
 }
 
+TEST_F(ProgramTest, RecordsWhereFilesOfAFailedRunCameFrom) {
+  write_file(folder_ / "late.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n"
+             "  - {stage: toy.write, with: {file: ${output}/sum.txt}}\n  - {stage: toy.end_badly}\n");
+  EXPECT_EQ(crisp({"run", path("sum.yaml"), "-o", path("out")}).status, 0);
+  const auto run = crisp({"run", path("late.yaml"), "-o", path("out")});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(content("out/sum.txt"), "6\n");
+  const auto provenance = json("out/sum.txt.provenance.json");
+  EXPECT_EQ(provenance["inputs"][0]["file"], path("late.yaml"));
+  EXPECT_EQ(provenance["failure"], path("late.yaml") + ":6:13: error: toy.end_badly: the end is bad");
+  EXPECT_EQ(provenance["trusted"], false);
+  EXPECT_FALSE(fs::exists(folder_ / "out/summary.json")) << "it was the earlier run's";
+}
+
+TEST_F(ProgramTest, SaysWhenItsOutputDoesNotArrive) {
+  for (const auto& command :
+       std::vector<std::string>{"stages", "--help", "run " + path("sum.yaml") + " -o " + path("out")}) {
+    const std::string line = CRISP_PROGRAM " " + command +
+                             (command == "--help" ? "" : " --plugin " TOY_PLUGIN) + " >/dev/full 2>" +
+                             path("stderr");
+    EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1) << command;
+    EXPECT_THAT(content("stderr"), HasSubstr("error: cannot write to the standard output"));
+  }
+}
+
 TEST_F(ProgramTest, RefusesWhatCannotBeRun) {
   EXPECT_THAT(crisp({"run", path("sum.yaml")}).error, HasSubstr("${output} has no value; give it with -o"));
   EXPECT_THAT(crisp({"run", path("sum.yaml"), "-o", path("sum.yaml")}).error,
@@ -194,7 +220,12 @@ TEST_F(ProgramTest, RefusesWhatCannotBeRun) {
               HasSubstr("there is no input " + path("nowhere")));
   EXPECT_EQ(crisp({"run", path("nowhere.yaml")}).status, 2);
   EXPECT_EQ(crisp({"run", path("sum.yaml"), "--threads", "0"}).status, 2);
-  EXPECT_EQ(crisp({"rnu"}).status, 2);
+  const auto unknown = crisp({"rnu"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_EQ(unknown.error, "error: there is no command 'rnu'; did you mean 'run'?\n");
+  EXPECT_THAT(crisp({"monte-carlo", "-n", "four"}).error,
+              HasSubstr("'four' is not a whole number, 1 to 1000000"));
+  EXPECT_THAT(crisp({"monte-carlo", "-n", "0"}).error, HasSubstr("0 is not from 1 to 1000000"));
 }
 
 /// The stage is at work, with a half-written file, once that file is there.
@@ -207,10 +238,22 @@ TEST_F(ProgramTest, StopsInGoodOrderOnSignals) {
     kill(child, signal);
     const auto outcome = wait_for(child);
     EXPECT_EQ(outcome.status, status);
+    EXPECT_THAT(outcome.error, HasSubstr("stopping; a second signal ends the program at once\n"));
     EXPECT_THAT(outcome.error, HasSubstr("interrupted: files that were not complete were not written\n"));
     EXPECT_TRUE(fs::is_empty(folder_ / "out"));
     fs::remove(folder_ / "out");
   }
+}
+
+TEST_F(ProgramTest, IsInterruptedWhateverAStageComplainsOfThen) {
+  write_file(folder_ / "complain.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.complain, with: {file: " + path("waits") + "}}\n");
+  const pid_t child = start({"run", path("complain.yaml")});
+  while (!fs::exists(folder_ / "waits")) std::this_thread::yield();
+  kill(child, SIGINT);
+  const auto outcome = wait_for(child);
+  EXPECT_EQ(outcome.status, 130);
+  EXPECT_THAT(outcome.error, Not(HasSubstr("half of the work")));
 }
 
 TEST_F(ProgramTest, TellsAllOfAStage) {
@@ -278,6 +321,11 @@ TEST_F(ProgramTest, SaysWhatACalibrationHolds) {
   EXPECT_EQ(unknown.status, 1);
   EXPECT_THAT(unknown.error, HasSubstr("is none of the kinds of files that are known"));
   EXPECT_EQ(crisp({"info", path("nowhere")}).status, 1);
+  write_file(folder_ / "hub.pcap", "");
+  EXPECT_EQ(crisp({"info", path("hub.pcap")}).error, "error: " + path("hub.pcap") + " is empty\n");
+  EXPECT_EQ(crisp({"info", path("sum.yaml")}).error,
+            "error: " + path("sum.yaml") + " is a pipeline; crisp validate checks it, crisp run runs it\n");
+  EXPECT_THAT(crisp({"info", CRISP_SOURCE_DIR "/configs/rig.yaml"}).error, HasSubstr("rig.yaml is a rig; "));
 
   const auto folder = nlohmann::json::parse(crisp({"info", folder_.string(), "--json"}).out);
   EXPECT_EQ(folder.size(), 1U) << "noise is not counted";

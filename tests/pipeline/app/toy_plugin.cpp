@@ -57,10 +57,39 @@ class WaitStage final : public Stage {
   std::filesystem::path file_;
 };
 
+/// Throws when the run comes to its end.
+class EndBadlyStage final : public Stage {
+ public:
+  static void describe(StageDescription<EndBadlyStage>& d) {
+    d.name("toy.end_badly").summary("throws at the end").takes<Sum>();
+  }
+  void process(const Inputs&, Outputs&, Context&) override {}
+  void finish(Outputs&, Context&) override { throw Error("the end is bad"); }
+};
+
+/// Waits until it is interrupted, and complains of what it could not do.
+class ComplainStage final : public Stage {
+ public:
+  static void describe(StageDescription<ComplainStage>& d) {
+    d.name("toy.complain").summary("complains of a signal").gives<Word>();
+    d.option("file", &ComplainStage::file_, "that says that it waits").required();
+  }
+  void process(const Inputs&, Outputs&, Context& context) override {
+    write_file(file_, "");
+    while (!context.interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    throw Error("half of the work is missing");
+  }
+
+ private:
+  std::filesystem::path file_;
+};
+
 void register_all(Registrar& registrar) {
   register_toys(registrar);
   registrar.stage<WriteStage>();
   registrar.stage<WaitStage>();
+  registrar.stage<EndBadlyStage>();
+  registrar.stage<ComplainStage>();
 }
 
 }  // namespace crisp::toy
