@@ -3,6 +3,8 @@
 
 #include <pcl/filters/filter.h>
 
+#include <pcl/impl/pcl_base.hpp>  // the definitions too: PCL compiles them for its own points only
+
 #include "plugins/filter/voxels.hpp"
 
 namespace crisp {

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// thin CLOUD.pcd SIZE: how many points of a cloud remain with one in each voxel of SIZE metres, and how crisp
+// it is.
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+
+#include "pipeline/pcd/cloud_table.hpp"           // crisp::pcd
+#include "pipeline/quality/pcl_rqe.hpp"           // crisp::pcl_rqe
+#include "plugins/filter/pcl_first_in_voxel.hpp"  // crisp::filter
+
+int main(int argc, char** argv) try {
+  if (argc != 3) return 2;
+  const crisp::Cloud::ConstPtr cloud = crisp::cloud_of(crisp::read_pcd(argv[1])).cloud;
+
+  crisp::FirstInVoxel<crisp::Point> thin;
+  thin.setLeafSize(std::atof(argv[2]));
+  thin.setInputCloud(cloud);
+  crisp::Cloud thinned;
+  thin.filter(thinned);
+
+  crisp::PclRqe<crisp::Point> rqe;
+  rqe.setSigma(0.05);
+  rqe.setInputCloud(cloud);
+  std::cout << thinned.size() << " of " << cloud->size() << " points, RQE " << rqe.compute().value << "\n";
+  return 0;
+} catch (const std::exception& error) {
+  std::cerr << error.what() << "\n";
+  return 1;
+}
