@@ -18,6 +18,11 @@ double range_of(const SearchRange& range, const std::string& name) {
   return range.other;
 }
 
+bool is_at_the_end(const SearchRange& range, const std::string& name, double value) {
+  constexpr double kSame = 1e-6;  // [s]
+  return name.ends_with(".eta") && (value < range.earliest_eta + kSame || value > range.latest_eta - kSame);
+}
+
 Eigen::VectorXd picked(const SensorModel& model, const std::vector<std::size_t>& free) {
   return model.values()(free);
 }

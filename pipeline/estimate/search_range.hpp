@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,16 @@ struct SearchRange {
   double alpha = 0.35;   ///< [rad]
   double eta = 0.10;     ///< [s]
   double other = 0.05;   ///< parameters of terms beyond equation (2) that have no bounds, in their units
+  /// [s] The η to which the plate's readings cover the beams at hand: nowhere is one looked for beyond.
+  double earliest_eta = -std::numeric_limits<double>::infinity();
+  double latest_eta = std::numeric_limits<double>::infinity();
 };
 
 /// The range that belongs to a parameter by its name.
 double range_of(const SearchRange& range, const std::string& name);
+
+/// Whether a parameter is an η at the end of what is looked at.
+bool is_at_the_end(const SearchRange& range, const std::string& name, double value);
 
 /// The model with other values of the free parameters.
 SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x);

@@ -24,6 +24,18 @@ Eigen::MatrixXd whitening(const Eigen::MatrixXd& displacement, const Eigen::Vect
          (size.cwiseInverse().asDiagonal() * solver.eigenvectors() * length.cwiseInverse().asDiagonal());
 }
 
+/// From step to step η may move on by its range, but not to where the plate's readings no longer cover the
+/// beams.
+void keep_covered(Box& box, const SensorModel& model, const std::vector<std::size_t>& free,
+                  const SearchRange& range) {
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (!model.names()[free[i]].ends_with(".eta")) continue;
+    for (double* end : {&box.lower[static_cast<Eigen::Index>(i)], &box.upper[static_cast<Eigen::Index>(i)]}) {
+      *end = std::clamp(*end, range.earliest_eta, range.latest_eta);
+    }
+  }
+}
+
 }  // namespace
 
 Eigen::MatrixXd search_basis(const SensorModel& model, const Sample& sample,
@@ -36,9 +48,10 @@ Minimum crispest(SensorModel& model, const Sample& sample, const std::vector<std
                  const MinimiserSettings& settings) {
   const Eigen::VectorXd start = picked(model, free);
   const Eigen::VectorXd ranges = ranges_of(range, model, free);
-  const Box box{.lower = start - ranges,
-                .upper = start + ranges,
-                .basis = search_basis(model, sample, free, range, scale)};
+  Box box{.lower = start - ranges,
+          .upper = start + ranges,
+          .basis = search_basis(model, sample, free, range, scale)};
+  keep_covered(box, model, free, range);
   const Objective objective = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
     const auto quality = model_quality(with(model, free, x), sample, free, measure, scale);
     if (gradient) *gradient = quality.gradient;

@@ -5,11 +5,13 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <map>
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/can_be_told.hpp"
 #include "pipeline/estimate/observability.hpp"
+#include "plugins/calibrate/deepest_valley.hpp"
 #include "plugins/calibrate/optimum_scatter.hpp"
 
 namespace crisp {
@@ -34,6 +36,27 @@ void refuse_a_standing_plate(const PlateTrajectory& plate) {
   throw Error("the plate stands still in these data: no surface is seen twice", "record while it turns");
 }
 
+/// @param inside  those of the beams that are covered at all the lags that are looked at
+void refuse_a_short_recording(const Sample& all, const Sample& inside, const LagRange& lag,
+                              double half_width) {
+  if (covered(all, 0, 0).beams.size() == 0) {
+    throw Error("the plate's readings cover none of the beams",
+                "see crisp info for whether the plate's sentences are in the capture");
+  }
+  const Sample front = in_plane(inside, half_width, Half::kFront);
+  std::map<std::uint16_t, std::size_t> scans;
+  for (const auto laser : front.beams.laser) ++scans[laser];
+  const auto enough = [](const auto& laser) { return laser.second >= kFewBeams; };
+  const bool looks_there = !scans.empty() || inside.beams.size() == 0;  // some scanners do not
+  if (!looks_there || std::ranges::any_of(scans, enough)) return;
+  throw Error(
+      fmt::format(
+          "the recording is too short: no laser has {} scans in it that the plate's readings cover at "
+          "lags of {:.0f} to {:.0f} ms",
+          kFewBeams, lag.earliest * 1e3, lag.latest * 1e3),
+      "record several turns of the plate");
+}
+
 /// One calibration from start to end; each step moves the model.
 class RqeCalibration {
  public:
@@ -43,7 +66,7 @@ class RqeCalibration {
         measure_(measure),
         report_(report),
         model_(start),
-        sample_(with_margin(start, sample, settings.in_plane.range.eta)),
+        sample_(with_margin(start, sample, settings_.in_plane)),
         parameters_(can_be_told(free_parameters(start, sample.beams, settings.fixed), start, sample_,
                                 settings.in_plane.range)) {
     if (parameters_.free.empty()) {
@@ -56,6 +79,7 @@ class RqeCalibration {
     in_plane();
     Sample used = crisp::in_plane(sample_, settings_.in_plane.half_width, Half::kBoth);
     if (settings_.full_field) used = full_field();
+    refuse_a_lag_without_end();
     tell(0.8, "standard errors");
     Eigen::MatrixXd covariance = scatter(used);
     const auto known = observability(covariance.inverse(), parameters_.free, model_.names(),
@@ -75,15 +99,30 @@ class RqeCalibration {
   }
 
  private:
-  static Sample with_margin(const SensorModel& start, const Sample& sample, double margin) {
-    const LagRange lag = lag_range(start, margin);
+  /// The beams that the plate's readings cover at every η that is looked at, which the range is told.
+  static Sample with_margin(const SensorModel& start, const Sample& sample, InPlaneSettings& settings) {
+    SearchRange& range = settings.range;
+    const LagRange lag = lag_range(start, range.eta);
+    range.earliest_eta = lag.earliest;
+    range.latest_eta = lag.latest;
     Sample inside = covered(sample, lag.earliest, lag.latest);
-    if (inside.beams.size() == 0) {
-      throw Error("the plate's readings cover none of the beams",
-                  "see crisp info for whether the plate's sentences are in the capture");
-    }
+    refuse_a_short_recording(sample, inside, lag, settings.half_width);
     refuse_a_standing_plate(*inside.plate);
     return inside;
+  }
+
+  /// A lag that ran away tells that the cloud became no crisper anywhere near.
+  void refuse_a_lag_without_end() const {
+    for (const std::size_t parameter : parameters_.free) {
+      const std::string& name = model_.names()[parameter];
+      const double value = model_.values()[static_cast<Eigen::Index>(parameter)];
+      if (!is_at_the_end(settings_.in_plane.range, name, value)) continue;
+      throw Error(fmt::format("{} ran to {:.0f} ms, the end of its range: no cloud there is crisp", name,
+                              value * 1e3),
+                  "see whether the rig's mount, lambda and tau are right, and record several turns of the "
+                  "plate; if lags may "
+                  "be as large, raise eta_range");
+    }
   }
 
   void tell(double done, std::string_view what) const {
@@ -131,7 +170,7 @@ class RqeCalibration {
     return found;
   }
 
-  const RqeCalibrationSettings& settings_;
+  RqeCalibrationSettings settings_;
   Measure& measure_;
   const Reporter& report_;
   SensorModel model_;

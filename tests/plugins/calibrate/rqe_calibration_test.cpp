@@ -101,6 +101,31 @@ TEST(CalibrateByRqe, IsNotSureInARoomThatLooksTheSameFromBehind) {
   EXPECT_THAT(outcome.doubts[0], testing::StartsWith("laser2.lambda at "));
 }
 
+TEST(CalibrateByRqe, RefusesARecordingThatIsTooShortForTheLagsAtOnce) {
+  const auto recording = simulate_measurements(misplaced_scanner(2, 0.3), office());
+  const auto measure = rqe_measure();
+  const SensorModel start(nominal_calibration(default_rig()));
+  std::vector<double> told;
+  const auto calibrate = [&] {
+    calibrate_by_rqe(start, sample_of(recording), *measure, quick(),
+                     [&](double done, std::string_view) { told.push_back(done); });
+  };
+  EXPECT_THAT(calibrate, testing::ThrowsMessage<Error>(testing::HasSubstr("the recording is too short")));
+  EXPECT_THAT(told, testing::IsEmpty());
+}
+
+TEST(CalibrateByRqe, NeverLooksAtLagsAtWhichBeamsAreNotCovered) {
+  const auto recording = simulate_measurements(misplaced_scanner(2, 1.0), office());
+  Calibration nominal = nominal_calibration(default_rig());
+  for (auto& laser : nominal.lasers) laser.tau.value = 1.5;  // so that no cloud is crisp anywhere near
+  const auto measure = rqe_measure();
+  try {
+    calibrate_by_rqe(SensorModel(nominal), sample_of(recording), *measure, {.points = 3000, .probes = 4});
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("the end of its range"));
+  }
+}
+
 TEST(CalibrateByRqe, RefusesAPlateThatStandsStill) {
   auto scanner = misplaced_scanner(1, 1.0);
   const auto recording = simulate_measurements(scanner, office(), Motion({{.time = 0, .rate = 0}}));
