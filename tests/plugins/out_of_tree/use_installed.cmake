@@ -28,7 +28,7 @@ endfunction()
 file(REMOVE_RECURSE "${work}")
 
 # What ./demo builds is all that is installed.
-run(${ninja} -C "${build}" -t inputs crisp_installed)
+run(${ninja} -C "${build}" -t commands crisp_installed)
 set(built "${output}")
 file(GLOB_RECURSE scripts "${build}/cmake_install.cmake")
 set(installed)
