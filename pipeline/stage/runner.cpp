@@ -116,6 +116,8 @@ class Runner {
   /// Turns the doubts of all whose items of this kind ended in what one stage gave in their place into
   /// warnings: stages feed such as come behind them only.
   void lift_doubts(std::size_t by, const std::string& kind, const std::string& why) {
+    std::string answer = "; " + workers_[by].result.tag;
+    answer += ": " + why;
     std::vector<bool> replaced(workers_.size(), false);
     replaced[by] = true;
     for (std::size_t i = by; i-- > 0;) {
@@ -129,8 +131,9 @@ class Runner {
       replaced[i] = fed > 0 && !elsewhere;
       if (!replaced[i]) continue;
       StageReport& report = workers_[i].result.report;
-      for (const std::string& doubt : std::exchange(report.doubts, {})) {
-        report.warnings.push_back(doubt + "; " + workers_[by].result.tag + ": " + why);
+      for (std::string& doubt : std::exchange(report.doubts, {})) {
+        doubt += answer;
+        report.warnings.push_back(std::move(doubt));
       }
     }
   }
