@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/app/command_line.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <thread>
+
+#include "pipeline/app/own_pipelines.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr const char* kFooter =
+    "Exit status: 0 done; 1 a run stopped at an error; 2 the command line, the pipeline or the rig is wrong "
+    "and\n"
+    "nothing was run; 3 the run came to its end but its result cannot be trusted (the summary says why);\n"
+    "130 or 143 interrupted. Plugins are also loaded from <libdir>/crisp/plugins, and from the files\nand "
+    "folders that CRISP_PLUGINS lists.";
+
+constexpr const char* kScenes = "What stands around: office, hall, street, workshop, garden, people or paper";
+
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+  const std::string range = std::to_string(least) + " to " + std::to_string(most);
+  const auto refuse = [=](const std::string& text) -> std::string {
+    std::uint64_t number = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (failure != std::errc::result_out_of_range &&
+        (failure != std::errc() || end != text.data() + text.size()))
+      return "'" + text + "' is not a whole number, " + range;
+    if (failure == std::errc() && number >= least && number <= most) return {};
+    return text + " is not from " + range;
+  };
+  return CLI::Validator(refuse, "", "whole_number");
+}
+
+}  // namespace
+
+CommandLine::CommandLine() {
+  app.set_version_flag("--version", "crisp " CRISP_VERSION);
+  app.footer(kFooter);
+  app.require_subcommand(1);
+  add_run();
+  add_record();
+  add_emulate();
+  add_bound();
+  add_basin();
+  add_monte_carlo();
+  add_figures();
+  add_validate();
+  add_stages();
+  add_effects();
+  plugins_app = command("plugins", "List the plugins that were tried, and why any were refused");
+  add_info();
+  completion_app = command("completion", "Print a script that completes crisp's command line");
+  completion_app->add_option("shell", shell, "The shell")->required()->check(CLI::IsMember({"bash"}));
+}
+
+CLI::App* CommandLine::command(const std::string& name, const std::string& help) {
+  CLI::App* made = app.add_subcommand(name, help);
+  made->add_option("--plugin", plugins, "Load this plugin, or those of this folder (may be repeated)")
+      ->type_name("PATH")
+      ->allow_extra_args(false);
+  return made;
+}
+
+void CommandLine::add_arguments(CLI::App* to, PipelineArguments& arguments) {
+  to->add_option("-i,--input", arguments.input, "What ${input} stands for")->type_name("PATH");
+  to->add_option("-o,--output", arguments.output, "The folder that ${output} stands for")
+      ->type_name("FOLDER");
+  add_rig(to, arguments);
+  add_set(to, arguments);
+}
+
+void CommandLine::add_rig(CLI::App* to, PipelineArguments& arguments) {
+  to->add_option("--rig", arguments.rig, "The rig, instead of the one that the pipeline names")
+      ->type_name("FILE");
+}
+
+void CommandLine::add_set(CLI::App* to, PipelineArguments& arguments) {
+  to->add_option("--set", arguments.set,
+                 "An option of a stage, tag.option=value, or a variable, name=value (may be repeated)")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+}
+
+void CommandLine::add_run() {
+  run_app = command("run", "Run a pipeline");
+  run_app->add_option("pipeline", run.file, "The pipeline's YAML file")->required()->type_name("FILE");
+  add_arguments(run_app, run.arguments);
+  add_run_options(run_app, "--threads", run);
+}
+
+void CommandLine::add_run_options(CLI::App* to, const std::string& threads, RunRequest& request) {
+  request.threads = std::max(1U, std::thread::hardware_concurrency());
+  to->add_option(threads, request.threads, "How many threads to use; the result does not depend on it")
+      ->check(whole_number(1, 1024))
+      ->capture_default_str();
+  to->add_option("--seed", request.seed, "Seed of all that is drawn at random")->capture_default_str();
+  to->add_option("--metrics", request.metrics,
+                 "While it runs, tell how it is doing at http://127.0.0.1:PORT/metrics, for Prometheus")
+      ->type_name("PORT");
+  CLI::Option* quiet = to->add_flag("--quiet", request.quiet, "Print warnings and errors only");
+  to->add_flag("--verbose", request.verbose, "Also print options and what flowed")->excludes(quiet);
+}
+
+void CommandLine::add_own_pipeline(CLI::App* to, const char* name, std::string_view text,
+                                   const std::filesystem::path& output, const std::string& threads,
+                                   RunRequest& request) {
+  request.file = name;
+  request.text = text;
+  request.arguments.output = output;
+  to->add_option("-o,--output", request.arguments.output,
+                 "The folder for the results [" + output.string() + "]")
+      ->type_name("FOLDER");
+  add_set(to, request.arguments);
+  add_run_options(to, threads, request);
+}
+
+void CommandLine::add_stage_options(
+    CLI::App* to, const std::string& stage, RunRequest& request,
+    std::initializer_list<std::pair<std::string, std::string>> names_and_help) {
+  for (const auto& [name, help] : names_and_help) {
+    std::string flag = "--" + name;
+    std::ranges::replace(flag, '_', '-');
+    std::string set = stage;
+    set.append(".").append(name).append("=");
+    to->add_option_function<std::string>(
+          flag, [set, &request](const std::string& value) { request.arguments.set.push_back(set + value); },
+          help)
+        ->type_name("VALUE");
+  }
+}
+
+void CommandLine::add_bound() {
+  bound_app = command("bound", "Say before a recording how well it would determine the parameters");
+  add_own_pipeline(bound_app, "bound.yaml", kBoundPipeline, "out/bound", "--threads", bound);
+  add_rig(bound_app, bound.arguments);
+  add_stage_options(bound_app, "study.bound", bound,
+                    {{"scene", kScenes},
+                     {"scene_file", "A scene of your own in YAML"},
+                     {"duration", "How long to record: 10s"},
+                     {"motion", "How the plate turns: constant, varying, reversal, stop_and_go"},
+                     {"min_rate", "Slowest rate of a varying motion: 0Hz"},
+                     {"max_rate", "Fastest rate, or the only one: 2Hz"},
+                     {"noise", "Standard deviation of a range: 12mm"},
+                     {"beams", "all, or in_plane: of each laser the two in the plate's plane"},
+                     {"calibration", "The scanner as a calibration found it, not as it nominally is"}});
+}
+
+void CommandLine::add_basin() {
+  basin_app = command("basin", "Calibrate from starts all over the range, and see where each ends");
+  basin_app->add_option("-n,--starts", basin_starts, "How many")
+      ->check(whole_number(1, 1000000))
+      ->capture_default_str();
+  add_own_pipeline(basin_app, "basin.yaml", kBasinPipeline, "out/basin", "-j,--threads", basin);
+  add_rig(basin_app, basin.arguments);
+  add_stage_options(basin_app, "study.basin", basin,
+                    {{"scene", kScenes},
+                     {"scene_file", "A scene of your own in YAML"},
+                     {"beams", "in_plane: of each laser the two in the plate's plane; or all"}});
+}
+
+void CommandLine::add_record() {
+  record_app = command("record", "Record what the devices of a rig send, until Ctrl-C");
+  add_own_pipeline(record_app, "record.yaml", kRecordPipeline, "out", "--threads", record);
+  add_rig(record_app, record.arguments);
+  add_stage_options(
+      record_app, "grabber.live", record,
+      {{"duration", "How long from the first item on, instead of until Ctrl-C"},
+       {"listen", "Address of this machine for the plate's datagrams: 127.0.0.1, or 0.0.0.0 for all"}});
+  add_stage_options(record_app, "write.capture", record,
+                    {{"file", "The capture, instead of hub.pcap in the folder"},
+                     {"most_bytes", "Begin a new file after about so many"},
+                     {"most_seconds", "Begin a new file after so long: 600s"}});
+}
+
+void CommandLine::add_emulate() {
+  emulate_app =
+      command("emulate", "Be a simulated scanner's lasers and plate, at 127.0.0.1 or the rig's addresses");
+  add_own_pipeline(emulate_app, "emulate.yaml", kEmulatePipeline, "out/emulate", "--threads", emulate);
+  add_rig(emulate_app, emulate.arguments);
+  add_stage_options(emulate_app, "grabber.simulate", emulate,
+                    {{"duration", "How long: 60s"},
+                     {"scene", kScenes},
+                     {"motion", "How the plate turns: constant, varying, reversal, stop_and_go"}});
+  add_stage_options(emulate_app, "emulate.rig", emulate,
+                    {{"speed", "Times real time; 0: as fast as the clients take it"},
+                     {"plate_to", "Where the plate's datagrams are sent: 127.0.0.1:4000"}});
+}
+
+void CommandLine::add_figures() {
+  figures_app = command("figures", "Compute the paper's figures 4 to 7 as data to be plotted");
+  add_own_pipeline(figures_app, "figures.yaml", kFiguresPipeline, "out/figures", "--threads", figures);
+}
+
+void CommandLine::add_monte_carlo() {
+  monte_carlo_app =
+      command("monte-carlo", "Calibrate many simulated recordings: the paper's Table 1, made anew");
+  CLI::Option* runs = monte_carlo_app->add_option("-n,--runs", monte_carlo_runs,
+                                                  "How many; run k has the seed --seed + k - 1");
+  runs->check(whole_number(1, 1000000))->capture_default_str();
+  add_own_pipeline(monte_carlo_app, "monte_carlo.yaml", kMonteCarloPipeline, "out/monte_carlo",
+                   "-j,--threads", monte_carlo);
+  add_rig(monte_carlo_app, monte_carlo.arguments);
+  add_stage_options(
+      monte_carlo_app, "study.monte_carlo", monte_carlo,
+      {{"scene", kScenes},
+       {"scene_file", "A scene of your own in YAML"},
+       {"beams", "in_plane: of each laser the two in the plate's plane; or all"},
+       {"estimators", "both; or refined: the refinement alone, from where RQE would end"},
+       {"outliers", "Share of the ranges that are replaced at random: 5%"},
+       {"effects", "What befalls the lasers, untold to the estimators: {noise.mixed_pixels: {…}}"}});
+  monte_carlo_app->add_option("--only", monte_carlo_only, "Repeat the run of this seed alone")
+      ->excludes(runs)
+      ->excludes(monte_carlo_app->get_option("--seed"));
+}
+
+void CommandLine::add_validate() {
+  validate_app = command("validate", "Check a pipeline without running it; exit status 2 on any mistake");
+  validate_app->add_option("pipeline", validate_file, "The pipeline's YAML file")
+      ->required()
+      ->type_name("FILE");
+  add_arguments(validate_app, validate);
+}
+
+void CommandLine::add_effects() {
+  effects_app = command("effects", "List the effects that a scanner can have, or tell all of one");
+  CLI::Option* name = effects_app->add_option("name", effects.name, "An effect")->type_name("EFFECT");
+  effects_app->add_flag("--names", effects.names, "Names only")->excludes(name);
+  effects_app->add_flag("--markdown", effects.markdown, "All of them as a page of the docs")->excludes(name);
+}
+
+void CommandLine::add_stages() {
+  stages_app = command("stages", "List the stages, or tell all of one");
+  stages_app->add_option("name", stages.name, "A stage")->type_name("STAGE");
+  stages_app->add_flag("--names", stages.names, "Names only");
+  CLI::Option* markdown = stages_app->add_flag("--markdown", stages.markdown, "As Markdown");
+  stages_app->add_flag("--json-schema", stages.json_schema, "A JSON schema of pipeline files, for editors");
+  stages_app->add_option("--output", stages.output, "Write the pages of the reference into this folder")
+      ->type_name("FOLDER")
+      ->needs(markdown);
+}
+
+void CommandLine::add_info() {
+  info_app = command("info", "Say what a file, or a folder of them, holds: captures, clouds, calibrations");
+  info_app->add_option("file", info_file, "The file or folder")->required()->type_name("FILE");
+  info_app->add_option("--rig", info_rig, "The rig whose devices are to be named")->type_name("FILE");
+  info_app->add_flag("--json", info_json, "For programs");
+}
+
+}  // namespace crisp

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pipeline/app/commands.hpp"
+
+namespace crisp {
+
+/// Everything that can stand on the command line, and where CLI11 puts it.
+struct CommandLine {
+  CLI::App app{"Turns what lasers on a spinning plate measured into one crisp cloud.", "crisp"};
+  std::vector<std::string> plugins;
+  RunRequest run;
+  RunRequest basin;
+  std::uint64_t basin_starts = 1000;
+  RunRequest bound;
+  RunRequest figures;
+  RunRequest monte_carlo;
+  RunRequest record;
+  RunRequest emulate;
+  std::uint64_t monte_carlo_runs = 1500;
+  std::optional<std::uint64_t> monte_carlo_only;
+  PipelineArguments validate;
+  StagesRequest stages;
+  EffectsRequest effects;
+  std::filesystem::path validate_file, info_file;
+  std::optional<std::filesystem::path> info_rig;
+  std::string shell;
+  bool info_json = false;
+  CLI::App* run_app = nullptr;
+  CLI::App* basin_app = nullptr;
+  CLI::App* bound_app = nullptr;
+  CLI::App* figures_app = nullptr;
+  CLI::App* monte_carlo_app = nullptr;
+  CLI::App* record_app = nullptr;
+  CLI::App* emulate_app = nullptr;
+  CLI::App* validate_app = nullptr;
+  CLI::App* stages_app = nullptr;
+  CLI::App* effects_app = nullptr;
+  CLI::App* plugins_app = nullptr;
+  CLI::App* info_app = nullptr;
+  CLI::App* completion_app = nullptr;
+
+  CommandLine();
+
+ private:
+  CLI::App* command(const std::string& name, const std::string& help);
+  /// The options that decide what a pipeline's file means.
+  static void add_arguments(CLI::App* to, PipelineArguments& arguments);
+  static void add_rig(CLI::App* to, PipelineArguments& arguments);
+  static void add_set(CLI::App* to, PipelineArguments& arguments);
+  void add_run();
+  /// How a pipeline is run; the result does not depend on it, but for the seed.
+  static void add_run_options(CLI::App* to, const std::string& threads, RunRequest& request);
+  /// A pipeline that comes with the program.
+  static void add_own_pipeline(CLI::App* to, const char* name, std::string_view text,
+                               const std::filesystem::path& output, const std::string& threads,
+                               RunRequest& request);
+  /// Options of the one stage of a pipeline, as options of the command.
+  static void add_stage_options(CLI::App* to, const std::string& stage, RunRequest& request,
+                                std::initializer_list<std::pair<std::string, std::string>> names_and_help);
+  void add_bound();
+  void add_basin();
+  void add_record();
+  void add_emulate();
+  void add_figures();
+  void add_monte_carlo();
+  void add_validate();
+  void add_effects();
+  void add_stages();
+  void add_info();
+};
+
+}  // namespace crisp
