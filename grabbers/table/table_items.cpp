@@ -106,7 +106,7 @@ void TableItems::add_beams(const TableRow& row, double time) {
 }
 
 void TableItems::note_end(const TableRow& row, double time) {
-  if (row.ranges.empty()) return;
+  if (row.ranges.empty() || !row.time_ns) return;  // receipts come in bursts
   const double lasts = static_cast<double>(row.ranges.size() - 1) * settings_.beam_interval;
   overlapping_ += time < ends_[row.laser];
   ends_[row.laser] = time + lasts;

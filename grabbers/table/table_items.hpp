@@ -61,7 +61,7 @@ class TableItems {
   /// Line of the first row that is earlier than the one before; 0: there is none.
   int first_early_line() const { return first_early_line_; }
   std::uint64_t rows() const { return rows_; }  ///< taken so far
-  /// Rows that began before the last beam of the row before, of the same laser, was fired.
+  /// Rows that by their own time began before the last beam of the row before, of the same laser, was fired.
   std::uint64_t overlapping() const { return overlapping_; }
 
  private:

@@ -132,6 +132,11 @@ TEST_F(TableStageTest, WarnsWhereTheBeamsOfARowLastBeyondTheNext) {
               testing::IsEmpty());
   EXPECT_THAT(run(table, std::string(kColumns) + ", beam_interval: 0.6s").report.warnings,
               ElementsAre(HasSubstr("3 of 4 rows begin before the last beam")));
+  EXPECT_THAT(
+      run(table, "receipt_column: 1, angle_column: 2, range_column: 3, angle_step: 1deg, beam_interval: 0.6s")
+          .report.warnings,
+      testing::IsEmpty())
+      << "receipts come in bursts";
 }
 
 TEST_F(TableStageTest, RefusesAFolder) {
