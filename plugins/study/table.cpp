@@ -26,6 +26,7 @@ double astray(const ParameterKind& kind) {
 }
 
 bool is_astray(const Trial& trial, const Estimate& estimate) {
+  if (!estimate.failure.empty() || estimate.error.size() == 0) return false;
   for (std::size_t k = 0; k < trial.parameters.size(); ++k) {
     if (std::abs(estimate.error[static_cast<Eigen::Index>(k)]) > astray(kind_of(trial.parameters[k]))) {
       return true;
@@ -35,7 +36,7 @@ bool is_astray(const Trial& trial, const Estimate& estimate) {
 }
 
 bool counts(const Trial& trial, const Estimate& estimate) {
-  return estimate.failure.empty() && !is_astray(trial, estimate);
+  return estimate.failure.empty() && estimate.error.size() > 0 && !is_astray(trial, estimate);
 }
 
 /// Calls visit(trial, index) for each parameter of a kind.
