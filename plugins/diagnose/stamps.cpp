@@ -148,6 +148,8 @@ std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stam
   departure.gain.metric = "least delays about the clock";
   departure.gain.unit = "s";
   if (departure.p_value > kSignificantInSeries) return std::nullopt;
+  // Receipts that hardly go on, or leap by years, leave a form without a size.
+  if (!std::isfinite(departure.size) || !std::isfinite(departure.std_error)) return std::nullopt;
   if (look.column == 0) {
     // lead = skew t + drift t²/2
     departure.size *= 2;
@@ -183,7 +185,14 @@ std::vector<CountedStamp> without_step(std::span<const CountedStamp> stamps,
   return mended;
 }
 
-std::vector<std::span<const CountedStamp>> unbroken(std::span<const CountedStamp> passes) {
+std::optional<std::array<double, 2>> unsure_about(const std::optional<ClockDeparture>& departure) {
+  if (!departure || departure->kind != ClockDeparture::Kind::clock_step) return std::nullopt;
+  const double margin = 2 * departure->at_std_error;
+  return std::array{departure->at - margin, departure->at + margin};
+}
+
+std::vector<std::span<const CountedStamp>> unbroken(std::span<const CountedStamp> passes,
+                                                    const std::optional<std::array<double, 2>>& unsure) {
   constexpr double kLeap = 0.1;  // of a turn; no mirror's rate changes so much from turn to turn
   const auto turn = [&](std::size_t i) {
     const auto turns = static_cast<double>(std::max<std::int64_t>(1, passes[i].count - passes[i - 1].count));
@@ -196,7 +205,9 @@ std::vector<std::span<const CountedStamp>> unbroken(std::span<const CountedStamp
   std::vector<std::span<const CountedStamp>> runs;
   std::size_t begin = 0;
   for (std::size_t i = 1; i < passes.size(); ++i) {
-    if (std::abs(turn(i) - usual) <= kLeap * usual) continue;
+    const bool in_doubt = unsure && receipt_of(passes[i - 1].stamp) <= (*unsure)[1] &&
+                          receipt_of(passes[i].stamp) >= (*unsure)[0];
+    if (!in_doubt && std::abs(turn(i) - usual) <= kLeap * usual) continue;
     runs.push_back(passes.subspan(begin, i - begin));
     begin = i;
   }
@@ -204,13 +215,14 @@ std::vector<std::span<const CountedStamp>> unbroken(std::span<const CountedStamp
   return runs;
 }
 
-std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes) {
+std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes,
+                                        const std::optional<std::array<double, 2>>& unsure) {
   constexpr std::size_t kFewestPieces = 8;  // from fewer no spread is known
   constexpr double kQuantum = 1e-6;         // [s] of the stamps
   MirrorFacts facts;
   double time = 0;
   double turns = 0;
-  for (const auto run : unbroken(passes)) {
+  for (const auto run : unbroken(passes, unsure)) {
     for (std::size_t i = 0; i + kTurnsOfPiece < run.size(); i += kTurnsOfPiece) {
       const CountedStamp& from = run[i];
       const CountedStamp& to = run[i + kTurnsOfPiece];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -98,12 +99,19 @@ struct MirrorFacts {
 
 /// Passes between which the device's clock went on as the mirror turned: none is across a restart, or across
 /// a step of that clock.
-std::vector<std::span<const CountedStamp>> unbroken(std::span<const CountedStamp> passes);
+///
+/// @param unsure  [s] receipts from … to: the clock stepped somewhere between them
+std::vector<std::span<const CountedStamp>> unbroken(std::span<const CountedStamp> passes,
+                                                    const std::optional<std::array<double, 2>>& unsure = {});
+
+/// Where the device's clock stepped; nothing if it did not.
+std::optional<std::array<double, 2>> unsure_about(const std::optional<ClockDeparture>& departure);
 
 /// @param passes  when the mirror passed its index, with the turn that it was; those across a break are
 ///                passed over
 /// @return  nothing for fewer than eight pieces: from them no spread is known
-std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes);
+std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes,
+                                        const std::optional<std::array<double, 2>>& unsure = {});
 
 /// What it brings for every other piece's period to expect that of the others in place of the nominal one
 /// [s].

@@ -82,5 +82,17 @@ TEST(StampsStage, ReceiptsThatStandStillAreNotTrusted) {
   EXPECT_THAT(told.report.doubts, ElementsAre(HasSubstr("no steady clock")));
 }
 
+TEST(StampsStage, NamesNoDepartureWithoutASize) {
+  for (const int scans : {46, 2000}) {
+    const Told told = told_by(scans, [&](int, Scan& scan) { scan.receipt_ns = kFirst_ns; });
+    for (const Finding& finding : told.findings.findings) {
+      for (const Parameter& parameter : finding.parameters) {
+        EXPECT_TRUE(std::isfinite(parameter.value) && std::isfinite(parameter.std_error)) << finding.cause;
+      }
+    }
+    EXPECT_FALSE(told.report.doubts.empty());
+  }
+}
+
 }  // namespace
 }  // namespace crisp

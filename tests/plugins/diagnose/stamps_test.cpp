@@ -198,6 +198,22 @@ TEST(Stamps, OfAMirrorAcrossARestartAreNoTurns) {
   EXPECT_LT(facts->wander, 1e-6);
 }
 
+TEST(Stamps, OfAMirrorAcrossASmallStepOfItsClockAreNoTurns) {
+  StampTrack passes;
+  for (int k = 0; k < 200; ++k) {
+    const int step_us = k < 101 ? 0 : 1000;
+    passes.add(static_cast<std::uint16_t>(k), static_cast<std::uint32_t>(20'000 * k + step_us),
+               kEpoch_ns + k * 20'000'000LL);
+  }
+  EXPECT_GT(mirror_facts(passes.stamps())->wander, 1e-4);
+  const ClockDeparture step{
+      .kind = ClockDeparture::Kind::clock_step, .size = 1e-3, .at = 2.02, .at_std_error = 0.02};
+  const auto facts = mirror_facts(passes.stamps(), unsure_about(step));
+  ASSERT_TRUE(facts);
+  EXPECT_NEAR(facts->period, 0.02, 1e-9);
+  EXPECT_LT(facts->wander, 1e-6);
+}
+
 TEST(Stamps, ThatAreFewSayNothing) {
   StampTrack few;
   for (int k = 0; k < 9; ++k) {
