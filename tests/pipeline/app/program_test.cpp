@@ -126,7 +126,7 @@ TEST_F(ProgramTest, EndsWithTwoAndEveryMistakeWhenThePipelineIsWrong) {
   const std::string expected =
       path("wrong.yaml") +
       ":3:13: error: toy.sum: nothing above it gives the Number that it takes; put one of "
-      "these above it: toy.count, toy.endless, toy.share, toy.throw, toy.wait\n" +
+      "these above it: toy.count, toy.doubt, toy.endless, toy.share, toy.throw, toy.wait\n" +
       path("wrong.yaml") + ":4:31: error: toy.count: there is no option 'm'; did you mean 'n'?\n2 errors\n";
   for (const std::string command : {"run", "validate"}) {
     const auto outcome = crisp({command, path("wrong.yaml")});
