@@ -130,7 +130,7 @@ std::optional<Arc> arc_about(double moment, std::span<const double> times, std::
   for (const double share : {1.0, 0.5}) {
     const Window window(moment, share * half_width, times, angles, step);
     if (window.size() < kFewest) return std::nullopt;
-    if (const auto arc = window.within_steps()) return arc;
+    if (auto arc = window.within_steps()) return arc;
   }
   const Window narrowest(moment, 0.25 * half_width, times, angles, step);
   if (narrowest.size() < kFewest) return std::nullopt;
