@@ -21,25 +21,29 @@ std::vector<std::uint32_t> beams_of_scans(const Measurements& beams) {
   return most;
 }
 
-constexpr std::size_t kPlaces = 4;  // along each side of a surface
+constexpr std::uint32_t kPlaces = 4;  // along each side of a surface
 
-/// Which of the places of a surface a beam meets. Where it meets the plane, not where noise has put its
-/// point: else beams would be sorted by their noise.
-std::size_t place_on(const Surfel& surfel, const BeamsView& beams, std::uint32_t i) {
+/// Where a beam meets a surface's plane, not where noise has put its point: else beams would be sorted by
+/// their noise.
+Eigen::Vector2d foot_on(const Surfel& surfel, const BeamsView& beams, std::uint32_t i) {
   const Eigen::Vector3d point(beams.points.x[i], beams.points.y[i], beams.points.z[i]);
   const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
   const double incidence = surfel.normal.dot(direction);
   const Eigen::Vector3d from_middle = point - surfel.middle;
   const double further = incidence < 0 ? -surfel.normal.dot(from_middle) / incidence : 0;
   const Eigen::Vector3d foot = from_middle + further * direction;
-  const auto step = [&](double along) {  // the sides of a square are 1.2 times its radius away
-    const double share = std::clamp(along / (2 * surfel.radius) + 0.5, 0.0, 1.0);
-    return std::min(kPlaces - 1, static_cast<std::size_t>(share * kPlaces));
-  };
-  return kPlaces * step(surfel.u.dot(foot)) + step(surfel.v.dot(foot));
+  return {surfel.u.dot(foot), surfel.v.dot(foot)};
 }
 
 }  // namespace
+
+std::uint32_t place_on(const Surfel& surfel, const Eigen::Vector2d& foot) {
+  const auto step = [&](double along) {  // the sides of a square are 1.2 times its radius away
+    const double share = std::clamp(along / (2 * surfel.radius) + 0.5, 0.0, 1.0);
+    return std::min(kPlaces - 1, static_cast<std::uint32_t>(share * kPlaces));
+  };
+  return kPlaces * step(foot.x()) + step(foot.y());
+}
 
 Division recording_blocks(const Measurements& beams) {
   constexpr double kLong = 0.1;  // [s]
@@ -80,7 +84,8 @@ Division place_blocks(const Surfels& surfels, const BeamsView& beams) {
   for (std::size_t s = 0; s < surfels.surfels.size(); ++s) {
     const Surfel& surfel = surfels.surfels[s];
     for (const std::uint32_t i : surfels.beams_of(surfel)) {
-      blocks[i] = static_cast<std::uint32_t>((kPlaces * kPlaces * s + place_on(surfel, beams, i)) % kFewest);
+      blocks[i] = static_cast<std::uint32_t>(
+          (kPlaces * kPlaces * s + place_on(surfel, foot_on(surfel, beams, i))) % kFewest);
     }
   }
   return blocks;

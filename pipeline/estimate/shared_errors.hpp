@@ -20,7 +20,12 @@ Division recording_blocks(const Measurements& beams);
 /// A laser of fewer directions has pieces of the recording in their place.
 Division scan_blocks(const Measurements& beams);
 
-/// For each beam which of a hundred lots of places it meets, each about a sixteenth of a surface: where a
+/// Which of sixteen places of a surface it is.
+///
+/// @param foot  [m] from its middle, along u and v
+std::uint32_t place_on(const Surfel& surfel, const Eigen::Vector2d& foot);
+
+/// For each beam which of a hundred lots of places it meets, see place_on(): where a
 /// surface is no plane, it is none at every turn, which no other division shows. Beams of no surface are of
 /// the first.
 Division place_blocks(const Surfels& surfels, const BeamsView& beams);

@@ -5,17 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "pipeline/data/robust.hpp"
+#include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr double kSide = 0.1;      // [m] of a cell
-constexpr double kSteep = 0.5;     // least |cos β| of what is ahead
-constexpr double kAlong = 0.1;     // and of where a beam ends
-constexpr std::uint16_t kFew = 3;  // beams that make a cell known
+constexpr std::uint32_t kPlacesOfEach = 16;
+constexpr double kSide = 0.1;   // [m] of a cell
+constexpr double kSteep = 0.5;  // least |cos β| of what is ahead
+constexpr double kAlong = 0.1;  // and of where a beam ends
+constexpr int kFew = 3;         // beams that make a cell known
 
 Eigen::Vector3d vector_of(const PointsView& points, std::size_t i) {
   return {points.x[i], points.y[i], points.z[i]};
@@ -24,14 +27,16 @@ Eigen::Vector3d vector_of(const PointsView& points, std::size_t i) {
 /// A surface, and in which cells of its plane it is known.
 class KnownSurface {
  public:
-  KnownSurface(const Surfel& surfel, const Surfels& all, const BeamsView& beams) : surfel_(surfel) {
+  KnownSurface(const Surfel& surfel, const Surfels& all, const BeamsView& beams)
+      : surfel_(surfel),
+        members_(all.beams_of(surfel)),
+        weights_(std::span(all.weights).subspan(surfel.begin, members_.size())) {
     Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
     Eigen::Vector2d most = -least;
-    const auto members = all.beams_of(surfel);
     std::vector<Eigen::Vector2d> feet;
-    for (std::size_t k = 0; k < members.size(); ++k) {
-      if (all.weights[surfel.begin + k] == 0) continue;
-      feet.push_back(foot(vector_of(beams.points, members[k])));
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      if (weights_[k] == 0) continue;
+      feet.push_back(foot(vector_of(beams.points, members_[k])));
       least = least.cwiseMin(feet.back());
       most = most.cwiseMax(feet.back());
     }
@@ -41,7 +46,7 @@ class KnownSurface {
     counts_.resize(columns_ * (along(most.y() - least_.y()) + 2));
     for (const auto& at : feet) {
       std::uint16_t& count = counts_[cell(at)];
-      count = static_cast<std::uint16_t>(std::min(count + 1, int{kFew}));
+      count = static_cast<std::uint16_t>(std::min(count + 1, kFew + 1));
     }
   }
 
@@ -49,19 +54,30 @@ class KnownSurface {
   Eigen::Vector2d foot(const Eigen::Vector3d& point) const {
     return {surfel_.u.dot(point - surfel_.middle), surfel_.v.dot(point - surfel_.middle)};
   }
-  bool is_known(const Eigen::Vector2d& at) const { return is_on(at) && counts_[cell(at)] == kFew; }
-  bool is_well_inside(const Eigen::Vector2d& at) const {
+  bool is_known(const Eigen::Vector2d& at) const { return is_on(at) && counts_[cell(at)] >= kFew; }
+
+  /// Whether that is known all around of beams other than one, which ended at `point`: were it to vouch for
+  /// the surface itself, beams that miss it by much would be fewer there than they are.
+  bool is_well_inside(const Eigen::Vector2d& at, std::uint32_t beam, const Eigen::Vector3d& point) const {
     if (!is_known(at)) return false;
     const std::size_t middle = cell(at);
     for (const std::size_t row : {middle - columns_, middle, middle + columns_}) {
       for (const std::size_t one : {row - 1, row, row + 1}) {
         if (counts_[one] < kFew) return false;
+        if (counts_[one] == kFew && counts(beam) && cell(foot(point)) == one) return false;
       }
     }
     return true;
   }
 
  private:
+  /// Whether it is one of those that make the surface known.
+  bool counts(std::uint32_t beam) const {
+    const auto found = std::ranges::lower_bound(members_, beam);
+    return found != members_.end() && *found == beam &&
+           weights_[static_cast<std::size_t>(found - members_.begin())] > 0;
+  }
+
   static std::size_t along(double length) { return static_cast<std::size_t>(length / kSide); }
   std::size_t cell(const Eigen::Vector2d& at) const {
     return along(at.y() - least_.y()) * columns_ + along(at.x() - least_.x());
@@ -72,14 +88,17 @@ class KnownSurface {
   }
 
   Surfel surfel_;
+  std::span<const std::uint32_t> members_;  // in ascending order
+  std::span<const double> weights_;         // of each
   Eigen::Vector2d least_ = Eigen::Vector2d::Zero();
   std::size_t columns_ = 0;
-  std::vector<std::uint16_t> counts_;  // beams in each cell, up to kFew
+  std::vector<std::uint16_t> counts_;  // beams in each cell, up to one more than kFew
 };
 
 struct Ray {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
+  Eigen::Vector3d end;
   double range = 0;
 };
 
@@ -101,9 +120,10 @@ void follow(const Ray& ray, const std::vector<KnownSurface>& surfaces, std::size
       met.distance[i] = static_cast<float>(ray.range - there);
       met.end_cosine[i] = static_cast<float>(cosine);
     }
-    if (may_be_ahead && surfaces[s].is_well_inside(foot)) {
+    if (may_be_ahead && surfaces[s].is_well_inside(foot, static_cast<std::uint32_t>(i), ray.end)) {
       nearest = there;
       met.ahead[i] = s;
+      met.place[i] = kPlacesOfEach * s + place_on(surfel, foot);
       met.error[i] = static_cast<float>(ray.range - there);
       met.cosine[i] = static_cast<float>(cosine);
     }
@@ -120,15 +140,16 @@ Met met_by(const Surfels& surfels, const BeamsView& beams, const std::vector<flo
   const std::size_t n = ranges.size();
   Met met;
   met.ahead.assign(n, kNoSurface);
+  met.place.assign(n, 0);
   met.end.assign(n, kNoSurface);
   for (auto* values : {&met.error, &met.cosine, &met.distance, &met.end_cosine}) values->assign(n, 0);
   for_blocks(n, kAtOnce, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d direction = vector_of(beams.directions, i);
       const double range{ranges[i]};
-      follow(
-          {.origin = vector_of(beams.points, i) - range * direction, .direction = direction, .range = range},
-          surfaces, i, met);
+      const Eigen::Vector3d point = vector_of(beams.points, i);
+      follow({.origin = point - range * direction, .direction = direction, .end = point, .range = range},
+             surfaces, i, met);
     }
   });
   return met;

@@ -15,12 +15,13 @@ inline constexpr std::uint32_t kNoSurface = ~std::uint32_t{0};
 /// Element i of all arrays is of beam i.
 struct Met {
   std::vector<std::uint32_t>
-      ahead;                       ///< the surface before it, well inside what is known of it; or kNoSurface
-  std::vector<float> error;        ///< [m] of its range beyond that surface; 0 where there is none
-  std::vector<float> cosine;       ///< |cos β| there
-  std::vector<std::uint32_t> end;  ///< the surface nearest to where it ended; kNoSurface: near none
-  std::vector<float> distance;     ///< [m] along the beam from there
-  std::vector<float> end_cosine;   ///< |cos β| there
+      ahead;  ///< the surface before it, well inside what is known of it; or kNoSurface
+  std::vector<std::uint32_t> place;  ///< of that surface, see place_on(); no other surface's has its number
+  std::vector<float> error;          ///< [m] of its range beyond that surface; 0 where there is none
+  std::vector<float> cosine;         ///< |cos β| there
+  std::vector<std::uint32_t> end;    ///< the surface nearest to where it ended; kNoSurface: near none
+  std::vector<float> distance;       ///< [m] along the beam from there
+  std::vector<float> end_cosine;     ///< |cos β| there
 
   std::size_t size() const { return ahead.size(); }
 };

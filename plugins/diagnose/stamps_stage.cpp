@@ -10,6 +10,7 @@
 #include "pipeline/clocks/unwrap.hpp"
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/data/scan.hpp"
+#include "pipeline/plot/write_plot.hpp"
 #include "plugins/diagnose/report.hpp"
 #include "plugins/diagnose/series.hpp"
 #include "plugins/diagnose/stamps_plots.hpp"

@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
+#include <random>
 
 #include "plugins/diagnose/edges.hpp"
 
@@ -81,6 +83,39 @@ TEST_F(TwoWalls, NothingIsAheadAtTheirRims) {
   const Met followed = met();
   EXPECT_EQ(followed.ahead[beam_at(2, 0)], kNoSurface) << "not known all around";
   EXPECT_NE(followed.end[beam_at(1.9, 0)], kNoSurface) << "but ends there";
+}
+
+TEST(ASurface, IsNotKnownByTheBeamThatIsFollowedToIt) {
+  // Six beams a cell, at random, of which half are so far off that they do not make the wall known.
+  constexpr int kEach = 38'400;
+  constexpr double kSide = 8;
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<> across(-kSide / 2, kSide / 2);
+  Fan fan;
+  Surfels wall;
+  for (std::uint32_t i = 0; i < 2 * kEach; ++i) {
+    const Eigen::Vector3d at(6, across(random), across(random));
+    fan.add(at, at.norm() + (i % 2 == 0 ? 0 : 0.1));
+    wall.members.push_back(i);
+    wall.weights.push_back(i % 2 == 0 ? 1 : 0);
+  }
+  wall.surfels.push_back({.middle = {6, 0, 0},
+                          .normal = -Eigen::Vector3d::UnitX(),
+                          .u = Eigen::Vector3d::UnitY(),
+                          .v = Eigen::Vector3d::UnitZ(),
+                          .radius = kSide / std::sqrt(6),
+                          .begin = 0,
+                          .end = 2 * kEach});
+  const Met met = met_by(wall, fan.view(), fan.ranges);
+  std::array<double, 2> share{};
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    if (met.ahead[i] != kNoSurface) share.at(i % 2) += 1.0 / kEach;
+  }
+  EXPECT_GT(share[0], 0.4);
+  EXPECT_LT(share[0], 0.8) << "else all is known, and nothing is tested";
+  // Beams of one cell fare alike: six or so count as one of their kind.
+  const double chance = std::sqrt(2 * share[0] * (1 - share[0]) / (kEach / 6.0));
+  EXPECT_NEAR(share[0], share[1], 3 * chance);
 }
 
 TEST(ACrowd, CountsThePointsAboutAPlace) {
