@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "plugins/diagnose/likelihood_gain.hpp"
+#include "plugins/diagnose/noise_errors.hpp"
 #include "plugins/diagnose/noise_ways.hpp"
 
 namespace crisp {
@@ -66,37 +67,6 @@ RangeErrors thinned(const RangeErrors& errors) {
   const auto nth = static_cast<std::uint32_t>((errors.size() + kMost - 1) / kMost);
   if (nth <= 1) return errors;
   return some_of(errors, [nth](std::uint32_t block) { return (block * kStrewn >> 16) % nth == 0; });
-}
-
-/// The same law, fitted without one of eight parts of the recording after another (jackknife).
-std::vector<NoiseLaw> without_each_part(const NoiseLaw& law, const RangeErrors& errors) {
-  constexpr std::uint32_t kParts = 8;
-  std::vector<NoiseLaw> without;
-  for (std::uint32_t part = 0; part < kParts; ++part) {
-    const auto is_other = [part](std::uint32_t block) { return block % kParts != part; };
-    without.push_back(fitted(law, some_of(errors, is_other)));
-  }
-  return without;
-}
-
-/// A way's parameters in a law, and their standard errors by how they scatter without each part.
-std::vector<Parameter> parameters_of(const NoiseWay& way, const NoiseLaw& law,
-                                     const std::vector<NoiseLaw>& without) {
-  std::vector<Parameter> found = way.parameters(law);
-  const auto parts = static_cast<double>(without.size());
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    double sum = 0;
-    double squares = 0;
-    for (const NoiseLaw& one : without) {
-      const double value = way.parameters(one)[k].value;
-      sum += value;
-      squares += value * value;
-    }
-    const double spread = squares / parts - std::pow(sum / parts, 2);
-    found[k].std_error = std::sqrt(std::max(0.0, spread) * (parts - 1));
-    found[k].free = true;
-  }
-  return found;
 }
 
 /// Mean log-likelihood of every other block under laws that were fitted to the rest.
@@ -166,6 +136,8 @@ struct Found {
   NoiseWay way;
   NoiseLaw law;  // where it was found
   Finding finding;
+
+  bool is_cause() const { return !way.cause.empty(); }
 };
 
 Found found_of(const std::string& scope, const NoiseWay& way, const Tried& tried, const NoiseLaw& before,
@@ -218,16 +190,16 @@ UnnamedFinding unnamed_of(const Finding& finding, const NoiseLaw& law, const Ran
 /// @param named  the law where the last cause joined: what has no name is not simulated, so that the causes
 ///               describe the ranges as well as they can without what was found behind them
 void report(std::vector<Found> found, const NoiseLaw& named, const RangeErrors& errors, NoiseDiagnosis& to) {
-  const std::vector<NoiseLaw> without =
-      found.empty() ? std::vector<NoiseLaw>{} : without_each_part(named, errors);
+  const bool is_asked =
+      std::ranges::any_of(found, [](const Found& one) { return one.is_cause() && one.finding.accepted; });
+  const LawInParts fits = is_asked ? in_parts(named, errors) : LawInParts{};
   for (Found& one : found) {
-    if (one.way.cause.empty()) {
+    if (!one.is_cause()) {
       to.unnamed.push_back(unnamed_of(one.finding, one.law, errors));
       continue;
     }
-    one.finding.parameters = one.finding.accepted
-                                 ? parameters_of(one.way, named, without)
-                                 : parameters_of(one.way, one.law, without_each_part(one.law, errors));
+    one.finding.parameters = one.finding.accepted ? parameters_of(one.way, fits)
+                                                  : parameters_of(one.way, in_parts(one.law, errors));
     to.findings.push_back(std::move(one.finding));
   }
 }
@@ -253,7 +225,7 @@ NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, 
     if (!found.back().finding.accepted) continue;
     result.law = best.law;
     leave_needless(found, result.law, errors, least_rise);
-    if (!found.back().way.cause.empty()) named = result.law;
+    if (found.back().is_cause()) named = result.law;
   }
   report(std::move(found), named, errors, result);
   return result;

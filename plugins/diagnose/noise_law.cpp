@@ -144,6 +144,7 @@ void RangeErrors::append(const RangeErrors& from, std::size_t i) {
   if (!from.remission.empty()) remission.push_back(from.remission[i]);
   beam.push_back(from.beam[i]);
   block.push_back(from.block[i]);
+  if (!from.place.empty()) place.push_back(from.place[i]);
 }
 
 EchoConditions RangeErrors::echo(std::size_t i) const {
@@ -151,6 +152,19 @@ EchoConditions RangeErrors::echo(std::size_t i) const {
   if (!cosine.empty()) echo.cosine = double{cosine[i]};
   if (!remission.empty()) echo.remission = double{remission[i]};
   return echo;
+}
+
+void centre_beams(RangeErrors& errors) {
+  std::vector<double> sum(beams_of(errors));
+  std::vector<double> count(sum.size());
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    sum[errors.beam[i]] += double{errors.value[i]};
+    count[errors.beam[i]] += 1;
+  }
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const std::uint16_t beam = errors.beam[i];
+    errors.value[i] -= static_cast<float>(sum[beam] / count[beam]);
+  }
 }
 
 std::size_t beams_of(const RangeErrors& errors) {
@@ -179,10 +193,10 @@ double NoiseLaw::log_density(double value, const EchoConditions& echo, std::uint
   return std::log(sum);
 }
 
-NoiseLaw fitted(const NoiseLaw& like, const RangeErrors& errors) {
+NoiseLaw fitted(const NoiseLaw& like, const RangeErrors& errors, double settled) {
   constexpr int kMostRounds = 300;
-  constexpr double kSettled = 0.02;  // [nat] that a round brings
-  const std::size_t beams = beams_of(errors);
+  // Some of all ranges may lack the last beams that the law was fitted to.
+  const std::size_t beams = std::max({beams_of(errors), like.weight.size(), like.relative.size()});
   NoiseLaw law = like;
   double last = -HUGE_VAL;
   for (int round = 0; round < kMostRounds; ++round) {
@@ -192,7 +206,7 @@ NoiseLaw fitted(const NoiseLaw& like, const RangeErrors& errors) {
       add(law, double{errors.value[i]}, errors.echo(i), errors.beam[i], sums);
     }
     take(sums, law);
-    if (sums.likelihood - last < kSettled) break;
+    if (sums.likelihood - last < settled) break;
     last = sums.likelihood;
   }
   return law;

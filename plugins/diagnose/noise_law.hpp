@@ -18,6 +18,7 @@ struct RangeErrors {
   std::vector<float> remission;      ///< device's units; empty where not known
   std::vector<std::uint16_t> beam;   ///< index of its direction in the scan
   std::vector<std::uint32_t> block;  ///< pieces of the recording, to be held out by turns
+  std::vector<std::uint32_t> place;  ///< on the surfaces; empty where not known
 
   std::size_t size() const { return value.size(); }
   void append(const RangeErrors& from, std::size_t i);
@@ -60,7 +61,13 @@ struct NoiseLaw {
 };
 
 /// The likeliest law of those that have what `like` has, by expectation and maximisation.
-NoiseLaw fitted(const NoiseLaw& like, const RangeErrors& errors);
+///
+/// @param settled  [nat] a round that brings less is the last. A few may still be
+///                 missing then, on a slow way to the likeliest law.
+NoiseLaw fitted(const NoiseLaw& like, const RangeErrors& errors, double settled = 0.02);
+
+/// Takes from each error the mean of its beam.
+void centre_beams(RangeErrors& errors);
 
 /// How many beams there are: one more than the greatest index.
 std::size_t beams_of(const RangeErrors& errors);

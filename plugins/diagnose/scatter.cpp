@@ -5,45 +5,13 @@
 #include <array>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
-#include <map>
 
+#include "pipeline/data/robust.hpp"
 #include "plugins/diagnose/likelihood_gain.hpp"
 #include "plugins/diagnose/noise_ways.hpp"
 
 namespace crisp {
 namespace {
-
-/// Less the mean of each beam.
-void centre_beams(RangeErrors& errors) {
-  struct Mean {
-    double sum = 0, count = 0;
-  };
-  std::map<std::uint16_t, Mean> means;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    means[errors.beam[i]].sum += double{errors.value[i]};
-    means[errors.beam[i]].count += 1;
-  }
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    const Mean& mean = means[errors.beam[i]];
-    errors.value[i] -= static_cast<float>(mean.sum / mean.count);
-  }
-}
-
-/// Leaves out of those errors that are too short by `least` to `most` [m] all but as many as are too long by
-/// so much: what is thin and stands before a surface does but shorten.
-void balance(const std::vector<float>& errors, double least, double most, std::vector<bool>& counts) {
-  const auto is_within = [&](double size) { return size > least && size <= most; };
-  const auto too_long = std::ranges::count_if(errors, [&](float error) { return is_within(double{error}); });
-  const auto too_short =
-      std::ranges::count_if(errors, [&](float error) { return is_within(-double{error}); });
-  if (too_short <= too_long) return;
-  std::ptrdiff_t seen = 0;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (!is_within(-double{errors[i]})) continue;
-    counts[i] = (seen + 1) * too_long / too_short > seen * too_long / too_short;  // evenly strewn
-    ++seen;
-  }
-}
 
 /// Whether two shots of a laser, none of its own between, are of beams side by side: the next in a scan, or
 /// the only one that it has, on a head that turns.
@@ -110,7 +78,8 @@ GroupScales scales_of(const std::vector<std::size_t>& groups, const std::vector<
 RangeErrors scatter_of(std::size_t laser, const Measurements& beams, const Met& met, double usual,
                        const std::vector<std::uint32_t>& block) {
   constexpr double kOn = 4;  // usual errors
-  constexpr std::array<double, 6> kFarOff = {5, 7, 9, 12, 17, 25};
+  constexpr double kFarOff = 5;
+  constexpr double kFarthest = 25;
   const auto is_on = [&](std::size_t i, std::uint32_t surface) {
     return met.ahead[i] == surface && std::abs(double{met.error[i]}) < kOn * usual;
   };
@@ -118,34 +87,38 @@ RangeErrors scatter_of(std::size_t laser, const Measurements& beams, const Met& 
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (beams.laser[i] == laser) own.push_back(i);
   }
-  std::vector<std::size_t> chosen;
-  std::vector<float> errors;
+  RangeErrors scatter;
+  const auto add = [&](std::size_t i, float error) {
+    scatter.value.push_back(error);
+    scatter.range.push_back(beams.range[i] - met.error[i]);
+    scatter.beam.push_back(beams.beam[i]);
+    scatter.block.push_back(block[i]);
+    scatter.place.push_back(met.place[i]);
+    scatter.cosine.push_back(met.cosine[i]);
+    scatter.remission.push_back(beams.remission[i]);
+  };
   for (std::size_t k = 1; k + 1 < own.size(); ++k) {
     const std::size_t i = own[k];
     if (met.ahead[i] == kNoSurface) continue;
     if (!follow_each_other(beams, own[k - 1], i) || !follow_each_other(beams, i, own[k + 1])) continue;
     if (!is_on(own[k - 1], met.ahead[i]) || !is_on(own[k + 1], met.ahead[i])) continue;
-    if (std::abs(double{met.error[i]}) > kFarOff.back() * usual) continue;
-    chosen.push_back(i);
-    errors.push_back(met.error[i]);
-  }
-  std::vector<bool> counts(errors.size(), true);
-  for (std::size_t k = 0; k + 1 < kFarOff.size(); ++k) {
-    balance(errors, kFarOff[k] * usual, kFarOff[k + 1] * usual, counts);
-  }
-  RangeErrors scatter;
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    if (!counts[k]) continue;
-    const std::size_t i = chosen[k];
-    scatter.value.push_back(met.error[i]);
-    scatter.range.push_back(beams.range[i] - met.error[i]);
-    scatter.beam.push_back(beams.beam[i]);
-    scatter.block.push_back(block[i]);
-    scatter.cosine.push_back(met.cosine[i]);
-    scatter.remission.push_back(beams.remission[i]);
+    const double error = double{met.error[i]} / usual;
+    if (error < -kFarOff || error > kFarthest) continue;
+    add(i, met.error[i]);
+    if (error > kFarOff) add(i, -met.error[i]);
   }
   centre_beams(scatter);
   return scatter;
+}
+
+double widest_deviation(const NoiseLaw& law, const RangeErrors& errors) {
+  constexpr double kMost = 0.99;
+  std::vector<double> deviations;
+  deviations.reserve(errors.size());
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    deviations.push_back(law.deviation(errors.echo(i), errors.beam[i]));
+  }
+  return quantile_of(deviations, kMost);
 }
 
 std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const float> values,

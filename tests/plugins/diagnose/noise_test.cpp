@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <random>
 
 #include "plugins/diagnose/common_change.hpp"
@@ -116,6 +117,57 @@ TEST(Noise, OfWhichAShareIsLargerIsFoundWithThatShare) {
   EXPECT_EQ(found.findings[0].cause, "noise.heavy_tail");
   EXPECT_NEAR(value_of(found.findings[0], "share"), 0.03, 4 * error_of(found.findings[0], "share"));
   EXPECT_NEAR(value_of(found.findings[0], "scale"), 6, 4 * error_of(found.findings[0], "scale"));
+}
+
+/// Of what `error` draws for each seed: the mean square of how many standard errors parameters are off.
+std::map<std::string, double> mean_squares_off(
+    int seeds, int beams, int scans, const std::map<std::string, double>& truth,
+    const std::function<double(Random&, int beam, double range)>& error) {
+  std::map<std::string, double> squares;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const auto own = static_cast<std::uint64_t>(seed);
+    const auto found = diagnose_noise("laser1", shots(own, beams, scans, error), own);
+    for (const auto& [name, value] : truth) {
+      if (found.findings.size() != 1) return {{name, HUGE_VAL}};
+      const Finding& finding = found.findings[0];
+      squares[name] += std::pow((value_of(finding, name) - value) / error_of(finding, name), 2) / seeds;
+    }
+  }
+  return squares;
+}
+
+/// The mean square of so many values of Student's law of 19 degrees of freedom, that of twenty parts, is
+/// 19/17 and has this for an upper bound: three of its standard deviations, by the law's fourth moment.
+double most_by_chance(int seeds) {
+  constexpr double kFreedoms = 19;
+  constexpr double kMean = kFreedoms / (kFreedoms - 2);
+  const double variance = 3 * kMean * kMean * (kFreedoms - 2) / (kFreedoms - 4) - kMean * kMean;
+  return kMean + 3 * std::sqrt(variance / seeds);
+}
+
+TEST(Noise, OfWhichAShareIsLittleLargerHasStandardErrorsThatHold) {
+  constexpr int kSeeds = 20;
+  const auto error = [](Random& random, int, double) {
+    const bool tail = std::uniform_real_distribution<>(0, 1)(random) < 0.04;
+    return kSigma * (tail ? 4 : 1) * normal(random);
+  };
+  for (const auto& [name, square] :
+       mean_squares_off(kSeeds, 100, 100, {{"share", 0.04}, {"scale", 4}}, error)) {
+    EXPECT_LT(square, most_by_chance(kSeeds)) << name;
+  }
+}
+
+TEST(Noise, AboutTwoValuesHasStandardErrorsThatHoldOfManyBeams) {
+  // A weight of each of 300 beams is told from 100 ranges. The error of each bends the distance a little, and
+  // all bend it one way.
+  constexpr int kSeeds = 6;
+  const auto error = [](Random& random, int beam, double) {
+    const double weight = 0.2 + 0.7 * beam / 300;
+    const bool far = std::uniform_real_distribution<>(0, 1)(random) < weight;
+    return 0.005 * normal(random) + (far ? 0.015 : 0);
+  };
+  EXPECT_LT(mean_squares_off(kSeeds, 300, 100, {{"separation", 0.015}}, error).at("separation"),
+            most_by_chance(kSeeds));
 }
 
 TEST(Noise, OfAnotherSizeInEachBeamHasNoCause) {
