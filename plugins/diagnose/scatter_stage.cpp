@@ -22,6 +22,18 @@
 #include "plugins/diagnose/scatter.hpp"
 
 namespace crisp {
+namespace {
+
+constexpr std::size_t kTooFew = 1000;  // ranges, to say how they scatter
+
+/// @param noise  [m] within which surfaces are flat
+Evidence all_of(const SensorModel& model, const Sample& sample, double noise) {
+  SurfelSettings settings;
+  settings.noise = noise;
+  return {model, sample, settings, std::numeric_limits<std::size_t>::max()};
+}
+
+}  // namespace
 
 void DiagnoseScatterStage::describe(StageDescription<DiagnoseScatterStage>& d) {
   d.name("diagnose.scatter").summary("says how the ranges of a turning scanner scatter, and what moved");
@@ -62,13 +74,12 @@ void DiagnoseScatterStage::finish(Outputs& out, Context& context) {
   context.count("beams left out of the diagnosis of a long recording", collected_.left_out());
   const SensorModel model(*calibration_, context.run().registrar->get<TermRegistry>());
   const LagRange lag = lag_range(model, 0);
-  SurfelSettings settings;
-  settings.noise = noise_;
   context.progress(0, "following beams to their surfaces");
-  const Evidence evidence(model, covered(sample, lag.earliest, lag.latest), settings,
-                          std::numeric_limits<std::size_t>::max());
+  const Evidence evidence = all_of(model, covered(sample, lag.earliest, lag.latest), noise_);
   const Measurements& beams = evidence.sample().beams;
-  Followed all{.beams = beams,
+  Followed all{.model = model,
+               .evidence = evidence,
+               .beams = beams,
                .points = evidence.beams().points,
                .met = met_by(evidence.surfels(), evidence.beams(), beams.range),
                .crowd = Crowd(evidence.beams().points),
@@ -121,17 +132,32 @@ void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Fin
   if (folder_ && !plots.empty()) write_plots(*folder_ / (name + "_noise.svg"), plots, context);
 }
 
+std::pair<RangeErrors, NoiseDiagnosis> DiagnoseScatterStage::noise_of(std::size_t laser, const Followed& all,
+                                                                      Context& context) const {
+  constexpr double kMuchLarger = 1.1;
+  const std::string& name = calibration_->lasers[laser].name;
+  RangeErrors errors = scatter_of(laser, all.beams, all.met, all.usual, all.blocks);
+  if (errors.size() < kTooFew) return {std::move(errors), {}};
+  NoiseDiagnosis noise = diagnose_noise(name, errors, context.seed(), least_gain_);
+  const double widest = widest_deviation(noise.law, errors);
+  if (!(widest > kMuchLarger * noise_)) return {std::move(errors), std::move(noise)};
+  const Evidence wider = all_of(all.model, all.evidence.sample(), widest);
+  const Met met = met_by(wider.surfels(), wider.beams(), all.beams.range);
+  RangeErrors again = scatter_of(laser, all.beams, met, usual_error(met), all.blocks);
+  if (again.size() < kTooFew) return {std::move(errors), std::move(noise)};
+  noise = diagnose_noise(name, again, context.seed(), least_gain_);
+  return {std::move(again), std::move(noise)};
+}
+
 NoiseLaw DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
                                          std::vector<Plot>& plots, Context& context) const {
-  constexpr std::size_t kTooFew = 1000;
   const std::string& name = calibration_->lasers[laser].name;
-  const RangeErrors errors = scatter_of(laser, all.beams, all.met, all.usual, all.blocks);
+  const auto [errors, noise] = noise_of(laser, all, context);
   if (errors.size() < kTooFew) {
     context.say(
         fmt::format("{}: too few beams well inside flat surfaces to say how its ranges scatter", name));
     return {.size = {all.usual}};
   }
-  const NoiseDiagnosis noise = diagnose_noise(name, errors, context.seed(), least_gain_);
   context.say(fmt::format("{}: {} ranges on flat surfaces scatter by {:.2f} mm (RMS)", name, errors.size(),
                           1e3 * noise.plain.sigma()));
   found.noise.push_back({.laser = name, .ranges = errors.size(), .sigma = noise.law.sigma()});

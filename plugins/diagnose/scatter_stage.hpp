@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "pipeline/data/findings.hpp"
@@ -14,7 +15,9 @@
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/diagnose/edges.hpp"
+#include "plugins/diagnose/evidence.hpp"
 #include "plugins/diagnose/met.hpp"
+#include "plugins/diagnose/noise.hpp"
 #include "plugins/diagnose/noise_law.hpp"
 
 namespace crisp {
@@ -29,6 +32,8 @@ class DiagnoseScatterStage final : public Stage {
  private:
   /// All beams, and what became of them.
   struct Followed {
+    const SensorModel& model;
+    const Evidence& evidence;
     const Measurements& beams;
     PointsView points;
     Met met;
@@ -37,6 +42,11 @@ class DiagnoseScatterStage final : public Stage {
     std::vector<std::uint32_t> blocks;
   };
   void add_laser(std::size_t laser, const Followed& all, Findings& found, Context& context) const;
+  /// The errors of one laser's ranges, and the law that they show. Surfaces are those that are flat within
+  /// `noise`: where the laser's own is larger, these would be places where it is small by chance, and they
+  /// are looked for again, flat within its own.
+  std::pair<RangeErrors, NoiseDiagnosis> noise_of(std::size_t laser, const Followed& all,
+                                                  Context& context) const;
   /// @param plots  get what is drawn of what was found
   NoiseLaw add_noise(std::size_t laser, const Followed& all, Findings& found, std::vector<Plot>& plots,
                      Context& context) const;

@@ -116,6 +116,67 @@ TEST(Scatter, WithHeavyTailsIsNamedAndMeasured) {
   EXPECT_NEAR(value_in(found[0], "scale"), 5, 4 * error_in(found[0], "scale") + 0.1);
 }
 
+TEST(Scatter, ThatIsFarTooShortIsWhatIsFarTooLongMirrored) {
+  // Of a wall 3 m away every tenth range is off by six usual errors: three are too long and one too short, or
+  // one too long and three too short, as thin things before it make them.
+  for (const double sign : {1.0, -1.0}) {
+    Measurements beams;
+    Met met;
+    for (std::uint16_t beam = 0; beam < 50; ++beam) {
+      const bool is_far = beam % 10 == 5 && beam < 45;
+      const double error = is_far ? sign * (beam == 15 ? -0.06 : 0.06) : 0;
+      beams.laser.push_back(0);
+      beams.beam.push_back(beam);
+      beams.range.push_back(static_cast<float>(3 + error));
+      beams.remission.push_back(50);
+      met.ahead.push_back(0);
+      met.place.push_back(0);
+      met.error.push_back(static_cast<float>(error));
+      met.cosine.push_back(1);
+    }
+    const RangeErrors errors = scatter_of(0, beams, met, 0.01, std::vector<std::uint32_t>(50, 0));
+    constexpr std::size_t kNear = 48 - 3 * 4;  // with neighbours on either side that are on the wall
+    EXPECT_EQ(errors.size(), kNear + (sign > 0 ? 6 : 2));
+    const auto far = [&](double size) {
+      return std::ranges::count_if(errors.value,
+                                   [&](float error) { return std::abs(double{error} - size) < 1e-6; });
+    };
+    EXPECT_EQ(far(0.06), sign > 0 ? 3 : 1);
+    EXPECT_EQ(far(-0.06), far(0.06));
+  }
+}
+
+/// The mean square of how many standard errors the stage is off a slope of 0.0025 in so many recordings.
+double mean_square_off_slope(std::uint64_t seeds) {
+  constexpr double kSlope = 0.0025;
+  double squares = 0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    auto stage = test::StageDriver::of<DiagnoseScatterStage>({});
+    TermRegistry terms = built_in_terms();
+    Registrar registrar;
+    registrar.attach(terms);
+    stage.run().registrar = &registrar;
+    ScannerSettings scanner = test::scanner_of(seed, 10);
+    scanner.laser_effects.resize(3);
+    scanner.laser_effects[1].noise = {.slope = kSlope};
+    const test::Recording recording =
+        test::recorded(scanner, built_in_scene(seed % 2 == 0 ? "hall" : "street"));
+    stage.feed(recording.made.beams, recording.made.plate, recording.made.truth);
+    stage.finish();
+    const auto found = stage.given<Findings>();
+    if (found.size() != 1 || found[0]->findings.size() != 1) return HUGE_VAL;
+    const Finding& finding = found[0]->findings[0];
+    const double off = (value_in(finding, "slope") - kSlope) / error_in(finding, "slope");
+    squares += off * off / static_cast<double>(seeds);
+  }
+  return squares;
+}
+
+TEST(Scatter, OfSurfacesThatAreFarAwayIsNotThatOfWhereItIsSmallByChance) {
+  // Half of 19/17, the mean square of Student's law of twenty parts, is its standard deviation for six.
+  EXPECT_LT(mean_square_off_slope(6), 19 / 17.0 * (1 + 3 * std::sqrt(2 / 6.0)));
+}
+
 TEST(Scatter, OfTheStageIsDrawnForEachLaser) {
   const test::TemporaryFolder folder;
   auto stage =
