@@ -4,6 +4,15 @@
 #include <cmath>
 
 namespace crisp {
+namespace {
+
+/// That the less of two independent p-values is as small as this one; what was not asked does not count.
+double less_sure(double one, double other) {
+  const double least = std::fmin(one, other);
+  return std::isnan(one) || std::isnan(other) ? least : least * (2 - least);
+}
+
+}  // namespace
 
 void Findings::append(const Findings& other) {
   const auto add = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
@@ -14,8 +23,8 @@ void Findings::append(const Findings& other) {
   add(artefacts, other.artefacts);
   add(devices, other.devices);
   add(noise, other.noise);
-  before_p = std::fmin(before_p, other.before_p);  // the one that was asked for
-  after_p = std::fmin(after_p, other.after_p);
+  before_p = less_sure(before_p, other.before_p);
+  after_p = less_sure(after_p, other.after_p);
 }
 
 }  // namespace crisp

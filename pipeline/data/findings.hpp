@@ -110,10 +110,10 @@ struct Findings {
   std::vector<Artefact> artefacts;
   std::vector<DeviceFacts> devices;
   std::vector<NoiseFacts> noise;
-  double before_p = kUnasked;  ///< that what is left of the residuals is noise: with the model that came …
-  double after_p = kUnasked;   ///< … and with the extended one
+  double before_p = kUnasked;  ///< that the residuals are those of the simulation: with the model that came …
+  double after_p = kUnasked;  ///< … and with what was found
 
-  /// Adds what another diagnosis says of the same recording.
+  /// Adds what another diagnosis says of the same recording. Of both p-values the less counts, as one of two.
   void append(const Findings& other);
 };
 

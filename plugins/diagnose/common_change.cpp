@@ -176,6 +176,7 @@ DoneTogether done_by(const Way& way, double next_likely, const Eigen::VectorXd& 
     found.change = change_of(way, look, seconds, next_likely, looks);
     rest.conservativeResize(Eigen::NoChange, 2);
     rest.col(1) = way.columns->col(look.column);
+    found.named = found.change->size * (rest.col(1).array() - rest.col(1).mean());
   }
   Eigen::MatrixXd design = rest;
   if (way.base.cols() > 1) {
@@ -238,17 +239,11 @@ Plot common_plot(const std::string& name, const DoneTogether& found, const Range
           .series = {std::move(measured), std::move(curve)}};
 }
 
-void take_out(const DoneTogether& found, RangeErrors& errors) {
-  std::vector<double> sums(beams_of(errors), 0);
-  std::vector<double> counts(sums.size(), 0);
+void take_out(const Eigen::VectorXd& curve, RangeErrors& errors) {
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    errors.value[i] -= static_cast<float>(found.curve[errors.block[i]]);
-    sums[errors.beam[i]] += double{errors.value[i]};
-    counts[errors.beam[i]] += 1;
+    errors.value[i] -= static_cast<float>(curve[errors.block[i]]);
   }
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    errors.value[i] -= static_cast<float>(sums[errors.beam[i]] / counts[errors.beam[i]]);
-  }
+  errors.centre_beams();
 }
 
 }  // namespace crisp

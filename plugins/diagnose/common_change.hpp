@@ -37,6 +37,7 @@ struct DoneTogether {
   std::optional<CommonChange> change;
   std::optional<CommonWander> wander;
   Eigen::VectorXd curve;  ///< [m] of both, scan by scan, about 0; empty if there is neither
+  Eigen::VectorXd named;  ///< [m] of the change alone; empty if there is none
 };
 
 /// Looks for a jump of all ranges, their creeping, or their wander, scan by scan: the mean error of a scan's
@@ -53,7 +54,7 @@ DoneTogether done_together(const RangeErrors& errors, const std::vector<double>&
 Plot common_plot(const std::string& name, const DoneTogether& found, const RangeErrors& errors,
                  const std::vector<double>& seconds);
 
-/// Takes it out of the ranges' errors.
-void take_out(const DoneTogether& found, RangeErrors& errors);
+/// Takes a curve [m], scan by scan, out of the ranges' errors.
+void take_out(const Eigen::VectorXd& curve, RangeErrors& errors);
 
 }  // namespace crisp

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numbers>
 
@@ -50,23 +49,6 @@ double bic_of(const NoiseLaw& law, const RangeErrors& errors) {
   double price = freedoms.of_all * std::log(static_cast<double>(errors.size()));
   for (const auto& [beam, count] : beams_in(errors)) price += freedoms.of_each * std::log(count);
   return 2 * log_likelihood(law, errors) - price;
-}
-
-RangeErrors some_of(const RangeErrors& errors, const std::function<bool(std::uint32_t block)>& is_wanted) {
-  RangeErrors some;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (is_wanted(errors.block[i])) some.append(errors, i);
-  }
-  return some;
-}
-
-/// Some blocks of all, strewn: as many ranges as tell all there is to tell.
-RangeErrors thinned(const RangeErrors& errors) {
-  constexpr std::size_t kMost = 120'000;
-  constexpr std::uint32_t kStrewn = 2'654'435'761;  // Knuth's multiplicative hash
-  const auto nth = static_cast<std::uint32_t>((errors.size() + kMost - 1) / kMost);
-  if (nth <= 1) return errors;
-  return some_of(errors, [nth](std::uint32_t block) { return (block * kStrewn >> 16) % nth == 0; });
 }
 
 /// Mean log-likelihood of every other block under laws that were fitted to the rest.
@@ -208,7 +190,8 @@ void report(std::vector<Found> found, const NoiseLaw& named, const RangeErrors& 
 
 NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, std::uint64_t seed,
                               double least_gain) {
-  const RangeErrors errors = thinned(all);
+  constexpr std::size_t kMost = 120'000;  // tell all there is to tell
+  const RangeErrors errors = thinned(all, kMost);
   NoiseDiagnosis result{.plain = fitted({}, errors), .law = {}, .findings = {}, .unnamed = {}};
   result.law = result.plain;
   NoiseLaw named = result.plain;

@@ -35,7 +35,7 @@ std::vector<LawInParts::Without> without_each(const std::vector<std::uint32_t>& 
     for (std::size_t i = 0; i < errors.size(); ++i) {
       if (parts[i] != part) rest.append(errors, i);
     }
-    centre_beams(rest);
+    rest.centre_beams();
     const auto left = static_cast<double>(rest.size());
     without[part] = {.share = 1 - left / static_cast<double>(errors.size()),
                      .law = fitted(law, rest, kSettled)};
@@ -70,7 +70,7 @@ Told jackknife(double all, const std::vector<double>& shares, const std::vector<
 
 LawInParts in_parts(const NoiseLaw& law, const RangeErrors& errors) {
   RangeErrors centred = errors;  // some of all that were once
-  centre_beams(centred);
+  centred.centre_beams();
   LawInParts fits{.law = fitted(law, centred, kSettled), .times = {}, .places = {}};
   fits.times = without_each(parts_of(centred.block), fits.law, centred);
   fits.places = without_each(parts_of(centred.place), fits.law, centred);

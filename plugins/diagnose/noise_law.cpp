@@ -2,6 +2,7 @@
 #include "plugins/diagnose/noise_law.hpp"
 
 #include <algorithm>
+#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -44,6 +45,12 @@ double density(const Part& part, double value, double sigma) {
   const double s = part.scale * sigma;
   const double z = (value - part.mean) / s;
   return part.share * std::exp(-z * z / 2) / (s * std::sqrt(2 * std::numbers::pi));
+}
+
+/// The value above which a standard normal law has so much of 1.
+double score_above(double share) {
+  using Quick = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+  return std::numbers::sqrt2 * boost::math::erfc_inv(2 * std::max(share, 1e-300), Quick());
 }
 
 double relative_of(const NoiseLaw& law, std::uint16_t beam) {
@@ -147,6 +154,16 @@ void RangeErrors::append(const RangeErrors& from, std::size_t i) {
   if (!from.place.empty()) place.push_back(from.place[i]);
 }
 
+void RangeErrors::centre_beams() {
+  std::vector<double> sums(beams_of(*this), 0);
+  std::vector<double> counts(sums.size(), 0);
+  for (std::size_t i = 0; i < size(); ++i) {
+    sums[beam[i]] += double{value[i]};
+    counts[beam[i]] += 1;
+  }
+  for (std::size_t i = 0; i < size(); ++i) value[i] -= static_cast<float>(sums[beam[i]] / counts[beam[i]]);
+}
+
 EchoConditions RangeErrors::echo(std::size_t i) const {
   EchoConditions echo{.range = double{range[i]}};
   if (!cosine.empty()) echo.cosine = double{cosine[i]};
@@ -154,17 +171,19 @@ EchoConditions RangeErrors::echo(std::size_t i) const {
   return echo;
 }
 
-void centre_beams(RangeErrors& errors) {
-  std::vector<double> sum(beams_of(errors));
-  std::vector<double> count(sum.size());
+RangeErrors some_of(const RangeErrors& errors, const std::function<bool(std::uint32_t block)>& is_wanted) {
+  RangeErrors some;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    sum[errors.beam[i]] += double{errors.value[i]};
-    count[errors.beam[i]] += 1;
+    if (is_wanted(errors.block[i])) some.append(errors, i);
   }
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    const std::uint16_t beam = errors.beam[i];
-    errors.value[i] -= static_cast<float>(sum[beam] / count[beam]);
-  }
+  return some;
+}
+
+RangeErrors thinned(const RangeErrors& errors, std::size_t most) {
+  constexpr std::uint32_t kStrewn = 2'654'435'761;  // Knuth's multiplicative hash
+  const auto nth = static_cast<std::uint32_t>((errors.size() + most - 1) / most);
+  if (nth <= 1) return errors;
+  return some_of(errors, [nth](std::uint32_t block) { return (block * kStrewn >> 16) % nth == 0; });
 }
 
 std::size_t beams_of(const RangeErrors& errors) {
@@ -191,6 +210,30 @@ double NoiseLaw::log_density(double value, const EchoConditions& echo, std::uint
   double sum = 1e-300;
   for (std::size_t k = 0; k < all.count; ++k) sum += density(all.all[k], value, sigma_here);
   return std::log(sum);
+}
+
+double NoiseLaw::normal_score(double value, const EchoConditions& echo, std::uint16_t beam) const {
+  const Parts all = parts_of(*this, beam);
+  const double sigma_here = deviation(echo, beam);
+  double below = 0;
+  double above = 0;
+  for (std::size_t k = 0; k < all.count; ++k) {
+    const Part& part = all.all[k];
+    const double score = (value - part.mean) / (part.scale * sigma_here);
+    if (all.count == 1) return score;
+    below += part.share / 2 * std::erfc(-score / std::numbers::sqrt2);
+    above += part.share / 2 * std::erfc(score / std::numbers::sqrt2);
+  }
+  return below < above ? -score_above(below) : score_above(above);
+}
+
+double NoiseLaw::drawn(std::mt19937_64& random, const EchoConditions& echo, std::uint16_t beam) const {
+  const Parts all = parts_of(*this, beam);
+  double left = std::uniform_real_distribution<>(0, 1)(random);
+  std::size_t k = 0;
+  while (k + 1 < all.count && left >= all.all[k].share) left -= all.all[k++].share;
+  const Part& part = all.all[k];
+  return part.mean + part.scale * deviation(echo, beam) * std::normal_distribution<>()(random);
 }
 
 NoiseLaw fitted(const NoiseLaw& like, const RangeErrors& errors, double settled) {

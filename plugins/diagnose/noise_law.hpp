@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <random>
 #include <vector>
 
 #include "pipeline/model/range_variance.hpp"
@@ -22,6 +24,8 @@ struct RangeErrors {
 
   std::size_t size() const { return value.size(); }
   void append(const RangeErrors& from, std::size_t i);
+  /// Takes the mean of each beam off its values.
+  void centre_beams();
   /// What is known of where range i was measured.
   EchoConditions echo(std::size_t i) const;
 };
@@ -56,6 +60,12 @@ struct NoiseLaw {
   /// ln of the density [1/m].
   double log_density(double value, const EchoConditions& echo, std::uint16_t beam) const;
 
+  /// The value that a standard normal law has with the same probability below it.
+  double normal_score(double value, const EchoConditions& echo, std::uint16_t beam) const;
+
+  /// [m] An error as this law makes them.
+  double drawn(std::mt19937_64& random, const EchoConditions& echo, std::uint16_t beam) const;
+
   /// [m²] with tails and both peaks.
   double variance(const EchoConditions& echo, std::uint16_t beam) const;
 };
@@ -66,8 +76,11 @@ struct NoiseLaw {
 ///                 missing then, on a slow way to the likeliest law.
 NoiseLaw fitted(const NoiseLaw& like, const RangeErrors& errors, double settled = 0.02);
 
-/// Takes from each error the mean of its beam.
-void centre_beams(RangeErrors& errors);
+/// The ranges of some blocks.
+RangeErrors some_of(const RangeErrors& errors, const std::function<bool(std::uint32_t block)>& is_wanted);
+
+/// Some blocks of all, strewn, so that about `most` ranges are left.
+RangeErrors thinned(const RangeErrors& errors, std::size_t most);
 
 /// How many beams there are: one more than the greatest index.
 std::size_t beams_of(const RangeErrors& errors);

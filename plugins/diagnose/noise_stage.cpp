@@ -79,7 +79,7 @@ void DiagnoseNoiseStage::process(const Inputs& in, Outputs&, Context& context) {
 }
 
 void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans, Findings& all,
-                                   Context& context) const {
+                                   Context& context) {
   context.count("scans left out of the diagnosis", scans.left_out());
   auto judged = plate_.turned()
                     ? std::variant<RangeErrors, NothingSaid>(NothingSaid{"the plate that it sits on turned"})
@@ -90,6 +90,7 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
     return;
   }
   RangeErrors* errors = &std::get<RangeErrors>(judged);
+  const RangeErrors measured = *errors;
   const std::int64_t epoch_ns = epoch_of_run(first_ns_);
   std::vector<double> seconds;
   for (std::size_t scan = 0; scan < scans.scans(); ++scan) {
@@ -101,7 +102,7 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
   if (together.wander) all.unnamed.push_back(finding_of(*together.wander, name));
   if (together.curve.size() > 0) {
     plots.push_back(common_plot(name, together, *errors, seconds));
-    take_out(together, *errors);
+    take_out(together.curve, *errors);
   }
   const NoiseDiagnosis noise = diagnose_noise(name, *errors, context.seed());
   context.say(fmt::format("{}: {} ranges of beams at rest scatter by {:.2f} mm (RMS)", name, errors->size(),
@@ -109,6 +110,9 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
   all.noise.push_back({.laser = name, .ranges = errors->size(), .sigma = noise.law.sigma()});
   all.findings.insert(all.findings.end(), noise.findings.begin(), noise.findings.end());
   all.unnamed.insert(all.unnamed.end(), noise.unnamed.begin(), noise.unnamed.end());
+  const bool changes = together.change && together.change->gain.surely_falls();
+  told_.push_back(told_apart(name, measured, noise.law, changes ? together.named : Eigen::VectorXd(),
+                             BeamsOf::kLaserAtRest, context.seed()));
   share_explained(std::span(all.findings).last(noise.findings.size()),
                   std::span(all.unnamed).last(noise.unnamed.size()));
   std::ranges::move(noise_plots(name, *errors, noise), std::back_inserter(plots));
@@ -123,9 +127,11 @@ void DiagnoseNoiseStage::finish(Outputs& out, Context& context) {
     if (context.interrupted()) return;
     add_laser(context.rig().lasers[laser].name, lasers_[laser], all, context);
   }
+  add_likeness(told_, all);
   for (const Finding& finding : all.findings) context.say(in_words(finding));
   for (const UnnamedFinding& finding : all.unnamed) context.say(in_words(finding));
-  context.report({{"findings", all.findings.size()}});
+  if (!told_.empty()) context.say(likeness_in_words(all));
+  context.report({{"findings", all.findings.size()}, {"before_p", all.before_p}, {"after_p", all.after_p}});
   all_.append(all);
   out.give(std::move(all_));
 }

@@ -10,6 +10,7 @@
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/diagnose/at_rest.hpp"
+#include "plugins/diagnose/told_apart.hpp"
 
 namespace crisp {
 
@@ -21,13 +22,14 @@ class DiagnoseNoiseStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
-  void add_laser(const std::string& name, const AtRest& scans, Findings& all, Context& context) const;
+  void add_laser(const std::string& name, const AtRest& scans, Findings& all, Context& context);
 
   std::optional<std::filesystem::path> folder_;
   std::vector<AtRest> lasers_;  // of the rig
   PlateRest plate_;
   std::int64_t first_ns_ = 0;  // receipt of the first scan
-  Findings all_;               // what other diagnoses said before
+  std::vector<ToldApart> told_;
+  Findings all_;  // what other diagnoses said before
 };
 
 }  // namespace crisp

@@ -13,6 +13,7 @@
 
 #include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
+#include "plugins/diagnose/least_chance.hpp"
 #include "plugins/diagnose/residuals.hpp"
 
 namespace crisp {
@@ -165,15 +166,6 @@ double chance_of(const std::vector<double>& means, const std::vector<double>& er
   return cdf(complement(boost::math::chi_squared(static_cast<double>(means.size())), chi2));
 }
 
-/// Of how many independent looks the least chances of simulations are the least, by maximum likelihood: a
-/// chance below p is then met with a probability of 1 − (1 − p)ᵐ. Profiles of the same beams, less what
-/// planes took, count as fewer than they are.
-double independent_looks(const std::vector<double>& least) {
-  double sum = 0;
-  for (const double chance : least) sum += std::log1p(-std::min(chance, 1 - 1e-9));
-  return -static_cast<double>(least.size()) / sum;
-}
-
 }  // namespace
 
 SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings, std::uint64_t seed) {
@@ -213,7 +205,7 @@ SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings
       square += own[b] * own[b] - errors[b] * errors[b];
     }
     profile.rms = std::sqrt(std::max(0.0, square / static_cast<double>(own.size())));
-    profile.p_value = -std::expm1(looks * std::log1p(-chance_of(own, errors)));
+    profile.p_value = least_of(looks, chance_of(own, errors));
     result.p_value = std::min(result.p_value, profile.p_value);
     result.profiles.push_back(std::move(profile));
   }

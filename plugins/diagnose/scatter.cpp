@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "pipeline/data/robust.hpp"
+#include "plugins/diagnose/groups.hpp"
 #include "plugins/diagnose/likelihood_gain.hpp"
 #include "plugins/diagnose/noise_ways.hpp"
 
@@ -22,20 +23,6 @@ bool follow_each_other(const Measurements& beams, std::size_t first, std::size_t
 
 constexpr std::size_t kGroups = 10;
 
-/// For each value the group it is of: tenths of all.
-std::vector<std::size_t> groups_of(std::span<const float> values) {
-  std::vector<float> sorted(values.begin(), values.end());
-  std::ranges::sort(sorted);
-  std::vector<float> ends;
-  for (std::size_t g = 1; g < kGroups; ++g) ends.push_back(sorted[g * sorted.size() / kGroups]);
-  std::vector<std::size_t> groups;
-  groups.reserve(values.size());
-  for (const float value : values) {
-    groups.push_back(static_cast<std::size_t>(std::ranges::upper_bound(ends, value) - ends.begin()));
-  }
-  return groups;
-}
-
 /// How much larger the noise of each group is than the law has it.
 struct GroupScales {
   std::array<double, kGroups> count{};
@@ -43,7 +30,7 @@ struct GroupScales {
   double p_value = 1;
 };
 
-GroupScales scales_of(const std::vector<std::size_t>& groups, const std::vector<double>& squares,
+GroupScales scales_of(const std::vector<std::uint32_t>& groups, const std::vector<double>& squares,
                       const std::vector<bool>& is_used) {
   GroupScales result;
   std::array<double, kGroups> sum{};
@@ -107,7 +94,7 @@ RangeErrors scatter_of(std::size_t laser, const Measurements& beams, const Met& 
     add(i, met.error[i]);
     if (error > kFarOff) add(i, -met.error[i]);
   }
-  centre_beams(scatter);
+  scatter.centre_beams();
   return scatter;
 }
 
@@ -126,7 +113,7 @@ std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const 
                                        const NoiseLaw& law, double least_gain, std::uint64_t seed) {
   constexpr double kUnlikely = 0.002;
   if (errors.size() < 100 * kGroups || !are_various(values)) return std::nullopt;
-  const auto groups = groups_of(values);
+  const auto groups = groups_of(values, kGroups);
   std::vector<double> squares;
   std::vector<bool> is_even;
   for (std::size_t i = 0; i < errors.size(); ++i) {

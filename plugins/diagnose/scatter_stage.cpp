@@ -96,15 +96,20 @@ void DiagnoseScatterStage::finish(Outputs& out, Context& context) {
     found.findings.push_back(*moved);
     if (folder_) write_plots(*folder_ / "scene_moving.svg", {moving_plot(changing)}, context);
   }
+  add_likeness(told_, found);
   for (const Finding& finding : found.findings) context.say(in_words(finding));
   for (const UnnamedFinding& finding : found.unnamed) context.say(in_words(finding));
-  context.report({{"findings", found.findings.size()}, {"unnamed", found.unnamed.size()}});
+  if (!told_.empty()) context.say(likeness_in_words(found));
+  context.report({{"findings", found.findings.size()},
+                  {"unnamed", found.unnamed.size()},
+                  {"before_p", found.before_p},
+                  {"after_p", found.after_p}});
   all_.append(found);
   out.give(std::move(all_));
 }
 
 void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Findings& found,
-                                     Context& context) const {
+                                     Context& context) {
   const std::string& name = calibration_->lasers[laser].name;
   const std::size_t named = found.findings.size();
   const std::size_t unnamed = found.unnamed.size();
@@ -150,7 +155,7 @@ std::pair<RangeErrors, NoiseDiagnosis> DiagnoseScatterStage::noise_of(std::size_
 }
 
 NoiseLaw DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
-                                         std::vector<Plot>& plots, Context& context) const {
+                                         std::vector<Plot>& plots, Context& context) {
   const std::string& name = calibration_->lasers[laser].name;
   const auto [errors, noise] = noise_of(laser, all, context);
   if (errors.size() < kTooFew) {
@@ -169,6 +174,7 @@ NoiseLaw DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all,
     if (changes) found.unnamed.push_back(*changes);
   }
   plots = noise_plots(name, errors, noise);
+  told_.push_back(told_apart(name, errors, noise.law, {}, BeamsOf::kSurfaces, context.seed()));
   return noise.law;
 }
 

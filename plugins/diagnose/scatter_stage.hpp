@@ -19,6 +19,7 @@
 #include "plugins/diagnose/met.hpp"
 #include "plugins/diagnose/noise.hpp"
 #include "plugins/diagnose/noise_law.hpp"
+#include "plugins/diagnose/told_apart.hpp"
 
 namespace crisp {
 
@@ -41,7 +42,7 @@ class DiagnoseScatterStage final : public Stage {
     double usual = 0;  // [m] standard deviation of ranges
     std::vector<std::uint32_t> blocks;
   };
-  void add_laser(std::size_t laser, const Followed& all, Findings& found, Context& context) const;
+  void add_laser(std::size_t laser, const Followed& all, Findings& found, Context& context);
   /// The errors of one laser's ranges, and the law that they show. Surfaces are those that are flat within
   /// `noise`: where the laser's own is larger, these would be places where it is small by chance, and they
   /// are looked for again, flat within its own.
@@ -49,13 +50,14 @@ class DiagnoseScatterStage final : public Stage {
                                                   Context& context) const;
   /// @param plots  get what is drawn of what was found
   NoiseLaw add_noise(std::size_t laser, const Followed& all, Findings& found, std::vector<Plot>& plots,
-                     Context& context) const;
+                     Context& context);
 
   double noise_ = SurfelSettings{}.noise;
   double least_gain_ = 0.001;
   std::optional<std::filesystem::path> folder_;
   Collected collected_;
   std::shared_ptr<const Calibration> calibration_;
+  std::vector<ToldApart> told_;
   Findings all_;  // what other diagnoses said before
 };
 

@@ -16,6 +16,7 @@
 #include "plugins/diagnose/noise.hpp"
 #include "plugins/diagnose/repeats.hpp"
 #include "plugins/diagnose/scatter_stage.hpp"
+#include "plugins/diagnose/told_apart.hpp"
 #include "tests/plugins/diagnose/hidden.hpp"
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -100,6 +101,8 @@ TEST(Scatter, OfAPlainScannerNamesNothing) {
     EXPECT_NEAR(noise.law.sigma(), 0.012, 0.0002) << scene;
     EXPECT_FALSE(noise_by("incidence", scatter.cosine, "laser1", scatter, noise.law, kLeastGain, 1));
     EXPECT_FALSE(noise_by("remission", scatter.remission, "laser1", scatter, noise.law, kLeastGain, 1));
+    EXPECT_GT(told_apart("laser1", scatter, noise.law, {}, BeamsOf::kSurfaces, 1).after.p_value, 0.01)
+        << scene;
     EXPECT_FALSE(plain.comb()) << scene << ": the telegram's millimetre is no news";
     EXPECT_FALSE(mixed_pixels("laser1", plain.crossings(), 1)) << scene;
     EXPECT_FALSE(moving(plain.changing(), 1)) << scene;
@@ -107,13 +110,18 @@ TEST(Scatter, OfAPlainScannerNamesNothing) {
 }
 
 TEST(Scatter, WithHeavyTailsIsNamedAndMeasured) {
-  const auto found = Followed("office", {.tail_share = 0.03, .tail_scale = 5}).noise().findings;
+  const Followed tailed("office", {.tail_share = 0.03, .tail_scale = 5});
+  const NoiseDiagnosis noise = tailed.noise();
+  const auto& found = noise.findings;
   ASSERT_THAT(found, SizeIs(1));
   EXPECT_EQ(found[0].cause, "noise.heavy_tail");
   EXPECT_TRUE(found[0].accepted);
   // 0.001: what is balanced away and edges that pass for tails; four standard errors of 3 % of 180 000 ranges
   EXPECT_NEAR(value_in(found[0], "share"), 0.03, 4 * error_in(found[0], "share") + 0.001);
   EXPECT_NEAR(value_in(found[0], "scale"), 5, 4 * error_in(found[0], "scale") + 0.1);
+  const ToldApart told = told_apart("laser1", tailed.scatter(), noise.law, {}, BeamsOf::kSurfaces, 1);
+  EXPECT_LT(told.before.p_value, 1e-100);
+  EXPECT_GT(told.after.p_value, 1e-4) << "what is balanced away is";
 }
 
 TEST(Scatter, ThatIsFarTooShortIsWhatIsFarTooLongMirrored) {

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/told_apart.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "pipeline/quality/blocks.hpp"
+#include "plugins/diagnose/common_change.hpp"
+#include "plugins/diagnose/groups.hpp"
+#include "plugins/diagnose/least_chance.hpp"
+#include "plugins/diagnose/noise_ways.hpp"
+
+namespace crisp {
+namespace {
+
+using Scores = std::vector<double>;
+
+/// A statistic of the scores that is nearly of χ² where these are of the law.
+struct Look {
+  std::string covariate, quantity, unit;
+  double scale = 1;  // amplitude² is scale² of what the statistic is beyond chance
+  std::function<double(const Scores&)> statistic;
+};
+
+/// Pearson's χ² over bins of a quarter of a standard deviation.
+double density_statistic(const Scores& scores) {
+  constexpr double kWidth = 0.25;
+  constexpr std::size_t kInner = 26;
+  constexpr double kFirst = -kWidth * kInner / 2;
+  std::array<double, kInner + 2> counts{};
+  for (const double score : scores) {
+    const double bin = std::clamp(std::floor((score - kFirst) / kWidth), -1.0, double{kInner});
+    counts[static_cast<std::size_t>(bin + 1)] += 1;
+  }
+  const auto below = [&](std::size_t bin) {  // of the bin's upper end
+    const double end = kFirst + kWidth * static_cast<double>(bin);
+    return bin > kInner ? 1.0 : std::erfc(-end / std::numbers::sqrt2) / 2;
+  };
+  const auto all = static_cast<double>(scores.size());
+  double chi2 = 0;
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+    const double expected = all * (below(bin) - (bin > 0 ? below(bin - 1) : 0));
+    chi2 += std::pow(counts[bin] - expected, 2) / expected;
+  }
+  return chi2;
+}
+
+struct Group {
+  double count = 0, sum = 0, squares = 0;
+};
+
+std::vector<Group> sums_in(const std::vector<std::uint32_t>& groups, const Scores& scores) {
+  std::vector<Group> sums(std::ranges::max(groups) + std::size_t{1});
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    Group& sum = sums[groups[i]];
+    sum.count += 1;
+    sum.sum += scores[i];
+    sum.squares += scores[i] * scores[i];
+  }
+  std::erase_if(sums, [](const Group& sum) { return sum.count == 0; });
+  return sums;
+}
+
+/// Squares of each group's mean square, made normal: its cube root nearly is (Wilson and Hilferty).
+double spread_statistic(const std::vector<std::uint32_t>& groups, const Scores& scores) {
+  double chi2 = 0;
+  for (const Group& group : sums_in(groups, scores)) {
+    const double variance = 2 / (9 * group.count);
+    chi2 += std::pow(std::cbrt(group.squares / group.count) - 1 + variance, 2) / variance;
+  }
+  return chi2;
+}
+
+double mean_statistic(const std::vector<std::uint32_t>& groups, const Scores& scores) {
+  double chi2 = 0;
+  for (const Group& group : sums_in(groups, scores)) chi2 += group.sum * group.sum / group.count;
+  return chi2;
+}
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// @param expected  correlation by chance
+double correlation_statistic(const Pairs& pairs, double expected, const Scores& scores) {
+  double squares = 0;
+  for (const double score : scores) squares += score * score;
+  double products = 0;
+  for (const auto& [first, second] : pairs) products += scores[first] * scores[second];
+  const auto count = static_cast<double>(pairs.size());
+  return count * std::pow(products / count / (squares / static_cast<double>(scores.size())) - expected, 2);
+}
+
+/// Ranges that lie side by side along one of two indices, and are alike in the other.
+template <class Same, class Along>
+Pairs neighbours(const std::vector<Same>& same, const std::vector<Along>& along) {
+  std::vector<std::uint32_t> order(same.size());
+  std::iota(order.begin(), order.end(), std::uint32_t{0});
+  std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::tuple(same[i], along[i]); });
+  Pairs pairs;
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const std::uint32_t first = order[k - 1];
+    const std::uint32_t second = order[k];
+    if (same[first] == same[second] && along[first] + 1U == along[second]) pairs.emplace_back(first, second);
+  }
+  return pairs;
+}
+
+class Looks {
+ public:
+  Looks(const RangeErrors& errors, BeamsOf beams) : ranges_(static_cast<double>(errors.size())) {
+    double squares = 0;
+    for (const float value : errors.value) squares += std::pow(double{value}, 2);
+    sigma_ = std::sqrt(squares / ranges_);
+    all_.push_back({"error", "density", "1", 1 / std::sqrt(ranges_), density_statistic});
+    const std::vector<std::uint32_t> beam(errors.beam.begin(), errors.beam.end());
+    add_spread("beam", beam);
+    add_spread_by("range", errors.range);
+    add_spread_by("incidence", errors.cosine);
+    add_spread_by("remission", errors.remission);
+    if (beams == BeamsOf::kSurfaces) return;
+    add_spread("time", errors.block);
+    add_mean("time", errors.block);
+    if (are_various(errors.remission)) add_mean("remission", groups_of(errors.remission, kGroups));
+    // Values about their own mean are against one another.
+    const double off_the_mean = -static_cast<double>(sums_in(beam, Scores(beam.size())).size()) / ranges_;
+    add_correlation("next scan", neighbours(errors.beam, errors.block), off_the_mean);
+    add_correlation("next beam", neighbours(errors.block, errors.beam), 0);
+  }
+
+  const std::vector<Look>& all() const { return all_; }
+  std::vector<double> statistics(const Scores& scores) const {
+    std::vector<double> values;
+    for (const Look& look : all_) values.push_back(look.statistic(scores));
+    return values;
+  }
+
+ private:
+  static constexpr std::size_t kGroups = 12;
+
+  void add_spread(const std::string& covariate, const std::vector<std::uint32_t>& groups) {
+    if (std::ranges::max(groups) == std::ranges::min(groups)) return;  // as of a head with a single beam
+    all_.push_back({covariate, "noise", "m", sigma_ / std::sqrt(2 * ranges_),
+                    [groups](const Scores& scores) { return spread_statistic(groups, scores); }});
+  }
+  void add_spread_by(const std::string& covariate, std::span<const float> values) {
+    if (are_various(values)) add_spread(covariate, groups_of(values, kGroups));
+  }
+  void add_mean(const std::string& covariate, const std::vector<std::uint32_t>& groups) {
+    all_.push_back({covariate, "range", "m", sigma_ / std::sqrt(ranges_),
+                    [groups](const Scores& scores) { return mean_statistic(groups, scores); }});
+  }
+  void add_correlation(const std::string& covariate, const Pairs& pairs, double expected) {
+    if (pairs.empty()) return;
+    all_.push_back(
+        {covariate, "correlation", "1", 1 / std::sqrt(static_cast<double>(pairs.size())),
+         [pairs, expected](const Scores& scores) { return correlation_statistic(pairs, expected, scores); }});
+  }
+
+  double ranges_;
+  double sigma_ = 0;
+  std::vector<Look> all_;
+};
+
+/// [m] Of what all ranges are multiples, in tenths of a millimetre; 0: of nothing.
+double step_of(const RangeErrors& errors) {
+  constexpr double kUnit = 1e-4;  // [m]
+  constexpr double kOff = 0.2;    // units: what is left of single precision
+  std::int64_t step = 0;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double units = (double{errors.range[i]} + double{errors.value[i]}) / kUnit;
+    if (std::abs(units - std::round(units)) > kOff) return 0;
+    step = std::gcd(step, std::llround(units));
+  }
+  return kUnit * static_cast<double>(step);
+}
+
+/// Ranges by a law where others were measured, as a device with such steps hands them on.
+RangeErrors made_by(const NoiseLaw& law, RangeErrors errors, const Eigen::VectorXd& curve, double step,
+                    std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double at = double{errors.range[i]} + (curve.size() > 0 ? curve[errors.block[i]] : 0);
+    double range = at + law.drawn(random, errors.echo(i), errors.beam[i]);
+    if (step > 0) range = step * std::round(range / step);
+    errors.value[i] = static_cast<float>(range - at);
+  }
+  errors.centre_beams();
+  return errors;
+}
+
+Scores scores_of(const NoiseLaw& law, const RangeErrors& errors) {
+  Scores scores;
+  scores.reserve(errors.size());
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    scores.push_back(law.normal_score(double{errors.value[i]}, errors.echo(i), errors.beam[i]));
+  }
+  return scores;
+}
+
+/// Values of one statistic in simulations, as multiples of χ² of some freedom (Satterthwaite).
+class Chance {
+ public:
+  explicit Chance(const std::vector<double>& simulated) {
+    const auto count = static_cast<double>(simulated.size());
+    mean_ = std::accumulate(simulated.begin(), simulated.end(), 0.0) / count;
+    double squares = 0;
+    for (const double value : simulated) squares += std::pow(value - mean_, 2);
+    variance_ = squares / (count - 1);
+  }
+  double mean() const { return mean_; }
+  double of(double value) const {
+    constexpr double kMostFreedom = 1e5;  // beyond there are not so many groups: nothing varies
+    if (!(kMostFreedom * variance_ > 2 * mean_ * mean_)) return 1;
+    const boost::math::chi_squared law(2 * mean_ * mean_ / variance_);
+    return cdf(complement(law, value * 2 * mean_ / variance_));
+  }
+
+ private:
+  double mean_ = 0;
+  double variance_ = 0;
+};
+
+}  // namespace
+
+BesideLaw beside_law(const RangeErrors& all, const NoiseLaw& like, const Eigen::VectorXd& curve,
+                     BeamsOf beams, std::uint64_t seed) {
+  constexpr std::size_t kMost = 60'000;
+  constexpr std::size_t kSimulations = 99;
+  RangeErrors errors = thinned(all, kMost);
+  const double step = step_of(errors);
+  if (curve.size() > 0) {
+    take_out(curve, errors);
+  } else {
+    errors.centre_beams();  // of those that are left, as the simulated ones will be
+  }
+  const NoiseLaw law = fitted(like, errors);
+  const Looks looks(errors, beams);
+  std::vector<std::vector<double>> simulated(looks.all().size(), std::vector<double>(kSimulations));
+  for_each_index(kSimulations, [&](std::size_t s) {
+    const RangeErrors made = made_by(law, errors, curve, step, seed + s);
+    const auto values = looks.statistics(scores_of(fitted(law, made), made));
+    for (std::size_t k = 0; k < values.size(); ++k) simulated[k][s] = values[k];
+  });
+  std::vector<double> least(kSimulations, 1.0);
+  std::vector<Chance> chances;
+  for (const auto& values : simulated) {
+    chances.emplace_back(values);
+    for (std::size_t s = 0; s < kSimulations; ++s)
+      least[s] = std::min(least[s], chances.back().of(values[s]));
+  }
+  const double independent = independent_looks(least);
+  const auto measured = looks.statistics(scores_of(law, errors));
+  BesideLaw result;
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    const Look& look = looks.all()[k];
+    const double beyond = std::max(0.0, measured[k] - chances[k].mean());
+    result.looks.push_back({.covariate = look.covariate,
+                            .quantity = look.quantity,
+                            .unit = look.unit,
+                            .amplitude = look.scale * std::sqrt(beyond),
+                            .p_value = least_of(independent, chances[k].of(measured[k]))});
+    result.p_value = std::min(result.p_value, result.looks.back().p_value);
+  }
+  return result;
+}
+
+ToldApart told_apart(const std::string& laser, const RangeErrors& errors, const NoiseLaw& named,
+                     const Eigen::VectorXd& curve, BeamsOf beams, std::uint64_t seed) {
+  NoiseLaw law = named;
+  law.relative.clear();
+  ToldApart result{.laser = laser, .before = beside_law(errors, {}, {}, beams, seed), .after = {}};
+  const bool is_plain = law.is_normal() && curve.size() == 0;
+  result.after = is_plain ? result.before : beside_law(errors, law, curve, beams, seed);
+  return result;
+}
+
+void add_likeness(const std::vector<ToldApart>& lasers, Findings& to) {
+  constexpr double kDeparts = 0.01;
+  if (lasers.empty()) return;
+  const auto of_all = [&](double p_value) { return least_of(static_cast<double>(lasers.size()), p_value); };
+  double before_p = 1;
+  double after_p = 1;
+  for (const ToldApart& one : lasers) {
+    before_p = std::min(before_p, one.before.p_value);
+    after_p = std::min(after_p, one.after.p_value);
+    for (std::size_t k = 0; k < one.before.looks.size(); ++k) {
+      const RangeLook& before = one.before.looks[k];
+      const RangeLook& after = one.after.looks[k];
+      if (of_all(std::min(before.p_value, after.p_value)) > kDeparts) continue;
+      to.departures.push_back({.covariate = before.covariate,
+                               .quantity = before.quantity,
+                               .scope = one.laser,
+                               .amplitude = before.amplitude,
+                               .unit = before.unit,
+                               .p_value = of_all(before.p_value),
+                               .amplitude_after = after.amplitude,
+                               .p_value_after = of_all(after.p_value)});
+    }
+  }
+  to.append({.before_p = of_all(before_p), .after_p = of_all(after_p)});
+}
+
+}  // namespace crisp
