@@ -114,6 +114,13 @@ TEST(Findings, OfLasersAtRestNameWeakEchoesButNoIncidenceWhichNobodyKnows) {
   ASSERT_EQ(found.unnamed.size(), 1U);
   EXPECT_EQ(found.unnamed[0].scope, "laser1");
   EXPECT_EQ(found.unnamed[0].covariate, "beam") << "each meets its surface at an angle of its own";
+  EXPECT_LT(found.before_p, 1e-6);
+  EXPECT_LT(found.after_p, 1e-6) << "what has no name is not simulated";
+  for (const ResidualDeparture& departure : found.departures) {
+    if (departure.p_value_after > 0.01) continue;
+    EXPECT_EQ(departure.scope, "laser1") << departure.quantity << " over the " << departure.covariate;
+    EXPECT_NE(departure.quantity, "range");
+  }
 }
 
 }  // namespace

@@ -49,6 +49,11 @@ TEST_F(SickData, AnLms111TurnsSlowlyJumpsAndScattersAboutTwoValues) {
     const auto& ci95 = finding["gain"][0]["ci95"];
     EXPECT_GT(cause == "noise.two_peaks" ? double{ci95[0]} : -double{ci95[1]}, 0) << cause;
   }
+  EXPECT_LT(diagnosis_["indistinguishable"]["before_p"], 1e-100);
+  EXPECT_LT(diagnosis_["indistinguishable"]["after_p"], 1e-6) << "of what each beam does for itself";
+  for (const auto& departure : diagnosis_["departures"]) {
+    EXPECT_LT(departure["amplitude_after"], departure["amplitude"]) << departure["covariate"];
+  }
 }
 
 TEST_F(SickData, ATim781KeepsItsRateAndItsNoiseHasOnePeak) {

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "plugins/diagnose/noise_stage.hpp"
 #include "tests/support/stage_driver.hpp"
 
@@ -79,6 +81,8 @@ TEST(NoiseStage, SaysNothingOfALaserWhosePlateTurns) {
     driver.finish();
     const Findings& found = *driver.given<Findings>().at(0);
     EXPECT_THAT(found.noise, SizeIs(turns ? 0 : 1));
+    EXPECT_EQ(std::isnan(found.before_p), turns) << "nothing was compared";
+    EXPECT_EQ(std::isnan(found.after_p), turns);
     ASSERT_THAT(found.unobservable, SizeIs(turns ? 1 : 0));
     if (turns) {
       EXPECT_THAT(found.unobservable[0].reason, HasSubstr("turned"));
