@@ -60,7 +60,8 @@ void DiagnoseNoiseStage::describe(StageDescription<DiagnoseNoiseStage>& d) {
       "that "
       "moves (its plate turns, or its ranges change), has no echoes or sent fewer than 10 scans it is said "
       "that "
-      "nothing can be said.");
+      "nothing can be said. Whether its ranges can still be told from simulated ones, without and with what "
+      "was found, is said of all lasers together.");
   d.takes<Scan>().takes<PlateReading>(Need::optional).takes<Findings>(Need::optional).gives<Findings>();
   d.option("folder", &DiagnoseNoiseStage::folder_,
            "where plots of each laser's noise go, and of what its ranges did at once; auto: nowhere");

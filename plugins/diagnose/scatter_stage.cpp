@@ -44,7 +44,9 @@ void DiagnoseScatterStage::describe(StageDescription<DiagnoseScatterStage>& d) {
       "peaks, steps (`noise.*`), or changing with incidence or remission otherwise (`unnamed`); each is "
       "judged by parts of the recording that it was not fitted to. At edges it looks for ranges between what "
       "is before and behind (`noise.mixed_pixels`), and it "
-      "compares what the same directions show from turn to turn (`scene.moving`).");
+      "compares what the same directions show from turn to turn (`scene.moving`). Whether ranges on surfaces "
+      "can "
+      "still be told from simulated ones is said of all lasers together.");
   d.takes<Measurements>()
       .takes<Findings>(Need::optional)
       .holds<PlateTrajectory>()

@@ -23,7 +23,7 @@ namespace {
 using Scores = std::vector<double>;
 
 /// A statistic of the scores that is nearly of χ² where these are of the law.
-struct Look {
+struct OneLook {
   std::string covariate, quantity, unit;
   double scale = 1;  // amplitude² is scale² of what the statistic is beyond chance
   std::function<double(const Scores&)> statistic;
@@ -133,10 +133,10 @@ class Looks {
     add_correlation("next beam", neighbours(errors.block, errors.beam), 0);
   }
 
-  const std::vector<Look>& all() const { return all_; }
+  const std::vector<OneLook>& all() const { return all_; }
   std::vector<double> statistics(const Scores& scores) const {
     std::vector<double> values;
-    for (const Look& look : all_) values.push_back(look.statistic(scores));
+    for (const OneLook& look : all_) values.push_back(look.statistic(scores));
     return values;
   }
 
@@ -164,7 +164,7 @@ class Looks {
 
   double ranges_;
   double sigma_ = 0;
-  std::vector<Look> all_;
+  std::vector<OneLook> all_;
 };
 
 /// [m] Of what all ranges are multiples, in tenths of a millimetre; 0: of nothing.
@@ -180,14 +180,20 @@ double step_of(const RangeErrors& errors) {
   return kUnit * static_cast<double>(step);
 }
 
+/// The law fitted to measured ranges, and what simulated ones come from besides.
+struct Simulator {
+  NoiseLaw law;
+  Eigen::VectorXd curve;
+  double step = 0;
+};
+
 /// Ranges by a law where others were measured, as a device with such steps hands them on.
-RangeErrors made_by(const NoiseLaw& law, RangeErrors errors, const Eigen::VectorXd& curve, double step,
-                    std::uint64_t seed) {
+RangeErrors made_by(const Simulator& by, RangeErrors errors, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const double at = double{errors.range[i]} + (curve.size() > 0 ? curve[errors.block[i]] : 0);
-    double range = at + law.drawn(random, errors.echo(i), errors.beam[i]);
-    if (step > 0) range = step * std::round(range / step);
+    const double at = double{errors.range[i]} + (by.curve.size() > 0 ? by.curve[errors.block[i]] : 0);
+    double range = at + by.law.drawn(random, errors.echo(i), errors.beam[i]);
+    if (by.step > 0) range = by.step * std::round(range / by.step);
     errors.value[i] = static_cast<float>(range - at);
   }
   errors.centre_beams();
@@ -226,12 +232,35 @@ class Chance {
   double variance_ = 0;
 };
 
+/// Of each look, how its statistic scatters over simulations.
+struct Chances {
+  std::vector<Chance> of_look;
+  double independent = 1;  // looks
+};
+
+Chances chances_in(const Looks& looks, const Simulator& by, const RangeErrors& errors, std::uint64_t seed) {
+  constexpr std::size_t kSimulations = 99;
+  std::vector<std::vector<double>> simulated(looks.all().size(), std::vector<double>(kSimulations));
+  for_each_index(kSimulations, [&](std::size_t s) {
+    const RangeErrors made = made_by(by, errors, seed + s);
+    const auto values = looks.statistics(scores_of(fitted(by.law, made), made));
+    for (std::size_t k = 0; k < values.size(); ++k) simulated[k][s] = values[k];
+  });
+  Chances chances;
+  std::vector<double> least(kSimulations, 1.0);
+  for (const auto& values : simulated) {
+    const Chance& chance = chances.of_look.emplace_back(values);
+    for (std::size_t s = 0; s < kSimulations; ++s) least[s] = std::min(least[s], chance.of(values[s]));
+  }
+  chances.independent = independent_looks(least);
+  return chances;
+}
+
 }  // namespace
 
 BesideLaw beside_law(const RangeErrors& all, const NoiseLaw& like, const Eigen::VectorXd& curve,
                      BeamsOf beams, std::uint64_t seed) {
   constexpr std::size_t kMost = 60'000;
-  constexpr std::size_t kSimulations = 99;
   RangeErrors errors = thinned(all, kMost);
   const double step = step_of(errors);
   if (curve.size() > 0) {
@@ -241,30 +270,17 @@ BesideLaw beside_law(const RangeErrors& all, const NoiseLaw& like, const Eigen::
   }
   const NoiseLaw law = fitted(like, errors);
   const Looks looks(errors, beams);
-  std::vector<std::vector<double>> simulated(looks.all().size(), std::vector<double>(kSimulations));
-  for_each_index(kSimulations, [&](std::size_t s) {
-    const RangeErrors made = made_by(law, errors, curve, step, seed + s);
-    const auto values = looks.statistics(scores_of(fitted(law, made), made));
-    for (std::size_t k = 0; k < values.size(); ++k) simulated[k][s] = values[k];
-  });
-  std::vector<double> least(kSimulations, 1.0);
-  std::vector<Chance> chances;
-  for (const auto& values : simulated) {
-    chances.emplace_back(values);
-    for (std::size_t s = 0; s < kSimulations; ++s)
-      least[s] = std::min(least[s], chances.back().of(values[s]));
-  }
-  const double independent = independent_looks(least);
+  const Chances chances = chances_in(looks, {.law = law, .curve = curve, .step = step}, errors, seed);
   const auto measured = looks.statistics(scores_of(law, errors));
   BesideLaw result;
   for (std::size_t k = 0; k < measured.size(); ++k) {
-    const Look& look = looks.all()[k];
-    const double beyond = std::max(0.0, measured[k] - chances[k].mean());
+    const OneLook& look = looks.all()[k];
+    const Chance& chance = chances.of_look[k];
     result.looks.push_back({.covariate = look.covariate,
                             .quantity = look.quantity,
                             .unit = look.unit,
-                            .amplitude = look.scale * std::sqrt(beyond),
-                            .p_value = least_of(independent, chances[k].of(measured[k]))});
+                            .amplitude = look.scale * std::sqrt(std::max(0.0, measured[k] - chance.mean())),
+                            .p_value = least_of(chances.independent, chance.of(measured[k]))});
     result.p_value = std::min(result.p_value, result.looks.back().p_value);
   }
   return result;

@@ -39,10 +39,10 @@ enum class BeamsOf {
 /// next beam. How far chance takes each is seen in 99 simulations, to which the law is fitted anew as it was
 /// to the measured ranges; telegrams' steps are made as well.
 ///
-/// @param errors  about the mean of their beams, as they were measured; of very many, some blocks count
-/// @param like    which parts the law has; it is fitted here
-/// @param curve   [m] by block: what all ranges do at once; empty for nothing
-BesideLaw beside_law(const RangeErrors& errors, const NoiseLaw& like, const Eigen::VectorXd& curve,
+/// @param all    about the mean of their beams, as they were measured; of very many, some blocks count
+/// @param like   which parts the law has; it is fitted here
+/// @param curve  [m] by block: what all ranges do at once; empty for nothing
+BesideLaw beside_law(const RangeErrors& all, const NoiseLaw& like, const Eigen::VectorXd& curve,
                      BeamsOf beams, std::uint64_t seed);
 
 /// The ranges of one laser beside the plain simulator's, and beside those with what was found.
