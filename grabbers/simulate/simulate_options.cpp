@@ -15,7 +15,7 @@ void SimulateStage::describe(Description& d) {
   d.gives<Scan>().gives<PlateReading>();
   describe_scanner(d);
   describe_truth(d, &SimulateStage::hidden_);
-  describe_findings(d, &SimulateStage::findings_file_);
+  describe_likeness(d, &SimulateStage::likeness_);
   describe_plate(d);
   describe_lasers(d);
   describe_stamps(d);

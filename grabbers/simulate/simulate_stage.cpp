@@ -8,6 +8,7 @@
 #include <iterator>
 #include <variant>
 
+#include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/truth_file.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/quantity.hpp"
@@ -55,7 +56,9 @@ void SimulateStage::check(const RunSettings& run) const {
   RecordingSettings planned = settings(run);
   planned.scanner.truth = hidden_.drawn(run, planned.scanner.seed);
   const TermRegistry& terms = known_terms(run);
-  auto effects = read_effects(hidden_.effects, run.rig, recording_catalogue(terms));
+  const auto catalogue = recording_catalogue(terms);
+  auto effects = effects_of_real_devices(likeness_.devices, run.rig, catalogue);
+  std::ranges::move(read_effects(hidden_.effects, run.rig, catalogue), std::back_inserter(effects));
   add_terms(planned.scanner.truth, apply_device_effects(std::move(effects), planned), terms);
   draw_devices(planned);
   make_motion(planned.scanner.motion, planned.scanner.duration, planned.scanner.seed);
@@ -67,7 +70,7 @@ void SimulateStage::process(const Inputs&, Outputs& out, Context& context) {
   simulated_ = settings(context.run());
   simulated_.scanner.truth = hidden_.load(context, simulated_.scanner.seed);
   const auto catalogue = recording_catalogue(terms);
-  auto effects = load_found(findings_file_, catalogue, context);
+  auto effects = likeness_.load(catalogue, context);
   std::ranges::move(read_effects(hidden_.effects, context.rig(), catalogue), std::back_inserter(effects));
   add_terms(simulated_.scanner.truth, apply_device_effects(std::move(effects), simulated_), terms);
   const Scene surroundings = scene_.load(context);

@@ -48,7 +48,7 @@ class SimulateStage final : public Stage {
   TruthChoice hidden_{.departures = {.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04},
                       .calibration_file = {},
                       .effects = {}};
-  std::filesystem::path findings_file_;
+  LikenessChoice likeness_;
   WireFaults wire_faults_;
   SceneChoice scene_;
   std::vector<std::string> silences_;

@@ -5,9 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "grabbers/simulate/found_effects.hpp"
 #include "grabbers/simulate/paper.hpp"
+#include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/scene_file.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/error.hpp"
@@ -48,9 +50,9 @@ Calibration TruthChoice::load(Context& context, std::uint64_t seed) const {
   return truth;
 }
 
-std::vector<Effect> load_found(const std::filesystem::path& findings_file,
-                               const std::vector<EffectInfo>& catalogue, Context& context) {
-  if (findings_file.empty()) return {};
+std::vector<Effect> LikenessChoice::load(const std::vector<EffectInfo>& catalogue, Context& context) const {
+  std::vector<Effect> effects = effects_of_real_devices(devices, context.rig(), catalogue);
+  if (findings_file.empty()) return effects;
   const Findings findings = read_findings(findings_file);
   context.reads(findings_file);
   FoundEffects found = effects_of(findings, findings_file.string(), context.rig(), catalogue);
@@ -58,7 +60,8 @@ std::vector<Effect> load_found(const std::filesystem::path& findings_file,
     context.say(fmt::format("not simulated of what was found: {}", fmt::join(found.others, ", ")));
   }
   context.report({{"findings_simulated", found.effects.size()}, {"findings_not_simulated", found.others}});
-  return std::move(found.effects);
+  std::ranges::move(found.effects, std::back_inserter(effects));
+  return effects;
 }
 
 const TermRegistry& known_terms(const RunSettings& run) {

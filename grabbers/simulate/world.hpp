@@ -36,13 +36,20 @@ struct TruthChoice {
   Calibration load(Context& context, std::uint64_t seed) const;
 };
 
-/// The effects that a diagnosis found, if there is a file of it; see effects_of(). What cannot be simulated
-/// is told to people, by name.
-///
-/// @param catalogue         what can be simulated
-/// @throws Error or Errors  as read_findings() and effects_of() do
-std::vector<Effect> load_found(const std::filesystem::path& findings_file,
-                               const std::vector<EffectInfo>& catalogue, Context& context);
+/// Which real devices those that a stage simulates are like.
+struct LikenessChoice {
+  std::vector<std::string> devices;  ///< see effects_of_real_devices()
+  std::filesystem::path
+      findings_file;  ///< of a diagnosis, unless empty: see effects_of(); goes before `devices`
+
+  /// What befalls the simulated ones. What cannot be simulated of what was found is told to people, by name.
+  ///
+  /// @param catalogue         what can be simulated
+  /// @throws Error or Errors  as effects_of_real_devices(), read_findings() and effects_of() do
+  std::vector<Effect> load(const std::vector<EffectInfo>& catalogue, Context& context) const;
+
+  bool empty() const { return devices.empty() && findings_file.empty(); }
+};
 
 /// The terms that the program knows; none where a stage is run without one.
 const TermRegistry& known_terms(const RunSettings& run);

@@ -3,6 +3,10 @@
 // options are of: a pointer to a member of the stage, or anything else that can be invoked with it.
 #pragma once
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/settings.hpp"
 #include "grabbers/simulate/world.hpp"
 #include "pipeline/stage/description.hpp"
@@ -17,10 +21,15 @@ void describe_scene(StageDescription<S>& d, Way way) {
   d.option("scene_file", way, &SceneChoice::file, "a scene of your own in YAML, in place of `scene`");
 }
 
-/// @param way  to the path of a file
+/// @param way  to a LikenessChoice
 template <class S, class Way>
-void describe_findings(StageDescription<S>& d, Way way) {
-  d.option("findings", way,
+void describe_likeness(StageDescription<S>& d, Way way) {
+  d.option("devices", way, &LikenessChoice::devices,
+           "real devices that the simulated ones scatter, turn and keep time like, as they were measured: "
+           "`lms111` (every "
+           "laser), `laser2=tim781s`, `plate=esp32_wifi`; known are " +
+               fmt::format("{}", fmt::join(real_devices(), ", ")));
+  d.option("findings", way, &LikenessChoice::findings_file,
            "a diagnosis.json: what was found and accepted befalls the simulated scanner, and each device has "
            "the noise, clock, delays and mirror that were measured");
 }

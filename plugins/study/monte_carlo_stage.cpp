@@ -77,7 +77,7 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
   d.option("noise", &MonteCarloStage::trial, &TrialSettings::noise, "standard deviation of a range")
       .unit("m")
       .range(1e-5, 1);
-  describe_findings(d, &MonteCarloStage::findings_file_);
+  describe_likeness(d, &MonteCarloStage::likeness_);
   d.option("effects", &MonteCarloStage::effects_,
            "what befalls the lasers besides, untold to the estimators: `{noise.mixed_pixels: {divergence: "
            "15mrad, aperture: 8mm}}`, by the names that `crisp effects` lists");
@@ -130,11 +130,11 @@ void MonteCarloStage::check(const RunSettings& run) const {
   use_effects(trial, run);
 }
 
-void MonteCarloStage::use_findings(TrialSettings& trial, Context& context) const {
-  if (findings_file_.empty()) return;
+void MonteCarloStage::use_likeness(TrialSettings& trial, Context& context) const {
+  if (likeness_.empty()) return;
   const auto catalogue = laser_catalogue(known_terms(context.run()));
   RecordingSettings recording{.scanner = {.rig = trial.rig}};
-  apply_device_effects(load_found(findings_file_, catalogue, context), recording);
+  apply_device_effects(likeness_.load(catalogue, context), recording);
   trial.laser_effects = recording.scanner.laser_effects;
   trial.counted_noise = noise_in(trial, context.seed());
   context.say(fmt::format("ranges scatter by {:.2f} mm (RMS) with the noise that was measured",
@@ -155,7 +155,7 @@ void MonteCarloStage::process(const Inputs&, Outputs&, Context& context) {
   settings.threads = context.threads();
   settings.trial.rig = context.rig();
   settings.trial.scene = scene_.load(context);
-  use_findings(settings.trial, context);
+  use_likeness(settings.trial, context);
   use_effects(settings.trial, context.run());
   settings.trial.rqe.in_plane.sigma_from = sigma_[0];
   settings.trial.rqe.in_plane.sigma_to = sigma_[1];

@@ -27,14 +27,14 @@ class MonteCarloStage final : public Stage {
   MotionSettings& motion() { return settings_.trial.motion; }
   Departures& start() { return settings_.trial.start; }
 
-  /// Has the lasers scatter as a diagnosis found real ones to, if there is a file of it.
-  void use_findings(TrialSettings& trial, Context& context) const;
+  /// Has the lasers scatter as real ones were measured to, if any are named.
+  void use_likeness(TrialSettings& trial, Context& context) const;
   /// Has them befallen by the effects that were asked for. Estimators are not told.
   void use_effects(TrialSettings& trial, const RunSettings& run) const;
 
   MonteCarloSettings settings_;
   SceneChoice scene_{.name = "paper", .file = {}};
-  std::filesystem::path findings_file_;
+  LikenessChoice likeness_;
   OptionGroups effects_;
   std::vector<double> sigma_ = {0.5, 0.1};
   std::filesystem::path runs_file_;

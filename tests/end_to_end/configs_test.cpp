@@ -36,19 +36,7 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
       pipelines,
       UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml", "diagnose.yaml",
                            "emulate.yaml", "figures.yaml", "like_real.yaml", "live.yaml", "monte_carlo.yaml",
-                           "picture.yaml", "record.yaml", "simulate.yaml", "simulate_lms111.yaml"));
-}
-
-TEST(Configs, SimulateLms111IsAScannerOfSuchLasers) {
-  const test::Workshop workshop;
-  const auto simulated = workshop.run("simulate_lms111.yaml", {}, "made", {"grabber.simulate.duration=1s"});
-  EXPECT_EQ(simulated.status, ExitStatus::done) << simulated.told;
-  const std::string truth = test::bytes_of(workshop / "made/truth.yaml");
-  for (const char* laser : {"laser1", "laser2", "laser3"}) {
-    for (const char* effect : {"noise.two_peaks.separation", "mirror.period.excess", "latency.jitter.mean"}) {
-      EXPECT_THAT(truth, testing::HasSubstr(fmt::format("effect {}.{}", laser, effect)));
-    }
-  }
+                           "picture.yaml", "record.yaml", "simulate.yaml"));
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/real_devices.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "grabbers/simulate/device_texts.hpp"
+#include "pipeline/data/error.hpp"
+#include "pipeline/files/nearest.hpp"
+#include "pipeline/files/yaml_map.hpp"
+#include "pipeline/stage/option_yaml.hpp"
+
+namespace crisp {
+namespace {
+
+/// `crisp: 1` and `effects`, written as in the option of that name, without owners.
+OptionGroups habits_of(const std::string& device) {
+  const auto text = std::ranges::find(kDeviceTexts, device, &DeviceText::name);
+  if (text == std::ranges::end(kDeviceTexts)) {
+    throw Error(
+        "there is no device '" + device + "'",
+        did_you_mean(device, real_devices(), fmt::format("known are {}", fmt::join(real_devices(), ", "))));
+  }
+  const std::string file = device + ".yaml";
+  const YamlNode root = parse_yaml(text->yaml, file);
+  std::vector<Error> errors;
+  YamlMap map(root, "device", errors);
+  check_schema(map, 1);
+  OptionGroups habits;
+  if (const YamlNode* effects = map.require("effects")) {
+    const Option option{.name = "effects", .type = OptionType::groups};
+    if (const auto read = read_option(option, *effects, file, {}, errors))
+      habits = std::get<OptionGroups>(*read);
+  }
+  map.refuse_others();
+  if (!errors.empty()) throw Errors(std::move(errors));
+  return habits;
+}
+
+bool is_in(const std::vector<EffectInfo>& catalogue, const std::string& effect) {
+  return std::ranges::find(catalogue, effect, &EffectInfo::name) != catalogue.end();
+}
+
+/// Which real device each laser, or the plate, is like.
+std::map<std::string, std::string> likenesses(const std::vector<std::string>& wanted, const Rig& rig) {
+  std::map<std::string, std::string> device_of;
+  for (const std::string& wish : wanted) {
+    if (const auto sign = wish.find('='); sign != std::string::npos) {
+      device_of[wish.substr(0, sign)] = wish.substr(sign + 1);
+      continue;
+    }
+    for (const RigLaser& laser : rig.lasers) device_of[laser.name] = wish;
+  }
+  return device_of;
+}
+
+}  // namespace
+
+const std::vector<std::string>& real_devices() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> all;
+    for (const DeviceText& device : kDeviceTexts) all.emplace_back(device.name);
+    return all;
+  }();
+  return kNames;
+}
+
+std::vector<Effect> effects_of_real_devices(const std::vector<std::string>& wanted, const Rig& rig,
+                                            const std::vector<EffectInfo>& catalogue) {
+  OptionGroups all;
+  for (const auto& [owner, device] : likenesses(wanted, rig)) {
+    for (OptionGroup& habit : habits_of(device)) {
+      if (!is_in(catalogue, habit.name)) continue;
+      habit.name = owner + "." + habit.name;
+      all.push_back(std::move(habit));
+    }
+  }
+  std::vector<Effect> effects = read_effects(all, rig, catalogue);
+  for (Effect& effect : effects) effect.measured = true;
+  return effects;
+}
+
+}  // namespace crisp
