@@ -16,19 +16,38 @@ namespace {
 constexpr std::int64_t kWrap_us = std::int64_t{1} << 32;
 constexpr std::size_t kFewest = 64;  // stamps that say anything
 
-/// By how much the device's time since the stamp before is longer than its counter says [s].
-double jump_of_device(std::span<const CountedStamp> stamps, std::size_t at) {
+/// [s] a count by the device's time, from stamps around one, none of them across it; 0 where there are none.
+double local_period(std::span<const CountedStamp> stamps, std::size_t at) {
   constexpr std::size_t kAround = 20;
-  const std::size_t begin = at > kAround ? at - kAround : 1;
-  std::vector<double> rates;
-  for (std::size_t i = begin; i < std::min(stamps.size(), at + kAround); ++i) {
-    const auto counts = static_cast<double>(stamps[i].count - stamps[i - 1].count);
-    if (i != at && counts > 0)
-      rates.push_back((stamps[i].stamp.device - stamps[i - 1].stamp.device) / counts);
+  constexpr std::size_t kApart = 4;  // by which a telegram that was sent late counts less
+  std::vector<double> periods;
+  const std::size_t begin = at > kAround ? at - kAround : 0;
+  for (std::size_t i = begin; i + kApart < std::min(stamps.size(), at + kAround); ++i) {
+    const auto counts = static_cast<double>(stamps[i + kApart].count - stamps[i].count);
+    const bool across = i < at && i + kApart >= at;
+    if (across || counts <= 0) continue;
+    periods.push_back((stamps[i + kApart].stamp.device - stamps[i].stamp.device) / counts);
   }
-  if (rates.empty()) return 0;
-  const auto counts = static_cast<double>(std::max<std::int64_t>(1, stamps[at].count - stamps[at - 1].count));
-  return stamps[at].stamp.device - stamps[at - 1].stamp.device - middle_of(rates) * counts;
+  return periods.empty() ? 0 : middle_of(periods);
+}
+
+/// By how much the device's time since the stamp before is longer than its counter says, for good [s]: what
+/// one telegram alone was sent late is made up for by the next.
+double jump_of_device(std::span<const CountedStamp> stamps, std::size_t at) {
+  constexpr std::size_t kLasting = 5;  // stamps before and behind
+  const double period = local_period(stamps, at);
+  if (period == 0) return 0;
+  std::vector<double> jumps;
+  for (std::size_t k = 0; k < kLasting && k < at && at + k < stamps.size(); ++k) {
+    const CountedStamp& from = stamps[at - 1 - k];
+    const CountedStamp& to = stamps[at + k];
+    const auto counts = static_cast<double>(std::max<std::int64_t>(1, to.count - from.count));
+    jumps.push_back(to.stamp.device - from.stamp.device - period * counts);
+  }
+  const double here = jumps.front();
+  const double lasting = middle_of(jumps);
+  if (here * lasting <= 0) return 0;
+  return std::abs(here) < std::abs(lasting) ? here : lasting;
 }
 
 /// Where in a stretch of stamps the device's time jumps most.

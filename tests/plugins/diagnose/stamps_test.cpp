@@ -25,6 +25,7 @@ struct Hidden {
   double at = 1e9;
   double backlog = 0;    // [s] that telegrams are late by at first …
   double caught_up = 1;  // [s] … and no longer from then on
+  double sent_late = 0;  // [s] every 37th telegram, by its own stamp
 };
 
 /// Telegrams of a device with what is hidden, made by hand: hub time t, device time, receipt.
@@ -32,7 +33,10 @@ StampTrack track_of(std::uint64_t seed, const Hidden& hidden, const testing::Del
   testing::Random random(seed);
   StampTrack track;
   std::uint16_t counter = 65'000;  // wraps soon
-  for (double t = 0; t < kDuration; t += 1 / kRate) {
+  int number = 0;
+  for (double taken = 0; taken < kDuration; taken += 1 / kRate) {
+    constexpr int kSome = 37;
+    const double t = taken + (number++ % kSome == 0 ? hidden.sent_late : 0);
     const bool stepped = t >= hidden.at;
     const double device =
         t / (1 + hidden.skew) - hidden.drift * t * t / 2 + (stepped ? hidden.clock_step : 0);
@@ -110,6 +114,16 @@ TEST(Stamps, OfALinkWhoseShortestDelayStepsAreNotTakenForAClock) {
     EXPECT_EQ(found->kind, ClockDeparture::Kind::latency_step) << step;
     EXPECT_NEAR(found->size, step, std::max(20e-6, 4 * found->std_error));
     EXPECT_NEAR(found->at, 41.2, 0.1) << step;
+  }
+}
+
+TEST(Stamps, OfALinkThatStepsAreNotTakenForAClockWhereTelegramsAreSentLateOneByOne) {
+  for (const double step : {0.001, -0.001}) {
+    const auto track = track_of(5, {.latency_step = step, .at = 41.2, .sent_late = 0.001}, kDelays);
+    const auto found = clock_departure(track.stamps(), 4, 1);
+    ASSERT_TRUE(found) << step;
+    EXPECT_EQ(found->kind, ClockDeparture::Kind::latency_step) << step << ": the next one is on time again";
+    EXPECT_NEAR(found->size, step, std::max(20e-6, 4 * found->std_error));
   }
 }
 
