@@ -8,6 +8,7 @@
 #include <iterator>
 #include <variant>
 
+#include "grabbers/simulate/put_in_stage.hpp"
 #include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/truth_file.hpp"
 #include "pipeline/data/error.hpp"
@@ -118,6 +119,9 @@ void SimulateStage::finish(Outputs&, Context& context) {
   }
 }
 
-void register_simulate(Registrar& registrar) { registrar.stage<SimulateStage>(); }
+void register_simulate(Registrar& registrar) {
+  registrar.stage<SimulateStage>();
+  registrar.stage<PutInStage>();
+}
 
 }  // namespace crisp

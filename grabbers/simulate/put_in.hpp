@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grabbers/simulate/effects.hpp"
+#include "grabbers/simulate/recording_settings.hpp"
+#include "pipeline/data/scan.hpp"
+
+namespace crisp {
+
+/// Of the catalogue what can be put into scans that were recorded: their ranges and times are all that there
+/// is.
+std::vector<EffectInfo> put_in_catalogue(const TermRegistry& terms);
+
+/// What befalls one laser's recorded scans. Instants count from the receipt of its first scan.
+struct PutInEffects {
+  LaserEffects laser;
+  DeviceEffects device;
+  Step range;  ///< [m] by which its ranges grow
+};
+
+/// Of each laser of the rig. @param effects  of put_in_catalogue()
+std::vector<PutInEffects> put_in_effects(const std::vector<Effect>& effects, const Rig& rig);
+
+/// Changes the scans of one laser as if it had had these effects besides its own.
+class PutIn {
+ public:
+  /// @param name  of the laser, for its random numbers
+  PutIn(const PutInEffects& effects, std::uint64_t seed, std::string name);
+
+  /// Scans must come in the order of their receipt.
+  Scan changed(const Scan& scan);
+
+ private:
+  void change_times(Scan& scan);
+  void change_ranges(Scan& scan);
+
+  PutInEffects effects_;
+  std::uint64_t seed_;
+  std::string name_;
+  std::optional<RangeNoise> noise_;  ///< none before the first scan
+  std::uint32_t last_us_ = 0;        ///< the device's time of the last scan …
+  std::int64_t elapsed_us_ = 0;      ///< … and since the first
+  std::int64_t first_ns_ = 0;        ///< receipt of the first
+};
+
+}  // namespace crisp

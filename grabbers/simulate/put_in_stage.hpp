@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "grabbers/simulate/put_in.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// `simulate.put_in`: a known change in scans that were recorded, to see what a measure answers.
+class PutInStage final : public Stage {
+ public:
+  static void describe(StageDescription<PutInStage>& d);
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+
+ private:
+  std::vector<Effect> effects(const RunSettings& run) const;
+
+  OptionGroups wanted_;
+  std::vector<PutIn> lasers_;  // of the rig
+};
+
+}  // namespace crisp
