@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "tests/end_to_end/real_data.hpp"
@@ -54,6 +55,20 @@ TEST_F(SickData, AnLms111TurnsSlowlyJumpsAndScattersAboutTwoValues) {
   for (const auto& departure : diagnosis_["departures"]) {
     EXPECT_LT(departure["amplitude_after"], departure["amplitude"]) << departure["covariate"];
   }
+}
+
+TEST_F(SickData, AnLms111AnswersToWhatIsPutIn) {
+  const std::string put_in =
+      "{mirror.period: {excess: 20us}, latency.step: {by: 1ms, at: 1.7s}, noise.normal: {sigma: 5mm}}";
+  if (!run("answers.yaml", "sick/lms111-20210302-colab-rebuilt.pcap", {"simulate.put_in.effects=" + put_in}))
+    return;
+  EXPECT_NEAR(number("mirror.period", "excess"), 114.5e-6 + 20e-6, 1e-6);
+  EXPECT_NEAR(number("latency.step", "by"), 1e-3, 4 * number("latency.step", "by", "std_error"));
+  const nlohmann::json gain = finding("mirror.period")["gain"][0];
+  EXPECT_NEAR(gain["before"], 119.6e-6 + 20e-6, 1e-6) << "119.6 us of its own";
+  const nlohmann::json noise = finding("noise.two_peaks")["gain"][0];
+  // 3.434 nat for 7.81 mm (RMS) of its own, and 5 mm beside them.
+  EXPECT_NEAR(noise["before"], 3.434 - std::log(std::hypot(7.81, 5) / 7.81), 0.01);
 }
 
 TEST_F(SickData, ATim781KeepsItsRateAndItsNoiseHasOnePeak) {
