@@ -48,7 +48,7 @@ std::ptrdiff_t habits_in(const std::filesystem::path& file) {
   std::ifstream text(file);
   std::ptrdiff_t habits = 0;
   for (std::string line; std::getline(text, line);)
-    habits += line.starts_with("  ") && line.find('{') != line.npos;
+    habits += line.starts_with("  ") && line.find('{') != std::string::npos;
   return habits;
 }
 
