@@ -32,11 +32,10 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(
-      pipelines,
-      UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml", "diagnose.yaml",
-                           "emulate.yaml", "figures.yaml", "like_real.yaml", "live.yaml", "monte_carlo.yaml",
-                           "picture.yaml", "record.yaml", "simulate.yaml"));
+  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml",
+                                              "diagnose.yaml", "emulate.yaml", "figures.yaml",
+                                              "like_real.yaml", "live.yaml", "monte_carlo.yaml",
+                                              "picture.yaml", "record.yaml", "simulate.yaml"));
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
