@@ -47,4 +47,8 @@ SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free,
   return moved;
 }
 
+SensorModel with_one(const SensorModel& model, std::size_t parameter, double value) {
+  return with(model, {parameter}, Eigen::VectorXd::Constant(1, value));
+}
+
 }  // namespace crisp

@@ -30,6 +30,7 @@ bool is_at_the_end(const SearchRange& range, const std::string& name, double val
 
 /// The model with other values of the free parameters.
 SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x);
+SensorModel with_one(const SensorModel& model, std::size_t parameter, double value);
 
 /// The values of the parameters in `free`, or the ranges in which they are looked for: those of terms are a
 /// share of their bounds.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numeric>
 
 #include "pipeline/quality/run_costs.hpp"
 
@@ -85,6 +87,24 @@ double LineSums::left() const {
   return result;
 }
 
+std::vector<std::uint32_t> by_azimuth(const PointsView& points) {
+  std::vector<double> azimuth(points.size());
+  for (std::size_t i = 0; i < azimuth.size(); ++i) azimuth[i] = std::atan2(points.y[i], points.x[i]);
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return azimuth[i]; });
+  return order;
+}
+
+std::vector<LineSums> running_sums(const PointsView& points, const std::vector<std::uint32_t>& order,
+                                   double sigma) {
+  std::vector<LineSums> running(1);
+  for (const std::uint32_t i : order) {
+    running.push_back(running.back() + LineSums::of(points.x[i], points.y[i], sigma));
+  }
+  return running;
+}
+
 std::vector<Run> straight_runs(const std::vector<LineSums>& running, const RunPrices& prices) {
   if (running.empty()) return {};
   const std::size_t n = running.size() - 1;
@@ -108,6 +128,15 @@ std::vector<Run> straight_runs(const std::vector<LineSums>& running, const RunPr
   }
   std::ranges::reverse(runs);
   return runs;
+}
+
+double price_of(const std::vector<Run>& runs, const std::vector<LineSums>& running, const RunPrices& prices) {
+  double price = prices.stray * static_cast<double>(running.size() - 1);
+  for (const Run& run : runs) {
+    price += (running[run.end] - running[run.begin]).left() + prices.run -
+             prices.stray * static_cast<double>(run.end - run.begin);
+  }
+  return price;
 }
 
 }  // namespace crisp

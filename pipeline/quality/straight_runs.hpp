@@ -3,7 +3,10 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
+
+#include "pipeline/quality/points.hpp"
 
 namespace crisp {
 
@@ -23,6 +26,13 @@ struct LineSums {
   double left() const;           ///< sum of (δ/σ)²
 };
 
+/// Indices of points in the order of their azimuth about the origin.
+std::vector<std::uint32_t> by_azimuth(const PointsView& points);
+
+/// Sums over the points before each of an order, and over all: n + 1.
+std::vector<LineSums> running_sums(const PointsView& points, const std::vector<std::uint32_t>& order,
+                                   double sigma);
+
 /// Neighbours in an order: begin … end − 1.
 struct Run {
   std::size_t begin = 0, end = 0;
@@ -41,5 +51,8 @@ struct RunPrices {
 /// @param running  n + 1: sums over the points before each
 /// @return         in ascending order
 std::vector<Run> straight_runs(const std::vector<LineSums>& running, const RunPrices& prices);
+
+/// What runs and strays cost altogether [σ²].
+double price_of(const std::vector<Run>& runs, const std::vector<LineSums>& running, const RunPrices& prices);
 
 }  // namespace crisp

@@ -23,15 +23,8 @@ struct Wall {
 /// Beams in the order of their azimuth.
 class Panorama {
  public:
-  Panorama(const PointsView& points, double noise) : points_(points), order_(points.size()), running_(1) {
-    std::vector<double> azimuth(points.size());
-    for (std::size_t i = 0; i < azimuth.size(); ++i) azimuth[i] = std::atan2(points.y[i], points.x[i]);
-    std::iota(order_.begin(), order_.end(), 0U);
-    std::ranges::stable_sort(order_, {}, [&](std::uint32_t i) { return azimuth[i]; });
-    for (const std::uint32_t i : order_) {
-      running_.push_back(running_.back() + LineSums::of(points.x[i], points.y[i], noise));
-    }
-  }
+  Panorama(const PointsView& points, double noise)
+      : points_(points), order_(by_azimuth(points)), running_(running_sums(points, order_, noise)) {}
 
   std::vector<Wall> walls(const RunPrices& prices) const {
     std::vector<Wall> walls;

@@ -13,10 +13,6 @@
 namespace crisp {
 namespace {
 
-SensorModel with_one(const SensorModel& model, std::size_t parameter, double value) {
-  return with(model, {parameter}, Eigen::VectorXd::Constant(1, value));
-}
-
 /// The cost over one parameter.
 Curve cost_over(const SensorModel& model, std::size_t parameter, const Sample& sample, Measure& measure,
                 double sigma) {
@@ -25,24 +21,8 @@ Curve cost_over(const SensorModel& model, std::size_t parameter, const Sample& s
   };
 }
 
-std::vector<double> whole_circle() {
-  constexpr int kSteps = 120;  // 3°: the valley at σ = 0.5 m is wider in any room
-  std::vector<double> grid;
-  for (int i = 0; i < kSteps; ++i) grid.push_back(2 * std::numbers::pi * i / kSteps);
-  return grid;
-}
-
 constexpr double kFine = 1e-3;   // of a step that displaces the cloud by σ
 constexpr double kRough = 0.03;  // from where a narrower kernel goes on
-
-bool has_beams(const Sample& sample, std::size_t laser) {
-  return std::cmp_greater_equal(std::ranges::count(sample.beams.laser, laser), kFewBeams);
-}
-
-/// How far two places of a parameter are from one another.
-double between(double a, double b, bool circular) {
-  return std::abs(circular ? std::remainder(a - b, 2 * std::numbers::pi) : a - b);
-}
 
 /// Leaves one of bottoms that are nearer to one another than `same`, the first.
 void drop_doubles(std::vector<Bottom>& bottoms, double same, bool circular) {
@@ -56,6 +36,10 @@ void drop_doubles(std::vector<Bottom>& bottoms, double same, bool circular) {
 }
 
 }  // namespace
+
+double between(double a, double b, bool circular) {
+  return std::abs(circular ? std::remainder(a - b, 2 * std::numbers::pi) : a - b);
+}
 
 std::optional<Rival> to_deepest_valley(SensorModel& model, std::size_t parameter,
                                        const std::vector<double>& grid, bool circular, const Sample& sample,
@@ -96,26 +80,6 @@ std::optional<Rival> to_deepest_valley(SensorModel& model, std::size_t parameter
       bottoms.size() > 1 && between(bottoms[1].at, best.at, circular) > step_at(best.at, sigmas.size() - 1);
   if (!has_rival) return std::nullopt;
   return Rival{.parameter = parameter, .at = bottoms[1].at, .height = bottoms[1].value - best.value};
-}
-
-std::vector<Rival> find_lambdas(SensorModel& model, const std::vector<std::size_t>& free,
-                                const Sample& sample, Measure& measure, const SearchRange& range,
-                                const Narrowing& sigma) {
-  const auto is_fixed = [&](std::size_t laser) { return !is_free(free, slot(model, laser, kLambda)); };
-  std::size_t reference = 0;
-  while (reference < model.lasers() && !(is_fixed(reference) && has_beams(sample, reference))) ++reference;
-  std::vector<Rival> rivals;
-  if (reference == model.lasers()) return rivals;
-  for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
-    if (is_fixed(laser) || !has_beams(sample, laser)) continue;
-    const Sample pair = select(sample, [&](std::size_t i) {
-      return sample.beams.laser[i] == reference || sample.beams.laser[i] == laser;
-    });
-    const auto rival = to_deepest_valley(model, slot(model, laser, kLambda), whole_circle(), true, pair,
-                                         measure, range, sigma);
-    if (rival) rivals.push_back(*rival);
-  }
-  return rivals;
 }
 
 }  // namespace crisp

@@ -8,6 +8,11 @@
 
 namespace crisp {
 
+/// How far two values of a parameter are from one another.
+///
+/// @param circular  whether it is an angle
+double between(double a, double b, bool circular);
+
 /// A kernel that narrows while a search goes on.
 struct Narrowing {
   double from = 0.5;  ///< [m] σ at first
@@ -32,17 +37,5 @@ struct Rival {
 std::optional<Rival> to_deepest_valley(SensorModel& model, std::size_t parameter,
                                        const std::vector<double>& grid, bool circular, const Sample& sample,
                                        Measure& measure, const SearchRange& range, const Narrowing& sigma);
-
-/// λ of each laser around the whole circle, one after the other, against the first laser whose λ is not free.
-/// Leaves alone what has no beams to speak of.
-///
-/// @param free  indices into model.values()
-/// @return the rivals of each
-std::vector<Rival> find_lambdas(SensorModel& model, const std::vector<std::size_t>& free,
-                                const Sample& sample, Measure& measure, const SearchRange& range,
-                                const Narrowing& sigma);
-
-/// With fewer beams there is nothing to align.
-inline constexpr std::size_t kFewBeams = 20;
 
 }  // namespace crisp

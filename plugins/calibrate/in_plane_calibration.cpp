@@ -5,14 +5,30 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/estimate/base_slots.hpp"
 #include "plugins/calibrate/deepest_valley.hpp"
+#include "plugins/calibrate/straightness.hpp"
 
 namespace crisp {
 namespace {
+
+/// Values from reach below to reach above, with as many steps to either side.
+std::vector<double> around(double centre, double reach, int steps) {
+  std::vector<double> grid;
+  for (int i = -steps; i <= steps; ++i) grid.push_back(centre + reach * i / steps);
+  return grid;
+}
+
+std::vector<double> circle(int steps) {
+  std::vector<double> grid;
+  for (int i = 0; i < steps; ++i) grid.push_back(2 * std::numbers::pi * i / steps);
+  return grid;
+}
 
 /// The four steps, on a model that they move.
 class InPlaneCalibration {
@@ -24,7 +40,8 @@ class InPlaneCalibration {
         front_(in_plane(sample, settings.half_width, Half::kFront)),
         both_(in_plane(sample, settings.half_width, Half::kBoth)),
         measure_(measure),
-        settings_(settings) {}
+        settings_(settings),
+        bunches_(turns_both_ways(front_)) {}
 
   void find_eta(std::size_t laser) {
     const Sample own = of_laser(front_, laser);
@@ -32,11 +49,9 @@ class InPlaneCalibration {
     if (own.beams.size() < kFewBeams || free.empty()) return;
     const double centre = model_.values()[static_cast<Eigen::Index>(free[0])];
     constexpr int kSteps = 25;  // to either side
-    std::vector<double> grid;
-    for (int i = -kSteps; i <= kSteps; ++i) grid.push_back(centre + settings_.range.eta * i / (kSteps + 1));
-    const auto rival =
-        to_deepest_valley(model_, free[0], grid, false, own, measure_, settings_.range, narrowing());
-    if (rival) rivals_.push_back(*rival);
+    const auto grid = around(centre, settings_.range.eta * kSteps / (kSteps + 1), kSteps);
+    keep(to_deepest_valley(model_, free[0], grid, false, own, measure_, settings_.range, narrowing()));
+    if (bunches_) settle_eta(free[0], own);
   }
 
   void find_tau_alpha(std::size_t laser) {
@@ -49,9 +64,21 @@ class InPlaneCalibration {
     }
   }
 
+  /// Each against the first laser whose λ is not free.
   void find_lambdas() {
-    const auto rivals = crisp::find_lambdas(model_, free_, both_, measure_, settings_.range, narrowing());
-    rivals_.insert(rivals_.end(), rivals.begin(), rivals.end());
+    std::size_t reference = 0;
+    while (reference < model_.lasers() &&
+           (is_free(free_, slot(model_, reference, kLambda)) || has_few(reference)))
+      ++reference;
+    if (reference == model_.lasers()) return;
+    for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
+      const auto free = those_free({slot(model_, laser, kLambda)});
+      if (free.empty() || has_few(laser)) continue;
+      const Sample pair = select(both_, [&](std::size_t i) {
+        return both_.beams.laser[i] == reference || both_.beams.laser[i] == laser;
+      });
+      find_lambda(free[0], pair);
+    }
   }
 
   void find_geometry() {
@@ -59,8 +86,7 @@ class InPlaneCalibration {
     for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
       const auto own =
           those_free({slot(model_, laser, kLambda), slot(model_, laser, kTau), slot(model_, laser, kAlpha)});
-      if (of_laser(both_, laser).beams.size() >= kFewBeams)
-        geometry.insert(geometry.end(), own.begin(), own.end());
+      if (!has_few(laser)) geometry.insert(geometry.end(), own.begin(), own.end());
     }
     if (geometry.empty()) return;
     crispest(model_, both_, geometry, measure_, settings_.sigma_to, settings_.range, settings_.minimiser);
@@ -69,6 +95,33 @@ class InPlaneCalibration {
   const std::vector<Rival>& rivals() const { return rivals_; }
 
  private:
+  bool has_few(std::size_t laser) const {
+    return std::cmp_less(std::ranges::count(both_.beams.laser, laser), kFewBeams);
+  }
+
+  void keep(const std::optional<Rival>& rival) {
+    if (rival) rivals_.push_back(*rival);
+  }
+
+  /// Half a scan to either side, which is as far as the next lag at which spots fall together.
+  void settle_eta(std::size_t eta, const Sample& own) {
+    constexpr int kSteps = 16;  // to either side
+    const double centre = model_.values()[static_cast<Eigen::Index>(eta)];
+    const double reach = between_scans(own) / 2;
+    std::erase_if(rivals_, [&](const Rival& rival) {
+      return rival.parameter == eta && std::abs(rival.at - centre) < reach;
+    });
+    keep(to_straightest(model_, eta, around(centre, reach, kSteps), false, own, settings_.sigma_to));
+  }
+
+  void find_lambda(std::size_t lambda, const Sample& pair) {
+    constexpr int kSteps = 120;  // 3°: the valley at σ = 0.5 m is wider in any room
+    constexpr int kFine = 180;
+    keep(bunches_ ? to_straightest(model_, lambda, circle(kFine), true, pair, settings_.sigma_to)
+                  : to_deepest_valley(model_, lambda, circle(kSteps), true, pair, measure_, settings_.range,
+                                      narrowing()));
+  }
+
   Narrowing narrowing() const { return {.from = settings_.sigma_from, .to = settings_.sigma_to}; }
 
   std::vector<std::size_t> those_free(const std::vector<std::size_t>& slots) const {
@@ -85,6 +138,7 @@ class InPlaneCalibration {
   Sample both_;
   Measure& measure_;
   const InPlaneSettings& settings_;
+  bool bunches_;  ///< spots of the plate's two senses of rotation may fall together
 };
 
 /// The directions in which beams went that lie in the plate's plane, in turns of the plate, ascending.

@@ -16,6 +16,9 @@ struct InPlaneSettings {
   MinimiserSettings minimiser;
 };
 
+/// With fewer beams of a laser there is nothing to align.
+inline constexpr std::size_t kFewBeams = 20;
+
 /// Whether the beams in the plate's plane see walls as spots far from one another: directions 5° apart and
 /// more. A plate and mirrors at commensurate rates, 2 and 50 Hz say, look into the same few directions for
 /// ever; what makes single spots crisp is no calibration (found at 25 a turn: τ off by 0.3 m; at 50: right).
@@ -27,6 +30,7 @@ bool sees_single_spots(const Sample& sample, const InPlaneSettings& settings);
 ///   1. each η from the front beam alone, with τ and α as they are: the turns of the plate must agree;
 ///   2. each laser's τ and α from its front and back beams;
 ///   3. each λ against the first laser, from any start: a search over the whole circle, then downhill;
+///      (of a plate that turns both ways 1 and 3 go by to_straightest(), from where the kernel has η)
 ///   4. all 3n − 1 geometric parameters together.
 /// Leaves the model at what it found.
 ///

@@ -12,10 +12,6 @@
 namespace crisp {
 namespace {
 
-SensorModel with_one(const SensorModel& model, std::size_t parameter, double value) {
-  return with(model, {parameter}, Eigen::VectorXd::Constant(1, value));
-}
-
 /// The parts of the figures, all of one recording.
 class Studio {
  public:

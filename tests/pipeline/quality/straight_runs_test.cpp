@@ -38,15 +38,6 @@ std::vector<Eigen::Vector2d> room(unsigned seed) {
   return points;
 }
 
-double price_of(const std::vector<Run>& runs, const std::vector<LineSums>& running, const RunPrices& prices) {
-  double price = prices.stray * static_cast<double>(running.size() - 1);
-  for (const Run& run : runs) {
-    price += prices.run + (running[run.end] - running[run.begin]).left() -
-             prices.stray * static_cast<double>(run.end - run.begin);
-  }
-  return price;
-}
-
 /// The least price of all ways to cut, without any pruning.
 double least_price(const std::vector<LineSums>& running, const RunPrices& prices) {
   std::vector<double> least(1, 0);
@@ -139,6 +130,31 @@ TEST(RunCosts, AreThoseOfEachBeginningByItself) {
       EXPECT_NEAR(costs[k], left + 0.1 * static_cast<double>(k), 1e-5 * left + 1e-4) << n << " " << k;
     }
   }
+}
+
+TEST(StraightRuns, CostWhatTheyLeaveAndTheirPrices) {
+  // Ten spots on the wall x = 3, and one before it, of which the azimuth is the least.
+  std::vector<Eigen::Vector2d> wall = {{1, -2}};
+  for (int k = 0; k < 10; ++k) wall.emplace_back(3, 0.1 * k);
+  const auto running = running_sums(wall);
+  const RunPrices prices{.run = 25, .stray = 9};
+  EXPECT_NEAR(price_of({{1, 11}}, running, prices), 25 + 9, 1e-6);
+  EXPECT_NEAR(price_of({}, running, prices), 11 * 9, 1e-9);
+  EXPECT_NEAR(price_of({{0, 11}}, running, prices), 25 + running.back().left(), 1e-9);
+}
+
+TEST(StraightRuns, GoByAzimuth) {
+  const std::vector<double> x = {0, 1, 0, -1, 1};
+  const std::vector<double> y = {1, 0, -1, -1, 0};
+  const std::vector<double> z(5, 0);
+  const PointsView points{.x = x, .y = y, .z = z};
+  const std::vector<std::uint32_t> order = by_azimuth(points);
+  EXPECT_EQ(order, (std::vector<std::uint32_t>{3, 2, 1, 4, 0})) << "from −π on, equal ones as they come";
+  const auto running = crisp::running_sums(points, order, kSigma);
+  ASSERT_EQ(running.size(), 6U);
+  EXPECT_EQ(running[0].one, 0);
+  const LineSums first = LineSums::of(-1, -1, kSigma);
+  EXPECT_EQ(running[1].xy, first.xy);
 }
 
 }  // namespace

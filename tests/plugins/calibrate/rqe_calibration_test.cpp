@@ -69,6 +69,22 @@ TEST(CalibrateByRqe, SeesOnlySpotsAtCommensurateRates) {
   EXPECT_FALSE(sees_single_spots(sample_of(many), {}));
 }
 
+TEST(CalibrateByRqe, FindsTheLagsOfAPlateThatTurnsToAndFro) {
+  const auto measure = rqe_measure();
+  RqeCalibrationSettings settings = quick();
+  settings.full_field = false;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {  // kernels alone got three of these wrong
+    auto scanner = misplaced_scanner(seed, 10);
+    scanner.motion.kind = MotionKind::reversal;
+    const auto recording = simulate_measurements(scanner, hall());
+    const Outcome outcome = calibrate_by_rqe(SensorModel(nominal_calibration(default_rig())),
+                                             sample_of(recording), *measure, settings);
+    EXPECT_THAT(outcome.doubts, testing::IsEmpty()) << seed;
+    const Eigen::VectorXd error = outcome.model.values() - SensorModel(recording.truth).values();
+    for (const auto eta : {3, 7, 11}) EXPECT_LT(std::abs(error[eta]), 1e-3) << seed << ", " << eta;
+  }
+}
+
 TEST(CalibrateByRqe, FindsWhereALaserSitsThatIsThoughtToBeOnTheSpinAxis) {
   auto scanner = misplaced_scanner(1, 5.0);
   const auto recording = simulate_measurements(scanner, office());

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/straightness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/estimate/search_range.hpp"
+#include "pipeline/quality/straight_runs.hpp"
+#include "plugins/calibrate/valleys.hpp"
+
+namespace crisp {
+
+double straightness(const SensorModel& model, const Sample& sample, double noise) {
+  const Vectors points = place_all(model, sample.beams, *sample.plate);
+  const auto running = running_sums(points.view(), by_azimuth(points.view()), noise);
+  return price_of(straight_runs(running, {}), running, {});
+}
+
+bool turns_both_ways(const Sample& sample) {
+  constexpr double kShare = 0.1;
+  double forth = 0;
+  double back = 0;
+  for (const double time : sample.beams.time) {
+    const double rate = sample.plate->at(time)->rate;
+    (rate > 0 ? forth : back) += std::abs(rate);
+  }
+  return std::min(forth, back) > kShare * (forth + back);
+}
+
+double between_scans(const Sample& own) {
+  std::vector<double> gaps(own.beams.time.size());
+  std::adjacent_difference(own.beams.time.begin(), own.beams.time.end(), gaps.begin());
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  return *middle;
+}
+
+std::optional<Rival> to_straightest(SensorModel& model, std::size_t parameter,
+                                    const std::vector<double>& grid, bool circular, const Sample& sample,
+                                    double noise) {
+  constexpr std::size_t kValleys = 3;
+  constexpr double kRoughly = 3;  // times the noise, while it is looked everywhere
+  const auto price = [&](double by) {
+    return [&, by](double value) { return straightness(with_one(model, parameter, value), sample, by); };
+  };
+  auto places = valleys(price(kRoughly * noise), grid, circular);
+  places.resize(std::min(places.size(), kValleys));
+  if (places.empty()) return std::nullopt;
+  const double step = grid[1] - grid[0];
+  std::vector<Bottom> found;
+  for (const double place : places) {
+    found.push_back(bottom(price(noise), {.start = place,
+                                          .step = step,
+                                          .lower = place - 2 * step,
+                                          .upper = place + 2 * step,
+                                          .accuracy = 0.01}));
+  }
+  std::ranges::sort(found, {}, &Bottom::value);
+  const Bottom best = found.front();
+  model = with_one(model, parameter, best.at);
+  const auto rival = std::ranges::find_if(
+      found, [&](const Bottom& other) { return between(other.at, best.at, circular) > step; });
+  if (rival == found.end()) return std::nullopt;
+  return Rival{.parameter = parameter, .at = rival->at, .height = std::log(rival->value / best.value) / 2};
+}
+
+}  // namespace crisp
