@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/estimate/search_range.hpp"
 
+#include <algorithm>
+
 #include "pipeline/estimate/wanted_terms.hpp"
 
 namespace crisp {
@@ -49,6 +51,17 @@ SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free,
 
 SensorModel with_one(const SensorModel& model, std::size_t parameter, double value) {
   return with(model, {parameter}, Eigen::VectorXd::Constant(1, value));
+}
+
+Eigen::VectorXd within_bounds(const SensorModel& model, const std::vector<std::size_t>& free,
+                              Eigen::VectorXd x) {
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const EffectParameter* term = declared(model, free[i]);
+    if (!term || !(term->upper > term->lower)) continue;
+    double& value = x[static_cast<Eigen::Index>(i)];
+    value = std::clamp(value, term->lower, term->upper);
+  }
+  return x;
 }
 
 }  // namespace crisp

@@ -32,6 +32,10 @@ bool is_at_the_end(const SearchRange& range, const std::string& name, double val
 SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x);
 SensorModel with_one(const SensorModel& model, std::size_t parameter, double value);
 
+/// Values of the free parameters, those of terms no farther than their bounds.
+Eigen::VectorXd within_bounds(const SensorModel& model, const std::vector<std::size_t>& free,
+                              Eigen::VectorXd x);
+
 /// The values of the parameters in `free`, or the ranges in which they are looked for: those of terms are a
 /// share of their bounds.
 Eigen::VectorXd picked(const SensorModel& model, const std::vector<std::size_t>& free);

@@ -60,8 +60,10 @@ class Refiner {
     const auto posterior = (information_ + Eigen::MatrixXd(prior.asDiagonal())).eval().ldlt();
     covariance_ = posterior.solve(Eigen::MatrixXd::Identity(n, n));
     covariance_ = covariance_.selfadjointView<Eigen::Lower>();  // to the last bit
-    const Eigen::VectorXd change = -posterior.solve(pull);
-    model_ = with(model_, free_, picked(model_, free_) + change);
+    const Eigen::VectorXd before = picked(model_, free_);
+    const Eigen::VectorXd after = within_bounds(model_, free_, before - posterior.solve(pull));
+    const Eigen::VectorXd change = after - before;
+    model_ = with(model_, free_, after);
     agreement_ = agreement(found_, placed.view(), model_.lasers(), settings_.surfels.noise);
     last_step_ = (change.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
     return surfaces_->is_settled() && last_step_ < settings_.tolerance;

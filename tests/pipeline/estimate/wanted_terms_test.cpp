@@ -77,5 +77,24 @@ TEST(SurfelRefinement, FindsTermsTogetherWithTheMounting) {
   EXPECT_LT(error.dot(refined.outcome.covariance.inverse() * error), 45);
 }
 
+TEST(SurfelRefinement, KeepsTermsWithinTheirBounds) {
+  // Ranges settle at once: a step from a time constant of a second leads to one below zero, and from there
+  // to infinity.
+  ScannerSettings scanner = misplaced_scanner(1, 4.0);
+  add_wanted_terms(scanner.truth, {"laser2.range.warmup"}, built_in_terms());
+  std::vector<Parameter>& warmup = scanner.truth.lasers[1].terms[0].parameters;
+  warmup[0].value = -0.01;  // c
+  warmup[1].value = 0.02;   // T
+  const auto recording = simulate_measurements(scanner, office(), built_in_terms());
+  Calibration start = recording.truth;
+  start.lasers[1].terms[0].parameters[1].value = 1;
+  const Refinement refined = refine_by_surfels(SensorModel(start, built_in_terms()), sample_of(recording),
+                                               {.terms = {"laser2.range.warmup"}, .forms = true});
+  const Eigen::VectorXd found = refined.outcome.model.values();
+  EXPECT_TRUE(found.allFinite());
+  const std::size_t at = refined.outcome.model.index("laser2.range.warmup.T");
+  EXPECT_GE(found[static_cast<Eigen::Index>(at)], 0.5) << "as the term declares";
+}
+
 }  // namespace
 }  // namespace crisp
