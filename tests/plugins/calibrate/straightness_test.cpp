@@ -66,7 +66,9 @@ TEST(Straightness, TellsALagHoweverSpotsBunch) {
       const auto rival =
           to_straightest(model, eta, within(right + 0.005, 0.01), false, front_of(recording, laser), 0.1);
       EXPECT_NEAR(model.values()[static_cast<Eigen::Index>(eta)], right, 6e-4) << seed << ", " << laser;
-      if (rival) EXPECT_GT(rival->height, 0.1) << seed << ", " << laser;
+      if (rival) {
+        EXPECT_GT(rival->height, 0.1) << seed << ", " << laser;
+      }
     }
   }
 }
