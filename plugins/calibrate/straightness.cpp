@@ -43,7 +43,8 @@ std::optional<Rival> to_straightest(SensorModel& model, std::size_t parameter,
                                     const std::vector<double>& grid, bool circular, const Sample& sample,
                                     double noise) {
   constexpr std::size_t kValleys = 3;
-  constexpr double kRoughly = 3;  // times the noise, while it is looked everywhere
+  constexpr double kRoughly = 3;    // times the noise, while it is looked everywhere
+  constexpr double kOneValley = 3;  // steps: clutter makes dips in the valley's floor
   const auto price = [&](double by) {
     return [&, by](double value) { return straightness(with_one(model, parameter, value), sample, by); };
   };
@@ -63,7 +64,7 @@ std::optional<Rival> to_straightest(SensorModel& model, std::size_t parameter,
   const Bottom best = found.front();
   model = with_one(model, parameter, best.at);
   const auto rival = std::ranges::find_if(
-      found, [&](const Bottom& other) { return between(other.at, best.at, circular) > step; });
+      found, [&](const Bottom& other) { return between(other.at, best.at, circular) > kOneValley * step; });
   if (rival == found.end()) return std::nullopt;
   return Rival{.parameter = parameter, .at = rival->at, .height = std::log(rival->value / best.value) / 2};
 }
