@@ -143,17 +143,20 @@ std::pair<RangeErrors, NoiseDiagnosis> DiagnoseScatterStage::noise_of(std::size_
                                                                       Context& context) const {
   constexpr double kMuchLarger = 1.1;
   const std::string& name = calibration_->lasers[laser].name;
-  RangeErrors errors = scatter_of(laser, all.beams, all.met, all.usual, all.blocks);
-  if (errors.size() < kTooFew) return {std::move(errors), {}};
-  NoiseDiagnosis noise = diagnose_noise(name, errors, context.seed(), least_gain_);
+  const auto law_of = [&](RangeErrors errors) {
+    NoiseDiagnosis law;
+    if (errors.size() >= kTooFew) law = diagnose_noise(name, errors, context.seed(), least_gain_);
+    return std::pair(std::move(errors), std::move(law));
+  };
+  auto found = law_of(scatter_of(laser, all.beams, all.met, all.usual, all.blocks));
+  const auto& [errors, noise] = found;
+  if (errors.size() < kTooFew) return found;
   const double widest = widest_deviation(noise.law, errors);
-  if (!(widest > kMuchLarger * noise_)) return {std::move(errors), std::move(noise)};
+  if (!(widest > kMuchLarger * noise_)) return found;
   const Evidence wider = all_of(all.model, all.evidence.sample(), widest);
   const Met met = met_by(wider.surfels(), wider.beams(), all.beams.range);
-  RangeErrors again = scatter_of(laser, all.beams, met, usual_error(met), all.blocks);
-  if (again.size() < kTooFew) return {std::move(errors), std::move(noise)};
-  noise = diagnose_noise(name, again, context.seed(), least_gain_);
-  return {std::move(again), std::move(noise)};
+  auto again = law_of(scatter_of(laser, all.beams, met, usual_error(met), all.blocks));
+  return again.first.size() < kTooFew ? found : again;
 }
 
 NoiseLaw DiagnoseScatterStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
