@@ -152,7 +152,7 @@ std::string effects_of(const Hidden& hidden) {
     parameters += fmt::format("{}{}: {}", parameters.empty() ? "" : ", ", name, value);
   }
   const std::string owner =
-      hidden.scope == "plate" && built_in_terms().get(hidden.cause) ? "" : hidden.scope + ".";
+      hidden.scope == "plate" && built_in_terms().knows(hidden.cause) ? "" : hidden.scope + ".";
   return fmt::format("effects={{{}{}: {{{}}}{}}}", owner, hidden.cause, parameters, hidden.beside);
 }
 
