@@ -6,7 +6,6 @@
 #include <numbers>
 #include <utility>
 
-#include "pipeline/estimate/base_slots.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/valleys.hpp"
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "pipeline/data/robust.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/estimate/search_range.hpp"
 #include "pipeline/quality/straight_runs.hpp"
@@ -34,9 +35,7 @@ bool turns_both_ways(const Sample& sample) {
 double between_scans(const Sample& own) {
   std::vector<double> gaps(own.beams.time.size());
   std::adjacent_difference(own.beams.time.begin(), own.beams.time.end(), gaps.begin());
-  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  return *middle;
+  return middle_of(gaps);
 }
 
 std::optional<Rival> to_straightest(SensorModel& model, std::size_t parameter,
