@@ -22,6 +22,7 @@ std::vector<std::uint32_t> beams_of_scans(const Measurements& beams) {
 }
 
 constexpr std::uint32_t kPlaces = 4;  // along each side of a surface
+static_assert(kPlaces * kPlaces == kPlacesOfEach);
 
 /// Where a beam meets a surface's plane, not where noise has put its point: else beams would be sorted by
 /// their noise.
@@ -85,7 +86,7 @@ Division place_blocks(const Surfels& surfels, const BeamsView& beams) {
     const Surfel& surfel = surfels.surfels[s];
     for (const std::uint32_t i : surfels.beams_of(surfel)) {
       blocks[i] = static_cast<std::uint32_t>(
-          (kPlaces * kPlaces * s + place_on(surfel, foot_on(surfel, beams, i))) % kFewest);
+          (kPlacesOfEach * s + place_on(surfel, foot_on(surfel, beams, i))) % kFewest);
     }
   }
   return blocks;

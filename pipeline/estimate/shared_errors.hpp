@@ -20,7 +20,10 @@ Division recording_blocks(const Measurements& beams);
 /// A laser of fewer directions has pieces of the recording in their place.
 Division scan_blocks(const Measurements& beams);
 
-/// Which of sixteen places of a surface it is.
+/// Into how many places a surface is divided.
+inline constexpr std::uint32_t kPlacesOfEach = 16;
+
+/// Which of the places of a surface it is.
 ///
 /// @param foot  [m] from its middle, along u and v
 std::uint32_t place_on(const Surfel& surfel, const Eigen::Vector2d& foot);

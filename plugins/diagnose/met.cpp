@@ -14,7 +14,6 @@
 namespace crisp {
 namespace {
 
-constexpr std::uint32_t kPlacesOfEach = 16;
 constexpr double kSide = 0.1;   // [m] of a cell
 constexpr double kSteep = 0.5;  // least |cos β| of what is ahead
 constexpr double kAlong = 0.1;  // and of where a beam ends
