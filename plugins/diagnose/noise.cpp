@@ -53,10 +53,10 @@ double bic_of(const NoiseLaw& law, const RangeErrors& errors) {
 
 /// Mean log-likelihood of every other block under laws that were fitted to the rest.
 Gain gain_of(const NoiseLaw& before, const NoiseLaw& after, const RangeErrors& errors, std::uint64_t seed) {
-  const auto fitted_half = some_of(errors, [](std::uint32_t block) { return block % 2 == 0; });
+  const auto fitted_half = select(errors, [&](std::size_t i) { return errors.block[i] % 2 == 0; });
   const NoiseLaw first = fitted(before, fitted_half);
   const NoiseLaw second = fitted(after, fitted_half);
-  const auto rest = some_of(errors, [](std::uint32_t block) { return block % 2 == 1; });
+  const auto rest = select(errors, [&](std::size_t i) { return errors.block[i] % 2 == 1; });
   std::vector<double> without;
   std::vector<double> with;
   for (std::size_t i = 0; i < rest.size(); ++i) {

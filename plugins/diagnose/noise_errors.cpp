@@ -31,10 +31,7 @@ std::vector<LawInParts::Without> without_each(const std::vector<std::uint32_t>& 
   if (parts.empty() || std::ranges::max(parts) == 0) return {};
   std::vector<LawInParts::Without> without(std::ranges::max(parts) + std::size_t{1});
   for_each_index(without.size(), [&](std::size_t part) {
-    RangeErrors rest;
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-      if (parts[i] != part) rest.append(errors, i);
-    }
+    RangeErrors rest = select(errors, [&](std::size_t i) { return parts[i] != part; });
     rest.centre_beams();
     const auto left = static_cast<double>(rest.size());
     without[part] = {.share = 1 - left / static_cast<double>(errors.size()),
@@ -80,6 +77,7 @@ LawInParts in_parts(const NoiseLaw& law, const RangeErrors& errors) {
 std::vector<Parameter> parameters_of(const NoiseWay& way, const LawInParts& fits) {
   std::vector<Parameter> found = way.parameters(fits.law);
   for (std::size_t k = 0; k < found.size(); ++k) {
+    const double all = found[k].value;
     const auto told_by = [&](const std::vector<LawInParts::Without>& parts) {
       std::vector<double> shares;
       std::vector<double> values;
@@ -87,7 +85,7 @@ std::vector<Parameter> parameters_of(const NoiseWay& way, const LawInParts& fits
         shares.push_back(share);
         values.push_back(way.parameters(law)[k].value);
       }
-      return jackknife(way.parameters(fits.law)[k].value, shares, values);
+      return jackknife(all, shares, values);
     };
     const Told over_time = told_by(fits.times);
     found[k].value = std::max(0.0, over_time.value);

@@ -171,10 +171,10 @@ EchoConditions RangeErrors::echo(std::size_t i) const {
   return echo;
 }
 
-RangeErrors some_of(const RangeErrors& errors, const std::function<bool(std::uint32_t block)>& is_wanted) {
+RangeErrors select(const RangeErrors& errors, const std::function<bool(std::size_t)>& keep) {
   RangeErrors some;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (is_wanted(errors.block[i])) some.append(errors, i);
+    if (keep(i)) some.append(errors, i);
   }
   return some;
 }
@@ -183,7 +183,7 @@ RangeErrors thinned(const RangeErrors& errors, std::size_t most) {
   constexpr std::uint32_t kStrewn = 2'654'435'761;  // Knuth's multiplicative hash
   const auto nth = static_cast<std::uint32_t>((errors.size() + most - 1) / most);
   if (nth <= 1) return errors;
-  return some_of(errors, [nth](std::uint32_t block) { return (block * kStrewn >> 16) % nth == 0; });
+  return select(errors, [&](std::size_t i) { return (errors.block[i] * kStrewn >> 16) % nth == 0; });
 }
 
 std::size_t beams_of(const RangeErrors& errors) {

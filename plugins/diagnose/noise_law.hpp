@@ -76,8 +76,8 @@ struct NoiseLaw {
 ///                 missing then, on a slow way to the likeliest law.
 NoiseLaw fitted(const NoiseLaw& like, const RangeErrors& errors, double settled = 0.02);
 
-/// The ranges of some blocks.
-RangeErrors some_of(const RangeErrors& errors, const std::function<bool(std::uint32_t block)>& is_wanted);
+/// The ranges for which `keep(index)` holds, in their order.
+RangeErrors select(const RangeErrors& errors, const std::function<bool(std::size_t)>& keep);
 
 /// Some blocks of all, strewn, so that about `most` ranges are left.
 RangeErrors thinned(const RangeErrors& errors, std::size_t most);
