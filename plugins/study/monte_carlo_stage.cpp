@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "grabbers/simulate/device_effects.hpp"
+#include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/world_options.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
@@ -127,6 +128,7 @@ void MonteCarloStage::check(const RunSettings& run) const {
   make_motion(motion, settings_.trial.duration, 1);
   TrialSettings trial = settings_.trial;
   trial.rig = run.rig;
+  effects_of_real_devices(likeness_.devices, run.rig, laser_catalogue(known_terms(run)));
   use_effects(trial, run);
 }
 

@@ -133,6 +133,9 @@ TEST_F(ProgramTest, EndsWithTwoAndEveryMistakeWhenThePipelineIsWrong) {
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(outcome.error, expected);
   }
+  const Outcome study = crisp({"monte-carlo", "--set", "study.monte_carlo.devices=lms11"});
+  EXPECT_EQ(study.status, 2);
+  EXPECT_THAT(study.error, HasSubstr("did you mean 'lms111'?"));
 }
 
 TEST_F(ProgramTest, ValidatesWithoutOpeningInputOrOutput) {
