@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/simulate/real_devices.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <map>
 
-#include "grabbers/simulate/device_texts.hpp"
+#include "grabbers/simulate/built_in.hpp"
 #include "pipeline/data/error.hpp"
-#include "pipeline/files/nearest.hpp"
 #include "pipeline/files/yaml_map.hpp"
 #include "pipeline/stage/option_yaml.hpp"
 
@@ -18,14 +14,8 @@ namespace {
 
 /// `crisp: 1` and `effects`, written as in the option of that name, without owners.
 OptionGroups habits_of(const std::string& device) {
-  const auto text = std::ranges::find(kDeviceTexts, device, &DeviceText::name);
-  if (text == std::ranges::end(kDeviceTexts)) {
-    throw Error(
-        "there is no device '" + device + "'",
-        did_you_mean(device, real_devices(), fmt::format("known are {}", fmt::join(real_devices(), ", "))));
-  }
   const std::string file = device + ".yaml";
-  const YamlNode root = parse_yaml(text->yaml, file);
+  const YamlNode root = parse_yaml(text_of(device_texts(), "device", device), file);
   std::vector<Error> errors;
   YamlMap map(root, "device", errors);
   check_schema(map, 1);
@@ -60,11 +50,7 @@ std::map<std::string, std::string> likenesses(const std::vector<std::string>& wa
 }  // namespace
 
 const std::vector<std::string>& real_devices() {
-  static const std::vector<std::string> kNames = [] {
-    std::vector<std::string> all;
-    for (const DeviceText& device : kDeviceTexts) all.emplace_back(device.name);
-    return all;
-  }();
+  static const std::vector<std::string> kNames = names_of(device_texts());
   return kNames;
 }
 
