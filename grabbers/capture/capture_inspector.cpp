@@ -3,6 +3,7 @@
 
 #include "grabbers/capture/capture_reader.hpp"
 #include "grabbers/capture/capture_report.hpp"
+#include "grabbers/capture/captures_in.hpp"
 #include "grabbers/capture/pcap_records.hpp"
 #include "grabbers/capture/pcapng_blocks.hpp"
 
@@ -38,6 +39,6 @@ Inspection inspect(const std::filesystem::path& file, const Rig& rig) {
 
 }  // namespace
 
-Inspector capture_inspector() { return {"a capture", recognises, inspect}; }
+Inspector capture_inspector() { return {"a capture", recognises, inspect, capture_extensions()}; }
 
 }  // namespace crisp

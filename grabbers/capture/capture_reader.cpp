@@ -180,6 +180,8 @@ CaptureStatistics CaptureReader::statistics() const {
   statistics.notes.add(traffic_->file.notes());
   statistics.losses.add(traffic_->fragments.losses());
   statistics.devices = traffic_->devices.statistics();
+  statistics.pauses = traffic_->devices.pauses().count();
+  statistics.paused = traffic_->devices.pauses().seconds();
   return statistics;
 }
 

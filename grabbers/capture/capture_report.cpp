@@ -6,6 +6,8 @@
 
 #include <numbers>
 
+#include "pipeline/data/recordings.hpp"
+
 namespace crisp {
 namespace {
 
@@ -64,10 +66,6 @@ std::string describe(const ScanShape& shape) {
   return text;
 }
 
-std::uint64_t never_came(const DeviceStatistics& device) {
-  return device.losses.of(device.kind == DeviceKind::Laser ? kTelegramsNeverCame : kReadingsNeverCame);
-}
-
 std::string list(std::string_view what, const Counts& counts) {
   std::string text;
   for (const auto& [name, n] : counts.all()) text += fmt::format("\n    {:>9} {}", n, name);
@@ -103,6 +101,10 @@ std::string title(const DeviceStatistics& device) {
   return fmt::format("{} at {}", device.kind == DeviceKind::Laser ? "laser" : "plate", address);
 }
 
+std::uint64_t never_came(const DeviceStatistics& device) {
+  return device.losses.of(device.kind == DeviceKind::Laser ? kTelegramsNeverCame : kReadingsNeverCame);
+}
+
 nlohmann::json to_json(const CaptureStatistics& statistics) {
   auto devices = nlohmann::json::array();
   for (const auto& device : statistics.devices) devices.push_back(to_json(device));
@@ -112,6 +114,8 @@ nlohmann::json to_json(const CaptureStatistics& statistics) {
           {"first", seconds(statistics.first_ns)},
           {"last", seconds(statistics.last_ns)},
           {"duration", seconds(statistics.last_ns - statistics.first_ns)},
+          {"pauses", statistics.pauses},
+          {"paused", statistics.paused},
           {"link_types", to_json(statistics.link_types)},
           {"losses", to_json(statistics.losses)},
           {"notes", to_json(statistics.notes)},
@@ -137,6 +141,13 @@ std::string to_text(const CaptureStatistics& statistics) {
                         seconds(statistics.last_ns - statistics.first_ns), fmt::gmtime(first));
   }
   for (const auto& [link_type, n] : statistics.link_types.all()) text += fmt::format(", {}", link_type);
+  if (statistics.pauses > 0) {
+    text += fmt::format(
+        "\n  {} recordings, one after the other: nothing came for {:.1f} s in all between them (pauses of "
+        "{:.0f} s "
+        "and more, which are no losses)",
+        statistics.pauses + 1, statistics.paused, kPause);
+  }
   text += list("lost", statistics.losses) + list("noted", statistics.notes);
   if (statistics.devices.empty()) return text + "\nno lasers and no plate are in it";
   text += "\n\n" + device_table(statistics) + "\n";

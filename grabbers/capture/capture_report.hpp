@@ -11,6 +11,9 @@ namespace crisp {
 /// How a device is called: its name in the rig and its address, "laser1 (192.168.0.1:2112)".
 std::string title(const DeviceStatistics& device);
 
+/// How many of its items never came, by the device's own counter.
+std::uint64_t never_came(const DeviceStatistics& device);
+
 /// The statistics for programs. Times in s since the Unix epoch, durations in s, angles in rad.
 nlohmann::json to_json(const CaptureStatistics& statistics);
 

@@ -5,6 +5,7 @@
 
 #include "grabbers/capture/capture_report.hpp"
 #include "grabbers/capture/captures_in.hpp"
+#include "grabbers/capture/loss_warnings.hpp"
 #include "grabbers/capture/read_ahead.hpp"
 #include "pipeline/data/error.hpp"
 
@@ -49,7 +50,8 @@ void CaptureStage::describe(StageDescription<CaptureStage>& d) {
 void CaptureStage::check(const RunSettings& run) const { check_addresses(run.rig); }
 
 void CaptureStage::process(const Inputs&, Outputs& out, Context& context) {
-  const auto files = captures_in(file_);
+  const auto [files, left_out] = captures_in(file_);
+  for (const auto& why : left_out) context.warn("left out: " + why + "; is there a good copy?");
   std::uint64_t found = 0;
   std::string others;
   auto sections = nlohmann::json::array();
@@ -122,6 +124,7 @@ std::uint64_t CaptureStage::report(const CaptureStatistics& statistics, const st
                                    Context& context) {
   context.say(device_table(statistics));
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
+  for (auto& warning : loss_warnings(statistics, file.filename().string())) context.warn(std::move(warning));
   std::uint64_t found = 0;
   for (const auto& device : statistics.devices) {
     if (device.name.empty()) {

@@ -37,8 +37,10 @@ struct DeviceStatistics {
   Counts losses;                              ///< what is missing, by reason
   Counts notes;                               ///< what was out of the ordinary without loss
   std::int64_t first_ns = 0, last_ns = 0;     ///< [ns since the Unix epoch] receipt of first and last item
-  double longest_silence = 0;                 ///< [s] between two items
+  double longest_silence = 0;                 ///< [s] between two items, pauses between recordings included
   std::int64_t silence_ns = 0;                ///< [ns since the Unix epoch] when that began
+  std::uint64_t pauses = 0;                   ///< between recordings: nothing came from any device
+  std::int64_t paused_ns = 0;                 ///< [ns] from last to first items around them
   std::vector<std::uint32_t> serial_numbers;  ///< of a laser
   std::optional<double> median_handover;      ///< [s] transmission time − scan time, median
   std::optional<double> period;  ///< [s] of the mirror, measured by the laser's own clock, median
@@ -46,7 +48,7 @@ struct DeviceStatistics {
   double nominal_frequency = 0;  ///< [Hz] that a laser claims
   ScanShape shape;
 
-  /// [Hz] items a second, 0 for fewer than two.
+  /// [Hz] items a second within recordings, 0 for fewer than two.
   double rate() const;
   /// The number of whole mirror periods by which the stamps seem to be late, as a rig's `period_offset`: −1
   /// where a scan is handed out before it can be over (median handover below 0.75 periods), otherwise 0.
@@ -59,6 +61,8 @@ struct CaptureStatistics {
   std::uint64_t bytes = 0;                 ///< of the packets
   std::uint64_t file_bytes = 0;            ///< read from the file
   std::int64_t first_ns = 0, last_ns = 0;  ///< [ns since the Unix epoch] of the packets
+  std::uint64_t pauses = 0;                ///< of kPause and more, between recordings: nothing came at all
+  double paused = 0;                       ///< [s] in all
   Counts link_types;                       ///< packets by link type
   Counts losses;                           ///< what the file or the network lost, not attributed to a device
   Counts notes;

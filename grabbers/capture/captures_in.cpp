@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 #include "grabbers/capture/capture_file.hpp"
@@ -13,34 +12,51 @@
 namespace crisp {
 namespace {
 
-/// [ns since the Unix epoch] When the first packet came; nothing for what is no capture, or holds none.
-std::optional<std::int64_t> first_packet(const std::filesystem::path& file) {
+/// [ns since the Unix epoch] When the first packet came. @throws Error if there is none, or no capture
+std::int64_t first_packet(const std::filesystem::path& file) {
+  CaptureFile capture(file);
+  const Packet* packet = capture.next();
+  if (packet == nullptr) throw Error(file.string() + " holds no packet");
+  return packet->time_ns;
+}
+
+bool begins_like_a_capture(const std::filesystem::path& file) {
+  FileWindow window(file);
+  const auto begin = window.peek(4);
+  return PcapRecords::recognises(begin) || PcapngBlocks::recognises(begin);
+}
+
+bool ought_to_be_a_capture(const std::filesystem::path& file) {
+  if (has_extension(file, capture_extensions())) return true;
   try {
-    CaptureFile capture(file);
-    const Packet* packet = capture.next();
-    if (packet != nullptr) return packet->time_ns;
-  } catch (const Error&) {
-    // Notes, rigs and results may lie beside captures.
+    return begins_like_a_capture(file);
+  } catch (const Error&) {  // notes that may not be read: nobody asked for them
+    return false;
   }
-  return {};
 }
 
 }  // namespace
 
-std::vector<std::filesystem::path> captures_in(const std::filesystem::path& path) {
+Captures captures_in(const std::filesystem::path& path) {
   std::error_code none;
-  if (!std::filesystem::is_directory(path, none)) return {path};
+  if (!std::filesystem::is_directory(path, none)) return {.files = {path}};
   std::vector<std::pair<std::int64_t, std::filesystem::path>> found;
+  Captures captures;
   for (const auto& file : files_in(path)) {
-    if (const auto first_ns = first_packet(file)) found.emplace_back(*first_ns, file);
+    try {
+      found.emplace_back(first_packet(file), file);
+    } catch (const Error& error) {  // notes, rigs and results may lie beside captures
+      if (ought_to_be_a_capture(file)) captures.left_out.push_back(error.message());
+    }
   }
   if (found.empty()) {
-    throw Error(path.string() + " is a folder without any capture",
+    std::string why;
+    for (const auto& reason : captures.left_out) why += (why.empty() ? ": " : "; ") + reason;
+    throw Error(path.string() + " is a folder without any capture that can be read" + why,
                 "captures come from tcpdump, dumpcap, Wireshark or crisp record");
   }
   std::ranges::sort(found);
-  std::vector<std::filesystem::path> captures;
-  for (auto& [first_ns, file] : found) captures.push_back(std::move(file));
+  for (auto& [first_ns, file] : found) captures.files.push_back(std::move(file));
   return captures;
 }
 

@@ -2,13 +2,24 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace crisp {
 
-/// The captures that a path stands for: a file stands for itself, a folder for the captures in it, but not in
-/// folders of its own, in the order of their first packets.
+/// What the names of captures end in: see has_extension().
+inline std::vector<std::string> capture_extensions() { return {".pcap", ".pcapng", ".cap"}; }
+
+/// The captures that a path stands for.
+struct Captures {
+  std::vector<std::filesystem::path> files;  ///< in the order of their first packets
+  /// Why a file of a folder that is a capture by its name or its first bytes is not among them.
+  std::vector<std::string> left_out;
+};
+
+/// A file stands for itself, a folder for the captures in it, but not in folders of its own. What is no
+/// capture by its name either may lie beside them.
 /// @throws Error if a folder cannot be read or holds no capture
-std::vector<std::filesystem::path> captures_in(const std::filesystem::path& path);
+Captures captures_in(const std::filesystem::path& path);
 
 }  // namespace crisp

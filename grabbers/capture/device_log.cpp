@@ -8,9 +8,11 @@
 namespace crisp {
 
 double DeviceStatistics::rate() const {
-  return items < 2 || last_ns <= first_ns
+  const auto heard_ns = last_ns - first_ns - paused_ns;
+  const auto intervals = items - std::min(items, 1 + pauses);
+  return intervals == 0 || heard_ns <= 0
              ? 0
-             : static_cast<double>(items - 1) / (1e-9 * static_cast<double>(last_ns - first_ns));
+             : static_cast<double>(intervals) / (1e-9 * static_cast<double>(heard_ns));
 }
 
 int DeviceStatistics::period_hint() const {
@@ -18,8 +20,8 @@ int DeviceStatistics::period_hint() const {
   return median_handover && period && *median_handover < kSweep * *period ? -1 : 0;
 }
 
-DeviceLog::DeviceLog(DeviceKind kind, std::string name, Address address, std::uint16_t laser)
-    : laser_(laser) {
+DeviceLog::DeviceLog(DeviceKind kind, std::string name, Address address, std::uint16_t laser, Pauses* pauses)
+    : laser_(laser), pauses_(pauses) {
   statistics_.kind = kind;
   statistics_.name = std::move(name);
   statistics_.address = std::move(address);
@@ -43,12 +45,27 @@ void DeviceLog::count_telegram(std::string_view kind) {
   statistics_.telegrams.add(full ? "others" : kind);
 }
 
+/// What the counters say of a pause between two recordings is no loss, and clocks may be others behind it.
+void DeviceLog::note_pause(std::uint32_t device_us, std::int64_t time_ns) {
+  auto& s = statistics_;
+  if (pauses_ == nullptr) return;
+  pauses_->hear(time_ns);
+  if (s.items == 0 || !pauses_->last_is_between(s.last_ns, time_ns)) return;
+  ++s.pauses;
+  s.paused_ns += time_ns - s.last_ns;
+  tracker_.restart();
+  clock_.restart();
+  clock_.take(device_us, time_ns);
+  last_scan_.reset();
+}
+
 bool DeviceLog::is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns) {
   if (clock_.take(device_us, time_ns)) {
     note("restarts of the device's clock");
     tracker_.restart();
     last_scan_.reset();
   }
+  note_pause(device_us, time_ns);
   const auto verdict = tracker_.take(counter, device_us, time_ns);
   if (verdict == SequenceTracker::Verdict::Late) note("items that came late");
   if (verdict == SequenceTracker::Verdict::Duplicate) note("items that came twice");

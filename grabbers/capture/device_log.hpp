@@ -6,6 +6,7 @@
 #include <string>
 
 #include "grabbers/capture/capture_statistics.hpp"
+#include "grabbers/capture/pauses.hpp"
 #include "grabbers/capture/rough_clock.hpp"
 #include "grabbers/capture/running_median.hpp"
 #include "grabbers/capture/sequence_tracker.hpp"
@@ -20,8 +21,10 @@ namespace crisp {
 /// count.
 class DeviceLog {
  public:
-  /// @param laser index of the laser in the rig
-  DeviceLog(DeviceKind kind, std::string name, Address address, std::uint16_t laser = 0);
+  /// @param laser  index of the laser in the rig
+  /// @param pauses of all devices of a capture, if there may be several recordings in it; outlives this
+  DeviceLog(DeviceKind kind, std::string name, Address address, std::uint16_t laser = 0,
+            Pauses* pauses = nullptr);
 
   /// A telegram of a laser; gives a scan if it holds one that did not come before, otherwise nullptr.
   std::shared_ptr<const Scan> take(const ColaFrame& frame, EncoderWidths widths);
@@ -40,12 +43,14 @@ class DeviceLog {
   std::shared_ptr<const Scan> take_scan(const ColaTelegram& telegram, std::int64_t time_ns,
                                         EncoderWidths widths);
   bool is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns);
+  void note_pause(std::uint32_t device_us, std::int64_t time_ns);
   void count_telegram(std::string_view kind);
   void note_time(std::int64_t time_ns);
   void note_scan(const Scan& scan);
 
   DeviceStatistics statistics_;
   std::uint16_t laser_ = 0;
+  Pauses* pauses_ = nullptr;
   ScanData data_;
   Pool<Scan> scans_;
   std::string kind_;  ///< of a telegram: here to keep its memory

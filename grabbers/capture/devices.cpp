@@ -35,7 +35,7 @@ void Devices::add(DeviceKind kind, const std::string& name, const Address& addre
     }
   }
   known_.push_back(std::make_unique<Device>(
-      Device{DeviceLog(kind, name, address, index), index, kind, *ip, address.port}));
+      Device{DeviceLog(kind, name, address, index, pauses_.get()), index, kind, *ip, address.port}));
 }
 
 Devices::Device* Devices::known(const FlowKey& key) {
@@ -54,8 +54,8 @@ Devices::Device* Devices::other(const FlowKey& key, DeviceKind kind) {
   const auto found = others_.find(place);
   if (found != others_.end()) return found->second.get();
   if (others_.size() >= kMost) return nullptr;
-  auto device = std::make_unique<Device>(
-      Device{DeviceLog(kind, "", to_address(key.from)), std::nullopt, kind, key.from.ip, key.from.port});
+  auto device = std::make_unique<Device>(Device{DeviceLog(kind, "", to_address(key.from), 0, pauses_.get()),
+                                                std::nullopt, kind, key.from.ip, key.from.port});
   return others_.emplace(place, std::move(device)).first->second.get();
 }
 

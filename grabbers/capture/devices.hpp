@@ -37,10 +37,12 @@ class Devices {
   Device* other(const FlowKey& key, DeviceKind kind);
 
   std::vector<DeviceStatistics> statistics() const;
+  const Pauses& pauses() const { return *pauses_; }
 
  private:
   void add(DeviceKind kind, const std::string& name, const Address& address, std::uint16_t index);
 
+  std::unique_ptr<Pauses> pauses_ = std::make_unique<Pauses>();
   std::vector<std::unique_ptr<Device>> known_;
   std::map<std::pair<Endpoint, DeviceKind>, std::unique_ptr<Device>> others_;
 };

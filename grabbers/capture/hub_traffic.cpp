@@ -27,6 +27,13 @@ Address hub_for(const Address& device, std::uint16_t port) {
   return hub;
 }
 
+/// The numbers follow a clock of 4 µs, as RFC 9293 (3.4.1) wants it: what a later session appends to a
+/// capture is then not taken for the first one's bytes, sent again.
+TcpSettings begun_at(std::int64_t time_ns) {
+  const auto ticks = static_cast<std::uint32_t>(time_ns / 4000);
+  return {.server_sequence = ticks, .client_sequence = ticks + (1U << 31)};
+}
+
 Address with_port(Address address, std::uint16_t usual) {
   if (address.port == 0) address.port = usual;
   return address;
@@ -46,7 +53,7 @@ void HubTraffic::connect(std::size_t laser, std::int64_t time_ns) {
   const auto port = static_cast<std::uint16_t>(kFirstClientPort + connections_++ % kClientPorts);
   const Address& server = addresses_.at(laser);
   auto& connection = lasers_.at(laser);
-  connection = std::make_unique<TcpConversation>(server, hub_for(server, port), sink_);
+  connection = std::make_unique<TcpConversation>(server, hub_for(server, port), sink_, begun_at(time_ns));
   connection->open(time_ns);
   const std::vector<ColaValue> on{std::uint8_t{1}};
   connection->send(TcpSide::Client, cola_message("sEN", kScanDataName, on, language_),

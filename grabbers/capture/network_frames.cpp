@@ -65,6 +65,21 @@ Tins::RawPDU raw(ByteView bytes) { return {bytes.data(), static_cast<std::uint32
 
 }  // namespace
 
+bool has_own_hardware_addresses(ByteView frame) {
+  constexpr std::size_t kIp = 14, kLastFour = 4;  // an Ethernet header's length; bytes of the IP address
+  constexpr std::size_t kTarget = 0, kSource = 6;
+  if (frame.size() < kIp + 1) return false;
+  const bool ipv6 = frame[kIp] >> 4U == 6;
+  const std::size_t source_ip = kIp + (ipv6 ? 20 : 12), target_ip = kIp + (ipv6 ? 36 : 16);
+  if (frame.size() < target_ip + kLastFour) return false;
+  const auto belongs = [&](std::size_t hardware, std::size_t ip) {
+    const auto address = frame.subspan(hardware, 6);
+    return address[0] == 2 && address[1] == 0 &&
+           std::ranges::equal(address.subspan(2), frame.subspan(ip, kLastFour));
+  };
+  return belongs(kTarget, target_ip) && belongs(kSource, source_ip);
+}
+
 void FrameSorter::push(std::int64_t time_ns, ByteView frame) {
   held_.emplace(time_ns, Bytes(frame.begin(), frame.end()));
   while (held_.begin()->first + hold_ns_ <= held_.rbegin()->first && held_.size() > 1) {

@@ -27,6 +27,9 @@ class FrameSorter {
   std::multimap<std::int64_t, Bytes> held_;
 };
 
+/// Whether a frame has the hardware addresses that this program gives to what it writes.
+bool has_own_hardware_addresses(ByteView frame);
+
 /// How a TCP connection looks on the wire.
 struct TcpSettings {
   std::size_t largest_segment = 1460;  ///< [bytes] of payload: what fits in Ethernet's 1500

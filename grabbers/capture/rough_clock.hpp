@@ -15,6 +15,9 @@ class RoughClock {
   ///         the hub's by more than a minute. What was known of its rate is then forgotten.
   bool take(std::uint32_t device_us, std::int64_t receipt_ns);
 
+  /// What comes next has nothing in common with what came before.
+  void restart() { begun_ = false; }
+
   /// Hub seconds per device second, less 1: the edge of the lower convex hull of (device time, delay) in the
   /// middle. Nothing before 10 s of device time, where delays decide.
   std::optional<double> skew() const;

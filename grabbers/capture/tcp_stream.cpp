@@ -8,7 +8,8 @@
 namespace crisp {
 namespace {
 
-constexpr std::int64_t kWindow = 1 << 20;  // [bytes] how far from its stream a segment is believed
+constexpr std::int64_t kWindow = 1 << 20;           // [bytes] how far from its stream a segment is believed
+constexpr std::int64_t kLastTry = 130'000'000'000;  // [ns] an unanswered handshake is repeated for 127 s
 constexpr std::size_t kMostHeld = 4 << 20, kMostSegments = 4096;
 
 }  // namespace
@@ -16,21 +17,31 @@ constexpr std::size_t kMostHeld = 4 << 20, kMostSegments = 4096;
 void TcpStream::take(const TransportPacket& segment, std::int64_t time_ns) {
   expire(time_ns);
   const auto sequence = segment.sequence + (segment.syn ? 1 : 0);
-  const bool same_begin = begun_ && position_ < std::uint64_t{kWindow} && sequence == first_;
-  if (segment.syn && !same_begin) begin(sequence);
+  if (segment.syn && !is_handshake_again(sequence, time_ns)) begin(sequence, time_ns);
   if (!segment.payload.empty() || segment.missing > 0) {
-    if (!begun_) begin(sequence);
+    if (!begun_) begin(sequence, time_ns);
     place(sequence, segment.payload, segment.missing, time_ns);
   }
   if (segment.reset) finish();
+  over_ = over_ || segment.fin || segment.reset;
 }
 
-void TcpStream::begin(std::uint32_t sequence) {
+/// Whether this begin is that of the present connection, sent or captured again. Another connection may begin
+/// with the same number: then the one before is over, or this comes later than a repetition would.
+bool TcpStream::is_handshake_again(std::uint32_t sequence, std::int64_t time_ns) const {
+  if (!begun_ || over_ || sequence != first_) return false;
+  const bool answered = position_ > 0 || !held_.empty();
+  return time_ns - begun_ns_ <= (answered ? max_wait_ns_ : kLastTry);
+}
+
+void TcpStream::begin(std::uint32_t sequence, std::int64_t time_ns) {
   if (begun_) {
     finish();
     sink_.gap();
   }
   begun_ = true;
+  begun_ns_ = time_ns;
+  over_ = false;
   first_ = sequence;
   position_ = 0;
   ++counts_.connections;
@@ -154,7 +165,7 @@ bool TcpStream::stray(std::uint32_t sequence, ByteView bytes, std::int64_t time_
   if (continues) {
     const auto before = std::move(*stray_);
     stray_.reset();
-    begin(before.sequence);
+    begin(before.sequence, before.arrival_ns);
     deliver(before.bytes, before.arrival_ns);
     return true;
   }

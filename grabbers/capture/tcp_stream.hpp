@@ -60,7 +60,8 @@ class TcpStream {
     std::int64_t arrival_ns = 0;
   };
 
-  void begin(std::uint32_t sequence);
+  bool is_handshake_again(std::uint32_t sequence, std::int64_t time_ns) const;
+  void begin(std::uint32_t sequence, std::int64_t time_ns);
   void place(std::uint32_t sequence, ByteView bytes, std::uint32_t missing, std::int64_t time_ns);
   void deliver(ByteView bytes, std::int64_t arrival_ns);
   void hold(std::uint64_t offset, ByteView bytes, std::int64_t time_ns);
@@ -75,6 +76,8 @@ class TcpStream {
   StreamSink& sink_;
   std::int64_t max_wait_ns_;
   bool begun_ = false;
+  std::int64_t begun_ns_ = 0;
+  bool over_ = false;           ///< a side has ended the connection
   std::uint32_t first_ = 0;     ///< sequence number of the first byte
   std::uint64_t position_ = 0;  ///< of the next byte to deliver, counted from the first
   std::map<std::uint64_t, Held> held_;

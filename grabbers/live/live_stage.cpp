@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <string_view>
 
 #include "grabbers/capture/capture_report.hpp"
+#include "grabbers/capture/loss_warnings.hpp"
 #include "grabbers/live/endpoints.hpp"
 #include "grabbers/live/live_status.hpp"
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/error.hpp"
 
 namespace crisp {
@@ -17,6 +20,7 @@ namespace {
 constexpr std::chrono::milliseconds kPatience{50};  // between two looks at whether the run is to stop
 
 constexpr double kTellEvery = 0.5;  // [s]
+constexpr double kFirstWithin = 5;  // [s] for connecting, logging in and a second try
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -64,7 +68,9 @@ void LiveStage<devices>::describe(StageDescription<LiveStage>& d) {
   d.endless();
   if constexpr (kLasers) d.template gives<Scan>();
   if constexpr (kPlate) d.template gives<PlateReading>();
-  d.option("duration", &LiveStage::duration_, "how long from the first item on; auto: until Ctrl-C")
+  d.option("duration", &LiveStage::duration_,
+           "how long from the first item on, which is waited for as long, and at least for 5 s; auto: until "
+           "Ctrl-C")
       .unit("s")
       .at_least(0);
   d.option("queue", &LiveStage::settings_, &LiveSettings::queue, "items that may wait for the stages below")
@@ -133,26 +139,36 @@ void LiveStage<devices>::describe_plate(StageDescription<LiveStage>& d) {
 
 template <LiveDevices devices>
 void LiveStage<devices>::check(const RunSettings& run) const {
+  AllErrors errors;
   for (const RigLaser& laser : run.rig.lasers) {
-    if (kLasers) ip_of(laser.address);
+    if (kLasers) errors.keep_of([&] { ip_of(laser.address); });
   }
-  if (kPlate && settings_.plate_at.transport != PlateTransport::Serial) ip_of(run.rig.plate.address);
-  crisp::check(settings_.sick.configuration);
-  if (!settings_.sick.start && !settings_.sick.configuration.is_empty()) {
+  const auto& plate_at = settings_.plate_at;
+  if (kPlate && plate_at.transport != PlateTransport::Serial) {
+    errors.keep_of([&] { ip_of(run.rig.plate.address); });
+  }
+  if (kPlate && plate_at.transport == PlateTransport::Datagrams) {
+    errors.keep_of([&] { ip_of({plate_at.listen, 0}); });
+  }
+  errors.keep_of([&] { crisp::check(settings_.sick.configuration); });
+  errors.keep_of([&] {
+    if (settings_.sick.start || settings_.sick.configuration.is_empty()) return;
     throw Error("lasers that are not logged into cannot be configured", "leave out start: false");
-  }
+  });
+  errors.throw_any();
 }
 
 template <LiveDevices devices>
 void LiveStage<devices>::process(const Inputs&, Outputs& out, Context& context) {
   LiveSource source(context.rig(), settings_);
   LiveStatus status;
+  const double began = seconds_now();
   std::optional<double> first;
-  double told = seconds_now();
+  double told = began;
   while (!context.interrupted()) {
     const double now = seconds_now();
-    const double elapsed = first ? now - *first : 0;
-    if (duration_ && elapsed > *duration_) break;
+    const double elapsed = now - first.value_or(began);
+    if (duration_ && elapsed > (first ? *duration_ : std::max(*duration_, kFirstWithin))) break;
     if (context.is_watched() && now - told >= kTellEvery) {
       told = now;
       context.tell(status.tell(source.statistics(), now, source.waiting(), running(elapsed)));
@@ -188,6 +204,7 @@ void LiveStage<devices>::report(const CaptureStatistics& statistics, Context& co
   context.report(to_json(statistics));
   context.say(device_table(statistics));
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
+  for (auto& warning : loss_warnings(statistics)) context.warn(std::move(warning));
   for (const auto& device : statistics.devices) {
     for (const auto& [what, n] : device.losses.all()) context.count(device.name + ": " + what, n);
     for (const auto& [what, n] : device.notes.all()) context.count(device.name + ": " + what, n);

@@ -5,21 +5,15 @@
 
 #include <utility>
 
+#include "grabbers/capture/capture_report.hpp"
 #include "pipeline/data/robust.hpp"
 
 namespace crisp {
-namespace {
-
-/// Items that never came, by the device's own counter: other losses are of bytes and telegrams of the same.
-std::uint64_t never_came(const DeviceStatistics& device) {
-  return device.losses.of(device.kind == DeviceKind::Laser ? kTelegramsNeverCame : kReadingsNeverCame);
-}
-
-}  // namespace
 
 std::uint64_t lost_items(const CaptureStatistics& statistics) {
   std::uint64_t lost = 0;
   for (const auto& [what, n] : statistics.losses.all()) lost += n;
+  // a device's other losses are of bytes and telegrams of the same items
   for (const auto& device : statistics.devices) lost += never_came(device);
   return lost;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
@@ -16,6 +17,7 @@ class GrabCloudStage final : public Stage {
 
  private:
   std::filesystem::path file_;
+  std::vector<double> shift_ = {0, 0, 0};  ///< [m]
 };
 
 }  // namespace crisp

@@ -81,6 +81,6 @@ bool recognises(std::string_view head) {
 
 }  // namespace
 
-Inspector pcd_inspector() { return {"a cloud", recognises, inspect}; }
+Inspector pcd_inspector() { return {"a cloud", recognises, inspect, {".pcd"}}; }
 
 }  // namespace crisp

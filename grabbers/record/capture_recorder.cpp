@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "grabbers/capture/capture_file.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 #include "pipeline/data/error.hpp"
@@ -20,7 +21,26 @@ constexpr std::size_t kAtOnce = 4096;  // items that are written before the paus
 constexpr std::size_t kMostWaiting =
     40000;  // items: a minute's of three lasers at 50 Hz and a plate at 500 Hz
 
+bool is_own(const std::filesystem::path& file) {
+  try {
+    CaptureFile capture(file);
+    const Packet* first = capture.next();
+    return first == nullptr || has_own_hardware_addresses(first->bytes);
+  } catch (const Error&) {  // no capture at all
+    return false;
+  }
+}
+
 }  // namespace
+
+void refuse_foreign(const std::filesystem::path& file) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(file, none) || std::filesystem::file_size(file, none) == 0) return;
+  if (is_own(file)) return;
+  throw Error(
+      file.string() + " is there already and is no recording of crisp's, which alone can be continued",
+      "give another name or folder, or move the file away");
+}
 
 /// One capture that is being written.
 struct CaptureRecorder::File {
@@ -83,6 +103,7 @@ void CaptureRecorder::open() {
     path.replace_filename(first_.stem().string() + "-" + std::to_string(files_.size() + 1) +
                           first_.extension().string());
   }
+  refuse_foreign(path);
   file_ = std::make_unique<File>(path, rig_);
   file_->pcap.flush();  // readable from the beginning on
   files_.push_back(std::move(path));

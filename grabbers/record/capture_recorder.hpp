@@ -16,6 +16,10 @@
 
 namespace crisp {
 
+/// A recording that crisp wrote can be written on; a file that came from elsewhere stays as it is.
+/// @throws Error  if there is such a file
+void refuse_foreign(const std::filesystem::path& file);
+
 struct RecorderSettings {
   double safe_after =
       0.5;  ///< [s] within which what was written is on the disk, whatever happens to the machine
@@ -29,8 +33,9 @@ struct RecorderSettings {
 /// that nobody waits for the disk, and what came is on it soon, whether anything more comes or not.
 class CaptureRecorder {
  public:
-  /// @param file  the first one; the next are name-2.pcap, name-3.pcap … A file that exists is written on.
-  /// @throws Error  if it cannot be written, or is no capture of this kind
+  /// @param file  the first one; the next are name-2.pcap, name-3.pcap … A recording that exists is written
+  /// on.
+  /// @throws Error  if it cannot be written, or is no recording of crisp's
   CaptureRecorder(std::filesystem::path file, Rig rig, const RecorderSettings& settings);
   ~CaptureRecorder();
   CaptureRecorder(const CaptureRecorder&) = delete;

@@ -15,11 +15,13 @@ void RecordStage::describe(StageDescription<RecordStage>& d) {
       "times of receipt.\n\n"
       "The file grows in place, and what was received is on the disk soon after: neither Ctrl-C nor a power "
       "cut "
-      "leaves a file that cannot be read. A file that exists is written on. A disk that is full ends the "
+      "leaves a file that cannot be read. A recording that is there already is written on; another's file of "
+      "that "
+      "name is refused. A disk that is full ends the "
       "recording, "
       "and the run's summary says so; the other stages go on.");
   d.takes<Scan>().takes<PlateReading>();
-  d.option("file", &RecordStage::file_, "the capture").writes().required();
+  d.option("file", &RecordStage::file_, "the capture").writes({"<stem>-#<ext>"}).required();
   d.option("most_bytes", &RecordStage::settings_, &RecorderSettings::most_bytes,
            "about so large a file may become; then file-2.pcap is begun, and so on; 0: no limit")
       .range(0, 1e15);
@@ -32,6 +34,8 @@ void RecordStage::describe(StageDescription<RecordStage>& d) {
       .unit("s")
       .range(0, 60);
 }
+
+void RecordStage::check(const RunSettings&) const { refuse_foreign(file_); }
 
 void RecordStage::write(HubItem item, Context& context) {
   ++given_;

@@ -18,6 +18,7 @@ class RecordStage final : public Stage {
  public:
   static void describe(StageDescription<RecordStage>& d);
 
+  void check(const RunSettings& run) const override;
   void process(const Inputs& in, Outputs& out, Context& context) override;
   void finish(Outputs& out, Context& context) override;
 

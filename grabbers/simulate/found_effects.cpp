@@ -104,8 +104,8 @@ FoundEffects effects_of(const Findings& findings, const std::string& file, const
   FoundEffects result;
   OptionGroups wanted;
   for (const Found& found : all_found(findings)) {
-    check_device(found, file, rig);
     const auto info = std::ranges::find(catalogue, found.cause, &EffectInfo::name);
+    if (info == catalogue.end() || info->scope != Scope::kScene) check_device(found, file, rig);
     if (found.cause == "noise.mixed_pixels") {
       result.others.push_back(fmt::format(
           "{} of {}: the file has the share of edges, not the width of the spot", found.cause, found.scope));

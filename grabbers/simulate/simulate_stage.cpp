@@ -11,6 +11,7 @@
 #include "grabbers/simulate/put_in_stage.hpp"
 #include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/truth_file.hpp"
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/quantity.hpp"
 
@@ -55,15 +56,19 @@ RecordingSettings SimulateStage::settings(const RunSettings& run) const {
 
 void SimulateStage::check(const RunSettings& run) const {
   RecordingSettings planned = settings(run);
-  planned.scanner.truth = hidden_.drawn(run, planned.scanner.seed);
   const TermRegistry& terms = known_terms(run);
   const auto catalogue = recording_catalogue(terms);
-  auto effects = effects_of_real_devices(likeness_.devices, run.rig, catalogue);
-  std::ranges::move(read_effects(hidden_.effects, run.rig, catalogue), std::back_inserter(effects));
+  std::vector<Effect> effects;
+  check_all([&] { planned.scanner.truth = hidden_.drawn(run, planned.scanner.seed); },
+            [&] { effects = effects_of_real_devices(likeness_.devices, run.rig, catalogue); },
+            [&] {
+              std::ranges::move(read_effects(hidden_.effects, run.rig, catalogue),
+                                std::back_inserter(effects));
+            },
+            [&] { make_motion(planned.scanner.motion, planned.scanner.duration, planned.scanner.seed); },
+            [&] { planned.scanner.field.beams(); });
   add_terms(planned.scanner.truth, apply_device_effects(std::move(effects), planned), terms);
   draw_devices(planned);
-  make_motion(planned.scanner.motion, planned.scanner.duration, planned.scanner.seed);
-  planned.scanner.field.beams();
 }
 
 void SimulateStage::process(const Inputs&, Outputs& out, Context& context) {

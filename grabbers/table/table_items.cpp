@@ -72,6 +72,8 @@ std::shared_ptr<const Scan> TableItems::scan_of(const TableRow& row, std::int64_
   scan->laser = row.laser;
   scan->serial_number = row.laser;
   scan->telegram_counter = scan->scan_counter = static_cast<std::uint16_t>(turn_);
+  scan->numbered = row.counter.has_value();
+  scan->timed = !row.counter && row.time_ns;
   const std::int64_t stamp_us = row.counter ? microseconds(static_cast<double>(turn_) * format_.period)
                                             : (time_ns - epoch_ns_) / kMicrosecond;
   scan->scan_time_us = wrapped_us(stamp_us);
@@ -155,7 +157,8 @@ TableScan TableItems::add(const TableRow& row, std::int64_t time_ns) {
     item.reading = PlateReading{.sequence = readings_++,
                                 .device_us = wrapped_us((time_ns - epoch_ns_) / kMicrosecond),
                                 .count = static_cast<std::uint32_t>(static_cast<std::int64_t>(counts)),
-                                .receipt_ns = time_ns};
+                                .receipt_ns = time_ns,
+                                .numbered = false};
   }
   if (!format_.mirror_column) item.scan = scan_of(row, time_ns);
   ++rows_;

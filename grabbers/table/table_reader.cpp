@@ -133,6 +133,29 @@ void read_ranges(const Fields& fields, const TableFormat& format, TableRow& row)
   }
 }
 
+/// Where the first decimal comma is in a line that others than commas part into numbers such as 0,5: nothing
+/// where commas part numbers, too, or points are decimal.
+std::optional<std::size_t> decimal_comma(std::string_view line) {
+  constexpr std::string_view kOthers = "; \t";
+  const std::size_t begin = std::min(line.size(), line.find_first_not_of(kOthers));
+  line = line.substr(0, line.find_last_not_of("; \t\r") + 1);  // what is outside parts nothing
+  const auto is_digit = [&](std::size_t i) { return i < line.size() && line[i] >= '0' && line[i] <= '9'; };
+  std::optional<std::size_t> first;
+  bool parted = false, in_field = false;
+  for (std::size_t i = begin; i < line.size(); ++i) {
+    if (line[i] == '.') return {};
+    if (kOthers.find(line[i]) != std::string_view::npos) {
+      parted = true;
+      in_field = false;
+    } else if (line[i] == ',') {
+      if (in_field || i == 0 || !is_digit(i - 1) || !is_digit(i + 1)) return {};
+      in_field = true;
+      if (!first) first = i;
+    }
+  }
+  return parted ? first : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<TableRow> TableReader::parse(std::string_view text) {
@@ -179,6 +202,11 @@ std::optional<TableRow> TableReader::next() {
     // names of columns: the first line, and it begins with a letter or a quote
     if (lines_.number() == 1 && (std::isalpha(static_cast<unsigned char>(text[begin])) || text[begin] == '"'))
       continue;
+    if (const auto comma = decimal_comma(text)) {
+      throw Error("the numbers have decimal commas, and here a comma parts two numbers",
+                  "write them with points, and with one kind of separator: 0.5;1.25",
+                  Place{name_, lines_.number(), static_cast<int>(*comma) + 1});
+    }
     if (auto row = parse(text)) {
       ++rows_;
       return row;

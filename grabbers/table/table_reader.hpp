@@ -23,7 +23,8 @@ class TableReader {
   TableReader(std::istream& in, std::string name, const TableFormat& format)
       : lines_(in, name), name_(std::move(name)), format_(format) {}
 
-  /// The next row that can be read, or nothing at the end. @throws Error as TableLines
+  /// The next row that can be read, or nothing at the end. @throws Error as TableLines, and where
+  /// numbers have decimal commas, which cannot be told from the commas between numbers
   std::optional<TableRow> next();
 
   /// How many rows were left out, by what is wrong with them.

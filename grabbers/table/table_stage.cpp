@@ -7,6 +7,7 @@
 #include <fstream>
 #include <utility>
 
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/error.hpp"
 
 namespace crisp {
@@ -117,24 +118,25 @@ void TableStage::check_columns() const {
 }
 
 void TableStage::check(const RunSettings& run) const {
-  check_columns();
+  std::vector<Error> errors;
+  for_each_error([&] { check_columns(); }, [&](const Error& error) { errors.push_back(error); });
+  const auto refuse_if = [&](bool wrong, std::string what, std::string advice) {
+    if (wrong) errors.emplace_back(std::move(what), std::move(advice));
+  };
   const bool timed = format_.time_column || format_.receipt_column;
-  if (!timed && format_.period == 0) {
-    throw Error("nothing says when the rows were measured", "give time_column, receipt_column or the period");
-  }
-  if (format_.counter_column && format_.period == 0) {
-    throw Error("a count of scans is no time without the time between two of them", "give the period");
-  }
-  if (!format_.range_column && (format_.mirror_column || format_.count_column || format_.remission_column)) {
-    throw Error("nothing says where the ranges are", "give range_column");
-  }
-  if (format_.range_column && !format_.mirror_column && settings_.angle_step == 0) {
-    throw Error("all beams of a scan would have the same angle", "give angle_step, or mirror_column");
-  }
-  if (run.rig.lasers.size() > 1 && !format_.laser_column) {
-    throw Error(fmt::format("the rig has {} lasers, and nothing says whose a row is", run.rig.lasers.size()),
-                "give laser_column, or a rig of one laser");
-  }
+  refuse_if(!timed && format_.period == 0, "nothing says when the rows were measured",
+            "give time_column, receipt_column or the period");
+  refuse_if(timed && format_.counter_column && format_.period == 0,
+            "a count of scans is no time without the time between two of them", "give the period");
+  refuse_if(
+      !format_.range_column && (format_.mirror_column || format_.count_column || format_.remission_column),
+      "nothing says where the ranges are", "give range_column");
+  refuse_if(format_.range_column && !format_.mirror_column && settings_.angle_step == 0,
+            "all beams of a scan would have the same angle", "give angle_step, or mirror_column");
+  refuse_if(run.rig.lasers.size() > 1 && !format_.laser_column,
+            fmt::format("the rig has {} lasers, and nothing says whose a row is", run.rig.lasers.size()),
+            "give laser_column, or a rig of one laser");
+  if (!errors.empty()) throw Errors(std::move(errors));
 }
 
 void TableStage::read(TableReader& reader, TableItems& items, Outputs& out, Context& context) const {
@@ -186,6 +188,8 @@ void TableStage::report(const TableReader& reader, const TableItems& items, std:
   }
   const auto& fault = reader.first_fault();
   if (format_.range_column ? beams == 0 : reader.rows() == 0) {
+    std::error_code none;
+    if (std::filesystem::file_size(file_, none) == 0) throw Error(file_.string() + " is empty");
     if (fault) throw Error("no row can be read: " + fault->message(), "correct the columns", fault->place());
     throw Error(file_.string() + (format_.range_column ? " holds no range" : " holds no row"),
                 "is it the right table, and are its columns right?");
@@ -202,8 +206,8 @@ void TableStage::report(const TableReader& reader, const TableItems& items, std:
         "{} of {} rows begin before the last beam of the row before was fired; is beam_interval right?",
         items.overlapping(), items.rows()));
   }
-  context.report({{"rows", reader.rows()}, {"beams", beams}});
-  context.say(fmt::format("{} rows with {} ranges", reader.rows(), beams));
+  context.report({{"rows", items.rows()}, {"beams", beams}});
+  context.say(fmt::format("{} rows with {} ranges", items.rows(), beams));
 }
 
 }  // namespace crisp

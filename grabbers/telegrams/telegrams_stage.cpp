@@ -9,6 +9,7 @@
 
 #include "grabbers/capture/device_log.hpp"
 #include "grabbers/capture/framing_losses.hpp"
+#include "grabbers/capture/loss_warnings.hpp"
 #include "grabbers/telegrams/telegram_list.hpp"
 
 namespace crisp {
@@ -72,6 +73,9 @@ void TelegramsStage::process(const Inputs&, Outputs& out, Context& context) {
   framer.gap(take);
   note_framing(framer.counts(), log);
   const DeviceStatistics statistics = log.statistics();
+  for (auto& warning : loss_warnings({.devices = {statistics}}, file_.filename().string())) {
+    context.warn(std::move(warning));
+  }
   for (const auto& [what, n] : losses.all()) context.count(what, n);
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
   for (const auto& [what, n] : statistics.notes.all()) context.count(what, n);

@@ -24,9 +24,9 @@
 namespace crisp {
 
 Builtin::Builtin() {
-  registrar_.attach(terms_);
-  registrar_.attach(searches_);
-  registrar_.attach(measures_);
+  registrar_.attach(terms_, "term");
+  registrar_.attach(searches_, "search");
+  registrar_.attach(measures_, "measure");
   register_built_in(terms_);
   register_built_in(searches_);
   register_built_in(measures_);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <thread>
 
 #include "pipeline/app/own_pipelines.hpp"
@@ -14,7 +15,8 @@ constexpr const char* kFooter =
     "Exit status: 0 done; 1 a run stopped at an error; 2 the command line, the pipeline or the rig is wrong "
     "and\n"
     "nothing was run; 3 the run came to its end but its result cannot be trusted (the summary says why);\n"
-    "130 or 143 interrupted. Plugins are also loaded from <libdir>/crisp/plugins, and from the files\nand "
+    "129, 130 or 143 interrupted. Plugins are also loaded from <libdir>/crisp/plugins, and from the "
+    "files\nand "
     "folders that CRISP_PLUGINS lists.";
 
 constexpr const char* kScenes = "What stands around: office, hall, street, workshop, garden, people or paper";
@@ -39,6 +41,11 @@ CommandLine::CommandLine() {
   app.set_version_flag("--version", "crisp " CRISP_VERSION);
   app.footer(kFooter);
   app.require_subcommand(1);
+  app.failure_message([](const CLI::App* asked, const CLI::Error& error) {
+    const CLI::App* parent = asked->get_parent();
+    const std::string name = (parent ? parent->get_name() + " " : "") + asked->get_name();
+    return "error: " + std::string(error.what()) + "; " + name + " --help tells more\n";
+  });
   add_run();
   add_record();
   add_emulate();
@@ -95,9 +102,12 @@ void CommandLine::add_run_options(CLI::App* to, const std::string& threads, RunR
   to->add_option(threads, request.threads, "How many threads to use; the result does not depend on it")
       ->check(whole_number(1, 1024))
       ->capture_default_str();
-  to->add_option("--seed", request.seed, "Seed of all that is drawn at random")->capture_default_str();
+  to->add_option("--seed", request.seed, "Seed of all that is drawn at random")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      ->capture_default_str();
   to->add_option("--metrics", request.metrics,
                  "While it runs, tell how it is doing at http://127.0.0.1:PORT/metrics, for Prometheus")
+      ->check(whole_number(1, 65535))
       ->type_name("PORT");
   CLI::Option* quiet = to->add_flag("--quiet", request.quiet, "Print warnings and errors only");
   to->add_flag("--verbose", request.verbose, "Also print options and what flowed")->excludes(quiet);
@@ -211,6 +221,7 @@ void CommandLine::add_monte_carlo() {
        {"outliers", "Share of the ranges that are replaced at random: 5%"},
        {"effects", "What befalls the lasers, untold to the estimators: {noise.mixed_pixels: {…}}"}});
   monte_carlo_app->add_option("--only", monte_carlo_only, "Repeat the run of this seed alone")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->excludes(runs)
       ->excludes(monte_carlo_app->get_option("--seed"));
 }
@@ -242,10 +253,10 @@ void CommandLine::add_stages() {
 }
 
 void CommandLine::add_info() {
-  info_app = command("info", "Say what a file, or a folder of them, holds: captures, clouds, calibrations");
-  info_app->add_option("file", info_file, "The file or folder")->required()->type_name("FILE");
-  info_app->add_option("--rig", info_rig, "The rig whose devices are to be named")->type_name("FILE");
-  info_app->add_flag("--json", info_json, "For programs");
+  info_app = command("info", "Say what files, or folders of them, hold: captures, clouds, calibrations");
+  info_app->add_option("file", info.paths, "The files or folders")->required()->type_name("FILE");
+  info_app->add_option("--rig", info.rig, "The rig whose devices are to be named")->type_name("FILE");
+  info_app->add_flag("--json", info.json, "For programs");
 }
 
 }  // namespace crisp

@@ -32,10 +32,9 @@ struct CommandLine {
   PipelineArguments validate;
   StagesRequest stages;
   EffectsRequest effects;
-  std::filesystem::path validate_file, info_file;
-  std::optional<std::filesystem::path> info_rig;
+  std::filesystem::path validate_file;
+  InfoRequest info;
   std::string shell;
-  bool info_json = false;
   CLI::App* run_app = nullptr;
   CLI::App* basin_app = nullptr;
   CLI::App* bound_app = nullptr;

@@ -47,16 +47,17 @@ ExitStatus print_one_stage(const StagesRequest& request, const StageRegistry& st
 
 }  // namespace
 
-void print_errors(const Error& error) {
-  const std::string text = error.what();
+std::string error_text(const Error& error) {
   // Errors holds its parts' full texts; an "error: " of its own would come before the first of them.
-  if (const auto* several = dynamic_cast<const Errors*>(&error)) {
-    for (const auto& one : several->all()) std::cerr << one.what() << "\n";
-    if (several->all().size() > 1) std::cerr << several->all().size() << " errors\n";
-  } else {
-    std::cerr << text << "\n";
-  }
+  const auto* several = dynamic_cast<const Errors*>(&error);
+  if (!several) return error.what();
+  std::string text;
+  for (const auto& one : several->all()) text += (text.empty() ? "" : "\n") + std::string(one.what());
+  if (several->all().size() > 1) text += "\n" + std::to_string(several->all().size()) + " errors";
+  return text;
 }
+
+void print_errors(const Error& error) { std::cerr << error_text(error) << "\n"; }
 
 void print_warnings(const Pipeline& pipeline) {
   for (const auto& warning : pipeline.warnings) {
@@ -121,7 +122,7 @@ ExitStatus effects_command(const EffectsRequest& request, const Registrar& regis
   return ExitStatus::done;
 }
 
-ExitStatus plugins_command(const PluginLoader& loader) {
+void list_plugins(const PluginLoader& loader) {
   if (loader.tried().empty()) std::cout << "no plugins: give them with --plugin, or in CRISP_PLUGINS\n";
   for (const auto& plugin : loader.tried()) {
     if (!plugin.is_loaded()) {
@@ -129,9 +130,8 @@ ExitStatus plugins_command(const PluginLoader& loader) {
       continue;
     }
     std::cout << fmt::format("{}\n  {} {}\n", plugin.file.string(), plugin.name, plugin.version);
-    for (const auto& stage : plugin.stages) std::cout << fmt::format("  stage {}\n", stage);
+    for (const auto& what : plugin.brings) std::cout << fmt::format("  {}\n", what);
   }
-  return ExitStatus::done;
 }
 
 }  // namespace crisp

@@ -19,8 +19,9 @@ enum class ExitStatus {
   failed = 1,         ///< the run stopped at an error
   misused = 2,        ///< the command line, the pipeline or the rig is wrong: nothing was run
   not_trusted = 3,    ///< the run came to its end, but its result cannot be trusted
-  interrupted = 130,  ///< by SIGINT (SIGTERM: 143)
-  terminated = 143
+  hung_up = 129,      ///< by SIGHUP
+  interrupted = 130,  ///< by SIGINT
+  terminated = 143    ///< by SIGTERM
 };
 
 /// `crisp run`.
@@ -61,13 +62,22 @@ struct EffectsRequest {
 ExitStatus effects_command(const EffectsRequest& request, const Registrar& registrar);
 
 /// `crisp plugins`: every file that was tried, and the reason of each refusal.
-ExitStatus plugins_command(const PluginLoader& loader);
+void list_plugins(const PluginLoader& loader);
 
-/// `crisp info`: what a file holds, or each file of a known kind in a folder.
-ExitStatus info_command(const std::filesystem::path& path, const std::optional<std::filesystem::path>& rig,
-                        bool json, const Registrar& registrar);
+/// `crisp info`.
+struct InfoRequest {
+  std::vector<std::filesystem::path> paths;
+  std::optional<std::filesystem::path> rig;
+  bool json = false;
+};
+/// What each file holds, and each file of a known kind in a folder. Where there may be several, one that
+/// cannot be read does not hide the others: the listing says what is wrong with it.
+ExitStatus info_command(const InfoRequest& request, const Registrar& registrar);
 
-/// Prints what is wrong, all of it, to stderr.
+/// What is wrong, all of it, as a person is told it: lines, without a line break at the end.
+std::string error_text(const Error& error);
+
+/// Prints that to stderr.
 void print_errors(const Error& error);
 
 /// Prints to stderr what of a pipeline is probably not meant.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -17,11 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file, its kind and what it holds.
-struct KnownFile {
+/// A file and what it holds, or what is wrong with it.
+struct Entry {
   std::string name;
   std::string kind;
   Inspection inspection;
+  std::string error;  ///< as a person is told it; empty: none
 };
 
 std::string head_of(const fs::path& file) {
@@ -31,15 +33,6 @@ std::string head_of(const fs::path& file) {
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(stream.gcount()));
   return head;
-}
-
-std::optional<KnownFile> known_by(const Inspectors& inspectors, const fs::path& file, const Rig& rig) {
-  if (!fs::is_regular_file(file)) throw Error(file.string() + " is not a file");
-  const std::string head = head_of(file);
-  const auto knows = [&](const Inspector& inspector) { return inspector.recognises(head); };
-  const auto inspector = std::ranges::find_if(inspectors, knows);
-  if (inspector == inspectors.end()) return {};
-  return KnownFile{file.string(), inspector->kind, inspector->inspect(file, rig)};
 }
 
 /// What a YAML file is that only other commands read, and what to do with it; nothing if it is none.
@@ -65,40 +58,95 @@ Error none_known(const fs::path& path, const Inspectors& inspectors) {
   return Error(path.string() + what, "known are " + kinds);
 }
 
+/// Whether the file would be of a known kind, by its name.
+bool is_named_like_one(const Inspectors& inspectors, const fs::path& file) {
+  return std::ranges::any_of(
+      inspectors, [&](const Inspector& inspector) { return has_extension(file, inspector.extensions); });
+}
+
+/// @throws Error if it cannot be read; fs::filesystem_error
+Entry read_entry(const Inspectors& inspectors, const fs::path& file, const Rig& rig) {
+  if (!fs::exists(file)) throw Error("there is no file " + file.string());
+  if (!fs::is_regular_file(file)) throw Error(file.string() + " is not a file");
+  const std::string head = head_of(file);
+  const auto knows = [&](const Inspector& inspector) { return inspector.recognises(head); };
+  const auto inspector = std::ranges::find_if(inspectors, knows);
+  if (inspector == inspectors.end()) throw none_known(file, inspectors);
+  return {.name = file.string(), .kind = inspector->kind, .inspection = inspector->inspect(file, rig)};
+}
+
+Entry entry_of(const Inspectors& inspectors, const fs::path& file, const Rig& rig) {
+  try {
+    return read_entry(inspectors, file, rig);
+  } catch (const Error& error) {
+    return {.name = file.string(), .error = error_text(error)};
+  } catch (const fs::filesystem_error& error) {
+    return {.name = file.string(), .error = error_text(Error(error.what(), "check its name and its rights"))};
+  }
+}
+
+/// Notes and results may lie beside what a folder was given for.
+bool is_of_interest(const Inspectors& inspectors, const fs::path& file) {
+  const std::string head = head_of(file);
+  return is_named_like_one(inspectors, file) ||
+         std::ranges::any_of(inspectors, [&](const auto& inspector) { return inspector.recognises(head); });
+}
+
+std::vector<Entry> entries_of(const Inspectors& inspectors, const fs::path& path, const Rig& rig) {
+  std::error_code none;
+  if (!fs::is_directory(path, none)) return {entry_of(inspectors, path, rig)};
+  std::vector<Entry> entries;
+  try {
+    for (const auto& file : files_in(path)) {
+      if (is_of_interest(inspectors, file)) entries.push_back(entry_of(inspectors, file, rig));
+    }
+    if (entries.empty()) throw none_known(path, inspectors);
+  } catch (const Error& error) {
+    entries.push_back({.name = path.string(), .error = error_text(error)});
+  }
+  return entries;
+}
+
 /// What each file holds under its name.
-nlohmann::json json_of(const std::vector<KnownFile>& files) {
+nlohmann::json json_of(const std::vector<Entry>& entries) {
   auto all = nlohmann::json::object();
-  for (const auto& file : files) all[file.name] = file.inspection.data;
+  for (const auto& entry : entries) {
+    all[entry.name] = entry.error.empty() ? entry.inspection.data : nlohmann::json{{"error", entry.error}};
+  }
   return all;
+}
+
+void print(const std::vector<Entry>& entries) {
+  for (const auto& entry : entries) {
+    const bool failed = !entry.error.empty();
+    std::cout << entry.name << ": " << (failed ? "not read" : entry.kind) << "\n"
+              << (failed ? entry.error : entry.inspection.text) << "\n";
+  }
 }
 
 }  // namespace
 
-ExitStatus info_command(const fs::path& path, const std::optional<fs::path>& rig_file, bool json,
-                        const Registrar& registrar) {
+ExitStatus info_command(const InfoRequest& request, const Registrar& registrar) {
+  Rig rig = default_rig();
   try {
-    if (!fs::exists(path)) throw Error("there is no file " + path.string());
-    const bool is_folder = fs::is_directory(path);
-    const Rig rig = rig_file ? read_rig(*rig_file) : default_rig();
-    std::vector<KnownFile> files;
-    for (const auto& file : is_folder ? files_in(path) : std::vector<fs::path>{path}) {
-      if (auto known = known_by(registrar.inspectors(), file, rig)) files.push_back(std::move(*known));
-    }
-    if (files.empty()) throw none_known(path, registrar.inspectors());
-    if (json) {
-      std::cout << json_text(is_folder ? json_of(files) : files[0].inspection.data, 2) << "\n";
-    } else {
-      for (const auto& file : files) {
-        std::cout << file.name << ": " << file.kind << "\n" << file.inspection.text << "\n";
-      }
-    }
-    return ExitStatus::done;
+    if (request.rig) rig = read_rig(*request.rig);
   } catch (const Error& error) {
     print_errors(error);
-  } catch (const fs::filesystem_error& error) {
-    print_errors(Error(error.what(), "check its name and its rights"));
+    return ExitStatus::failed;
   }
-  return ExitStatus::failed;
+  std::vector<Entry> entries;
+  for (const auto& path : request.paths) {
+    std::ranges::move(entries_of(registrar.inspectors(), path, rig), std::back_inserter(entries));
+  }
+  const bool one = request.paths.size() == 1 && entries[0].name == request.paths[0].string();
+  if (one && !entries[0].error.empty())
+    std::cerr << entries[0].error << "\n";
+  else if (request.json)
+    std::cout << json_text(one ? entries[0].inspection.data : json_of(entries), 2) << "\n";
+  else
+    print(entries);
+  const bool all_read = std::ranges::all_of(entries, &std::string::empty, &Entry::error);
+  return all_read ? ExitStatus::done : ExitStatus::failed;
 }
 
 }  // namespace crisp

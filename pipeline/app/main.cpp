@@ -81,8 +81,9 @@ ExitStatus run_program(const CommandLine& line) {
   Registrar& registrar = builtin.registrar();
   PluginLoader loader(registrar);
   const bool all_loaded = load_plugins(line, loader);
-  if (line.plugins_app->parsed()) return plugins_command(loader);
+  if (line.plugins_app->parsed()) list_plugins(loader);
   if (!all_loaded) return ExitStatus::misused;
+  if (line.plugins_app->parsed()) return ExitStatus::done;
   if (line.run_app->parsed()) return run_command(line.run, registrar);
   if (line.basin_app->parsed()) return run_command(basin_request(line), registrar);
   if (line.bound_app->parsed()) return run_command(line.bound, registrar);
@@ -93,7 +94,7 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.validate_app->parsed()) return validate_command(line.validate_file, line.validate, registrar);
   if (line.stages_app->parsed()) return stages_command(line.stages, registrar);
   if (line.effects_app->parsed()) return effects_command(line.effects, registrar);
-  if (line.info_app->parsed()) return info_command(line.info_file, line.info_rig, line.info_json, registrar);
+  if (line.info_app->parsed()) return info_command(line.info, registrar);
   std::cout << bash_completion(completion_words(line));
   return ExitStatus::done;
 }
@@ -109,6 +110,18 @@ bool is_known_command(const CommandLine& line, int count, char** words) {
   return false;
 }
 
+/// What was given as nothing, for the most part by a variable of the shell that is not set; empty if there is
+/// none.
+std::string given_empty(const CommandLine& line) {
+  for (const CLI::App* sub : line.app.get_subcommands()) {
+    for (const CLI::Option* option : sub->get_options()) {
+      const auto& given = option->results();
+      if (std::ranges::find(given, "") != given.end()) return option->get_name();
+    }
+  }
+  return {};
+}
+
 int guarded_main(int count, char** words) {
   CommandLine line;
   if (!is_known_command(line, count, words)) return static_cast<int>(ExitStatus::misused);
@@ -116,6 +129,10 @@ int guarded_main(int count, char** words) {
     line.app.parse(count, words);
   } catch (const CLI::ParseError& stop) {
     return line.app.exit(stop) == 0 ? 0 : static_cast<int>(ExitStatus::misused);
+  }
+  if (const auto option = given_empty(line); !option.empty()) {
+    print_errors(Error(option + " is empty", "is a variable of the shell not set?"));
+    return static_cast<int>(ExitStatus::misused);
   }
   return static_cast<int>(run_program(line));
 }
@@ -144,6 +161,8 @@ int main(int count, char** words) {
     crisp::print_errors(error);
   } catch (const std::exception& error) {
     std::cerr << "error: " << error.what() << "\n";
+  } catch (...) {
+    std::cerr << "error: a plugin threw what is no std::exception\n";
   }
   return static_cast<int>(crisp::ExitStatus::failed);
 }

@@ -17,6 +17,7 @@
 #include "pipeline/app/signals.hpp"
 #include "pipeline/app/status_board.hpp"
 #include "pipeline/app/summary.hpp"
+#include "pipeline/pcd/parts.hpp"
 
 namespace crisp {
 namespace {
@@ -38,8 +39,10 @@ void make_output_folder(const fs::path& folder) {
   if (failure) throw Error("cannot write into the folder " + folder.string() + ": " + failure.message());
 }
 
+/// What was cut into several files is called by the name that they come of.
 void check_input(const std::optional<fs::path>& input) {
-  if (input && !fs::exists(*input)) throw Error("there is no input " + input->string());
+  if (input && !fs::exists(*input) && !fs::exists(part_path(*input, 1)))
+    throw Error("there is no input " + input->string());
 }
 
 RunRecord begin_record(const LoadedPipeline& loaded, const RunSettings& run) {
@@ -101,6 +104,11 @@ bool keep_record(RunRecord& record, const fs::path& folder) {
   }
 }
 
+ExitStatus status_of(int signal) {
+  if (signal == SIGHUP) return ExitStatus::hung_up;
+  return signal == SIGTERM ? ExitStatus::terminated : ExitStatus::interrupted;
+}
+
 ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const RunSettings& run) {
   const StopOnSignal stop;
   RunRecord record = begin_record(loaded, run);
@@ -108,6 +116,7 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
   const auto end_early = [&](std::string why, ExitStatus status) {
     record.seconds = seconds_now() - began;
     record.failure = std::move(why);
+    record.exit_status = static_cast<int>(status);
     keep_record(record, run.output);
     return status;
   };
@@ -115,8 +124,7 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
     record.nodes = run_with_progress(loaded.pipeline, run, request, record);
   } catch (const Interrupted&) {
     std::cerr << "interrupted: files that were not complete were not written\n";
-    return end_early("interrupted",
-                     StopOnSignal::signal() == SIGTERM ? ExitStatus::terminated : ExitStatus::interrupted);
+    return end_early("interrupted", status_of(StopOnSignal::signal()));
   } catch (const Error& error) {
     std::cerr << failure_text(record);
     print_errors(error);
@@ -128,8 +136,9 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
     std::cerr << warnings_text(record);
   else
     std::cout << summary_text(record, request.verbose) << std::flush;
-  if (!keep_record(record, run.output)) return ExitStatus::failed;
-  return record.is_trusted() ? ExitStatus::done : ExitStatus::not_trusted;
+  const ExitStatus status = record.is_trusted() ? ExitStatus::done : ExitStatus::not_trusted;
+  record.exit_status = static_cast<int>(status);
+  return keep_record(record, run.output) ? status : ExitStatus::failed;
 }
 
 }  // namespace

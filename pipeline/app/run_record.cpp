@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/app/run_record.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <system_error>
 
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/json_text.hpp"
+#include "pipeline/stage/files_written.hpp"
 #include "pipeline/stage/reference.hpp"
 
 namespace crisp {
@@ -53,6 +56,25 @@ std::string dump(const Json& json) {
   return json_text(json, 2) + "\n";
 }
 
+/// The stage that wrote this file; nullptr if none did.
+const NodeResult* writer_of(const fs::path& file, const RunRecord& record) {
+  const auto wrote = [&](const NodeResult& node) {
+    return std::ranges::find(node.report.written, file) != node.report.written.end();
+  };
+  const auto writer = std::ranges::find_if(record.nodes, wrote);
+  return writer == record.nodes.end() ? nullptr : &*writer;
+}
+
+/// Not in the place of what a stage wrote and did not declare.
+void write_record(const fs::path& file, const Json& json, const RunRecord& record) {
+  if (const NodeResult* writer = writer_of(file, record)) {
+    throw Error(
+        fmt::format("{}: it wrote {}, where the run's own record belongs", writer->tag, file.string()),
+        "let it write another file");
+  }
+  write_file(file, dump(json));
+}
+
 }  // namespace
 
 bool RunRecord::is_trusted() const {
@@ -91,6 +113,8 @@ std::vector<InputRecord> hash_inputs(const RunRecord& record) {
 Json summary_json(const RunRecord& record) {
   Json json = head_json(record);
   json["trusted"] = record.is_trusted();
+  json["exit_status"] = record.exit_status;
+  if (!record.failure.empty()) json["error"] = record.failure;
   json["stages"] = Json::array();
   for (std::size_t i = 0; i < record.nodes.size(); ++i) {
     const NodeResult& node = record.nodes[i];
@@ -120,17 +144,16 @@ Json provenance_json(const RunRecord& record, const fs::path& file) {
 }
 
 void write_records(const RunRecord& record, const fs::path& folder) {
-  if (!record.failure.empty() && !record.wrote_any()) return;  // all that is there is as it was
+  const fs::path summary = folder / kSummary;
+  std::error_code not_there;
+  // It speaks of what an earlier run wrote, and must not stay if what follows fails.
+  if (!folder.empty() && !writer_of(summary, record)) fs::remove(summary, not_there);
   for (const auto& node : record.nodes) {
     for (const auto& file : node.report.written) {
-      write_file(file.string() + ".provenance.json", dump(provenance_json(record, file)));
+      write_record(file.string() + kProvenance, provenance_json(record, file), record);
     }
   }
-  if (folder.empty()) return;
-  const fs::path summary = folder / "summary.json";
-  if (record.failure.empty()) return write_file(summary, dump(summary_json(record)));
-  std::error_code not_there;
-  fs::remove(summary, not_there);
+  if (!folder.empty()) write_record(summary, summary_json(record), record);
 }
 
 }  // namespace crisp

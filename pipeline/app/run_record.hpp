@@ -27,6 +27,7 @@ struct RunRecord {
   std::string started;  ///< ISO 8601, UTC
   double seconds = 0;
   std::string failure;                          ///< why it did not come to its end; empty if it did
+  int exit_status = 0;                          ///< of the program
   std::vector<nlohmann::ordered_json> options;  ///< the effective ones of each stage
   std::vector<NodeResult> nodes;
   std::vector<InputRecord> inputs;  ///< the pipeline's file, the rig's, and what the stages read; each once
@@ -48,8 +49,7 @@ nlohmann::ordered_json summary_json(const RunRecord& record);
 nlohmann::ordered_json provenance_json(const RunRecord& record, const std::filesystem::path& file);
 
 /// Writes summary.json into the folder (if it is not empty), and FILE.provenance.json beside every file that
-/// the stages wrote. Of a run that failed there is no summary; that of an earlier one is removed where files
-/// were written, as it does not belong to what lies there now.
+/// the stages wrote. A run that failed says so in its summary; that of an earlier one is gone in any case.
 void write_records(const RunRecord& record, const std::filesystem::path& folder);
 
 }  // namespace crisp

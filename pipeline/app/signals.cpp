@@ -7,6 +7,8 @@
 #include <mutex>
 #include <ostream>
 
+#include "pipeline/files/atomic_file.hpp"
+
 namespace crisp {
 namespace {
 
@@ -15,16 +17,27 @@ std::atomic<bool> stop_requested = false;
 std::atomic<int> last_signal = 0;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
-void request_stop(int signal) {
-  last_signal = signal;
-  stop_requested = true;
-}
-
 void handle(void (*handler)(int)) {
   struct sigaction action = {};
   action.sa_handler = handler;
-  action.sa_flags = SA_RESETHAND | SA_RESTART;  // reset: the second signal has its usual effect
-  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+  action.sa_flags = SA_RESETHAND | SA_RESTART;  // reset: when it is raised anew, it has its usual effect
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before = {};
+    sigaction(signal, nullptr, &before);
+    const bool outlives_its_terminal = signal == SIGHUP && before.sa_handler == SIG_IGN;  // nohup
+    if (!outlives_its_terminal) sigaction(signal, &action, nullptr);
+  }
+}
+
+void end_at_once(int signal) {
+  remove_files_aside();
+  raise(signal);
+}
+
+void request_stop(int signal) {
+  handle(end_at_once);
+  last_signal = signal;
+  stop_requested = true;
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace crisp {
 
-/// From its making on, the first SIGINT or SIGTERM asks the run to stop; a second one ends the program at
-/// once.
+/// From its making on, the first SIGINT, SIGTERM or SIGHUP asks the run to stop; a second one ends the
+/// program at once.
 class StopOnSignal {
  public:
   StopOnSignal();

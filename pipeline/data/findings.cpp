@@ -3,16 +3,23 @@
 
 #include <cmath>
 
+#include "pipeline/data/least_chance.hpp"
+
 namespace crisp {
 namespace {
 
 /// That the less of two independent p-values is as small as this one; what was not asked does not count.
 double less_sure(double one, double other) {
   const double least = std::fmin(one, other);
-  return std::isnan(one) || std::isnan(other) ? least : least * (2 - least);
+  return std::isnan(one) || std::isnan(other) ? least : least_of(2, least);
 }
 
 }  // namespace
+
+std::string Finding::refusal() const {
+  if (accepted) return {};
+  return refused.empty() ? "it does not pay on data that it was not fitted to" : refused;
+}
 
 void Findings::append(const Findings& other) {
   const auto add = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };

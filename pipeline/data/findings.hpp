@@ -46,7 +46,11 @@ struct Finding {
   std::vector<std::string> told_apart_by = {};  ///< what a recording needs to tell them from it
   std::vector<OtherCause> alternatives = {};    ///< a few, the likeliest first; empty: none were compared
   std::vector<Gain> gain;
-  bool accepted = false;  ///< whether it is part of the model from now on: it paid on held-out data
+  bool accepted = false;     ///< whether it is part of the model from now on
+  std::string refused = {};  ///< why it is not; empty: it does not pay on data that it was not fitted to
+
+  /// Why it is no part of the model; empty: it is.
+  std::string refusal() const;
 };
 
 /// A departure that no cause in the catalogue explains.

@@ -34,6 +34,9 @@ struct Scan {
   double angle_step = 0;                   ///< [rad] exact fraction where the telegram rounds
   std::vector<Echo> echoes;                ///< DIST1/RSSI1, DIST2/RSSI2, …
   std::vector<ScanEncoder> encoders;
+  bool numbered = true;  ///< by the device: else nobody counted what was lost
+  bool timed = true;  ///< by the device's clock: else its times are its number times the nominal period, or
+                      ///< its receipt
 };
 
 /// One reading of the plate's encoder.
@@ -42,6 +45,7 @@ struct PlateReading {
   std::uint32_t device_us = 0;  ///< [µs] the plate's clock; wraps at 2^32
   std::uint32_t count = 0;      ///< [encoder steps] modulo 2^32, growing counter-clockwise seen from +z
   std::int64_t receipt_ns = 0;  ///< [ns since the Unix epoch] hub time of the datagram
+  bool numbered = true;         ///< by the device: else nobody counted what was lost
 };
 
 }  // namespace crisp

@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+constexpr const char* kNoBeams =
+    "no beams of this laser came: it measured nothing, or a stage before left them out";
 constexpr std::array kKinds = {"lambda", "tau", "alpha", "eta"};  // in the order of a chain's slots
 
 bool is_fixed(const std::string& name, const std::vector<std::string>& fixed) {
@@ -48,8 +50,7 @@ FreeParameters free_parameters(const SensorModel& model, const Measurements& bea
       const std::size_t slot = model.chain(laser).slots[kind];
       const std::string& name = model.names()[slot];
       if (!measured[laser]) {
-        result.unobservable.push_back(
-            {.parameter = name, .reason = "this laser measured nothing", .combination = {}});
+        result.unobservable.push_back({.parameter = name, .reason = kNoBeams, .combination = {}});
       } else if (kind == 0 && !gauge) {
         gauge = true;
       } else if (!is_fixed(name, fixed)) {
@@ -61,9 +62,8 @@ FreeParameters free_parameters(const SensorModel& model, const Measurements& bea
     if (feels(model, measured, parameter)) {
       result.free.push_back(parameter);
     } else {
-      result.unobservable.push_back({.parameter = model.names()[parameter],
-                                     .reason = "this laser measured nothing",
-                                     .combination = {}});
+      result.unobservable.push_back(
+          {.parameter = model.names()[parameter], .reason = kNoBeams, .combination = {}});
     }
   }
   return result;

@@ -43,6 +43,10 @@ class AtomicFile {
   std::unique_ptr<std::FILE, Close> stream_;
 };
 
+/// Removes the files aside of all AtomicFiles there are: for a signal handler, before the program ends at
+/// once.
+void remove_files_aside() noexcept;
+
 /// Writes a whole file at once, as AtomicFile does.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 

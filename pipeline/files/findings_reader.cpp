@@ -20,6 +20,8 @@ class FindingsMap {
     map_.require(key);
     return map_.text(key, {});
   }
+  /// Of files that an earlier program wrote without it: nothing.
+  std::string text_if_there(const std::string& key) { return map_.text(key, {}); }
   bool boolean(const std::string& key) {
     map_.require(key);
     return map_.boolean(key, false);
@@ -137,7 +139,8 @@ Finding finding_in(FindingsMap& map, const std::string& what) {
           .told_apart_by = map.texts("told_apart_by"),
           .alternatives = read_alternatives(map, what),
           .gain = read_gains(map, what),
-          .accepted = map.boolean("accepted")};
+          .accepted = map.boolean("accepted"),
+          .refused = map.text_if_there("refused")};
 }
 
 UnnamedFinding unnamed_in(FindingsMap& map, const std::string& what) {

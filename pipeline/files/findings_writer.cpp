@@ -22,7 +22,8 @@ Json json_of(const std::vector<Gain>& gains) {
 Json json_of(const std::vector<Parameter>& parameters) {
   Json all = Json::array();
   for (const Parameter& p : parameters) {
-    all.push_back({{"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"std_error", p.std_error}});
+    const double error = p.std_error > 0 ? p.std_error : kUnasked;  // nothing is known without an error
+    all.push_back({{"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"std_error", error}});
   }
   return all;
 }
@@ -46,7 +47,8 @@ Json json_of(const Finding& finding) {
           {"told_apart_by", finding.told_apart_by},
           {"alternatives", json_of(finding.alternatives)},
           {"gain", json_of(finding.gain)},
-          {"accepted", finding.accepted}};
+          {"accepted", finding.accepted},
+          {"refused", finding.refusal()}};
 }
 
 Json json_of(const UnnamedFinding& finding) {

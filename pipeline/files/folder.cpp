@@ -2,6 +2,7 @@
 #include "pipeline/files/folder.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <system_error>
 
 #include "pipeline/data/error.hpp"
@@ -21,6 +22,13 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
   }
   std::ranges::sort(files);
   return files;
+}
+
+bool has_extension(const std::filesystem::path& file, const std::vector<std::string>& extensions) {
+  std::string own = file.extension().string();
+  std::ranges::transform(own, own.begin(), [](unsigned char c) { return std::tolower(c); });
+  own.erase(own.find_last_not_of("0123456789") + 1);
+  return std::ranges::find(extensions, own) != extensions.end();
 }
 
 }  // namespace crisp

@@ -27,6 +27,9 @@ bool is_device_name(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), allowed);
 }
 
+/// What effects and findings call the plate.
+const std::string kPlate = "plate";
+
 class RigReader {
  public:
   Rig read(const YamlNode& root) {
@@ -35,7 +38,7 @@ class RigReader {
     if (const YamlNode* lasers = map.require("lasers")) read_lasers(*lasers);
     if (const YamlNode* plate = map.require("plate")) read_plate(*plate);
     map.refuse_others();
-    if (errors_.empty()) check_addresses();
+    check_addresses();
     if (!errors_.empty()) throw Errors(std::move(errors_));
     return std::move(rig_);
   }
@@ -51,7 +54,7 @@ class RigReader {
       if (!is_device_name(entry.key)) {
         map.fail(entry.place, "'" + entry.key + "' is not a name of letters, digits, _ and -");
       }
-      if (entry.key == "plate") {
+      if (entry.key == kPlate) {
         map.fail(entry.place, "no laser can be called 'plate'", "effects and findings mean the plate by it");
       }
       read_laser(entry);
@@ -69,7 +72,7 @@ class RigReader {
     laser.nominal.name = laser.name;
     if (const YamlNode* nominal = map.require("nominal")) read_nominal(*nominal, map.what(), laser.nominal);
     map.refuse_others();
-    places_.push_back(entry.place);
+    if (laser.name != kPlate) devices_.push_back({laser.name, laser.address, entry.place});
     rig_.lasers.push_back(std::move(laser));
   }
 
@@ -98,10 +101,12 @@ class RigReader {
     rig_.plate.counts_per_revolution =
         static_cast<double>(map.integer("counts_per_revolution", 16384, 2, kMostSteps));
     map.refuse_others();
-    places_.push_back(node.place);
+    devices_.push_back({rig_.plate.name, rig_.plate.address, node.place});
   }
 
-  static Address read_address(YamlMap& map, int default_port) {
+  /// None where it is written wrongly: what is not known is nobody else's.
+  Address read_address(YamlMap& map, int default_port) {
+    const std::size_t mistakes = errors_.size();
     Address address;
     const YamlNode* ip = map.find("address");  // what is read from a table has none
     address.ip = map.text("address", "");
@@ -109,7 +114,7 @@ class RigReader {
       map.fail(ip->place, "'" + address.ip + "' is not an IP address", "write it as 192.168.0.1");
     }
     address.port = static_cast<std::uint16_t>(map.integer("port", default_port, 0, 65535));
-    return address;
+    return errors_.size() == mistakes ? address : Address{};
   }
 
   /// An angle of at most a turn, in rad: a larger one was meant in degrees.
@@ -137,28 +142,32 @@ class RigReader {
 
   /// Two devices at one address could not be told apart.
   void check_addresses() {
-    std::vector<std::pair<std::string, Address>> devices;
-    for (const auto& laser : rig_.lasers) devices.emplace_back(laser.name, laser.address);
-    devices.emplace_back(rig_.plate.name, rig_.plate.address);
-    for (std::size_t i = 0; i < devices.size(); ++i) {
+    for (std::size_t i = 0; i < devices_.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        const auto& [name, address] = devices[i];
-        const auto& [other, used] = devices[j];
+        const auto& [name, address, place] = devices_[i];
+        const auto& [other, used, used_at] = devices_[j];
         const bool overlap =
             !address.ip.empty() && (address.port == used.port || address.port == 0 || used.port == 0);
         if (name == other) {
-          errors_.emplace_back("rig: two devices are named '" + name + "'", "", places_[i]);
+          errors_.emplace_back("rig: two devices are named '" + name + "'", "", place);
         } else if (address.ip == used.ip && overlap) {
           errors_.emplace_back(
               fmt::format("rig: '{}' and '{}' have the same address {}", other, name, address.ip),
-              "give each its own, or ports that differ", places_[i]);
+              "give each its own, or ports that differ", place);
         }
       }
     }
   }
 
+  /// A device as the file has it.
+  struct Device {
+    std::string name;
+    Address address;
+    Place place;
+  };
+
   Rig rig_;
-  std::vector<Place> places_;  ///< of the lasers, then of the plate
+  std::vector<Device> devices_;  ///< all whose name can be used
   std::vector<Error> errors_;
 };
 

@@ -26,6 +26,7 @@ struct TermInfo {
   std::string details;       ///< see EffectInfo
   std::string told_by = {};  ///< see EffectInfo
   CountsFrom counts_from = CountsFrom::kNothing;
+  bool needs_incidence = false;  ///< it does nothing where nobody has found how beams met their surfaces
   /// Of a term that describes a departure by its shape instead of naming a cause: over what the shape is told
   /// ("mirror angle"). Empty for the others.
   std::string covariate = {};

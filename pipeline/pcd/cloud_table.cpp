@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/pcd/cloud_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -12,6 +13,21 @@ constexpr std::int64_t kNsPerUs = 1000;
 template <PcdNumber T>
 std::vector<T> column_or_zeros(const PcdTable& table, std::string_view field) {
   return table.has(field) ? table.column<T>(field) : std::vector<T>(table.rows());
+}
+
+/// A coordinate, less `by`, as a cloud holds it; `rounding` becomes the most that one changed by that.
+std::vector<float> shifted_column(const PcdTable& table, std::string_view field, double by,
+                                  double& rounding) {
+  const auto exact = table.column<double>(field);
+  std::vector<float> column;
+  column.reserve(exact.size());
+  for (const double value : exact) {
+    const double shifted = value - by;
+    column.push_back(static_cast<float>(shifted));
+    const double change = std::abs(shifted - static_cast<double>(column.back()));
+    if (std::isfinite(change)) rounding = std::max(rounding, change);
+  }
+  return column;
 }
 
 }  // namespace
@@ -29,16 +45,19 @@ PcdTable to_table(const Cloud& cloud) {
   return table;
 }
 
-TableCloud cloud_of(const PcdTable& table) {
-  const auto x = table.column<float>("x");
-  const auto y = table.column<float>("y");
-  const auto z = table.column<float>("z");
+TableCloud cloud_of(const PcdTable& table, const std::array<double, 3>& shift) {
+  TableCloud result{.cloud = std::make_shared<Cloud>()};
+  const auto shifted = [&](std::string_view field, double by) {
+    return shifted_column(table, field, by, result.rounding);
+  };
+  const auto x = shifted("x", shift[0]);
+  const auto y = shifted("y", shift[1]);
+  const auto z = shifted("z", shift[2]);
   const auto intensity = column_or_zeros<float>(table, "intensity");
   const auto laser = column_or_zeros<std::uint16_t>(table, "laser");
   const auto beam = column_or_zeros<std::uint16_t>(table, "beam");
   const auto time = column_or_zeros<double>(table, "time");
 
-  TableCloud result{.cloud = std::make_shared<Cloud>()};
   result.cloud->header.stamp =
       static_cast<std::uint64_t>(table.header().note<std::int64_t>("epoch_ns").value_or(0) / kNsPerUs);
   result.cloud->reserve(table.rows());
@@ -58,6 +77,18 @@ TableCloud cloud_of(const PcdTable& table) {
     result.cloud->push_back(point);
   }
   return result;
+}
+
+std::array<double, 3> suggested_shift(const PcdTable& table) {
+  constexpr double kStep = 100;  // [m] a shift that people can write down
+  std::array<double, 3> shift{};
+  std::size_t axis = 0;
+  for (const auto* field : {"x", "y", "z"}) {
+    const auto column = table.column<double>(field);
+    const auto first = std::ranges::find_if(column, [](double value) { return std::isfinite(value); });
+    shift.at(axis++) = first == column.end() ? 0 : kStep * std::round(*first / kStep);
+  }
+  return shift;
 }
 
 }  // namespace crisp

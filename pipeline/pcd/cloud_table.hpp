@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "pipeline/data/cloud.hpp"
@@ -14,10 +15,15 @@ PcdTable to_table(const Cloud& cloud);
 struct TableCloud {
   std::shared_ptr<Cloud> cloud;
   std::size_t not_finite = 0;  ///< points without a position or time that is a number: left out
+  double rounding = 0;  ///< [m] most that a coordinate changed when it became single, as those of a Cloud are
 };
 
 /// The cloud that a PCD file of any origin holds. Only x, y and z must be there; what else is not, is 0.
+/// @param shift  [m] subtracted from all coordinates before they become single
 /// @throws Error if they are not, or a laser or beam is beyond 65535
-TableCloud cloud_of(const PcdTable& table);
+TableCloud cloud_of(const PcdTable& table, const std::array<double, 3>& shift = {});
+
+/// What to subtract so that the first point comes close to the origin, in whole 100 m [m].
+std::array<double, 3> suggested_shift(const PcdTable& table);
 
 }  // namespace crisp

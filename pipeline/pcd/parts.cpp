@@ -3,14 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <fstream>
+#include <optional>
+
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/folder.hpp"
+#include "pipeline/pcd/measurement_tables.hpp"
 
 namespace crisp {
 namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kPart = "part";
 const std::string kNext = "next_part";
 
 /// The file that a recording begins with.
@@ -38,7 +43,68 @@ fs::path following(const fs::path& part, std::size_t next) {
   return part_path(whole, next);
 }
 
+/// N of cloud_000N.pcd, where `file` is cloud.pcd; nothing of files with another name.
+std::optional<std::size_t> number_of(const fs::path& candidate, const fs::path& file) {
+  const std::string stem = candidate.stem().string();
+  const std::string before = file.stem().string() + "_";
+  if (!stem.starts_with(before)) return std::nullopt;
+  std::size_t number = 0;
+  const auto read = std::from_chars(stem.data() + before.size(), stem.data() + stem.size(), number);
+  if (read.ec != std::errc() || part_path(file, number) != candidate) return std::nullopt;
+  return number;
+}
+
+/// The header of a PCD file; nothing if it is not one that crisp wrote.
+std::optional<PcdHeader> own_header(const fs::path& file) {
+  constexpr std::size_t kLongestHeader = 4096;  // [bytes] that crisp writes
+  std::string head(kLongestHeader, '\0');
+  std::ifstream(file, std::ios::binary).read(head.data(), kLongestHeader);
+  try {
+    PcdHeader header = parse_pcd_header(head, file.string());
+    return header.notes.empty() ? std::nullopt : std::optional(std::move(header));
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+/// Whether a PCD file says in its header that it is of this number.
+bool says_its_number(const fs::path& file, std::size_t number, const std::string& note) {
+  const auto header = own_header(file);
+  try {
+    return header && header->note<std::size_t>(note) == number;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+void remove_old(const fs::path& file) {
+  std::error_code failure;
+  fs::remove(file, failure);
+  if (!failure) return;
+  throw Error("cannot remove " + file.string() + ", of an earlier run: " + failure.message(),
+              "remove it, or write to another name");
+}
+
+/// A file that crisp wrote, and the plate's that lies beside it.
+void remove_own(const fs::path& file) {
+  if (own_header(plate_path(file))) remove_old(plate_path(file));
+  remove_old(file);
+}
+
 }  // namespace
+
+std::vector<fs::path> remove_numbered_beyond(const fs::path& file, std::size_t last,
+                                             const std::string& note) {
+  std::vector<fs::path> removed;
+  for (const auto& candidate : files_in(file.has_parent_path() ? file.parent_path() : ".")) {
+    const fs::path named = file.parent_path() / candidate.filename();
+    const auto number = number_of(named, file);
+    if (!number || *number <= last || !says_its_number(named, *number, note)) continue;
+    remove_own(named);
+    removed.push_back(named);
+  }
+  return removed;
+}
 
 fs::path part_path(const fs::path& file, std::size_t number) {
   return file.parent_path() /
@@ -69,6 +135,15 @@ std::vector<fs::path> PartsWriter::commit() {
   }
   files_.clear();
   return written;
+}
+
+std::vector<fs::path> PartsWriter::remove_older() const {
+  auto removed = remove_numbered_beyond(file_, parts_, kPart);
+  if (parts_ > 0 && own_header(file_)) {
+    remove_own(file_);
+    removed.push_back(file_);
+  }
+  return removed;
 }
 
 void read_parts(const fs::path& file, const std::function<void(const PcdTable&, const fs::path&)>& use) {

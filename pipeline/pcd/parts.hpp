@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <functional>
 #include <list>
+#include <string>
+#include <vector>
 
 #include "pipeline/pcd/pcd_table.hpp"
 
@@ -11,6 +13,17 @@ namespace crisp {
 
 /// The name of the n-th of the files that a long recording is cut into: cloud.pcd → cloud_0001.pcd.
 std::filesystem::path part_path(const std::filesystem::path& file, std::size_t number);
+
+/// In a part's header: which one it is.
+inline constexpr const char* kPart = "part";
+
+/// Removes cloud_0004.pcd, cloud_0005.pcd … if `file` is cloud.pcd and `last` 3, where they say that they are
+/// of that number; and what lies beside them.
+/// @param note  of the header, in which they say it
+/// @return what was removed, without what lay beside it
+/// @throws Error if one cannot be removed
+std::vector<std::filesystem::path> remove_numbered_beyond(const std::filesystem::path& file, std::size_t last,
+                                                          const std::string& note);
 
 /// Writes what is too long for one file as several: the first is only named when it is known whether there
 /// will be a second. Each says in its header which part it is, and whether another follows. They take their
@@ -27,11 +40,17 @@ class PartsWriter {
   void write_beside(const std::filesystem::path& file, const PcdTable& table);
   /// @return all files, in the order in which they were written
   std::vector<std::filesystem::path> commit();
+  /// To be called behind commit(): removes what an earlier run wrote under this name and this one did not, so
+  /// that what lies there is of one run. Of numbered files those that say in their header that they are that
+  /// part.
+  /// @return what was removed, without what lay beside it
+  /// @throws Error if it cannot be removed
+  std::vector<std::filesystem::path> remove_older() const;
 
  private:
   std::filesystem::path file_;
   PcdFormat format_;
-  std::size_t parts_ = 0;
+  std::size_t parts_ = 0;  ///< 0: all in one file
   std::list<AtomicFile> files_;
 };
 

@@ -13,8 +13,13 @@
 namespace crisp {
 
 TruncatedGaussian::TruncatedGaussian(double width, double cutoff) : sigma(width) {
-  if (!(std::isfinite(sigma) && sigma > 0)) {
-    throw Error(fmt::format("the kernel's width is {} m", sigma), "sigma must be above 0");
+  // Far beyond what any scanner sees, and far from where a number's range ends: the peak goes by sigma^-3.
+  constexpr double kNarrowest = 1e-6;  // [m]
+  constexpr double kWidest = 1e6;      // [m]
+  if (!(sigma >= kNarrowest && sigma <= kWidest)) {
+    throw Error(fmt::format("the kernel's width is {} m", sigma),
+                fmt::format("sigma must lie in {} to {} m; about the noise of a range shows the most",
+                            kNarrowest, kWidest));
   }
   if (!(cutoff >= 1 && cutoff <= 12)) {
     throw Error(fmt::format("the kernel's cut-off is {} sigma", cutoff), "it must lie in 1 to 12");

@@ -10,7 +10,7 @@ namespace crisp {
 /// The kernel between two points of a cloud whose points are Gaussians of width σ each: the isotropic normal
 /// density of variance 2σ² in three dimensions, lowered by its value at the cut-off radius and 0 beyond.
 struct TruncatedGaussian {
-  TruncatedGaussian(double width, double cutoff);  ///< @throws Error unless 0 < σ [m], 1 ≤ cutoff [σ] ≤ 12
+  TruncatedGaussian(double width, double cutoff);  ///< @throws Error unless 1e-6 ≤ σ ≤ 1e6 m, 1 ≤ cutoff ≤ 12
 
   double sigma = 0;     ///< [m]
   double radius = 0;    ///< [m] R

@@ -5,6 +5,7 @@
 #include <pcl/pcl_base.h>
 
 #include <pcl/impl/pcl_base.hpp>  // the definitions too: PCL compiles them for its own points only
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,7 @@ namespace crisp {
 template <class PointT>
 class PclRqe : public pcl::PCLBase<PointT> {
  public:
-  /// Width of the kernel that stands for each point [m].
+  /// Width of the kernel that stands for each point [m], 1e-6 to 1e6.
   void setSigma(double sigma) { settings_.sigma = sigma; }
   double getSigma() const { return settings_.sigma; }
 
@@ -42,7 +43,8 @@ class PclRqe : public pcl::PCLBase<PointT> {
   /// The points that the last compute() took, as indices of the input cloud: the rows of its gradient.
   const pcl::Indices& getUsedIndices() const { return used_; }
 
-  /// @throws Error  without an input cloud, without a finite point in it, or for settings out of range
+  /// @throws Error  without an input cloud, without a finite point in it, or for settings or indices out of
+  ///                range
   Rqe compute() {
     if (!this->initCompute()) throw Error("there is no cloud", "call setInputCloud() first");
     Vectors points;
@@ -50,6 +52,7 @@ class PclRqe : public pcl::PCLBase<PointT> {
     used_.clear();
     if (!weights_.empty()) check_weights(weights_, this->input_->size());
     for (const auto index : *this->indices_) {
+      check_index(index);
       const PointT& point = (*this->input_)[static_cast<std::size_t>(index)];
       if (!pcl::isFinite(point)) continue;
       points.x.push_back(point.x);
@@ -63,6 +66,13 @@ class PclRqe : public pcl::PCLBase<PointT> {
   }
 
  private:
+  void check_index(pcl::index_t index) const {
+    if (index >= 0 && static_cast<std::size_t>(index) < this->input_->size()) return;
+    throw Error("there is no point " + std::to_string(index) + " in a cloud of " +
+                    std::to_string(this->input_->size()),
+                "give setIndices() those of the cloud that setInputCloud() was given");
+  }
+
   RqeSettings settings_{.gradient = false};
   std::vector<double> weights_;
   pcl::Indices used_;

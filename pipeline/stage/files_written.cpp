@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
+
+#include "pipeline/stage/name_pattern.hpp"
 
 namespace crisp {
 namespace {
@@ -17,51 +19,97 @@ fs::path one_name(const fs::path& file) {
   return failure ? fs::absolute(file).lexically_normal() : name;
 }
 
-/// A path that a stage was given.
-struct OwnFile {
-  const PipelineNode* node = nullptr;
-  fs::path file;
-  bool written = false;
+/// A path that a stage was given, or the run itself, and the files that this means.
+struct OwnFiles {
+  std::string who;
+  Place place;
+  std::vector<NamePattern> names;
 };
 
-std::vector<OwnFile> files_of(const Pipeline& pipeline) {
-  std::vector<OwnFile> files;
+/// All files that come of this path. What is named after it lies beside the path itself, even where that is a
+/// link to a file elsewhere.
+std::vector<NamePattern> names_written(const Option& option, const fs::path& path) {
+  std::vector<NamePattern> names;
+  const fs::path folder = one_name(path.parent_path());
+  for (const auto& shape : option.writes) {
+    if (shape == kFileItself)
+      names.emplace_back(one_name(path));
+    else if (option.is_folder)
+      names.push_back(NamePattern::within(one_name(path), shape));
+    else
+      names.push_back(NamePattern::beside(folder / path.filename(), shape));
+  }
+  const std::size_t files = names.size();
+  for (std::size_t i = 0; i < files; ++i) names.push_back(names[i] + kProvenance);
+  return names;
+}
+
+/// What the stages read and write, by their options.
+struct FilesOfStages {
+  std::vector<OwnFiles> read;
+  std::vector<OwnFiles> written;
+};
+
+FilesOfStages files_of(const Pipeline& pipeline) {
+  FilesOfStages files;
   for (const auto& node : pipeline.nodes) {
+    if (!node.type) continue;
     for (const auto& option : node.type->options) {
       if (option.type != OptionType::path) continue;
       const OptionValue value = node.value(option);
       const auto* scalar = std::get_if<OptionScalar>(&value);
       const auto* text = scalar ? std::get_if<std::string>(scalar) : nullptr;
-      if (text && !text->empty()) files.push_back({&node, one_name(*text), option.writes});
+      if (!text || text->empty()) continue;
+      if (option.writes.empty())
+        files.read.push_back({node.tag, node.place_of(option.name), {NamePattern(one_name(*text))}});
+      else
+        files.written.push_back(
+            {node.tag, node.place_of(option.name), names_written(option, fs::absolute(*text))});
     }
   }
   return files;
 }
 
+/// Adds an error if one of the files that `writer` makes can be one of `other`.
+void refuse_same(const OwnFiles& writer, const OwnFiles& other, const char* what_other_does,
+                 std::vector<Error>& errors) {
+  for (const auto& own : writer.names) {
+    const auto theirs =
+        std::ranges::find_if(other.names, [&](const NamePattern& name) { return own.overlaps(name); });
+    if (theirs == other.names.end()) continue;
+    const std::string how =
+        own == *theirs ? "it would overwrite " : "its " + own.shown() + " could overwrite ";
+    errors.emplace_back(
+        fmt::format("{}: {}{}, which {} {}", writer.who, how, theirs->shown(), other.who, what_other_does),
+        "let it write another file", writer.place);
+    return;
+  }
+}
+
 }  // namespace
 
-void check_files_written(const Pipeline& pipeline, const std::vector<fs::path>& read_already,
-                         std::vector<Error>& errors) {
-  const std::vector<OwnFile> files = files_of(pipeline);
-  std::map<fs::path, std::string> readers;
-  for (const auto& file : read_already) {
-    if (!file.empty()) readers.emplace(one_name(file), "this run");
+void check_files_written(const Pipeline& pipeline, const FilesOfRun& run, std::vector<Error>& errors) {
+  FilesOfStages files = files_of(pipeline);
+  OwnFiles& read_already = files.read.emplace_back();
+  read_already.who = "this run";
+  for (const auto& file : run.read) {
+    if (!file.empty()) read_already.names.emplace_back(one_name(file));
   }
-  for (const auto& own : files) {
-    if (!own.written) readers.emplace(own.file, own.node->tag);
+  std::vector<OwnFiles> others;
+  if (!run.summary.empty()) {
+    OwnFiles& own = others.emplace_back();
+    own.who = "this run";
+    own.names.emplace_back(one_name(run.summary));
   }
-  std::map<fs::path, const PipelineNode*> writers;
-  for (const auto& [node, file, written] : files) {
-    if (!written) continue;
-    if (const auto reader = readers.find(file); reader != readers.end()) {
-      errors.emplace_back(
-          fmt::format("{}: it would overwrite {}, which {} reads", node->tag, file.string(), reader->second),
-          "let it write another file", node->place);
-    } else if (const auto [first, is_new] = writers.emplace(file, node); !is_new) {
-      errors.emplace_back(fmt::format("{}: it would overwrite {}, which {} writes", node->tag, file.string(),
-                                      first->second->tag),
-                          "let it write another file", node->place);
+  for (const auto& writer : files.written) {
+    const std::size_t before = errors.size();
+    for (const auto& reader : files.read) {
+      if (errors.size() == before) refuse_same(writer, reader, "reads", errors);
     }
+    for (const auto& other : others) {
+      if (errors.size() == before) refuse_same(writer, other, "writes", errors);
+    }
+    others.push_back(writer);
   }
 }
 

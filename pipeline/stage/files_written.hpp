@@ -8,10 +8,19 @@
 
 namespace crisp {
 
-/// Adds an error for each stage that is to write a file that another one reads or has written: the options of
-/// paths say which are which. Opens no file.
-/// @param read_already  the pipeline's own file and the rig's; empty ones are passed over
-void check_files_written(const Pipeline& pipeline, const std::vector<std::filesystem::path>& read_already,
-                         std::vector<Error>& errors);
+/// What stands behind the name of a file that a run wrote in the name of the record of its origin.
+inline constexpr const char* kProvenance = ".provenance.json";
+/// The record of the whole run, in the output folder.
+inline constexpr const char* kSummary = "summary.json";
+
+/// What a run itself reads and writes, besides its stages. Empty paths are passed over.
+struct FilesOfRun {
+  std::vector<std::filesystem::path> read;  ///< the pipeline's own file and the rig's
+  std::filesystem::path summary;
+};
+
+/// Adds an error for each stage that could write a file that another one reads or writes: the options of
+/// paths say which those are, the records of their origin included. Opens no file.
+void check_files_written(const Pipeline& pipeline, const FilesOfRun& run, std::vector<Error>& errors);
 
 }  // namespace crisp

@@ -26,6 +26,9 @@ struct Inspector {
   std::function<bool(std::string_view head)> recognises;
   /// @throws Error if the file cannot be read
   std::function<Inspection(const std::filesystem::path& file, const Rig& rig)> inspect;
+  /// The extensions of such files, ".pcap": one that is named so (see has_extension()) and is none is an
+  /// error.
+  std::vector<std::string> extensions = {};
 };
 
 using Inspectors = std::vector<Inspector>;

@@ -36,16 +36,20 @@ using OptionGroups = std::vector<OptionGroup>;
 /// option's unit.
 using OptionValue = std::variant<std::monostate, OptionScalar, std::vector<OptionScalar>, OptionGroups>;
 
+/// In Option::writes: the file that the path names.
+inline constexpr const char* kFileItself = "<stem><ext>";
+
 /// One option as it was declared: everything that parsing, validation and documentation need to know.
 struct Option {
   std::string name;
   std::string help;
   OptionType type = OptionType::text;
-  bool list = false;         ///< takes a list of values (a single one is a list of length 1)
-  bool may_be_auto = false;  ///< `auto` is a value
-  bool required = false;     ///< there is no default
-  bool writes = false;       ///< of a path: the stage writes that file, in place of reading it
-  std::string unit;          ///< SI unit of the value ("m", "rad", "s", "Hz", "1"), empty if it has none
+  bool list = false;                ///< takes a list of values (a single one is a list of length 1)
+  bool may_be_auto = false;         ///< `auto` is a value
+  bool required = false;            ///< there is no default
+  bool is_folder = false;           ///< of a path: the stage writes files into that folder
+  std::vector<std::string> writes;  ///< of a path that is written, not read: the files, see NamePattern
+  std::string unit;  ///< SI unit of the value ("m", "rad", "s", "Hz", "1"), empty if it has none
   double min = -std::numeric_limits<double>::infinity();  ///< smallest number, in `unit`
   double max = std::numeric_limits<double>::infinity();   ///< largest number, in `unit`
   std::size_t min_count = 0;                              ///< shortest list

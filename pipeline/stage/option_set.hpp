@@ -139,8 +139,21 @@ class OptionDeclaration {
   }
   /// The path is of a file that the stage writes, in place of reading it: a pipeline in which another stage
   /// reads it, or writes it too, is wrong.
-  OptionDeclaration& writes() requires std::same_as<V, std::filesystem::path> {
-    option_->writes = true;
+  /// @param also  files beside it that the stage writes, named after it: "<stem>_####<ext>" are
+  /// cloud_0001.pcd,
+  ///              cloud_0002.pcd … of cloud.pcd; # is any number, * any text
+  OptionDeclaration& writes(
+      const std::vector<std::string_view>& also = {}) requires std::same_as<V, std::filesystem::path> {
+    option_->writes = {kFileItself};
+    option_->writes.insert(option_->writes.end(), also.begin(), also.end());
+    return *this;
+  }
+  /// The path is of a folder that the stage writes such files into: "*_noise.svg". As above, no other stage
+  /// may read or write them.
+  OptionDeclaration& writes_into(
+      const std::vector<std::string_view>& files) requires std::same_as<V, std::filesystem::path> {
+    option_->is_folder = true;
+    option_->writes.assign(files.begin(), files.end());
     return *this;
   }
   /// The names of an enumeration's values; every enumeration needs them.

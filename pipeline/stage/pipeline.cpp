@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/stage/wiring.hpp"
 
@@ -20,6 +21,7 @@ class Builder {
   PipelineNode make(const StageSpec& spec, const std::vector<PipelineNode>& above) {
     PipelineNode node;
     node.place = spec.place;
+    node.option_places = spec.places;
     node.tag = spec.tag;
     check_tag(node, above);
     node.type = run_.registrar->stages().find(spec.stage);
@@ -30,7 +32,9 @@ class Builder {
       return node;
     }
     node.stage = node.type->make();
+    const std::size_t before = errors_.size();
     set_options(node, spec);
+    node.is_told = errors_.size() == before && spec.refused.empty();
     return node;
   }
 
@@ -40,13 +44,7 @@ class Builder {
       fail(error.place().file.empty() ? node.place : error.place(), node.tag + ": " + error.message(),
            error.advice());
     };
-    try {
-      node.stage->check(run_);
-    } catch (const Errors& several) {
-      for (const auto& error : several.all()) tell(error);
-    } catch (const Error& error) {
-      tell(error);
-    }
+    for_each_error([&] { node.stage->check(run_); }, tell);
   }
 
  private:
@@ -100,15 +98,17 @@ void name_stages(std::vector<StageSpec>& specs) {
   }
 }
 
-Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run, std::vector<Error>& errors) {
+Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run, std::vector<Error>& errors,
+                        bool rig_is_known) {
   name_stages(specs);
   Pipeline pipeline;
   Builder builder(run, errors);
   for (const auto& spec : specs) pipeline.nodes.push_back(builder.make(spec, pipeline.nodes));
   connect(pipeline, specs, run.registrar->stages(), errors);
-  if (!errors.empty()) return pipeline;  // checks may rely on options that are right one by one
-  for (const auto& node : pipeline.nodes) builder.check(node);
-  pipeline.warnings = put_too_low(pipeline);
+  for (const auto& node : pipeline.nodes) {
+    if (node.type && node.is_told && rig_is_known) builder.check(node);
+  }
+  if (errors.empty()) pipeline.warnings = put_too_low(pipeline);
   return pipeline;
 }
 

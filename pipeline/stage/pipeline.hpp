@@ -28,6 +28,7 @@ struct StageSpec {
   std::optional<std::vector<TagReference>> inputs = {};  ///< absent: the nearest stages above that fit
   std::map<std::string, OptionValue> with = {};          ///< the options that are not at their default
   std::set<std::string> refused = {};                    ///< options that were given, wrongly, which was said
+  std::map<std::string, Place> places = {};              ///< where the options were given
   Place place = {};
 };
 
@@ -39,9 +40,16 @@ struct PipelineNode {
   const StageType* type = nullptr;
   std::string tag;
   Place place;
+  std::map<std::string, Place> option_places;  ///< of those that were given
+  bool is_told = true;                         ///< its options, each by itself, are right
   std::unique_ptr<Stage> stage;
   std::vector<std::vector<std::size_t>> feeders;  ///< for each of the type's inputs, the nodes that feed it
 
+  /// Where the option was given, or else the stage.
+  const Place& place_of(const std::string& option) const {
+    const auto given = option_places.find(option);
+    return given != option_places.end() ? given->second : place;
+  }
   OptionValue value(const Option& option) const { return option.get(type->options_object(*stage)); }
 };
 
@@ -66,6 +74,8 @@ Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run);
 
 /// The same, but adds mistakes to `errors` instead of throwing, so that a caller can report its own with
 /// them. The pipeline is complete only if no error was added.
-Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run, std::vector<Error>& errors);
+/// @param rig_is_known  or else the stages are not asked whether they fit it
+Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run, std::vector<Error>& errors,
+                        bool rig_is_known = true);
 
 }  // namespace crisp

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/rig_file.hpp"
 #include "pipeline/files/yaml_map.hpp"
@@ -19,6 +20,9 @@ namespace crisp {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What ${output} stands for where a pipeline is only validated.
+const fs::path kNoOutput = "/output";
 
 class PlanReader {
  public:
@@ -48,7 +52,7 @@ class PlanReader {
       if (path)
         variables_.set(name, fs::absolute(*path).lexically_normal().string());
       else if (arguments_.only_validate)
-        variables_.set(name, "/" + name);
+        variables_.set(name, "/" + name);  // as kNoOutput
       else
         variables_.set_missing(name, advice);
     };
@@ -76,26 +80,28 @@ class PlanReader {
     if (arguments_.rig) return use_rig(fs::absolute(*arguments_.rig), {});
     if (!node) return;
     YamlNode rig = *node;
+    const std::size_t before = errors_.size();
     variables_.substitute(rig, errors_);
-    if (rig.kind == YamlNode::Kind::scalar) return use_rig(path_of(rig, folder_), rig.place);
-    collect([&] { plan_.rig = parse_rig(rig); }, rig.place);
+    plan_.rig_is_known = errors_.size() == before;
+    if (rig.kind == YamlNode::Kind::scalar) {
+      if (plan_.rig_is_known) use_rig(path_of(rig, folder_), rig.place);
+      return;
+    }
+    take_rig([&] { plan_.rig = parse_rig(rig); }, rig.place);
   }
 
   void use_rig(const fs::path& file, const Place& place) {
     plan_.rig_file = file.lexically_normal();
-    collect([&] { plan_.rig = read_rig(plan_.rig_file); }, place);
+    take_rig([&] { plan_.rig = read_rig(plan_.rig_file); }, place);
   }
 
-  /// Adds what `action` throws to the errors, at `place` where it has no place of its own.
-  template <class Action>
-  void collect(Action action, const Place& place) {
-    try {
-      action();
-    } catch (const Errors& several) {
-      errors_.insert(errors_.end(), several.all().begin(), several.all().end());
-    } catch (const Error& error) {
+  /// Adds what `read` throws to the errors, at `place` where it has no place of its own.
+  template <class Read>
+  void take_rig(Read read, const Place& place) {
+    for_each_error(read, [&](const Error& error) {
+      plan_.rig_is_known = false;
       errors_.emplace_back(error.message(), error.advice(), error.place().line ? error.place() : place);
-    }
+    });
   }
 
   void read_stages(const YamlNode& list) {
@@ -163,6 +169,7 @@ class PlanReader {
         map.fail(entry.place, "there is no option '" + entry.key + "'", no_such_option(*type, entry.key));
         continue;
       }
+      spec.places[option->name] = entry.value.place;
       YamlNode value = entry.value;
       const std::size_t before = errors_.size();
       variables_.substitute(value, errors_);
@@ -216,8 +223,11 @@ LoadedPipeline load(const YamlNode& root, const fs::path& file, const PipelineAr
   PipelinePlan plan = parse_plan(root, folder, arguments, run.registrar->stages(), errors);
   run.rig = std::move(plan.rig);
   run.output = arguments.output ? fs::absolute(*arguments.output).lexically_normal() : fs::path();
-  Pipeline pipeline = build_pipeline(plan.stages, run, errors);
-  if (errors.empty()) check_files_written(pipeline, {file, plan.rig_file}, errors);
+  Pipeline pipeline = build_pipeline(plan.stages, run, errors, plan.rig_is_known);
+  const fs::path output = arguments.only_validate && !arguments.output ? kNoOutput : run.output;
+  const FilesOfRun own{.read = {file, plan.rig_file},
+                       .summary = output.empty() ? fs::path() : output / kSummary};
+  check_files_written(pipeline, own, errors);
   sort_by_place(errors);
   if (!errors.empty()) throw Errors(std::move(errors));
   return {std::move(pipeline), file, std::move(plan.rig_file)};

@@ -24,6 +24,7 @@ struct PipelineArguments {
 /// A pipeline as its file describes it.
 struct PipelinePlan {
   Rig rig = default_rig();
+  bool rig_is_known = true;        ///< false: the one that was asked for has mistakes
   std::filesystem::path rig_file;  ///< empty: the default rig
   std::vector<StageSpec> stages;
 };

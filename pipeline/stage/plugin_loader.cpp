@@ -20,14 +20,20 @@ namespace fs = std::filesystem;
 std::string refusal_of(const PluginDescriptor& descriptor) {
   if (descriptor.size != sizeof(PluginDescriptor)) {
     return fmt::format(
-        "its descriptor has {} bytes where this program's has {}: built for another version of crisp",
+        "its descriptor has {} bytes where this program's has {}: built for another version of crisp; "
+        "rebuild "
+        "it against this one",
         descriptor.size, sizeof(PluginDescriptor));
   }
   if (!descriptor.abi_key || !descriptor.name || !descriptor.version || !descriptor.register_all) {
     return "its descriptor is incomplete";
   }
   if (descriptor.abi_key != std::string(CRISP_ABI_KEY)) {
-    return fmt::format("it was built for '{}', and this program is '{}'", descriptor.abi_key, CRISP_ABI_KEY);
+    return fmt::format(
+        "it was built for '{}', and this program is '{}'; rebuild it against this crisp with the same "
+        "compiler "
+        "flags",
+        descriptor.abi_key, CRISP_ABI_KEY);
   }
   return {};
 }
@@ -35,6 +41,21 @@ std::string refusal_of(const PluginDescriptor& descriptor) {
 std::string last_error() {
   const char* text = dlerror();
   return text ? text : "it cannot be loaded";
+}
+
+/// What a plugin throws while it registers itself, in words; empty if nothing.
+template <class Register>
+std::string what_is_wrong_with(Register register_all) {
+  try {
+    register_all();
+    return {};
+  } catch (const Error& error) {
+    return error.message();
+  } catch (const std::exception& error) {
+    return std::string("what it registers was refused: ") + error.what();
+  } catch (...) {
+    return "registering its stages it threw what is no std::exception";
+  }
 }
 
 }  // namespace
@@ -65,22 +86,14 @@ void PluginLoader::load_file(const fs::path& file) {
   record.name = descriptor->name;
   record.version = descriptor->version;
 
-  const auto before = registrar_.stages().names();
-  const StageRegistry stages_before = registrar_.stages();
+  const auto before = registrar_.registered();
+  const auto take_back = registrar_.snapshot();
   const std::string origin = registrar_.origin();
   registrar_.set_origin("from " + record.file.string());
-  try {
-    descriptor->register_all(registrar_);
-    const auto after = registrar_.stages().names();
-    std::set_difference(after.begin(), after.end(), before.begin(), before.end(),
-                        std::back_inserter(record.stages));
-  } catch (const Error& error) {
-    record.refusal = error.message();
-  } catch (const std::exception& error) {
-    record.refusal = std::string("what it registers was refused: ") + error.what();
-  }
-  if (!record.is_loaded()) registrar_.stages() = stages_before;
+  record.refusal = what_is_wrong_with([&] { descriptor->register_all(registrar_); });
   registrar_.set_origin(origin);
+  if (!record.is_loaded()) return take_back();
+  std::ranges::set_difference(registrar_.registered(), before, std::back_inserter(record.brings));
 }
 
 }  // namespace crisp

@@ -12,10 +12,10 @@ namespace crisp {
 /// One file that was tried as a plugin.
 struct PluginRecord {
   std::filesystem::path file;
-  std::string name;     ///< empty if it was not found out
-  std::string version;  ///< the plugin's own
-  std::string refusal;  ///< why it is not in use; empty if it is
-  std::vector<std::string> stages;
+  std::string name;                 ///< empty if it was not found out
+  std::string version;              ///< the plugin's own
+  std::string refusal;              ///< why it is not in use; empty if it is
+  std::vector<std::string> brings;  ///< "stage filter.near", "term range.drift"
 
   bool is_loaded() const { return refusal.empty(); }
 };

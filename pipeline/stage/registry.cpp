@@ -110,7 +110,31 @@ std::vector<std::string> StageRegistry::givers(const Kind& kind) const {
 void* Registrar::other(std::type_index type) const {
   const auto found = others_.find(type);
   if (found == others_.end()) throw Error("this program has no " + readable(type));
-  return found->second;
+  return found->second.registry;
+}
+
+std::vector<std::string> Registrar::registered() const {
+  std::vector<std::string> all;
+  for (const auto& name : stages_.names()) all.push_back("stage " + name);
+  for (const auto& [type, other] : others_) {
+    if (other.kind.empty() || !other.names) continue;
+    for (const auto& name : other.names()) all.push_back(other.kind + " " + name);
+  }
+  std::ranges::sort(all);
+  return all;
+}
+
+std::function<void()> Registrar::snapshot() {
+  std::vector<std::function<void()>> others;
+  for (const auto& [type, other] : others_) {
+    if (other.snapshot) others.push_back(other.snapshot());
+  }
+  return [this, stages = stages_, inspectors = inspectors_, origin = origin_, others = std::move(others)] {
+    stages_ = stages;
+    inspectors_ = inspectors;
+    origin_ = origin;
+    for (const auto& take_back : others) take_back();
+  };
 }
 
 }  // namespace crisp

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <typeindex>
@@ -48,9 +49,16 @@ class Registrar {
   const StageRegistry& stages() const { return stages_; }
 
   /// Makes a registry known, which must outlive the registrar.
+  /// @param kind  what one thing in it is called, if all are to be listed: "term"
   template <class R>
-  void attach(R& registry) {
-    others_[typeid(R)] = &registry;
+  void attach(R& registry, std::string kind = {}) {
+    Attached& other = others_[typeid(R)];
+    other.registry = &registry;
+    other.kind = std::move(kind);
+    if constexpr (requires { registry.names(); }) {
+      other.names = [&registry] { return registry.names(); };
+      other.snapshot = [&registry] { return [&registry, was = registry] { registry = was; }; };
+    }
   }
   /// @throws Error if no registry of this type is attached
   template <class R>
@@ -58,16 +66,29 @@ class Registrar {
     return *static_cast<R*>(other(typeid(R)));
   }
 
+  /// All that is registered and has a name, in order: "stage write.pcd", "term mirror.cone".
+  std::vector<std::string> registered() const;
+  /// What takes back all that is registered from now on.
+  std::function<void()> snapshot();
+
   /// From where the next registrations come: "built in", or a plugin's file.
   void set_origin(std::string origin) { origin_ = std::move(origin); }
   const std::string& origin() const { return origin_; }
 
  private:
+  /// A registry of things that are not stages.
+  struct Attached {
+    void* registry = nullptr;
+    std::string kind;
+    std::function<std::vector<std::string>()> names;
+    std::function<std::function<void()>()> snapshot;
+  };
+
   void* other(std::type_index type) const;
 
   StageRegistry stages_;
   Inspectors inspectors_;
-  std::map<std::type_index, void*> others_;
+  std::map<std::type_index, Attached> others_;
   std::string origin_ = "built in";
 };
 

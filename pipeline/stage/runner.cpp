@@ -221,10 +221,25 @@ class Runner {
 
   void finish(std::size_t index) {
     if (!workers_[index].waiting.empty()) throw never_came(workers_[index]);
-    call(index, [](Worker& w) { w.node->stage->finish(*w.out, *w.context); });
+    call(index, [&](Worker& w) {
+      w.node->stage->finish(*w.out, *w.context);
+      refuse_overwritten(index);
+    });
     for (const auto& edge : workers_[index].edges) {
       Worker& fed = workers_[edge.to];
       if (--fed.open[edge.input] == 0 && is_ready(fed)) replay(edge.to);
+    }
+  }
+
+  /// Stages say beforehand which files they write, and are refused there; this is for those that do not.
+  void refuse_overwritten(std::size_t index) const {
+    const auto& own = workers_[index].result.report.written;
+    for (std::size_t i = 0; i < workers_.size(); ++i) {
+      const auto& theirs = workers_[i].result.report.written;
+      const auto same = std::ranges::find_first_of(own, theirs);
+      if (i == index || same == own.end()) continue;
+      throw Error("it has overwritten " + same->string() + ", which " + workers_[i].result.tag + " wrote",
+                  "let it write another file");
     }
   }
 
@@ -281,6 +296,9 @@ class Runner {
                  worker.node->place);
     } catch (const std::exception& error) {
       throw Told(worker.node->tag + ": " + error.what(), {}, worker.node->place);
+    } catch (...) {
+      throw Told(worker.node->tag + ": it threw what is no std::exception", "let it throw crisp::Error",
+                 worker.node->place);
     }
     if (is_stopped()) throw Interrupted();
   }

@@ -90,18 +90,25 @@ void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const Stag
     errors.emplace_back(tag + ": there is no option '" + name + "'", no_such_option(*type, name), place);
     return;
   }
+  spec->places[name] = place;
   YamlNode node;
   if (option->list || option->type == OptionType::groups) {
     const std::size_t before = errors.size();
     node = parse_value(setting.value, setting.text, errors);
-    if (errors.size() != before) return;
+    if (errors.size() != before) {
+      spec->refused.insert(name);
+      return;
+    }
   } else {  // taken as it is: the shell has its own quotes
     node.kind = YamlNode::Kind::scalar;
     node.text = setting.value;
     comes_from_command_line(node, place);
   }
   auto value = read_option(*option, node, tag, {}, errors);
-  if (value) spec->with[name] = std::move(*value);
+  if (value)
+    spec->with[name] = std::move(*value);
+  else
+    spec->refused.insert(name);
 }
 
 }  // namespace crisp

@@ -2,10 +2,12 @@
 #include "plugins/assemble/deskew_stage.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/model/terms_in.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/assemble/deskew.hpp"
 
@@ -36,6 +38,7 @@ void DeskewStage::process(const Inputs& in, Outputs& out, Context& context) {
   const auto& beams = in.get<Measurements>();
   Deskewed deskewed = deskew(beams, in.get<PlateTrajectory>(), model(in.share<Calibration>(), context.run()),
                              mirrors_, clouds_.get());
+  if (beams.cos_incidence.empty()) blind_ = with_incidence_;
   beams_ += beams.size();
   outside_ += deskewed.outside;
   context.count("beams outside the plate's readings", deskewed.outside);
@@ -47,6 +50,8 @@ const SensorModel& DeskewStage::model(std::shared_ptr<const Calibration> calibra
   if (!model_ || calibration != calibration_) {
     model_.emplace(calibration ? *calibration : nominal_calibration(run.rig),
                    run.registrar->get<TermRegistry>());
+    with_incidence_ =
+        terms_in(model_->calibration(), run.registrar->get<TermRegistry>(), &TermInfo::needs_incidence);
     calibration_ = std::move(calibration);
   }
   return *model_;
@@ -63,6 +68,11 @@ void DeskewStage::finish(Outputs&, Context& context) {
   context.report({{"beams", beams_}, {"points", points}, {"calibration", nominal ? "nominal" : "given"}});
   context.say(fmt::format("{} points of {} beams, placed by {}", points, beams_,
                           nominal ? "the rig's nominal values" : "the calibration"));
+  if (!blind_.empty()) {
+    context.warn(
+        fmt::format("the cloud is placed without {}: nobody has found how its beams met their surfaces",
+                    fmt::join(blind_, ", ")));
+  }
   const double missing =
       static_cast<double>(outside_) / static_cast<double>(std::max<std::uint64_t>(beams_, 1));
   if (missing > kWorthAWarning) {

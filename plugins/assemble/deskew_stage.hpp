@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "pipeline/data/calibration.hpp"
 #include "pipeline/data/cloud.hpp"
@@ -28,6 +30,8 @@ class DeskewStage final : public Stage {
 
   std::shared_ptr<const Calibration> calibration_;  ///< from above, of `model_`; null: the nominal one
   std::optional<SensorModel> model_;
+  std::vector<std::string> with_incidence_;  ///< terms of it that ask how beams met their surfaces
+  std::vector<std::string> blind_;           ///< those that asked in vain
   KnownMirrors mirrors_;
   Pool<Cloud> clouds_;
   std::uint64_t beams_ = 0;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/load_stage.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "pipeline/files/calibration_file.hpp"
 #include "pipeline/model/term_faults.hpp"
+#include "pipeline/model/terms_in.hpp"
 #include "pipeline/stage/registry.hpp"
 
 namespace crisp {
@@ -33,11 +37,27 @@ void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context
   if (!std::filesystem::exists(file_)) {
     throw Error("there is no calibration " + file_.string(), "calibrate first, or name another file");
   }
-  const Calibration read = read_calibration(file_, judge_by(context.run().registrar->get<TermRegistry>()));
+  const auto& terms = context.run().registrar->get<TermRegistry>();
+  const Calibration read = read_calibration(file_, judge_by(terms));
   context.reads(file_);
   Calibration calibration = ordered_as(context.rig(), read);
   if (read.lasers.size() > calibration.lasers.size()) {
     context.warn("the calibration has lasers that the rig does not have; they are not used");
+  }
+  const auto counts_from = [](CountsFrom from) {
+    return [from](const TermInfo& term) { return term.counts_from == from; };
+  };
+  const auto from_begin = terms_in(calibration, terms, counts_from(CountsFrom::kRunsEpoch));
+  if (!from_begin.empty()) {
+    context.warn(fmt::format(
+        "{}: what goes by the time since a recording began holds for the one that it was found in",
+        fmt::join(from_begin, ", ")));
+  }
+  const auto from_zero = terms_in(calibration, terms, counts_from(CountsFrom::kEncodersZero));
+  if (!from_zero.empty()) {
+    context.say(fmt::format(
+        "{}: what goes by the plate's angle holds as long as the encoder counts from the same zero",
+        fmt::join(from_zero, ", ")));
   }
   out.give(std::move(calibration));
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
@@ -55,12 +56,14 @@ void RefineStage::describe(StageDescription<RefineStage>& d) {
 }
 
 void RefineStage::check(const RunSettings& run) const {
-  if (settings_.surfels.largest < settings_.surfels.smallest) {
-    throw Error("the largest patch is smaller than the smallest", "give a `largest` above `smallest`");
-  }
-  check_fixed(settings_.fixed, nominal_calibration(run.rig));
-  Calibration with_terms = nominal_calibration(run.rig);
-  add_wanted_terms(with_terms, settings_.terms, run.registrar->get<TermRegistry>());
+  Calibration nominal = nominal_calibration(run.rig);
+  check_all(
+      [&] {
+        if (settings_.surfels.largest >= settings_.surfels.smallest) return;
+        throw Error("the largest patch is smaller than the smallest", "give a `largest` above `smallest`");
+      },
+      [&] { check_fixed(settings_.fixed, nominal); },
+      [&] { add_wanted_terms(nominal, settings_.terms, run.registrar->get<TermRegistry>()); });
 }
 
 void RefineStage::process(const Inputs& in, Outputs&, Context&) {

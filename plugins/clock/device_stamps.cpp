@@ -112,7 +112,7 @@ DeviceReport DeviceStamps::report() const {
   DeviceReport report = report_;
   report.clock = clock_.map();
   report.delay_steps = clock_.delay_steps();
-  if (smallest_step_ > 0) {
+  if (numbered_ && smallest_step_ > 0) {
     report.lost =
         static_cast<std::uint64_t>(std::max<std::int64_t>(0, counted_steps_ / smallest_step_ - pairs_));
   }

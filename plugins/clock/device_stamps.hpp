@@ -23,7 +23,7 @@ struct SilentTime {
 struct DeviceReport {
   ClockMap clock;
   std::uint64_t received = 0;
-  std::uint64_t lost = 0;      ///< by the gaps of its counter
+  std::uint64_t lost = 0;      ///< by the gaps of its counter; 0 where it has none
   std::uint64_t repeated = 0;  ///< came twice or out of order: left out
   std::uint64_t damaged = 0;   ///< with times that fit nothing before or after: left out
   std::uint64_t resets = 0;    ///< of its clock
@@ -57,6 +57,7 @@ class DeviceStamps {
   const FittedClock& clock() const { return clock_; }
   const ClockMap& map() const { return clock_.map(); }
   void count_damaged() { ++report_.damaged; }
+  void trust_counter(bool numbered) { numbered_ = numbered_ && numbered; }  ///< of what is accepted next
   DeviceReport report() const;
 
  private:
@@ -80,6 +81,7 @@ class DeviceStamps {
   FittedClock clock_;
   DeviceReport report_;
   bool any_ = false;
+  bool numbered_ = true;  ///< all of them by the device itself
   Last last_;
   Last before_reset_;
   double last_hub_ = 0;

@@ -34,6 +34,7 @@ bool LaserTrack::add(std::shared_ptr<const Scan> scan, double hub) {
     nominal_period_ = 1 / scan->scan_frequency;
     stamps_.set_period(nominal_period_);
   }
+  stamps_.trust_counter(scan->numbered);
   const auto arrival =
       stamps_.accept(scan->scan_counter, scan->transmission_time_us, scan->receipt_ns, hub, handover_us);
   if (arrival.kind == StampKind::repeated) return false;

@@ -45,6 +45,7 @@ bool PlateTrack::add(const PlateReading& reading, double hub) {
   if (before_) zero_is_new_ = !goes_on(*before_, reading);
   before_.reset();
   latest_ = {.device_us = reading.device_us, .receipt_ns = reading.receipt_ns};
+  stamps_.trust_counter(reading.numbered);
   const auto arrival = stamps_.accept(reading.sequence, reading.device_us, reading.receipt_ns, hub);
   if (arrival.kind == StampKind::repeated) return false;
   if (arrival.kind == StampKind::reset) {

@@ -9,6 +9,11 @@
 #include "pipeline/data/robust.hpp"
 
 namespace crisp {
+namespace {
+
+constexpr double kMostSpread = 0.03;  // [m]
+
+}  // namespace
 
 void AtRest::add(const Scan& scan) {
   constexpr std::size_t kMostScans = 4000;  // bounds the memory; so many tell all there is to tell
@@ -42,12 +47,49 @@ bool PlateRest::turned() const {
   return std::int64_t{most_} - least_ > kShakes;
 }
 
-std::variant<RangeErrors, NothingSaid> AtRest::errors() const {
-  constexpr std::size_t kFewestScans = 10;
-  constexpr double kMostSpread = 0.03;   // [m]
+std::vector<std::size_t> AtRest::shots_of(std::size_t beam) const {
   constexpr double kLeastCame = 0.8;     // of a beam's shots
+  constexpr double kLeastRange = 0.016;  // [m] below there are codes
+  std::vector<std::size_t> shots;
+  for (std::size_t scan = 0; scan < scans(); ++scan) {
+    if (range(scan, beam) > kLeastRange && std::isfinite(range(scan, beam))) shots.push_back(scan);
+  }
+  if (static_cast<double>(shots.size()) < kLeastCame * static_cast<double>(scans())) shots.clear();
+  return shots;
+}
+
+FarShots AtRest::far_shots() const {
+  constexpr double kFar = 8;           // standard deviations, if it were normal
+  constexpr double kMostAtOnce = 0.5;  // of the beams
+  FarShots far{.scans = scans(), .of_beam = std::vector<std::vector<std::uint32_t>>(beams_)};
+  std::vector<double> shots_in(scans(), 0);
+  std::vector<double> far_in(scans(), 0);
+  for (std::size_t beam = 0; beam < beams_; ++beam) {
+    const std::vector<std::size_t> shots = shots_of(beam);
+    if (shots.empty()) continue;
+    std::vector<double> ranges;
+    for (const std::size_t scan : shots) ranges.push_back(range(scan, beam));
+    const double middle = middle_of(ranges);
+    for (double& value : ranges) value = std::abs(value - middle);
+    const double spread = kSigmaByMedian * middle_of(ranges);
+    if (spread > kMostSpread) continue;
+    far.shots += shots.size();
+    for (const std::size_t scan : shots) {
+      shots_in[scan] += 1;
+      if (std::abs(range(scan, beam) - middle) < std::max(kMostSpread, kFar * spread)) continue;
+      far_in[scan] += 1;
+      far.of_beam[beam].push_back(static_cast<std::uint32_t>(scan));
+    }
+  }
+  for (auto& scans : far.of_beam) {
+    std::erase_if(scans, [&](std::uint32_t scan) { return far_in[scan] > kMostAtOnce * shots_in[scan]; });
+  }
+  return far;
+}
+
+std::variant<RangeErrors, NothingSaid> AtRest::errors(const std::vector<bool>& leave_out) const {
+  constexpr std::size_t kFewestScans = 10;
   constexpr double kLeastSteady = 0.25;  // of the beams that come back
-  constexpr float kLeastRange = 0.016F;  // [m] below there are codes
   if (scans() < kFewestScans) {
     return NothingSaid{fmt::format("{} scans are too few: {} are needed", scans(), kFewestScans)};
   }
@@ -55,24 +97,18 @@ std::variant<RangeErrors, NothingSaid> AtRest::errors() const {
   std::size_t steady = 0;
   std::size_t seen = 0;
   for (std::size_t beam = 0; beam < beams_; ++beam) {
-    std::vector<std::size_t> shots;
+    const std::vector<std::size_t> shots = shots_of(beam);
+    if (shots.empty() || (!leave_out.empty() && leave_out[beam])) continue;
     double mean = 0;
-    for (std::size_t scan = 0; scan < scans(); ++scan) {
-      const float range = ranges_[scan * beams_ + beam];
-      if (!(range > kLeastRange) || !std::isfinite(range)) continue;
-      shots.push_back(scan);
-      mean += double{range};
-    }
-    if (static_cast<double>(shots.size()) < kLeastCame * static_cast<double>(scans())) continue;
+    for (const std::size_t scan : shots) mean += range(scan, beam);
     mean /= static_cast<double>(shots.size());
     ++seen;
     std::vector<double> off;
-    for (const std::size_t scan : shots)
-      off.push_back(std::abs(double{ranges_[scan * beams_ + beam]} - mean));
+    for (const std::size_t scan : shots) off.push_back(std::abs(range(scan, beam) - mean));
     if (kSigmaByMedian * middle_of(off) > kMostSpread) continue;
     ++steady;
     for (const std::size_t scan : shots) {
-      all.value.push_back(static_cast<float>(double{ranges_[scan * beams_ + beam]} - mean));
+      all.value.push_back(static_cast<float>(range(scan, beam) - mean));
       all.range.push_back(static_cast<float>(mean));
       if (!remissions_.empty()) all.remission.push_back(remissions_[scan * beams_ + beam]);
       all.beam.push_back(static_cast<std::uint16_t>(beam));

@@ -49,10 +49,16 @@ Eigen::MatrixXd slow(const Eigen::ArrayXd& time, Eigen::Index count) {
   return columns;
 }
 
+/// [s] The catalogue, and so the simulator, has none that are shorter.
+double time_constant(std::size_t warm_up, double duration) {
+  constexpr double kLeast = 0.5;
+  return std::max(kLeast, kWarmUps.at(warm_up) * duration);
+}
+
 Eigen::MatrixXd creeping(const Eigen::ArrayXd& time) {
   Eigen::MatrixXd columns(time.size(), static_cast<Eigen::Index>(kWarmUps.size()));
   for (std::size_t k = 0; k < kWarmUps.size(); ++k) {
-    const double constant = kWarmUps[k] * time[time.size() - 1];
+    const double constant = time_constant(k, time[time.size() - 1]);
     columns.col(static_cast<Eigen::Index>(k)) = 1 - (-time / constant).exp();
   }
   return columns;
@@ -77,15 +83,13 @@ struct Way {
 Way priced(Eigen::MatrixXd base, const Eigen::MatrixXd* columns, bool is_step,
            const Eigen::VectorXd& values) {
   constexpr double kOfItsOwn = 2;  // its size and its shape
-  const auto n = static_cast<double>(values.size());
   auto parameters = static_cast<double>(base.cols());
   double squares = off_base(base, values).squaredNorm();
   if (columns != nullptr) {
     squares -= std::pow(best_in_series(base, *columns, values).product, 2);
     parameters += kOfItsOwn;
   }
-  squares = std::max(squares, std::numeric_limits<double>::min());
-  return {std::move(base), columns, is_step, n * std::log(squares / n) + parameters * std::log(n)};
+  return {std::move(base), columns, is_step, bic_of_series(squares, values.size(), parameters)};
 }
 
 std::vector<Way> ways(const Eigen::ArrayXd& time, const Shapes& shapes, const Eigen::VectorXd& values) {
@@ -131,9 +135,11 @@ CommonChange change_of(const Way& way, const SeriesLook& look, const std::vector
   if (way.is_step) {
     const auto first = static_cast<std::size_t>(before_step(way.columns->col(look.column)));
     change.shape = seconds[first];
-    change.shape_error = seconds[first] - seconds[first - 1];
+    // Of scans that come in bursts none is between two that came at once.
+    const double between = (seconds.back() - seconds.front()) / static_cast<double>(seconds.size() - 1);
+    change.shape_error = std::max(between, seconds[first] - seconds[first - 1]);
   } else {
-    change.shape = kWarmUps.at(static_cast<std::size_t>(look.column)) * (seconds.back() - seconds.front());
+    change.shape = time_constant(static_cast<std::size_t>(look.column), seconds.back() - seconds.front());
     change.shape_error = change.shape;  // known to a factor
   }
   return change;

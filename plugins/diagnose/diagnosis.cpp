@@ -12,6 +12,7 @@
 
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/wanted_terms.hpp"
+#include "pipeline/model/terms_in.hpp"
 #include "plugins/diagnose/evidence.hpp"
 #include "plugins/diagnose/forms.hpp"
 #include "plugins/diagnose/held_out.hpp"
@@ -24,15 +25,6 @@ Calibration with_terms(Calibration calibration, const std::vector<Candidate>& ch
   calibration.plate_terms.clear();
   for (const Candidate& candidate : chosen) add_to(calibration, candidate);
   return calibration;
-}
-
-std::vector<std::string> names_of_terms(const Calibration& calibration) {
-  std::vector<std::string> names;
-  for (const auto& term : calibration.plate_terms) names.push_back(term.term);
-  for (const auto& laser : calibration.lasers) {
-    for (const auto& term : laser.terms) names.push_back(laser.name + "." + term.term);
-  }
-  return names;
 }
 
 std::set<std::string> names_of(const std::vector<Candidate>& candidates) {
@@ -154,15 +146,16 @@ class Diagnoser {
     if (!goes_on(1, "judging by held-out turns")) return result;
     judge(result);
     if (!goes_on(1, "simulating the scanner again")) return result;
-    add_form_errors(result);
     compare(result);
+    refuse_what_leaves_more(result);
+    add_form_errors(result);
     return result;
   }
 
  private:
   Refinement refined(const Calibration& calibration, const Sample& sample) const {
     RefinementSettings settings = settings_.refinement;
-    settings.terms = names_of_terms(calibration);
+    settings.terms = terms_in(calibration, terms_);
     settings.forms = true;
     return refine_by_surfels(SensorModel(calibration, terms_), sample, settings,
                              [this](int) { return goes_on(told_.first, told_.second); });
@@ -233,26 +226,55 @@ class Diagnoser {
     }
   }
 
+  /// What was accepted so far, and how the rest is judged.
+  struct Judged {
+    const Calibration& found;
+    const HeldOut& held_out;
+    std::vector<Candidate> accepted;
+    HeldOut::Score score;
+  };
+
+  /// Whether some departures pay together; if so, they are part of the model from then on.
+  bool accepts(const std::vector<Departure*>& some, Judged& judged) const {
+    auto tried = judged.accepted;
+    for (const Departure* departure : some) tried.push_back(departure->candidate);
+    tried = with_values_of(judged.found, tried);
+    auto score = judged.held_out.score(
+        refined(with_terms(judged.found, tried), judged.held_out.fitted()).outcome.model);
+    const auto gains = HeldOut::gains(judged.score, score);
+    const bool is_paid = pays(gains);
+    for (Departure* departure : some) {
+      if (some.size() > 1 && !is_paid) continue;  // that of each by itself is told
+      departure->gains = gains;
+      departure->accepted = is_paid;
+    }
+    if (!is_paid) return false;
+    judged.accepted = std::move(tried);
+    judged.score = std::move(score);
+    return true;
+  }
+
   /// Fits models with one departure more each to half of the turns, and asks the other half.
   void judge(Diagnosis& result) const {
     if (result.departures.empty()) return;
     const HeldOut held_out(halves_of(inside_), result.before.outcome.model, settings_.refinement.surfels);
     const Calibration found = result.after.outcome.model.calibration();
-    std::vector<Candidate> accepted;
-    auto score = held_out.score(
+    Judged judged{.found = found, .held_out = held_out, .accepted = {}, .score = {}};
+    judged.score = held_out.score(
         refined(with_terms(result.before.outcome.model.calibration(), {}), held_out.fitted()).outcome.model);
-    for (Departure& departure : result.departures) {
+    std::vector<Departure*> open;
+    for (Departure& departure : result.departures) open.push_back(&departure);
+    while (!open.empty()) {
       if (!goes_on(1, "judging by held-out turns")) return;
-      auto tried = accepted;
-      tried.push_back(departure.candidate);
-      tried = with_values_of(found, tried);
-      const auto with_it = held_out.score(refined(with_terms(found, tried), held_out.fitted()).outcome.model);
-      departure.gains = HeldOut::gains(score, with_it);
-      departure.accepted = pays(departure.gains);
-      if (!departure.accepted) continue;
-      accepted = tried;
-      score = with_it;
+      std::vector<Departure*> alike;  // of all lasers: mended in one alone, they disagree
+      std::ranges::copy_if(open, std::back_inserter(alike), [&](const Departure* other) {
+        return other->candidate.term.term == open.front()->candidate.term.term;
+      });
+      std::vector<Departure*> one = {open.front()};
+      if (!accepts(one, judged) && alike.size() > 1 && accepts(alike, judged)) one = alike;
+      std::erase_if(open, [&](Departure* other) { return std::ranges::find(one, other) != one.end(); });
     }
+    const std::vector<Candidate>& accepted = judged.accepted;
     if (accepted.size() < result.departures.size()) {
       result.after = refined(with_terms(found, accepted), sample_);
     }
@@ -265,14 +287,56 @@ class Diagnoser {
     return likelihood != gains.end() && likelihood->after > likelihood->before;
   }
 
+  SideBySide left_by(const Refinement& refinement) const {
+    const Evidence evidence(refinement.outcome.model, inside_, settings_.refinement.surfels, settings_.beams);
+    return side_by_side(evidence, settings_.refinement.surfels, 1);
+  }
+
   void compare(Diagnosis& result) const {
-    const auto left = [&](const Refinement& refinement) {
-      const Evidence evidence(refinement.outcome.model, inside_, settings_.refinement.surfels,
-                              settings_.beams);
-      return side_by_side(evidence, settings_.refinement.surfels, 1);
-    };
-    result.left_before = left(result.before);
-    result.left_after = result.departures.empty() ? result.left_before : left(result.after);
+    result.left_before = left_by(result.before);
+    result.left_after = result.departures.empty() ? result.left_before : left_by(result.after);
+  }
+
+  /// That alone whose ranges it changes; nothing of what the plate does, which changes all.
+  std::optional<std::size_t> laser_of(const Departure& departure) const {
+    const std::size_t owner = departure.candidate.owner;
+    return owner < start_.lasers.size() ? std::optional(owner) : std::nullopt;
+  }
+
+  /// [m²] Over the covariate that shows the most: what departs from the extended model where this departure
+  /// is, and the shapes that do not suffice there.
+  double unexplained_beside(const Departure& one, const Diagnosis& result) const {
+    const auto laser = laser_of(one);
+    auto squares = result.left_after.unexplained(laser);
+    for (const Departure& shape : result.departures) {
+      const bool is_there = !laser || shape.candidate.owner == one.candidate.owner;
+      if (shape.candidate.is_cause() || !shape.accepted || !is_there) continue;
+      const auto left = squares.find(shape.candidate.covariate);
+      if (left != squares.end()) left->second += shape.square(settings_.refinement.surfels.noise);
+    }
+    double most = 0;
+    for (const auto& [covariate, square] : squares) most = std::max(most, square);
+    return most;
+  }
+
+  /// Where much is left that nothing tried describes, the nearest name takes a part of that.
+  void refuse_what_leaves_more(Diagnosis& result) const {
+    std::vector<Candidate> kept;
+    bool refuses = false;
+    for (Departure& departure : result.departures) {
+      if (!departure.accepted) continue;
+      departure.unexplained = departure.candidate.is_cause() ? unexplained_beside(departure, result) : 0;
+      departure.leaves_more = departure.square(settings_.refinement.surfels.noise) < departure.unexplained;
+      refuses = refuses || departure.leaves_more;
+      if (!departure.leaves_more) kept.push_back(departure.candidate);
+    }
+    for (Departure& departure : result.departures) {
+      departure.accepted = departure.accepted && !departure.leaves_more;
+    }
+    if (!refuses) return;
+    const Calibration found = result.after.outcome.model.calibration();
+    result.after = refined(with_terms(found, with_values_of(found, kept)), sample_);
+    result.left_after = left_by(result.after);
   }
 
   const Sample& sample_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <string>
@@ -32,7 +33,14 @@ struct Departure {
   };
   std::vector<Rival> rivals;  ///< what else could explain it, the likeliest first
   std::vector<Gain> gains;    ///< on turns of the plate that the model was not fitted to
-  bool accepted = true;       ///< whether it paid there
+  bool accepted = true;       ///< whether it is part of the extended model
+  double unexplained = 0;     ///< [m²] mean square of what else departs there and has no cause
+  bool leaves_more = false;   ///< whether that is more than it takes, so that it is not, though it paid
+
+  /// [m²] Mean square of what it takes of the residuals and the others leave.
+  ///
+  /// @param noise  [m] of ranges
+  double square(double noise) const { return std::pow(look.visible * noise, 2); }
 };
 
 struct Diagnosis {
@@ -60,7 +68,8 @@ using DiagnosisReporter = std::function<bool(double fraction, const std::string&
 
 /// Looks for what the model of the sensor lacks: refines it, looks at all terms that could be added (score
 /// tests), adds those that are needed, and so on until nothing is missing. What does not pay on held-out
-/// turns of the plate is left out again.
+/// turns of the plate is left out again, and so is a cause that takes less than what departs from the
+/// extended model all the same: it may be no more than a part of that.
 ///
 /// @param start   right to some centimetres and degrees
 /// @param sample  all beams; need not be covered

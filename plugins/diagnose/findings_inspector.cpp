@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "pipeline/data/likeness.hpp"
 #include "pipeline/files/findings_file.hpp"
 #include "plugins/diagnose/report.hpp"
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "pipeline/data/likeness.hpp"
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/plot/write_plot.hpp"
@@ -64,7 +65,8 @@ void DiagnoseModelStage::describe(StageDescription<DiagnoseModelStage>& d) {
            "most times that the model is extended and looked at again")
       .range(1, 100);
   d.option("folder", &DiagnoseModelStage::folder_,
-           "where plots of each laser's residuals go, with and without what was found; auto: nowhere");
+           "where plots of each laser's residuals go, with and without what was found; auto: nowhere")
+      .writes_into({"*_residuals.svg"});
 }
 
 void DiagnoseModelStage::process(const Inputs& in, Outputs&, Context&) {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
+#include "pipeline/model/catalogue.hpp"
 #include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
@@ -63,14 +65,25 @@ Told jackknife(double all, const std::vector<double>& shares, const std::vector<
   return told;
 }
 
+/// The nearest value that the catalogue lets the parameter of an effect have: what a fit is off by, taken
+/// off, may lead beyond.
+double within_bounds(const std::string& cause, const Parameter& parameter) {
+  const auto effect = std::ranges::find(effects_beyond_the_chain(), cause, &EffectInfo::name);
+  if (effect == effects_beyond_the_chain().end()) return parameter.value;
+  const auto bounds = std::ranges::find(effect->parameters, parameter.name, &EffectParameter::name);
+  if (bounds == effect->parameters.end() || !(bounds->lower < bounds->upper)) return parameter.value;
+  return std::clamp(parameter.value, bounds->lower, bounds->upper);
+}
+
 }  // namespace
 
 LawInParts in_parts(const NoiseLaw& law, const RangeErrors& errors) {
   RangeErrors centred = errors;  // some of all that were once
   centred.centre_beams();
-  LawInParts fits{.law = fitted(law, centred, kSettled), .times = {}, .places = {}};
+  LawInParts fits{.law = fitted(law, centred, kSettled), .errors = {}, .times = {}, .places = {}};
   fits.times = without_each(parts_of(centred.block), fits.law, centred);
   fits.places = without_each(parts_of(centred.place), fits.law, centred);
+  fits.errors = std::move(centred);
   return fits;
 }
 
@@ -88,9 +101,14 @@ std::vector<Parameter> parameters_of(const NoiseWay& way, const LawInParts& fits
       return jackknife(all, shares, values);
     };
     const Told over_time = told_by(fits.times);
-    found[k].value = std::max(0.0, over_time.value);
+    found[k].value = over_time.value;
     found[k].std_error = std::max(over_time.std_error, told_by(fits.places).std_error);
-    found[k].free = true;
+  }
+  if (way.told_by_ranges)
+    std::ranges::move(way.told_by_ranges(fits.law, fits.errors), std::back_inserter(found));
+  for (Parameter& parameter : found) {
+    parameter.value = within_bounds(way.cause, parameter);
+    parameter.free = true;
   }
   return found;
 }

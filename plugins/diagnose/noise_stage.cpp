@@ -52,7 +52,9 @@ UnnamedFinding finding_of(const CommonWander& wander, const std::string& laser) 
 void DiagnoseNoiseStage::describe(StageDescription<DiagnoseNoiseStage>& d) {
   d.name("diagnose.noise").summary("says how the ranges of lasers that stand still scatter");
   d.details(
-      "Each beam of a laser at rest meets the same spot again and again. What all beams do together (a jump, "
+      "Each beam of a laser at rest meets the same spot again and again. Beams before which something moves "
+      "(`scene.moving`: their ranges leave where they usually end by far more than they scatter, together "
+      "with their neighbours, scan after scan) are left out. What all beams do together (a jump, "
       "`range.step`, a creeping, `range.warmup`, or a slow wander, `unnamed`) is looked for scan by scan. "
       "What is left of each beam about its mean is compared with the normal law of the plain simulator: a "
       "spread that grows with the range or with weak echoes, heavy tails, two peaks with a weight of each "
@@ -64,7 +66,8 @@ void DiagnoseNoiseStage::describe(StageDescription<DiagnoseNoiseStage>& d) {
       "was found, is said of all lasers together.");
   d.takes<Scan>().takes<PlateReading>(Need::optional).takes<Findings>(Need::optional).gives<Findings>();
   d.option("folder", &DiagnoseNoiseStage::folder_,
-           "where plots of each laser's noise go, and of what its ranges did at once; auto: nowhere");
+           "where plots of each laser's noise go, and of what its ranges did at once; auto: nowhere")
+      .writes_into({"*_noise.svg"});
 }
 
 void DiagnoseNoiseStage::process(const Inputs& in, Outputs&, Context& context) {
@@ -85,6 +88,12 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
   auto judged = plate_.turned()
                     ? std::variant<RangeErrors, NothingSaid>(NothingSaid{"the plate that it sits on turned"})
                     : scans.errors();
+  const bool is_judged = std::holds_alternative<RangeErrors>(judged);
+  const auto moving = is_judged ? moved(scans.far_shots(), lasers_.size(), context.seed()) : std::nullopt;
+  if (moving) {
+    all.findings.push_back(finding_of(*moving));
+    judged = scans.errors(moving->beams);
+  }
   if (const auto* nothing = std::get_if<NothingSaid>(&judged)) {
     context.say(fmt::format("nothing is said of the noise of {}: {}", name, nothing->why));
     all.unobservable.push_back({"noise.normal of " + name, nothing->why, ""});
@@ -116,6 +125,11 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
                              BeamsOf::kLaserAtRest, context.seed()));
   share_explained(std::span(all.findings).last(noise.findings.size()),
                   std::span(all.unnamed).last(noise.unnamed.size()));
+  constexpr double kMayDepart = 0.01;  // else nothing is left to be looked for
+  if (told_.back().after.p_value < kMayDepart) {
+    const auto left = beside_law(measured, noise.law, together.curve, BeamsOf::kLaserAtRest, context.seed());
+    add_left_over(name, left, lasers_.size(), all);
+  }
   std::ranges::move(noise_plots(name, *errors, noise), std::back_inserter(plots));
   if (folder_) write_plots(*folder_ / (name + "_noise.svg"), plots, context);
 }

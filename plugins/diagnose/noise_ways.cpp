@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "pipeline/data/robust.hpp"
+#include "plugins/diagnose/peak_weights.hpp"
 
 namespace crisp {
 namespace {
@@ -60,11 +60,14 @@ NoiseWay two_peaks(std::size_t beams, double sigma) {
               },
           .parameters =
               [](const NoiseLaw& law) {
-                auto weights = law.weight;
+                return std::vector<Parameter>{{.name = "separation", .unit = "m", .value = law.separation}};
+              },
+          .told_by_ranges =
+              [](const NoiseLaw& law, const RangeErrors& errors) {
+                const WeightLimits limits = weight_limits(law, errors);
                 return std::vector<Parameter>{
-                    {.name = "separation", .unit = "m", .value = law.separation},
-                    {.name = "least", .unit = "1", .value = quantile_of(weights, 0.05)},
-                    {.name = "most", .unit = "1", .value = quantile_of(weights, 0.95)}};
+                    {.name = "least", .unit = "1", .value = limits.least, .std_error = limits.least_error},
+                    {.name = "most", .unit = "1", .value = limits.most, .std_error = limits.most_error}};
               }};
 }
 

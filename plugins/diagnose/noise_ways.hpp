@@ -17,6 +17,8 @@ struct NoiseWay {
   std::function<void(NoiseLaw&)> add;        ///< a start from which it can be fitted
   std::function<void(NoiseLaw&)> take_away;  ///< its contrary
   std::function<std::vector<Parameter>(const NoiseLaw&)> parameters;
+  /// Those besides, with standard errors, that only the ranges themselves tell; none: there are none.
+  std::function<std::vector<Parameter>(const NoiseLaw&, const RangeErrors&)> told_by_ranges = nullptr;
 };
 
 /// Whether anything can go by these values: there are some, and not all are alike.

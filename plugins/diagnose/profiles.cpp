@@ -11,9 +11,9 @@
 #include <numeric>
 #include <optional>
 
+#include "pipeline/data/least_chance.hpp"
 #include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
-#include "plugins/diagnose/least_chance.hpp"
 #include "plugins/diagnose/residuals.hpp"
 
 namespace crisp {
@@ -94,7 +94,7 @@ std::optional<Layout> layout_over_lasers(const Measurements& beams, const Residu
   for (const std::uint32_t beam : residuals.beam) ++counts[beams.laser[beam]];
   if (counts.size() < 2) return std::nullopt;
   std::ranges::stable_sort(all, {}, [&](std::uint32_t k) { return beams.laser[residuals.beam[k]]; });
-  Layout layout{.profile = {.covariate = "laser", .unit = "", .laser = kAllLasers, .bins = {}},
+  Layout layout{.profile = {.covariate = "laser", .unit = "", .laser = kAllLasers, .bins = {}, .share = 1},
                 .residual = std::move(all),
                 .first = {0}};
   for (const auto& [laser, count] : counts) {
@@ -119,6 +119,7 @@ std::vector<Layout> layouts(const Evidence& evidence, const Residuals& residuals
       layout.profile.covariate = name;
       layout.profile.unit = unit;
       layout.profile.laser = laser;
+      layout.profile.share = static_cast<double>(members.size()) / static_cast<double>(residuals.beam.size());
       all.push_back(std::move(layout));
     }
   }
@@ -167,6 +168,16 @@ double chance_of(const std::vector<double>& means, const std::vector<double>& er
 }
 
 }  // namespace
+
+std::map<std::string, double> SideBySide::unexplained(std::optional<std::size_t> laser) const {
+  std::map<std::string, double> squares;
+  for (const Profile& profile : profiles) {
+    const bool concerns = !laser || profile.laser == *laser || profile.laser == kAllLasers;
+    if (profile.departs() && concerns)
+      squares[profile.covariate] += profile.share * profile.rms * profile.rms;
+  }
+  return squares;
+}
 
 SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings, std::uint64_t seed) {
   const Residuals residuals = residuals_in(evidence, settings);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,7 @@ struct Profile {
     double error = 0;      ///< [m] standard error of the mean
   };
   std::vector<Bin> bins;
+  double share = 0;    ///< of all residuals: those of the laser
   double rms = 0;      ///< [m] of the measured means, less what noise makes
   double p_value = 1;  ///< that noise makes as much in any of the profiles that were looked at
 
@@ -37,6 +40,12 @@ struct SideBySide {
   std::vector<double> noise;  ///< [m] standard deviation of each laser's ranges that the residuals show
   double p_value = 1;         ///< that nothing but noise is in the residuals: the least of the profiles'
   double excess = 0;          ///< [m²] mean square of the residuals beyond what noise leaves of them
+
+  /// [m²] Mean square, over all beams, of what departs from the simulation, over each covariate that shows
+  /// it. What is off over one is off over others as well.
+  ///
+  /// @param laser  only of what departs in its ranges, or from laser to laser
+  std::map<std::string, double> unexplained(std::optional<std::size_t> laser = {}) const;
 };
 
 /// Lays the residuals of the measured data beside those of the scanner simulated again, measurement by

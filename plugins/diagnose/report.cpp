@@ -8,8 +8,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/data/likeness.hpp"
+
 namespace crisp {
 namespace {
+
+constexpr const char* kLeavesMore =
+    "it takes less than what departs from the extended model all the same, and may be no more than a part of "
+    "that";
 
 /// The candidate's parameters as they were estimated, or as far as they were.
 std::vector<Parameter> parameters_of(const Departure& departure, const Calibration& calibration) {
@@ -50,11 +56,10 @@ std::vector<std::string> told_apart_by(const Finding& finding, const TermRegistr
 /// Of the squares of the residuals beyond noise, before anything was found, those that one departure takes
 /// which the others leave. In what all of them take is all that is beyond noise, at least.
 double explained_by(const Departure& departure, const Diagnosis& diagnosis, double noise) {
-  const auto square = [noise](const Departure& one) { return std::pow(one.look.visible * noise, 2); };
   double all = 0;
-  for (const Departure& other : diagnosis.departures) all += square(other);
+  for (const Departure& other : diagnosis.departures) all += other.square(noise);
   const double whole = std::max(all, diagnosis.left_before.excess);
-  return whole > 0 ? square(departure) / whole : 0;
+  return whole > 0 ? departure.square(noise) / whole : 0;
 }
 
 Finding finding_of(const Departure& departure, const Calibration& calibration, const Diagnosis& diagnosis,
@@ -67,7 +72,8 @@ Finding finding_of(const Departure& departure, const Calibration& calibration, c
                   .confounded_with = {},
                   .told_apart_by = {},
                   .gain = departure.gains,
-                  .accepted = departure.accepted};
+                  .accepted = departure.accepted,
+                  .refused = departure.leaves_more ? kLeavesMore : ""};
   const double behind = departure.rivals.empty() ? departure.look.bic : departure.rivals.front().behind;
   finding.log10_odds = behind / 2 / std::numbers::ln10;
   for (const auto& rival : departure.rivals) {
@@ -114,6 +120,7 @@ std::string by_how_much(const UnnamedFinding& finding) {
   if (finding.unit == "rad")
     return fmt::format(", by {:.4f} deg", finding.amplitude * 180 / std::numbers::pi);
   if (finding.unit == "s") return fmt::format(", by {:.4f} ms", finding.amplitude * 1e3);
+  if (finding.unit == "1") return fmt::format(", by {:.3f}", finding.amplitude);
   const std::array lengths = {"range", "base", "noise"};
   const bool is_length = std::ranges::find(lengths, finding.quantity) != lengths.end();
   return fmt::format("{} {:.3f} mm", is_length ? ", by" : "; ranges change by", finding.amplitude * 1e3);
@@ -202,15 +209,6 @@ std::string profiles_in_words(const SideBySide& left, const Calibration& calibra
 
 }  // namespace
 
-std::string chance_in_words(double p_value) {
-  return p_value > 0 ? fmt::format("p = {:.2g}", p_value) : "p < 1e-300";
-}
-
-std::string likeness_in_words(const Findings& findings) {
-  return fmt::format("measured and simulated residuals: {} before, {} after",
-                     chance_in_words(findings.before_p), chance_in_words(findings.after_p));
-}
-
 Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration, const TermRegistry& terms,
                      const SelectionSettings& settings, double noise) {
   Findings all{.findings = {},
@@ -274,7 +272,7 @@ std::string in_words(const Finding& finding) {
   if (!finding.told_apart_by.empty()) {
     words += fmt::format("\n  what would: {}", fmt::join(finding.told_apart_by, "; "));
   }
-  if (!finding.accepted) words += "\n  it does not pay on data that it was not fitted to";
+  if (!finding.accepted) words += "\n  refused: " + finding.refusal();
   return words + gain_in_words(finding.gain);
 }
 

@@ -18,12 +18,6 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
 std::string headline(const Finding& finding);
 std::string headline(const UnnamedFinding& finding);
 
-/// A p-value, "p = 0.012".
-std::string chance_in_words(double p_value);
-
-/// Whether measured and simulated residuals can be told apart, without and with what was found.
-std::string likeness_in_words(const Findings& findings);
-
 /// With what else is known of it, in a few lines.
 std::string in_words(const Finding& finding);
 std::string in_words(const UnnamedFinding& finding);

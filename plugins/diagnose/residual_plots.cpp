@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "pipeline/data/degree.hpp"
-#include "plugins/diagnose/report.hpp"
+#include "pipeline/data/likeness.hpp"
 
 namespace crisp {
 namespace {

@@ -2,6 +2,7 @@
 #include "plugins/diagnose/scatter_stage.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <limits>
 #include <span>
@@ -61,7 +62,8 @@ void DiagnoseScatterStage::describe(StageDescription<DiagnoseScatterStage>& d) {
       .unit("nat")
       .range(0, 10);
   d.option("folder", &DiagnoseScatterStage::folder_,
-           "where plots of each laser's noise go, and of what moved; auto: nowhere");
+           "where plots of each laser's noise go, and of what moved; auto: nowhere")
+      .writes_into({"*_noise.svg", "scene_moving.svg"});
 }
 
 void DiagnoseScatterStage::process(const Inputs& in, Outputs&, Context&) {
@@ -88,10 +90,17 @@ void DiagnoseScatterStage::finish(Outputs& out, Context& context) {
                .blocks = recording_blocks(beams)};
   all.usual = usual_error(all.met);
   Findings found;
+  std::vector<std::string> without_edges;
   for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
     context.progress(static_cast<double>(laser) / static_cast<double>(model.lasers()), "fitting noise");
     if (context.interrupted()) return;
-    add_laser(laser, all, found, context);
+    if (add_laser(laser, all, found, context) == 0) without_edges.push_back(calibration_->lasers[laser].name);
+  }
+  if (!without_edges.empty()) {
+    context.say(fmt::format("no edges were crossed by {}: of mixed pixels they tell nothing",
+                            without_edges.size() == model.lasers()
+                                ? std::string("any laser")
+                                : fmt::format("{}", fmt::join(without_edges, ", "))));
   }
   const auto changing = changing_directions(beams, *evidence.sample().plate, all.met, all.usual);
   if (const auto moved = moving(changing, context.seed())) {
@@ -110,8 +119,8 @@ void DiagnoseScatterStage::finish(Outputs& out, Context& context) {
   out.give(std::move(all_));
 }
 
-void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Findings& found,
-                                     Context& context) {
+std::size_t DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Findings& found,
+                                            Context& context) {
   const std::string& name = calibration_->lasers[laser].name;
   const std::size_t named = found.findings.size();
   const std::size_t unnamed = found.unnamed.size();
@@ -129,14 +138,17 @@ void DiagnoseScatterStage::add_laser(std::size_t laser, const Followed& all, Fin
     plots.push_back(comb_plot(name, ranges, comb->parameters.front().value));
   }
   const Crossings edges = crossings_of(laser, all.beams, all.points, all.met, all.crowd, all.usual, noise);
-  context.say(fmt::format("{}: {} edges crossed, {:.1f} % of them with a range that ends in thin air", name,
-                          edges.mixed.size(), 100 * edges.share()));
+  if (!edges.mixed.empty()) {
+    context.say(fmt::format("{}: {} edges crossed, {:.1f} % of them with a range that ends in thin air", name,
+                            edges.mixed.size(), 100 * edges.share()));
+  }
   if (const auto mixed = mixed_pixels(name, edges, context.seed())) {
     found.findings.push_back(*mixed);
     plots.push_back(edge_plot(name, edges));
   }
   share_explained(std::span(found.findings).subspan(named), std::span(found.unnamed).subspan(unnamed));
   if (folder_ && !plots.empty()) write_plots(*folder_ / (name + "_noise.svg"), plots, context);
+  return edges.mixed.size();
 }
 
 std::pair<RangeErrors, NoiseDiagnosis> DiagnoseScatterStage::noise_of(std::size_t laser, const Followed& all,

@@ -42,7 +42,8 @@ class DiagnoseScatterStage final : public Stage {
     double usual = 0;  // [m] standard deviation of ranges
     std::vector<std::uint32_t> blocks;
   };
-  void add_laser(std::size_t laser, const Followed& all, Findings& found, Context& context);
+  /// @return how many edges it crossed
+  std::size_t add_laser(std::size_t laser, const Followed& all, Findings& found, Context& context);
   /// The errors of one laser's ranges, and the law that they show. Surfaces are those that are flat within
   /// `noise`: where the laser's own is larger, these would be places where it is small by chance, and they
   /// are looked for again, flat within its own.

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
+#include <string>
 
 #include "pipeline/estimate/observability.hpp"
 
@@ -28,6 +30,68 @@ std::vector<std::size_t> estimated_with(const std::vector<std::size_t>& taken, c
   return parameters;
 }
 
+/// What may befall all lasers alike, since they are of one make: the same cause of each of them, in one form
+/// but where the model has another.
+std::vector<std::vector<std::size_t>> causes_of_all_lasers(const std::vector<Candidate>& candidates) {
+  using OfLaser = std::map<std::size_t, std::size_t>;
+  struct OfTerm {
+    OfLaser in_model;
+    std::map<double, OfLaser> in_form;
+  };
+  std::map<std::string, OfTerm> terms;
+  std::set<std::size_t> lasers;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const Candidate& candidate = candidates[c];
+    const bool of_plate = candidate.name == candidate.term.term;
+    if (of_plate || !candidate.is_cause()) continue;
+    lasers.insert(candidate.owner);
+    OfTerm& term = terms[candidate.term.term];
+    (candidate.in_model ? term.in_model : term.in_form[candidate.form])[candidate.owner] = c;
+  }
+  std::vector<std::vector<std::size_t>> groups;
+  for (auto& [name, term] : terms) {
+    if (term.in_form.empty()) term.in_form[0] = {};
+    for (auto& [form, members] : term.in_form) {
+      members.insert(term.in_model.begin(), term.in_model.end());
+      if (members.size() < 2 || members.size() < lasers.size()) continue;
+      auto& group = groups.emplace_back();
+      for (const auto& [laser, candidate] : members) group.push_back(candidate);
+    }
+  }
+  return groups;
+}
+
+/// Candidates that are taken at once, and what the data say of them.
+struct Together {
+  std::vector<std::size_t> members;
+  Look look;
+};
+
+/// The equations where the base and what was taken are estimated, too.
+NormalEquations beside_base(const std::vector<std::size_t>& taken, const Dictionary& dictionary,
+                            const NormalEquations& equations) {
+  std::vector<std::size_t> all(dictionary.parameters());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return equations.reduced(all, estimated_with(taken, dictionary));
+}
+
+/// @param left  the equations beside the base and what was taken
+std::vector<std::optional<Look>> looks_in(const NormalEquations& left, const std::vector<std::size_t>& taken,
+                                          const Dictionary& dictionary) {
+  const auto& candidates = dictionary.candidates();
+  std::vector<std::optional<Look>> looks(candidates.size());
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const bool there =
+        std::ranges::any_of(taken, [&](std::size_t t) { return candidates[t].is_form_of(candidates[c]); });
+    if (there) continue;
+    Look look = look_at(left, dictionary.of(c));
+    // A form that was chosen among several is a parameter, too.
+    if (candidates[c].forms > 1) look.bic -= std::log(static_cast<double>(left.beams));
+    looks[c] = std::move(look);
+  }
+  return looks;
+}
+
 /// A set of candidates, and what the data say of each other one beside it.
 class Chooser {
  public:
@@ -37,6 +101,7 @@ class Chooser {
     std::set<std::string> names;
     for (const auto& candidate : dictionary.candidates()) names.insert(candidate.name);
     looks_ = std::max<std::size_t>(1, names.size());
+    of_all_ = causes_of_all_lasers(dictionary.candidates());
   }
 
   std::vector<std::optional<Look>> beside(const std::vector<std::size_t>& taken) const {
@@ -65,6 +130,46 @@ class Chooser {
     constexpr double kMuchMore = 2;
     const bool is_cause = best[0] && (!best[1] || looks[*best[1]]->bic < kMuchMore * looks[*best[0]]->bic);
     return is_cause ? best[0] : best[1];
+  }
+
+  /// The best of the causes that befall all lasers, if one is needed and none of it is taken.
+  ///
+  /// @param left  the equations beside the base and what was taken
+  std::optional<Together> best_of_all(const std::vector<std::size_t>& taken,
+                                      const NormalEquations& left) const {
+    const auto& candidates = dictionary_.candidates();
+    std::optional<Together> best;
+    for (const auto& members : of_all_) {
+      const bool is_there = std::ranges::any_of(taken, [&](std::size_t t) {
+        return std::ranges::any_of(members,
+                                   [&](std::size_t m) { return candidates[m].is_form_of(candidates[t]); });
+      });
+      if (is_there) continue;
+      std::vector<std::size_t> parameters;
+      double forms = 0;
+      for (const std::size_t m : members) {
+        parameters.insert(parameters.end(), dictionary_.of(m).begin(), dictionary_.of(m).end());
+        forms += candidates[m].forms > 1 ? 1 : 0;
+      }
+      Together one{.members = members, .look = look_at(left, parameters)};
+      one.look.bic -= forms * std::log(static_cast<double>(equations_.beams));
+      const bool is_needed_everywhere =
+          std::ranges::all_of(members, [&](std::size_t m) { return is_needed(m, one.look); });
+      if (is_needed_everywhere && (!best || one.look.bic > best->look.bic)) best = std::move(one);
+    }
+    return best;
+  }
+
+  /// What to take next: a cause that befalls all lasers only if it says much more than anything of one.
+  std::optional<Together> next(const std::vector<std::size_t>& taken, double rough) const {
+    constexpr double kMore = 1.5;
+    const NormalEquations left = beside_base(taken, dictionary_, equations_);
+    const auto looks = looks_in(left, taken, dictionary_);
+    const auto one = best(looks, rough);
+    auto all = best_of_all(taken, left);
+    if (all && (!one || all->look.bic > kMore * looks[*one]->bic)) return all;
+    if (!one) return std::nullopt;
+    return Together{.members = {*one}, .look = *looks[*one]};
   }
 
   /// Leaves out, one after another, what is not needed beside the rest.
@@ -112,6 +217,7 @@ class Chooser {
   const SelectionSettings& settings_;
   const std::set<std::string>& refused_;
   std::size_t looks_ = 1;
+  std::vector<std::vector<std::size_t>> of_all_;
 };
 
 }  // namespace
@@ -129,22 +235,7 @@ NormalEquations from_neutral(const Dictionary& dictionary, NormalEquations equat
 std::vector<std::optional<Look>> looks_beside(const std::vector<std::size_t>& taken,
                                               const Dictionary& dictionary,
                                               const NormalEquations& equations) {
-  const std::vector<std::size_t> eliminated = estimated_with(taken, dictionary);
-  std::vector<std::size_t> all(dictionary.parameters());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  const NormalEquations left = equations.reduced(all, eliminated);
-  const auto& candidates = dictionary.candidates();
-  std::vector<std::optional<Look>> looks(candidates.size());
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const bool there =
-        std::ranges::any_of(taken, [&](std::size_t t) { return candidates[t].is_form_of(candidates[c]); });
-    if (there) continue;
-    Look look = look_at(left, dictionary.of(c));
-    // A form that was chosen among several is a parameter, too.
-    if (candidates[c].forms > 1) look.bic -= std::log(static_cast<double>(equations.beams));
-    looks[c] = std::move(look);
-  }
-  return looks;
+  return looks_in(beside_base(taken, dictionary, equations), taken, dictionary);
 }
 
 std::string known_instead(std::size_t candidate, const std::vector<std::size_t>& taken,
@@ -175,12 +266,13 @@ std::vector<Choice> choose(const Dictionary& dictionary, const NormalEquations& 
   std::set<std::vector<std::size_t>> seen;
   double rough = 0;
   while (taken.size() < settings.most && seen.insert(taken).second) {
-    const auto looks = chooser.beside(taken);
-    const auto next = chooser.best(looks, rough);
+    const auto next = chooser.next(taken, rough);
     if (!next) break;
-    const Candidate& one = dictionary.candidates()[*next];
-    if (!one.in_model && one.forms > 1) rough = std::max(rough, looks[*next]->bic);
-    taken.push_back(*next);
+    for (const std::size_t member : next->members) {
+      const Candidate& one = dictionary.candidates()[member];
+      if (!one.in_model && one.forms > 1) rough = std::max(rough, next->look.bic);
+      taken.push_back(member);
+    }
     chooser.leave_out_needless(taken);
   }
   std::vector<Choice> choices;

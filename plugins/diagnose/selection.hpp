@@ -43,8 +43,10 @@ std::string known_instead(std::size_t candidate, const std::vector<std::size_t>&
                           const Dictionary& dictionary, const NormalEquations& equations);
 
 /// Which candidates a model needs: forward by BIC, each time followed by leaving out what has become needless
-/// (stepwise selection), on the linearised problem. The significance by the recording's blocks is asked of
-/// those only that the model has: the blocks of the others scatter by the very effect.
+/// (stepwise selection), on the linearised problem. What befalls all lasers alike hardly shows as long as one
+/// of them alone is mended, so that the same cause of all is tried at once as well. The significance by the
+/// recording's blocks is asked of those only that the model has: the blocks of the others scatter by the very
+/// effect.
 ///
 /// @param equations  in the dictionary's parameters, with blocks, where the model is
 /// @param refused    names of candidates that are not to be taken

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -34,6 +35,12 @@ std::vector<double> left_of_others(const Eigen::MatrixXd& design, const Eigen::V
 }
 
 }  // namespace
+
+double bic_of_series(double squares, Eigen::Index n, double parameters) {
+  const auto values = static_cast<double>(n);
+  return values * std::log(std::max(squares, std::numeric_limits<double>::min()) / values) +
+         parameters * std::log(values);
+}
 
 Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
                     const Eigen::VectorXd& values, std::uint64_t seed) {

@@ -20,6 +20,12 @@ struct SeriesLook {
   Gain gain;                ///< see gain_in_series()
 };
 
+/// BIC of a normal law of unknown width of what is left of n values, but for what is the same whatever is
+/// left.
+///
+/// @param squares  of what is left, summed
+double bic_of_series(double squares, Eigen::Index n, double parameters);
+
 /// What columns bring beside a base for values that they were not fitted to: the RMS of every other value
 /// about a fit to the rest, without them and with them. Metric and unit are left open.
 Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,

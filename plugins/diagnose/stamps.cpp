@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "pipeline/clocks/envelope.hpp"
 #include "pipeline/clocks/series.hpp"
 #include "pipeline/clocks/unwrap.hpp"
 #include "pipeline/data/robust.hpp"
+#include "plugins/diagnose/device_jumps.hpp"
 #include "plugins/diagnose/series.hpp"
 
 namespace crisp {
@@ -16,47 +18,19 @@ namespace {
 constexpr std::int64_t kWrap_us = std::int64_t{1} << 32;
 constexpr std::size_t kFewest = 64;  // stamps that say anything
 
-/// [s] a count by the device's time, from stamps around one, none of them across it; 0 where there are none.
-double local_period(std::span<const CountedStamp> stamps, std::size_t at) {
-  constexpr std::size_t kAround = 20;
-  constexpr std::size_t kApart = 4;  // by which a telegram that was sent late counts less
-  std::vector<double> periods;
-  const std::size_t begin = at > kAround ? at - kAround : 0;
-  for (std::size_t i = begin; i + kApart < std::min(stamps.size(), at + kAround); ++i) {
-    const auto counts = static_cast<double>(stamps[i + kApart].count - stamps[i].count);
-    const bool across = i < at && i + kApart >= at;
-    if (across || counts <= 0) continue;
-    periods.push_back((stamps[i + kApart].stamp.device - stamps[i].stamp.device) / counts);
-  }
-  return periods.empty() ? 0 : middle_of(periods);
-}
+/// Where about a step of the envelope the device's own time jumps most, and whether it is by that step.
+struct JumpThere {
+  std::size_t stamp = 0;
+  bool is_the_step = false;
+};
 
-/// By how much the device's time since the stamp before is longer than its counter says, for good [s]: what
-/// one telegram alone was sent late is made up for by the next.
-double jump_of_device(std::span<const CountedStamp> stamps, std::size_t at) {
-  constexpr std::size_t kLasting = 5;  // stamps before and behind
-  const double period = local_period(stamps, at);
-  if (period == 0) return 0;
-  std::vector<double> jumps;
-  for (std::size_t k = 0; k < kLasting && k < at && at + k < stamps.size(); ++k) {
-    const CountedStamp& from = stamps[at - 1 - k];
-    const CountedStamp& to = stamps[at + k];
-    const auto counts = static_cast<double>(std::max<std::int64_t>(1, to.count - from.count));
-    jumps.push_back(to.stamp.device - from.stamp.device - period * counts);
-  }
-  const double here = jumps.front();
-  const double lasting = middle_of(jumps);
-  if (here * lasting <= 0) return 0;
-  return std::abs(here) < std::abs(lasting) ? here : lasting;
-}
-
-/// Where in a stretch of stamps the device's time jumps most.
-std::size_t largest_jump(std::span<const CountedStamp> stamps, std::size_t begin, std::size_t end) {
-  std::size_t best = std::max<std::size_t>(1, begin);
-  for (std::size_t i = best; i < end; ++i) {
-    if (std::abs(jump_of_device(stamps, i)) > std::abs(jump_of_device(stamps, best))) best = i;
-  }
-  return best;
+/// @param window  before which the envelope steps
+/// @param step    [s] of the envelope: what a device sends whose clock goes forwards seems to come in earlier
+JumpThere jump_about(std::span<const CountedStamp> stamps, const Envelope& envelope, std::size_t window,
+                     double step) {
+  const std::size_t end = envelope.first[std::min(window + 1, envelope.stamp.size())];
+  const std::size_t at = largest_device_jump(stamps, envelope.first[window - 1], end);
+  return {.stamp = at, .is_the_step = std::abs(device_jump(stamps, at) + step) < 0.5 * std::abs(step)};
 }
 
 /// Whether least delays are late for a while but come to no other level: behind a link that has become longer
@@ -73,14 +47,12 @@ bool is_backlog(const Envelope& envelope, Eigen::Index before, const Eigen::Vect
 
 void tell_step(std::span<const CountedStamp> stamps, const Envelope& envelope, std::size_t window,
                const Eigen::VectorXd& line, ClockDeparture& departure) {
-  const std::size_t begin = envelope.first[window - 1];
-  const std::size_t end = envelope.first[std::min(window + 1, envelope.stamp.size())];
   const double step = departure.size;
   const auto level = [&](double t) { return envelope.line(line, t); };
-  std::size_t at = largest_jump(stamps, begin, end);
+  const JumpThere jump = jump_about(stamps, envelope, window, step);
+  std::size_t at = jump.stamp;
   double waits = 1;  // telegrams until one shows on which side of the step it is
-  // When a device's clock goes forwards, what it sends seems to have come in earlier.
-  if (std::abs(jump_of_device(stamps, at) + step) < 0.5 * std::abs(step)) {
+  if (jump.is_the_step) {
     departure.kind = ClockDeparture::Kind::clock_step;
     departure.size = -step;
   } else {
@@ -97,6 +69,46 @@ void tell_step(std::span<const CountedStamp> stamps, const Envelope& envelope, s
   departure.at = std::max(sent, receipt_of(stamps.front().stamp));  // what is no step is not seen before all
   departure.at_std_error =
       waits * std::max(1e-6, sent - without_delay(stamps[at - 1].stamp, 0)) + (departure.at - sent);
+}
+
+/// What else could have made the least delays what they are, and the odds against it.
+///
+/// @param columns  that of a parabola, and those of steps
+std::vector<ClockDeparture::Rival> rivals_of(std::span<const CountedStamp> stamps, const Envelope& envelope,
+                                             const Eigen::MatrixXd& columns, ClockDeparture::Kind kind) {
+  using Kind = ClockDeparture::Kind;
+  const Eigen::MatrixXd base = envelope.straight();
+  const Eigen::MatrixXd steps = columns.rightCols(columns.cols() - 1);
+  const SeriesFit bend = best_in_series(base, columns.leftCols(1), envelope.lead);
+  const SeriesFit step = best_in_series(base, steps, envelope.lead);
+  const double whole = off_base(base, envelope.lead).squaredNorm();
+  const double least = static_cast<double>(envelope.lead.size()) * kStampQuantum * kStampQuantum;
+  const auto bic = [&](double product, double of_its_own) {
+    return bic_of_series(std::max(least, whole - product * product), envelope.lead.size(),
+                         static_cast<double>(base.cols()) + of_its_own);
+  };
+  const double steady_bic = bic(0, 0);
+  const double drift_bic = bic(bend.product, 1);  // its size; of a step the instant as well
+  const double step_bic = bic(step.product, 2);
+  const auto window = static_cast<std::size_t>(before_step(steps.col(step.column)));
+  const double size = step.values[step.values.size() - 1];
+  const JumpThere jump = jump_about(stamps, envelope, window, size);
+  const double own = kind == Kind::drift ? drift_bic : step_bic;
+  const auto odds = [own](double other) { return (other - own) / 2 / std::numbers::ln10; };
+  std::vector<ClockDeparture::Rival> rivals = {{.kind = {}, .log10_odds = odds(steady_bic)}};
+  if (kind == Kind::drift) {
+    rivals.push_back(
+        {.kind = jump.is_the_step ? Kind::clock_step : Kind::latency_step, .log10_odds = odds(step_bic)});
+  } else {
+    const double for_clock = log10_odds_of_jump(stamps, jump.stamp, -size);
+    rivals.push_back({.kind = Kind::drift, .log10_odds = odds(drift_bic)});
+    rivals.push_back({.kind = kind == Kind::clock_step ? Kind::latency_step : Kind::clock_step,
+                      .log10_odds = kind == Kind::clock_step ? for_clock : -for_clock});
+  }
+  // Receipts that leap by years leave no odds.
+  if (!std::ranges::all_of(rivals, [](const auto& one) { return std::isfinite(one.log10_odds); })) return {};
+  std::ranges::stable_sort(rivals, {}, &ClockDeparture::Rival::log10_odds);
+  return rivals;
 }
 
 }  // namespace
@@ -175,6 +187,7 @@ std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stam
     departure.std_error *= 2;
     departure.skew -= departure.size * envelope.time.mean();
     departure.skew_std_error = std::hypot(look.errors[1], departure.std_error * envelope.time.mean());
+    departure.rivals = rivals_of(stamps, envelope, columns, departure.kind);
     return departure;
   }
   const Eigen::Index before = before_step(columns.col(look.column));
@@ -184,7 +197,9 @@ std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stam
     departure.kind = ClockDeparture::Kind::backlog;
     const double share = static_cast<double>(before) / static_cast<double>(envelope.lead.size());
     departure.size = std::abs(departure.size) * std::sqrt(share * (1 - share));
+    return departure;
   }
+  departure.rivals = rivals_of(stamps, envelope, columns, departure.kind);
   return departure;
 }
 
@@ -237,7 +252,6 @@ std::vector<std::span<const CountedStamp>> unbroken(std::span<const CountedStamp
 std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes,
                                         const std::optional<std::array<double, 2>>& unsure) {
   constexpr std::size_t kFewestPieces = 8;  // from fewer no spread is known
-  constexpr double kQuantum = 1e-6;         // [s] of the stamps
   MirrorFacts facts;
   double time = 0;
   double turns = 0;
@@ -259,7 +273,7 @@ std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes,
   const auto pieces = static_cast<double>(facts.periods.size());
   const double spread = std::sqrt(squares / (pieces - 1));
   facts.wander = spread / facts.period;
-  facts.period_std_error = std::hypot(spread / std::sqrt(pieces), kQuantum / turns);
+  facts.period_std_error = std::hypot(spread / std::sqrt(pieces), kStampQuantum / turns);
   return facts;
 }
 

@@ -12,6 +12,8 @@
 
 namespace crisp {
 
+inline constexpr double kStampQuantum = 1e-6;  ///< [s] in which devices tell their time
+
 /// One telegram: when its device says that it was sent, when the hub received it, and which it was.
 struct CountedStamp {
   std::int64_t count = 0;  ///< of the device's counter, unwrapped
@@ -51,6 +53,15 @@ struct ClockDeparture {
   double at_std_error = 0;  ///< [s]
   double p_value = 1;       ///< by permutations of the least delays
   Gain gain;                ///< RMS of held-out least delays about the clock
+
+  struct Rival {
+    std::optional<Kind> kind;  ///< nothing: a steady clock
+    double log10_odds = 0;     ///< against it
+  };
+  /// What else could have made the least delays what they are, the likeliest first. Odds are by BIC (of a
+  /// normal law of the least delays), between the steps of a clock and of a link by the device's own time:
+  /// see log10_odds_of_jump(). Of a backlog, which has no name, there are none.
+  std::vector<Rival> rivals = {};
 
   bool is_step() const { return kind == Kind::clock_step || kind == Kind::latency_step; }
 };

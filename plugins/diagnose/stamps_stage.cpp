@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "pipeline/clocks/unwrap.hpp"
 #include "pipeline/data/recordings.hpp"
@@ -52,6 +53,13 @@ Finding finding_of(const ClockDeparture& departure, const std::string& device) {
     finding.parameters = {parameter("by", "s", departure.size, departure.std_error),
                           parameter("at", "s", departure.at, departure.at_std_error)};
   }
+  constexpr double kEven = 2;  // 100 : 1
+  if (!departure.rivals.empty()) finding.log10_odds = departure.rivals.front().log10_odds;
+  for (const auto& [kind, odds] : departure.rivals) {
+    if (!kind) continue;
+    finding.alternatives.push_back({.cause = cause_of(*kind), .scope = device, .log10_odds = odds});
+    if (odds < kEven) finding.confounded_with.push_back(device + "." + cause_of(*kind));
+  }
   return finding;
 }
 
@@ -74,11 +82,17 @@ std::string facts_in_words(const std::vector<DeviceFacts>& devices) {
   return words;
 }
 
-/// What too few stamps leave unknown of a device.
-void tell_unknown(const DeviceFacts& facts, Findings& all) {
+/// What too few stamps leave unknown of a device, or such that are its count times the nominal period.
+void tell_unknown(const DeviceFacts& facts, bool timed, Findings& all) {
   const auto why = fmt::format("{} stamps say nothing of it", facts.stamps);
   if (std::isnan(facts.skew)) all.unobservable.push_back({"clock.drift of " + facts.device, why, ""});
-  if (std::isnan(facts.period)) all.unobservable.push_back({"mirror.period of " + facts.device, why, ""});
+  if (std::isnan(facts.period)) {
+    all.unobservable.push_back(
+        {"mirror.period of " + facts.device,
+         timed ? why
+               : "no clock of its own timed its scans: their times are the nominal period's, or the receipts",
+         ""});
+  }
 }
 
 /// Why the clock that was found cannot be one; empty if it can. One wrong receipt can be the reason: the line
@@ -120,7 +134,8 @@ void DiagnoseStampsStage::describe(StageDescription<DiagnoseStampsStage>& d) {
       "whether a mirror that is off its nominal rate is a departure (`mirror.period`); clock stages measure "
       "the rate, so that points do not suffer by it");
   d.option("folder", &DiagnoseStampsStage::folder_,
-           "where a plot of each device's stamps goes; auto: nowhere");
+           "where a plot of each device's stamps goes; auto: nowhere")
+      .writes_into({"*_stamps.svg"});
 }
 
 DiagnoseStampsStage::Device& DiagnoseStampsStage::device(std::size_t index, const Rig& rig) {
@@ -156,7 +171,8 @@ void DiagnoseStampsStage::process(const Inputs& in, Outputs&, Context& context) 
     arrive(scan->receipt_ns);
     Device& laser = device(scan->laser, context.rig());
     laser.telegrams.add(scan->telegram_counter, scan->transmission_time_us, scan->receipt_ns);
-    laser.passes.add(scan->scan_counter, scan->scan_time_us, scan->receipt_ns);
+    laser.timed = laser.timed && scan->timed;
+    if (scan->timed) laser.passes.add(scan->scan_counter, scan->scan_time_us, scan->receipt_ns);
     if (scan->scan_frequency > 0) laser.nominal_period = 1 / scan->scan_frequency;
   }
   if (const PlateReading* reading = in.find<PlateReading>()) {
@@ -181,7 +197,7 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, Con
                     .delay_median = clock.delay_median,
                     .delay_95 = clock.delay_95};
   const auto mirror = mirror_facts(device.passes.stamps(), unsure_about(departure));
-  if (!mirror && !device.passes.stamps().empty()) {
+  if (!mirror && (!device.timed || !device.passes.stamps().empty())) {
     facts.period = facts.period_std_error = facts.wander = kUnasked;
     facts.nominal_period = device.nominal_period;
   }
@@ -192,7 +208,7 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, Con
     facts.wander = mirror->wander;
     if (nominal_mirrors_ && device.nominal_period > 0) add_mirror(device, *mirror, context.seed(), all);
   }
-  tell_unknown(facts, all);
+  tell_unknown(facts, device.timed, all);
   if (auto doubt = doubt_of(facts); !doubt.empty()) context.distrust(std::move(doubt));
   all.devices.push_back(facts);
   if (folder_ && stamps.size() > 1) {
@@ -222,10 +238,12 @@ void DiagnoseStampsStage::add_mirror(const Device& device, const MirrorFacts& fa
   const double p = 2 * cdf(complement(boost::math::normal(), z)) * static_cast<double>(longest_.size());
   if (!(p < kSignificantInSeries)) return;
   const Gain gain = gain_over_nominal(facts, device.nominal_period, seed);
+  const double price = std::log(static_cast<double>(facts.periods.size()));  // of one parameter, by BIC
   all.findings.push_back({.cause = "mirror.period",
                           .scope = device.name,
                           .parameters = {parameter("excess", "s", excess, facts.period_std_error)},
                           .explained_fraction = gain.explained(),
+                          .log10_odds = (z * z - price) / 2 / std::numbers::ln10,
                           .p_value = p,
                           .confounded_with = {},
                           .gain = {gain},

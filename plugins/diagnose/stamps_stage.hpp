@@ -27,6 +27,7 @@ class DiagnoseStampsStage final : public Stage {
     StampTrack telegrams;       // when each was sent
     StampTrack passes;          // of the mirror's index
     double nominal_period = 0;  // [s]
+    bool timed = true;          // by its clock: else nobody measured its mirror
   };
   Device& device(std::size_t index, const Rig& rig);
   void arrive(std::int64_t receipt_ns);

@@ -11,10 +11,10 @@
 #include <tuple>
 #include <utility>
 
+#include "pipeline/data/least_chance.hpp"
 #include "pipeline/quality/blocks.hpp"
 #include "plugins/diagnose/common_change.hpp"
 #include "plugins/diagnose/groups.hpp"
-#include "plugins/diagnose/least_chance.hpp"
 #include "plugins/diagnose/noise_ways.hpp"
 
 namespace crisp {
@@ -258,8 +258,8 @@ Chances chances_in(const Looks& looks, const Simulator& by, const RangeErrors& e
 
 }  // namespace
 
-BesideLaw beside_law(const RangeErrors& all, const NoiseLaw& like, const Eigen::VectorXd& curve,
-                     BeamsOf beams, std::uint64_t seed) {
+Likeness beside_law(const RangeErrors& all, const NoiseLaw& like, const Eigen::VectorXd& curve, BeamsOf beams,
+                    std::uint64_t seed) {
   constexpr std::size_t kMost = 60'000;
   RangeErrors errors = thinned(all, kMost);
   const double step = step_of(errors);
@@ -272,7 +272,7 @@ BesideLaw beside_law(const RangeErrors& all, const NoiseLaw& like, const Eigen::
   const Looks looks(errors, beams);
   const Chances chances = chances_in(looks, {.law = law, .curve = curve, .step = step}, errors, seed);
   const auto measured = looks.statistics(scores_of(law, errors));
-  BesideLaw result;
+  Likeness result;
   for (std::size_t k = 0; k < measured.size(); ++k) {
     const OneLook& look = looks.all()[k];
     const Chance& chance = chances.of_look[k];
@@ -290,36 +290,28 @@ ToldApart told_apart(const std::string& laser, const RangeErrors& errors, const 
                      const Eigen::VectorXd& curve, BeamsOf beams, std::uint64_t seed) {
   NoiseLaw law = named;
   law.relative.clear();
-  ToldApart result{.laser = laser, .before = beside_law(errors, {}, {}, beams, seed), .after = {}};
+  ToldApart result{.scope = laser, .before = beside_law(errors, {}, {}, beams, seed), .after = {}};
   const bool is_plain = law.is_normal() && curve.size() == 0;
   result.after = is_plain ? result.before : beside_law(errors, law, curve, beams, seed);
   return result;
 }
 
-void add_likeness(const std::vector<ToldApart>& lasers, Findings& to) {
-  constexpr double kDeparts = 0.01;
-  if (lasers.empty()) return;
-  const auto of_all = [&](double p_value) { return least_of(static_cast<double>(lasers.size()), p_value); };
-  double before_p = 1;
-  double after_p = 1;
-  for (const ToldApart& one : lasers) {
-    before_p = std::min(before_p, one.before.p_value);
-    after_p = std::min(after_p, one.after.p_value);
-    for (std::size_t k = 0; k < one.before.looks.size(); ++k) {
-      const RangeLook& before = one.before.looks[k];
-      const RangeLook& after = one.after.looks[k];
-      if (of_all(std::min(before.p_value, after.p_value)) > kDeparts) continue;
-      to.departures.push_back({.covariate = before.covariate,
-                               .quantity = before.quantity,
-                               .scope = one.laser,
-                               .amplitude = before.amplitude,
-                               .unit = before.unit,
-                               .p_value = of_all(before.p_value),
-                               .amplitude_after = after.amplitude,
-                               .p_value_after = of_all(after.p_value)});
-    }
+void add_left_over(const std::string& laser, const Likeness& left, std::size_t looks, Findings& to) {
+  constexpr double kByChance = 0.002;
+  for (const LikenessLook& look : left.looks) {
+    const double p_value = least_of(static_cast<double>(looks), look.p_value);
+    const bool is_known = std::ranges::any_of(to.unnamed, [&](const UnnamedFinding& known) {
+      return known.scope == laser && known.covariate == look.covariate && known.quantity == look.quantity;
+    });
+    if (is_known || !(p_value < kByChance) || !(look.amplitude > 0)) continue;
+    to.unnamed.push_back({.covariate = look.covariate,
+                          .quantity = look.quantity,
+                          .scope = laser,
+                          .amplitude = look.amplitude,
+                          .unit = look.unit,
+                          .p_value = p_value,
+                          .gain = {}});
   }
-  to.append({.before_p = of_all(before_p), .after_p = of_all(after_p)});
 }
 
 }  // namespace crisp

@@ -6,25 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
+#include "pipeline/data/likeness.hpp"
 #include "plugins/diagnose/noise_law.hpp"
 
 namespace crisp {
-
-/// One way in which measured ranges may differ from simulated ones.
-struct RangeLook {
-  std::string covariate;  ///< "beam"
-  std::string quantity;   ///< "noise": how much they scatter; "range": their mean; "density"; "correlation"
-  std::string unit;       ///< of the amplitude
-  double amplitude = 0;   ///< RMS over the covariate, less what chance makes
-  double p_value = 1;     ///< that chance makes as much in any of the looks
-};
-
-/// How one laser's measured ranges lie beside those that a law makes.
-struct BesideLaw {
-  std::vector<RangeLook> looks;
-  double p_value = 1;  ///< that they are of the law: the least of the looks'
-};
 
 /// What is looked at beside the law itself.
 enum class BeamsOf {
@@ -42,21 +27,21 @@ enum class BeamsOf {
 /// @param all    about the mean of their beams, as they were measured; of very many, some blocks count
 /// @param like   which parts the law has; it is fitted here
 /// @param curve  [m] by block: what all ranges do at once; empty for nothing
-BesideLaw beside_law(const RangeErrors& all, const NoiseLaw& like, const Eigen::VectorXd& curve,
-                     BeamsOf beams, std::uint64_t seed);
+Likeness beside_law(const RangeErrors& all, const NoiseLaw& like, const Eigen::VectorXd& curve, BeamsOf beams,
+                    std::uint64_t seed);
 
 /// The ranges of one laser beside the plain simulator's, and beside those with what was found.
-struct ToldApart {
-  std::string laser;
-  BesideLaw before, after;
-};
-
+///
 /// @param named  the law that was found: what is each beam's own has no name, and is not simulated
 /// @param curve  [m] by block: what was found that all ranges do at once
 ToldApart told_apart(const std::string& laser, const RangeErrors& errors, const NoiseLaw& named,
                      const Eigen::VectorXd& curve, BeamsOf beams, std::uint64_t seed);
 
-/// Says of all lasers together whether they can be told from the simulated ones, and which do by what.
-void add_likeness(const std::vector<ToldApart>& lasers, Findings& to);
+/// What neither causes nor the unnamed departures that were found explain, beyond 0.002: each is unnamed,
+/// too.
+///
+/// @param left   beside the law with all that was found
+/// @param looks  so many lasers are looked at
+void add_left_over(const std::string& laser, const Likeness& left, std::size_t looks, Findings& to);
 
 }  // namespace crisp

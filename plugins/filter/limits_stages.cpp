@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/nearest.hpp"
 
@@ -33,10 +34,8 @@ void CropStage::describe(StageDescription<CropStage>& d) {
 }
 
 void CropStage::check(const RunSettings&) const {
-  check_limits(limits_.x, "x");
-  check_limits(limits_.y, "y");
-  check_limits(limits_.z, "z");
-  check_limits(limits_.distance, "distance");
+  check_all([&] { check_limits(limits_.x, "x"); }, [&] { check_limits(limits_.y, "y"); },
+            [&] { check_limits(limits_.z, "z"); }, [&] { check_limits(limits_.distance, "distance"); });
 }
 
 void CropStage::process(const Inputs& in, Outputs& out, Context& context) {
@@ -68,9 +67,8 @@ void RangeStage::describe(StageDescription<RangeStage>& d) {
 }
 
 void RangeStage::check(const RunSettings& run) const {
-  check_limits(range_, "range");
-  check_limits(mirror_angle_, "mirror_angle");
-  limits(run.rig);
+  check_all([&] { check_limits(range_, "range"); }, [&] { check_limits(mirror_angle_, "mirror_angle"); },
+            [&] { limits(run.rig); });
 }
 
 RangeLimits RangeStage::limits(const Rig& rig) const {

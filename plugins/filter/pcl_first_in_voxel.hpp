@@ -21,23 +21,35 @@ class FirstInVoxel : public pcl::Filter<PointT> {
  public:
   FirstInVoxel() { this->filter_name_ = "FirstInVoxel"; }
 
-  /// @param size [m] of a voxel's edge, > 0
-  void setLeafSize(double size) { size_ = size; }
+  /// @param size [m] of a voxel's edge
+  /// @throws Error unless it is a number above 0
+  void setLeafSize(double size) {
+    [[maybe_unused]] const Voxels checked(size);
+    size_ = size;
+  }
   double getLeafSize() const { return size_; }
+
+  /// How many points the last filter() dropped that have no voxel: they are no numbers, or 2^31 voxels or
+  /// more from the origin.
+  std::size_t getTooFar() const { return too_far_; }
 
  protected:
   void applyFilter(pcl::PointCloud<PointT>& output) override {
     Voxels voxels(size_);
     output.clear();
+    too_far_ = 0;
     for (const auto index : *this->indices_) {
       const PointT& point = (*this->input_)[index];
-      if (voxels.is_first(point.x, point.y, point.z)) output.push_back(point);
+      const InVoxel found = voxels.put(point.x, point.y, point.z);
+      if (found == InVoxel::first) output.push_back(point);
+      if (found == InVoxel::too_far || found == InVoxel::nowhere) ++too_far_;
     }
     output.header = this->input_->header;
   }
 
  private:
   double size_ = 0.05;
+  std::size_t too_far_ = 0;
 };
 
 }  // namespace crisp

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/filter/voxel_stage.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "pipeline/data/cloud.hpp"
 
 namespace crisp {
@@ -12,7 +16,7 @@ void VoxelStage::describe(StageDescription<VoxelStage>& d) {
       "taken. "
       "The grid is one for all clouds that come, so that memory grows with the surface that was seen, not "
       "with "
-      "the recording.");
+      "the recording. It reaches 2^31 cells from the origin; points beyond are counted, and warned of.");
   d.takes<Cloud>().gives<Cloud>();
   d.option("size", &VoxelStage::size_, "edge of a cell").unit("m").range(1e-4, 100);
 }
@@ -22,11 +26,27 @@ void VoxelStage::process(const Inputs& in, Outputs& out, Context& context) {
   const Cloud& cloud = in.get<Cloud>();
   Cloud thinned;
   thinned.header = cloud.header;
+  std::size_t too_far = 0, nowhere = 0;
   for (const Point& point : cloud) {
-    if (voxels_->is_first(point.x, point.y, point.z)) thinned.push_back(point);
+    const InVoxel found = voxels_->put(point.x, point.y, point.z);
+    if (found == InVoxel::first) thinned.push_back(point);
+    if (found == InVoxel::too_far) ++too_far;
+    if (found == InVoxel::nowhere) ++nowhere;
   }
-  context.count("points in a cell that had one", cloud.size() - thinned.size());
+  too_far_ += too_far;
+  context.count("points in a cell that had one", cloud.size() - thinned.size() - too_far - nowhere);
+  context.count("points too far away for this grid", too_far);
+  context.count("points whose place is no number", nowhere);
   out.give(std::move(thinned));
+}
+
+void VoxelStage::finish(Outputs&, Context& context) {
+  if (too_far_ == 0) return;
+  context.warn(
+      fmt::format("{} points are dropped that are {:.3g} km or more from the origin, beyond the grid's 2^31 "
+                  "cells: give a "
+                  "larger size, leave out strays by filter.crop above, or subtract a shift (grabber.cloud)",
+                  too_far_, std::ldexp(size_, 31) / 1000));
 }
 
 }  // namespace crisp

@@ -14,10 +14,12 @@ class VoxelStage final : public Stage {
  public:
   static void describe(StageDescription<VoxelStage>& d);
   void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
 
  private:
   double size_ = 0.05;
   std::optional<Voxels> voxels_;  ///< over all clouds that come
+  std::size_t too_far_ = 0;
 };
 
 }  // namespace crisp

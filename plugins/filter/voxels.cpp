@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/filter/voxels.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
+
+#include "pipeline/data/error.hpp"
 
 namespace crisp {
 
@@ -17,15 +21,21 @@ std::size_t Voxels::Hash::operator()(const Cell& cell) const {
   return hash;
 }
 
-bool Voxels::is_first(float x, float y, float z) {
+Voxels::Voxels(double size) : size_(size) {
+  if (std::isfinite(size) && size > 0) return;
+  throw Error(fmt::format("a voxel's edge is {} m", size), "give a length above 0");
+}
+
+InVoxel Voxels::put(float x, float y, float z) {
   Cell cell{};
   std::size_t axis = 0;
   for (const float coordinate : {x, y, z}) {
     const double index = std::floor(static_cast<double>(coordinate) / size_);
-    if (!(std::abs(index) < std::numeric_limits<std::int32_t>::max())) return false;
+    if (std::isnan(index)) return InVoxel::nowhere;
+    if (std::abs(index) >= std::numeric_limits<std::int32_t>::max()) return InVoxel::too_far;
     cell[axis++] = static_cast<std::int32_t>(index);
   }
-  return taken_.insert(cell).second;
+  return taken_.insert(cell).second ? InVoxel::first : InVoxel::later;
 }
 
 }  // namespace crisp

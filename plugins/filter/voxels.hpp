@@ -8,15 +8,23 @@
 
 namespace crisp {
 
+/// What a point finds in its cell of a grid.
+enum class InVoxel {
+  first,    ///< no point was there before
+  later,    ///< another one was
+  too_far,  ///< it has no cell: 2^31 of them or more from the origin
+  nowhere,  ///< a coordinate is no number
+};
+
 /// The cells of a cubic grid in which a point has been.
 class Voxels {
  public:
-  /// @param size [m] of a cell's edge, > 0
-  explicit Voxels(double size) : size_(size) {}
+  /// @param size [m] of a cell's edge
+  /// @throws Error unless it is a number above 0
+  explicit Voxels(double size);
 
-  /// Whether no point before was in this one's cell, [x, x + size) and so on from the origin. A point that is
-  /// not a number, or more than 2^31 cells away, is never the first.
-  bool is_first(float x, float y, float z);
+  /// Puts a point into its cell, [x, x + size) and so on from the origin.
+  InVoxel put(float x, float y, float z);
 
  private:
   using Cell = std::array<std::int32_t, 3>;

@@ -13,11 +13,14 @@ namespace crisp {
 struct Alternation {
   std::vector<double> difference;  ///< [m] element l − 1: mean size of the difference between scans l apart
   std::size_t period = 1;          ///< scans after which they are alike again; 1: always
-  double p_value = 1;              ///< that scans in random order seem to take turns as much
+  double p_value = 1;        ///< that scans in random order differ as much more at one lag than at another
+  double beyond_chance = 0;  ///< [m] by how much more they differ than scans in random order do
 };
 
-/// Which number of scans apart makes scans most alike. Differences count up to 0.3 m, so that edges do not
-/// outweigh all else.
+/// Scans at rest that are looked at; more tell nothing more.
+inline constexpr std::size_t kEnoughAtRest = 400;
+
+/// Which number of scans apart makes scans most alike (LagContrast).
 /// @param scans  of a laser that stands still in a scene that does
 Alternation find_alternation(const std::vector<SeriesScan>& scans, std::uint64_t seed);
 

@@ -2,6 +2,7 @@
 #include "plugins/scans/mounting.hpp"
 
 #include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <map>
 
@@ -29,25 +30,37 @@ Eigen::Vector3d centre_of(const FlatWindow::Sight& sight, const MountingValues& 
   return values[kAlongBeam] * away_from_axis(sight.angle) + values[kAlongNormal] * along_normal(sight.angle);
 }
 
-/// One beam on a plane m · x = 1: the range that is foretold and its derivatives, taken where the beam meets
-/// the plane.
+/// A plane near the points that it was fitted to: (normal + a u + b v) · (x − middle) = shift. Wherever it
+/// lies ranges are nearly linear in shift, a and b.
+struct LocalPlane {
+  Eigen::Vector3d middle;
+  Eigen::Matrix3d axes;                                  ///< columns: normal, u and v
+  Eigen::Vector3d parameters = Eigen::Vector3d::Zero();  ///< shift [m], a, b
+
+  Eigen::Vector3d normal() const {
+    return axes.col(0) + parameters(1) * axes.col(1) + parameters(2) * axes.col(2);
+  }
+};
+
+/// One beam on a plane: the range that is foretold and its derivatives, taken where the beam meets the plane.
 struct Foretold {
   double range = 0;
   Eigen::Vector3d by_plane;
   GlobalVector by_mounting;
 };
 
-Foretold foretell(const FlatWindow::Sight& sight, const Eigen::Vector3d& plane,
-                  const MountingValues& values) {
+Foretold foretell(const FlatWindow::Sight& sight, const LocalPlane& plane, const MountingValues& values) {
   const Eigen::Vector3d direction = direction_of(sight);
-  const Eigen::Vector3d centre = centre_of(sight, values);
-  const double slope = plane.dot(direction);
-  const double true_range = (1 - plane.dot(centre)) / slope;
+  const Eigen::Vector3d from_middle = centre_of(sight, values) - plane.middle;
+  const Eigen::Vector3d normal = plane.normal();
+  const double slope = normal.dot(direction);
+  const double true_range = (plane.parameters(0) - normal.dot(from_middle)) / slope;
+  const Eigen::Vector3d met = from_middle + true_range * direction;
   Foretold beam;
   beam.range = true_range - values[kRangeOffset];
-  beam.by_plane = -(centre + true_range * direction) / slope;
-  beam.by_mounting << -plane.dot(away_from_axis(sight.angle)) / slope,
-      -plane.dot(along_normal(sight.angle)) / slope, -1;
+  beam.by_plane << 1 / slope, -plane.axes.col(1).dot(met) / slope, -plane.axes.col(2).dot(met) / slope;
+  beam.by_mounting << -normal.dot(away_from_axis(sight.angle)) / slope,
+      -normal.dot(along_normal(sight.angle)) / slope, -1;
   return beam;
 }
 
@@ -59,7 +72,7 @@ struct Projected {
   double squares = 0;                                    ///< [m²] before the step
 };
 
-Projected project(const FlatWindow& window, const Eigen::Vector3d& plane, const MountingValues& values,
+Projected project(const FlatWindow& window, const LocalPlane& plane, const MountingValues& values,
                   const GlobalVector& free) {
   Eigen::Matrix3d planes = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 3, kGlobal> mixed = Eigen::Matrix<double, 3, kGlobal>::Zero();
@@ -84,8 +97,8 @@ Projected project(const FlatWindow& window, const Eigen::Vector3d& plane, const 
   return all;
 }
 
-/// The plane of a window by least squares in its points, m · x = 1.
-Eigen::Vector3d first_plane(const FlatWindow& window, const MountingValues& values) {
+/// The plane of a window by least squares in its points, across it.
+LocalPlane first_plane(const FlatWindow& window, const MountingValues& values) {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const auto& sight : window.sights) {
@@ -94,7 +107,10 @@ Eigen::Vector3d first_plane(const FlatWindow& window, const MountingValues& valu
     squares += point * point.transpose();
     sum += point;
   }
-  return squares.ldlt().solve(sum);
+  const auto count = static_cast<double>(window.sights.size());
+  const Eigen::Vector3d middle = sum / count;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> across(squares / count - middle * middle.transpose());
+  return {.middle = middle, .axes = across.eigenvectors()};  // the least eigenvalue's comes first
 }
 
 GlobalVector mask_of(const std::vector<MountingParameter>& free) {
@@ -127,16 +143,28 @@ MountingValues moved(MountingValues values, const GlobalVector& step, double sha
   return values;
 }
 
-/// The plane that is best in the ranges, for a given mounting. A step that does not help is not taken.
-Eigen::Vector3d best_plane(const FlatWindow& window, const MountingValues& values) {
-  Eigen::Vector3d plane = first_plane(window, values);
+/// The plane that is best in the ranges, for a given mounting. A step that does not help is halved.
+LocalPlane best_plane(const FlatWindow& window, const MountingValues& values) {
+  constexpr int kRounds = 10;
+  constexpr double kLeastShare = 1.0 / 64;
+  constexpr double kSettled = 1e-9;  // of the squares
+  LocalPlane plane = first_plane(window, values);
   Projected now = project(window, plane, values, GlobalVector::Zero());
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3d next_plane = plane + now.plane_step;
-    const Projected next = project(window, next_plane, values, GlobalVector::Zero());
-    if (!(next.squares < now.squares)) break;
-    plane = next_plane;
-    now = next;
+  for (int i = 0; i < kRounds; ++i) {
+    bool better = false;
+    const double before = now.squares;
+    const Eigen::Vector3d from = plane.parameters;
+    const Eigen::Vector3d step = now.plane_step;
+    for (double share = 1; share > kLeastShare && !better; share /= 2) {
+      LocalPlane next_plane = plane;
+      next_plane.parameters = from + share * step;
+      Projected next = project(window, next_plane, values, GlobalVector::Zero());
+      better = next.squares < now.squares;
+      if (!better) continue;
+      plane = next_plane;
+      now = next;
+    }
+    if (!better || now.squares > (1 - kSettled) * before) break;
   }
   return plane;
 }
@@ -285,7 +313,7 @@ std::vector<FlatWindow> with_put_in(const std::vector<FlatWindow>& windows, Moun
   std::vector<FlatWindow> changed = windows;
   for (auto& window : changed) {
     const MountingValues none{};
-    const Eigen::Vector3d plane = first_plane(window, none);
+    const LocalPlane plane = best_plane(window, none);
     for (auto& sight : window.sights) sight.range += by * foretell(sight, plane, none).by_mounting(parameter);
   }
   return changed;

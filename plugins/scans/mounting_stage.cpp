@@ -19,18 +19,32 @@ struct MountingTry {
   double side = 0;
   bool with_offset = false;
   MountingFit fit;
-  double answer = 0;  ///< times that a change of the centre along the beam, put in by hand, comes back
+  std::vector<double> answers = {};  ///< share of what is put in by hand that comes back, of each parameter
 };
 
 /// What all tries say of a parameter.
 struct Agreed {
   double low = 0, high = 0;  ///< [m] of the values
   double error = 0;          ///< [m] the largest standard error
-  bool determined() const {
-    constexpr double kApart = 3;     // standard errors
-    constexpr double kOfUse = 0.02;  // [m] an error beyond that tells nothing of a mounting of centimetres
-    return std::isfinite(error) && error < kOfUse && high - low < kApart * error;
+  bool determined() const { return is_sharp() && agrees(); }
+  bool is_sharp() const { return error < kOfUse; }
+  bool agrees() const {
+    constexpr double kApart = 3;  // standard errors
+    return high - low < kApart * error;
   }
+  std::string why_not() const {
+    std::string why;
+    if (!is_sharp()) {
+      why = fmt::format("its standard error of {:.0f} mm tells nothing of a mounting of centimetres",
+                        1e3 * error);
+    }
+    if (!agrees()) {
+      why += std::string(why.empty() ? "" : ", and ") +
+             "it depends on which windows count and on whether ranges may be off";
+    }
+    return why;
+  }
+  static constexpr double kOfUse = 0.02;  // [m]
 };
 
 Agreed agreed(const std::vector<MountingTry>& tries, MountingParameter parameter) {
@@ -57,7 +71,7 @@ const Pass* longest(const std::vector<Pass>& passes) {
   return most == passes.end() ? nullptr : &*most;
 }
 
-std::string line_of(const MountingTry& each, double answer) {
+std::string line_of(const MountingTry& each) {
   const auto& fit = each.fit;
   std::string text = fmt::format(
       "  windows of {:.0f} deg: {:3} flat, {:6} beams, rms {:5.1f} mm: along the beam {:+7.1f} ± {:5.1f} mm, "
@@ -69,7 +83,9 @@ std::string line_of(const MountingTry& each, double answer) {
     text += fmt::format(", ranges {:+.1f} ± {:.1f} mm", 1e3 * fit.values[kRangeOffset],
                         1e3 * fit.std_errors[kRangeOffset]);
   }
-  return text + fmt::format("; 30 mm put in: {:.2f} times", answer);
+  text += fmt::format("; 30 mm put in: {:.2f} times along the beam, {:.2f} along the normal",
+                      each.answers[kAlongBeam], each.answers[kAlongNormal]);
+  return each.with_offset ? text + fmt::format(", {:.2f} of the ranges", each.answers[kRangeOffset]) : text;
 }
 
 }  // namespace
@@ -130,14 +146,14 @@ void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const
       if (with_offset) free.push_back(kRangeOffset);
       MountingTry each{
           .side = side, .with_offset = with_offset, .fit = fit_mounting(windows, {}, free, context.seed())};
-      const double answer = answer_of(windows, kAlongBeam, each.fit, free);
-      lines += "\n" + line_of(each, answer);
+      for (const auto parameter : free) each.answers.push_back(answer_of(windows, parameter, each.fit, free));
+      lines += "\n" + line_of(each);
       report.push_back({{"side", side},
                         {"with_offset", with_offset},
                         {"windows", each.fit.windows},
                         {"values", each.fit.values},
                         {"std_errors", each.fit.std_errors},
-                        {"answer", answer}});
+                        {"answers", each.answers}});
       tries.push_back(each);
     }
   }
@@ -153,8 +169,7 @@ void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const
     context.say(fmt::format("  {}: {}, {}", name, all.determined() ? "determined" : "not determined", range));
     if (all.determined()) continue;
     findings.unobservable.push_back(
-        {fmt::format("{}: offset from the axis {}", laser.name, name),
-         "it depends on which windows count and on whether ranges may be off: " + range, ""});
+        {fmt::format("{}: offset from the axis {}", laser.name, name), all.why_not() + ": " + range, ""});
   }
 }
 

@@ -58,6 +58,23 @@ std::optional<double> share_of(const PlateTrajectory& plate, const std::vector<d
   return std::abs(way) < kLeastWay ? 0.5 : (now->angle - before->angle) / way;
 }
 
+/// Weights by which the ranges of five scans cancel where they are of second order in the actuator's angle:
+/// what the nearer two leave of the middle one, less what the farther two do as far as both bend alike.
+std::optional<std::array<double, 2 * kFar + 1>> weights_around(const PlateTrajectory& plate,
+                                                               const std::vector<double>& times,
+                                                               std::size_t i) {
+  const auto share = share_of(plate, times, i);
+  if (!share) return {};
+  std::array<double, 2 * kFar + 1> off{};  // [rad] from the middle scan
+  for (std::size_t j = 0; j < off.size(); ++j) {
+    off[j] = plate.at(times[i + j - kFar])->angle - plate.at(times[i])->angle;
+  }
+  const double far_bend = off.front() * off.back();
+  const double bend = far_bend < 0 ? std::clamp(off[kFar - 1] * off[kFar + 1] / far_bend, 0.0, 1.0) : 0;
+  const double far_share = off.front() / (off.front() - off.back());
+  return {{bend * (1 - far_share), -(1 - *share), 1 - bend, -*share, bend * far_share}};
+}
+
 }  // namespace
 
 double NeighbourErrors::median() const {
@@ -87,6 +104,33 @@ NeighbourErrors neighbour_errors(const std::vector<SeriesScan>& scans, const std
     found.errors.push_back(std::move(errors));
   }
   return found;
+}
+
+std::vector<ScanPull> scan_pulls(const std::vector<SeriesScan>& scans, const std::vector<double>& times,
+                                 const std::vector<double>& angles, const PlateTrajectory& plate) {
+  std::vector<ScanPull> all;
+  for (std::size_t i = kFar; i + kFar < scans.size(); ++i) {
+    const auto weights = weights_around(plate, times, i);
+    if (!weights) continue;
+    ScanPull of{.scan = i, .weights = *weights};
+    for (std::size_t k = 0; k < scans[i].ranges().size(); ++k) {
+      if (!slopes(scans[i - kFar], scans[i], scans[i + kFar], k)) continue;
+      const double angle = angles[i] + static_cast<double>(k) * scans[i].scan->angle_step;
+      double beyond = 0;
+      for (std::size_t j = 0; j < weights->size(); ++j) {
+        const auto range = range_at(scans[i + j - kFar], angles[i + j - kFar], angle);
+        beyond += (*weights)[j] * range.value_or(std::nan(""));
+      }
+      if (!std::isfinite(beyond)) continue;
+      const auto slope =
+          static_cast<double>(scans[i + kFar].ranges()[k]) - static_cast<double>(scans[i - kFar].ranges()[k]);
+      of.pull += std::clamp(beyond, -kNoEdge, kNoEdge) * slope;
+      of.squares += slope * slope;
+      of.beams += 1;
+    }
+    if (of.beams > 0) all.push_back(of);
+  }
+  return all;
 }
 
 Gain neighbour_gain(const NeighbourErrors& before, const NeighbourErrors& after, std::uint64_t seed) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
+#include <array>
 #include <vector>
 
 #include "pipeline/data/findings.hpp"
@@ -29,6 +29,20 @@ struct NeighbourErrors {
 /// @param times   [s] when each was taken; the sweep is where `plate` moves then
 /// @param angles  [rad] reported angle of each scan's first beam
 NeighbourErrors neighbour_errors(const std::vector<SeriesScan>& scans, const std::vector<double>& times,
+                                 const std::vector<double>& angles, const PlateTrajectory& plate);
+
+/// What the ranges of one scan say of its time, beside those of its neighbours.
+struct ScanPull {
+  std::size_t scan = 0;  ///< index in the series
+  double pull = 0;       ///< [m²] Σ of what its ranges are beyond those foretold, times their slopes
+  double squares = 0;    ///< [m²] Σ of the slopes' squares
+  double beams = 0;
+  std::array<double, 5> weights{};  ///< of scans from two before to two after in what its ranges are beyond
+};
+
+/// The same beams as for neighbour_errors, but from two neighbours to either side, so that surfaces which
+/// bend evenly pull nowhere. The slope of a range is that between the second neighbours.
+std::vector<ScanPull> scan_pulls(const std::vector<SeriesScan>& scans, const std::vector<double>& times,
                                  const std::vector<double>& angles, const PlateTrajectory& plate);
 
 /// What the change brought for the scans that both count: medians, and the interval of their difference by a

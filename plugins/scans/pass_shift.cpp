@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Dense>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
+#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/resampling.hpp"
+#include "plugins/scans/about_level.hpp"
 #include "plugins/scans/passes.hpp"
 
 namespace crisp {
@@ -28,6 +29,24 @@ std::vector<PassBlock::Bin> sum_of(const PassComparison& comparison, std::span<c
     }
   }
   return sums;
+}
+
+/// Where a cubic through the bins around a shift has its least value. A bin counts the less the farther it
+/// is: were it in or out, the answer would jump with the bin that is the least.
+double least_around(const Curve& curve, double centre, double step) {
+  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d values = Eigen::Vector4d::Zero();
+  for (const auto& [by, variance] : curve) {
+    const double x = (by - centre) / step;
+    const double weight = biweight(x / (kAroundLeast + 1));
+    const Eigen::Vector4d powers(1, x, x * x, x * x * x);
+    squares += weight * powers * powers.transpose();
+    values += weight * variance * powers;
+  }
+  const Eigen::Vector4d cubic = squares.ldlt().solve(values);
+  const double root = cubic(2) * cubic(2) - 3 * cubic(1) * cubic(3);
+  if (!(cubic(2) > 0) || !(root >= 0)) return std::nan("");
+  return centre - cubic(1) / (cubic(2) + std::sqrt(root)) * step;
 }
 
 Curve variances(const PassComparison& comparison, std::span<const std::size_t> blocks) {
@@ -60,6 +79,16 @@ double error_of_shift(const PassComparison& comparison, const std::vector<std::s
       .std_error;
 }
 
+std::pair<double, double> shift_with_error(const PassComparison& comparison,
+                                           const std::vector<std::size_t>& blocks, std::uint64_t seed) {
+  return {shift_between(comparison, blocks), error_of_shift(comparison, blocks, seed)};
+}
+
+/// Every other part of the angles.
+std::vector<std::size_t> half_of(const PassComparison& comparison, bool odd) {
+  return every(comparison, [&](const PassBlock& block) { return (block.angle_part % 2 == 1) == odd; });
+}
+
 /// Shifts in quarters of the angles, or of the beams.
 std::vector<std::pair<double, double>> in_quarters(const PassComparison& comparison, bool of_angles,
                                                    std::uint64_t seed) {
@@ -70,34 +99,19 @@ std::vector<std::pair<double, double>> in_quarters(const PassComparison& compari
       return of_angles ? block.angle_part * kQuarters / kAngleParts == q
                        : block.beam_part * kQuarters / kBeamParts == q;
     });
-    all.emplace_back(shift_between(comparison, blocks), error_of_shift(comparison, blocks, seed));
+    all.push_back(shift_with_error(comparison, blocks, seed));
   }
   return all;
 }
 
-/// That values differ by their errors alone: χ² about their weighted mean.
-double constancy(const std::vector<std::pair<double, double>>& values) {
-  double weights = 0;
-  double sum = 0;
-  std::size_t n = 0;
-  for (const auto& [value, error] : values) {
-    if (!std::isfinite(value) || !(error > 0)) continue;
-    weights += 1 / (error * error);
-    sum += value / (error * error);
-    ++n;
-  }
-  if (n < 2) return 1;
-  double chi2 = 0;
-  for (const auto& [value, error] : values) {
-    if (std::isfinite(value) && error > 0) chi2 += std::pow((value - sum / weights) / error, 2);
-  }
-  const boost::math::chi_squared distribution(static_cast<double>(n - 1));
-  return boost::math::cdf(boost::math::complement(distribution, chi2));
+/// That shifts in parts of the passes differ by their errors alone.
+double constancy(const std::vector<ValueWithError>& values) {
+  return about_level(values, Level::kMean, kPassBlocks / values.size()).p_value;
 }
 
 Gain gain_of(const PassComparison& comparison, std::uint64_t seed) {
-  const auto fitted = every(comparison, [](const PassBlock& b) { return b.angle_part % 2 == 0; });
-  const auto held_out = every(comparison, [](const PassBlock& b) { return b.angle_part % 2 == 1; });
+  const auto fitted = half_of(comparison, false);
+  const auto held_out = half_of(comparison, true);
   const double shift = shift_between(comparison, fitted);
   const auto change = [&](const std::vector<std::size_t>& blocks) {
     return std::sqrt(variance_at(comparison, blocks, shift)) - std::sqrt(variance_at(comparison, blocks, 0));
@@ -125,19 +139,17 @@ double shift_between(const PassComparison& comparison, std::span<const std::size
     if (curve[i].second < curve[least].second) least = i;
   }
   if (least < kAroundLeast || least + kAroundLeast >= curve.size()) return std::nan("");
-  constexpr Eigen::Index kPoints = 2 * kAroundLeast + 1;
-  Eigen::MatrixXd powers(kPoints, 4);
-  Eigen::VectorXd values(kPoints);
-  for (Eigen::Index i = 0; i < kPoints; ++i) {
-    const auto& [by, variance] = curve[least - kAroundLeast + static_cast<std::size_t>(i)];
-    const double x = (by - curve[least].first) / comparison.step;
-    powers.row(i) << 1, x, x * x, x * x * x;
-    values(i) = variance;
+  constexpr int kMostRounds = 20;
+  constexpr double kSettled = 1e-4;  // [steps]
+  double centre = curve[least].first;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const double next = least_around(curve, centre, comparison.step);
+    if (!(std::abs(next - curve[least].first) < kAroundLeast * comparison.step)) return std::nan("");
+    const bool settled = std::abs(next - centre) < kSettled * comparison.step;
+    centre = next;
+    if (settled) break;
   }
-  const Eigen::Vector4d cubic = powers.colPivHouseholderQr().solve(values);
-  const double root = cubic(2) * cubic(2) - 3 * cubic(1) * cubic(3);
-  if (!(cubic(2) > 0) || !(root >= 0)) return std::nan("");
-  return curve[least].first - cubic(1) / (cubic(2) + std::sqrt(root)) * comparison.step;
+  return centre;
 }
 
 double variance_at(const PassComparison& comparison, std::span<const std::size_t> blocks, double shift) {
@@ -157,6 +169,8 @@ PassShift find_shift(const Pass& up, const Pass& down, std::uint64_t seed) {
   found.std_error = error_of_shift(comparison, all, seed);
   found.by_angle = in_quarters(comparison, true, seed);
   found.by_beam = in_quarters(comparison, false, seed);
+  found.fitted = shift_with_error(comparison, half_of(comparison, false), seed);
+  found.held_out = shift_with_error(comparison, half_of(comparison, true), seed);
   found.constant_p = std::min(1.0, 2 * std::min(constancy(found.by_angle), constancy(found.by_beam)));
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& bin : sum_of(comparison, all)) {

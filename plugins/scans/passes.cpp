@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
+#include <numbers>
 
 #include "pipeline/data/robust.hpp"
 
@@ -21,6 +23,19 @@ double median_step(const Pass& pass) {
   return middle_of(steps);
 }
 
+/// By how much more than whole steps the angles of the pass up lie above those of the pass down [rad], at
+/// most half a step: bins about that hold differences of one size only.
+double between_steps(const Pass& up, const Pass& down, double put_in, double step) {
+  std::complex<double> sum;
+  for (const PassScan& scan : down.scans) {
+    const auto next = std::lower_bound(up.scans.begin(), up.scans.end(), scan.angle + put_in,
+                                       [](const PassScan& s, double limit) { return s.angle < limit; });
+    if (next == up.scans.end()) continue;
+    sum += std::polar(1.0, 2 * std::numbers::pi * (next->angle - scan.angle - put_in) / step);
+  }
+  return std::arg(sum) / (2 * std::numbers::pi) * step;
+}
+
 /// The scans of the pass up that are compared with one of the pass down, each in the bin of its difference in
 /// angle.
 struct PassWindow {
@@ -29,14 +44,15 @@ struct PassWindow {
   std::vector<std::size_t> bins;
 };
 
-PassWindow window_around(const Pass& up, double angle, double step) {
+PassWindow window_around(const Pass& up, double angle, double step, double between) {
   const double reach = (kReach + 0.5) * step;
+  const double middle = angle + between;
   PassWindow window;
-  auto scan = std::lower_bound(up.scans.begin(), up.scans.end(), angle - reach,
+  auto scan = std::lower_bound(up.scans.begin(), up.scans.end(), middle - reach,
                                [](const PassScan& s, double limit) { return s.angle < limit; });
-  for (; scan != up.scans.end() && scan->angle < angle + reach; ++scan) {
+  for (; scan != up.scans.end() && scan->angle < middle + reach; ++scan) {
     const double by = scan->angle - angle;
-    const long bin = std::lround(by / step) + kReach;
+    const long bin = std::lround((by - between) / step) + kReach;
     if (bin < 0 || bin > 2 * kReach) continue;
     window.ranges.push_back(scan->ranges);
     window.by.push_back(by);
@@ -96,9 +112,10 @@ PassComparison compare_passes(const Pass& up, const Pass& down, double put_in) {
     comparison.blocks[b] = {.angle_part = b / kBeamParts, .beam_part = b % kBeamParts, .bins = {}};
     comparison.blocks[b].bins.resize(2 * kReach + 1);
   }
+  const double between = between_steps(up, down, put_in, comparison.step);
   for (std::size_t i = 0; i < down.scans.size(); ++i) {
     const auto& ranges = *down.scans[i].ranges;
-    const auto window = window_around(up, down.scans[i].angle + put_in, comparison.step);
+    const auto window = window_around(up, down.scans[i].angle + put_in, comparison.step, between);
     if (window.ranges.size() < 2 * kReach) continue;
     const std::size_t angle_part = i * kAngleParts / down.scans.size();
     for (std::size_t k = 0; k < ranges.size(); ++k) {

@@ -42,6 +42,7 @@ struct PassBlock {
 
 inline constexpr std::size_t kAngleParts = 16;
 inline constexpr std::size_t kBeamParts = 8;
+inline constexpr std::size_t kPassBlocks = kAngleParts * kBeamParts;
 inline constexpr int kReach = 9;  ///< [steps] how far apart scans of the two passes are compared
 
 /// Two passes in opposite directions, side by side.
@@ -61,8 +62,9 @@ PassComparison compare_passes(const Pass& up, const Pass& down, double put_in = 
 /// The shift [rad] of the pass down at which both passes agree best: down(φ) = up(φ + shift). It is where the
 /// variance of the differences, as a function of the shift, has its least value: noise adds the same to each
 /// bin and moves nothing, where a regression on measured slopes comes out short by their noise. A cubic is
-/// laid through the bins around the least: surfaces that bend make the valley lopsided, which a parabola
-/// would take for a shift. A range offset between the passes is taken out of each bin.
+/// laid through the bins around the answer, the nearer the more they count: surfaces that bend make the
+/// valley lopsided, which a parabola would take for a shift. A range offset between the passes is taken out
+/// of each bin.
 /// @return NaN where the least lies at the rim
 double shift_between(const PassComparison& comparison, std::span<const std::size_t> blocks);
 
@@ -77,6 +79,8 @@ struct PassShift {
   std::vector<std::pair<double, double>>
       by_angle;  ///< [rad] shift and its error, in each quarter of the angles
   std::vector<std::pair<double, double>> by_beam;  ///< the same, in each quarter of the beams
+  std::pair<double, double> fitted{};              ///< the same, in every other sixteenth of the angles …
+  std::pair<double, double> held_out{};            ///< … and in the rest
   double constant_p = 1;                           ///< that these differ by their errors alone
   Gain gain;  ///< difference between the passes, on beams that the shift was not found in
   std::vector<std::pair<double, double>> answers;  ///< [rad] shifts put in by hand, and what they changed

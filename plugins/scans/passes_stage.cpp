@@ -7,6 +7,8 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/plot/write_plot.hpp"
+#include "plugins/scans/about_level.hpp"
+#include "plugins/scans/told_in_passes.hpp"
 
 namespace crisp {
 namespace {
@@ -88,6 +90,8 @@ bool is_believed(const PassShift& found) {
   return std::isfinite(found.shift) && found.std_error > 0 && std::abs(found.answer_ratio - 1) <= kWithin;
 }
 
+bool stands_out(const PassShift& found) { return std::abs(found.shift) >= kStandsOut * found.std_error; }
+
 /// A shift between the passes has no name of its own: what it may be called.
 void add_findings(const std::string& laser, const PassShift& found, Findings& findings) {
   if (!is_believed(found)) {
@@ -98,8 +102,7 @@ void add_findings(const std::string& laser, const PassShift& found, Findings& fi
          ""});
     return;
   }
-  if (std::abs(found.shift) < kStandsOut * found.std_error) return;
-  const double p = std::erfc(std::abs(found.shift) / found.std_error / std::sqrt(2.0));
+  if (!stands_out(found)) return;
   const bool pays = found.gain.surely_falls();
   if (found.constant_p < kSureOfParts) {
     findings.unnamed.push_back({.covariate = "direction of the actuator, not the same at all its angles",
@@ -107,7 +110,7 @@ void add_findings(const std::string& laser, const PassShift& found, Findings& fi
                                 .scope = "plate",
                                 .amplitude = std::abs(found.shift) / 2,
                                 .unit = "rad",
-                                .p_value = p,
+                                .p_value = found.constant_p,
                                 .gain = {found.gain},
                                 .accepted = pays});
     return;
@@ -115,7 +118,9 @@ void add_findings(const std::string& laser, const PassShift& found, Findings& fi
   Finding finding{.cause = "encoder.backlash", .scope = "plate"};
   finding.parameters = {{"delta", "rad", -found.shift / 2, found.std_error / 2, true}};
   finding.explained_fraction = found.gain.explained();
-  finding.p_value = p;
+  const AboutLevel none = about_level({{found.shift, found.std_error}}, Level::kZero, kPassBlocks);
+  finding.log10_odds = none.log10_odds;  // a lag instead is as likely, and named beside it
+  finding.p_value = none.p_value;
   finding.confounded_with = {laser + ".eta"};
   finding.told_apart_by = {"both ways gone at another speed: play stays, a lag shifts them by more"};
   finding.gain = {found.gain};
@@ -187,7 +192,8 @@ void DiagnosePassesStage::describe(StageDescription<DiagnosePassesStage>& d) {
       .range(1e-4, 1e4);
   d.option("mend", &DiagnosePassesStage::mend_,
            "whether the trajectory that it gives has the angles that were found");
-  d.option("folder", &DiagnosePassesStage::folder_, "where plots go; auto: nowhere");
+  d.option("folder", &DiagnosePassesStage::folder_, "where plots go; auto: nowhere")
+      .writes_into({"*_passes.svg"});
 }
 
 void DiagnosePassesStage::process(const Inputs& in, Outputs&, Context&) {
@@ -223,18 +229,23 @@ double DiagnosePassesStage::diagnose(Findings& findings, Context& context) const
   }
   tell(name, found, comparison.step, comparison.beams, context);
   add_findings(name, found, findings);
+  const bool pays = is_believed(found) && stands_out(found) && found.gain.surely_falls();
+  if (is_believed(found)) {
+    add_likeness({told_in_passes(found, pays)}, findings);
+    context.say(likeness_in_words(findings));
+  }
   findings.unobservable.push_back(
       {name + ".tau",
        "both ways see the same surfaces from the same angles: that says nothing of the mounting", ""});
   if (folder_) draw(*folder_, name, comparison, context);
-  const bool pays =
-      is_believed(found) && std::abs(found.shift) > kStandsOut * found.std_error && found.gain.surely_falls();
   return pays && mend_ ? found.shift : 0;
 }
 
 void DiagnosePassesStage::finish(Outputs& out, Context& context) {
   if (!plate_ || series_.scans().empty()) throw Error("no scans with readings of an actuator came");
-  const double shift = diagnose(findings_, context);
+  Findings own;
+  const double shift = diagnose(own, context);
+  findings_.append(own);
   out.give(std::move(findings_));
   out.give(mended(*plate_, shift));
   for (const auto& beams : beams_) out.give(beams);

@@ -8,19 +8,32 @@
 
 namespace crisp {
 
+std::vector<double> row_of(const SeriesScan& scan) {
+  std::vector<double> row(scan.ranges().begin(), scan.ranges().end());
+  for (double& range : row) {
+    if (!(range > 0)) range = std::nan("");
+  }
+  return row;
+}
+
 std::vector<double> mean_profile(const std::vector<SeriesScan>& scans) {
+  std::vector<std::vector<double>> rows;
+  for (const auto& scan : scans) rows.push_back(row_of(scan));
+  return mean_profile(rows);
+}
+
+std::vector<double> mean_profile(const std::vector<std::vector<double>>& rows) {
   constexpr double kNear = 0.1;  // [m]
   std::size_t beams = 0;
-  for (const auto& scan : scans) beams = std::max(beams, scan.ranges().size());
+  for (const auto& row : rows) beams = std::max(beams, row.size());
   std::vector<double> profile(beams, std::nan(""));
   std::vector<double> values;
   for (std::size_t k = 0; k < beams; ++k) {
     values.clear();
-    for (const auto& scan : scans) {
-      const auto& ranges = scan.ranges();
-      if (k < ranges.size() && ranges[k] > 0) values.push_back(static_cast<double>(ranges[k]));
+    for (const auto& row : rows) {
+      if (k < row.size() && std::isfinite(row[k])) values.push_back(row[k]);
     }
-    if (values.empty() || 2 * values.size() < scans.size()) continue;
+    if (values.empty() || 2 * values.size() < rows.size()) continue;
     const double middle = middle_of(values);
     double sum = 0;
     double n = 0;

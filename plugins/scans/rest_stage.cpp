@@ -87,7 +87,8 @@ void DiagnoseRestStage::describe(StageDescription<DiagnoseRestStage>& d) {
       .gives<PlateReading>();
   d.option("mend", &DiagnoseRestStage::mend_,
            "whether the scans that it gives have the angles that were found");
-  d.option("folder", &DiagnoseRestStage::folder_, "where plots go; auto: nowhere");
+  d.option("folder", &DiagnoseRestStage::folder_, "where plots go; auto: nowhere")
+      .writes_into({"*_rest.svg"});
 }
 
 void DiagnoseRestStage::process(const Inputs& in, Outputs&, Context& context) {
@@ -112,8 +113,9 @@ void DiagnoseRestStage::report(const std::string& name, const Alternation& alter
                                const std::vector<KindDeparture>& departures, Context& context) {
   std::string lags;
   for (const double d : alternation.difference) lags += fmt::format(" {:.1f}", 1e3 * d);
-  context.say(fmt::format("{}: scans 1, 2 … apart differ at rest by{} mm: they repeat every {} (p {:.3g})",
-                          name, lags, alternation.period, alternation.p_value));
+  context.say(fmt::format(
+      "{}: scans 1, 2 … apart differ at rest by{} mm (p {:.3g} in random order): they repeat every {}", name,
+      lags, alternation.p_value, alternation.period));
   auto kinds = nlohmann::json::array();
   for (const auto& k : departures) {
     context.say(
@@ -172,13 +174,18 @@ void DiagnoseRestStage::diagnose(std::size_t index, Findings& findings, Context&
   laser.shifts.assign(alternation.period, 0);
   const double step = still.front().scan->angle_step;
   std::vector<Finding> found;
+  std::vector<bool> is_moved(alternation.period);
   for (const auto& departure : departures) {
     if (is_shift(departure)) {
+      is_moved[departure.kind] = true;
       laser.shifts[departure.kind] = departure.shift * step;
       found.push_back(finding_of(name, departure, alternation, step));
     } else {
       findings.unnamed.push_back(unnamed_of(name, departure, alternation));
     }
+  }
+  if (auto told = told_at_rest(name, still, alternation, is_moved, context.seed())) {
+    told_.push_back(std::move(*told));
   }
   if (found.empty()) return;
   const Gain sweep = gain_in_sweep(laser.series, laser.shifts, laser.period, context.rig(), context.seed());
@@ -202,10 +209,14 @@ std::shared_ptr<const Scan> DiagnoseRestStage::mended(const std::shared_ptr<cons
 }
 
 void DiagnoseRestStage::finish(Outputs& out, Context& context) {
+  Findings own;
   for (std::size_t i = 0; i < lasers_.size(); ++i) {
-    if (!lasers_[i].series.scans().empty()) diagnose(i, findings_, context);
+    if (!lasers_[i].series.scans().empty()) diagnose(i, own, context);
     if (context.interrupted()) return;
   }
+  add_likeness(told_, own);
+  if (!told_.empty()) context.say(likeness_in_words(own));
+  findings_.append(own);
   out.give(std::move(findings_));
   for (const auto& item : items_) {
     if (const auto* reading = std::get_if<PlateReading>(&item)) {

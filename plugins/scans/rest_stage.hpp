@@ -9,6 +9,7 @@
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/scans/alternation.hpp"
+#include "plugins/scans/told_at_rest.hpp"
 
 namespace crisp {
 
@@ -38,6 +39,7 @@ class DiagnoseRestStage final : public Stage {
   bool mend_ = true;
   std::vector<Laser> lasers_;
   std::vector<std::variant<std::size_t, PlateReading>> items_;  ///< as they came; of a scan, whose it was
+  std::vector<ToldApart> told_;
   Findings findings_;  // what diagnoses above it said, and then its own
 };
 

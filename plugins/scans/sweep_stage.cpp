@@ -7,6 +7,7 @@
 
 #include "pipeline/plot/write_plot.hpp"
 #include "plugins/scans/bursts.hpp"
+#include "plugins/scans/told_in_sweep.hpp"
 
 namespace crisp {
 namespace {
@@ -33,6 +34,20 @@ class Sweep {
   NeighbourErrors errors(const std::vector<double>& times) const {
     return neighbour_errors(series_.scans(), times, angles_, plate_);
   }
+  /// Of times by receipt, and then by stamp if that is what was found.
+  std::optional<ToldApart> told(const std::string& laser, const std::vector<double>& stamps, bool by_stamp,
+                                std::uint64_t seed) const {
+    std::vector<double> delays = receipts_;
+    for (std::size_t i = 0; i < delays.size(); ++i) delays[i] -= stamps[i];
+    const auto asked = [&](const std::vector<double>& times) {
+      return told_in_sweep(series_.scans(), scan_pulls(series_.scans(), times, angles_, plate_), delays,
+                           seed);
+    };
+    const auto before = asked(receipts_);
+    const auto after = by_stamp ? asked(stamps) : before;
+    if (!before || !after) return {};
+    return ToldApart{.scope = laser, .before = *before, .after = *after};
+  }
   Answers answers(const std::vector<double>& times) const {
     constexpr double kStep = 0.004;  // [s]
     constexpr int kSteps = 5;
@@ -56,16 +71,29 @@ class Sweep {
   std::vector<double> angles_, receipts_;
 };
 
-Finding burst_finding(const std::string& laser, const Bursts& bursts, const Gain& gain) {
+/// Bursts are told by times alone. What their stamps bring is told by a sweep, where there is one.
+Finding burst_finding(const std::string& laser, const Bursts& bursts, const std::optional<Gain>& gain) {
   Finding finding{.cause = "latency.bursts", .scope = laser};
   finding.parameters = {{"together", "1", bursts.together, bursts.together_error, true},
                         {"interval", "s", bursts.interval},
                         {"wait", "s", bursts.wait}};
   finding.p_value = bursts.p_value;
-  finding.explained_fraction = gain.explained();
-  finding.gain = {gain};
-  finding.accepted = gain.surely_falls();
+  finding.explained_fraction = kUnasked;
+  finding.refused = "no sweep says whether its stamps time its scans better";
+  if (!gain) return finding;
+  finding.refused = {};
+  finding.explained_fraction = gain->explained();
+  finding.gain = {*gain};
+  finding.accepted = gain->surely_falls();
   return finding;
+}
+
+void tell_no_sweep(const std::string& laser, Findings& findings, Context& context) {
+  const std::string why = "no sweep of the actuator was seen";
+  context.say("  " + why + ": whether its stamps time its scans rightly is not told");
+  for (const char* parameter : {".eta", ".tau", ".alpha"}) {
+    findings.unobservable.push_back({laser + parameter, why, ""});
+  }
 }
 
 /// A lag common to all scans, if the measure cannot see it.
@@ -128,7 +156,8 @@ void DiagnoseSweepStage::describe(StageDescription<DiagnoseSweepStage>& d) {
       "called unobservable, as are the mounting's offsets.");
   d.takes<Scan>().takes<PlateReading>().takes<ClockMap>();
   d.takes<Findings>(Need::optional).gives<Findings>();
-  d.option("folder", &DiagnoseSweepStage::folder_, "where plots go; auto: nowhere");
+  d.option("folder", &DiagnoseSweepStage::folder_, "where plots go; auto: nowhere")
+      .writes_into({"*_sweep.svg"});
 }
 
 void DiagnoseSweepStage::process(const Inputs& in, Outputs&, Context& context) {
@@ -144,7 +173,7 @@ void DiagnoseSweepStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const auto* clock = in.find<ClockMap>()) clocks_[clock->device] = *clock;
 }
 
-void DiagnoseSweepStage::diagnose(std::size_t index, Findings& findings, Context& context) const {
+void DiagnoseSweepStage::diagnose(std::size_t index, Findings& findings, Context& context) {
   const std::string& name = context.rig().lasers[index].name;
   const auto clock = clocks_.find(name);
   if (clock == clocks_.end() || clock->second.pieces.empty()) return;
@@ -161,28 +190,38 @@ void DiagnoseSweepStage::diagnose(std::size_t index, Findings& findings, Context
                   name, 1e3 * bursts.interval, 100 * bursts.together, bursts.p_value, 1e3 * bursts.longest));
   context.report(
       {{name, {{"interval", bursts.interval}, {"together", bursts.together}, {"longest", bursts.longest}}}});
-  if (!std::isfinite(gain.before)) {
-    findings.unobservable.push_back(
-        {"latency.bursts (" + name + ")", "no sweep of the actuator was seen", ""});
-    return;
-  }
+  const bool found = bursts.p_value < kSure;
+  const bool swept = std::isfinite(gain.before);
+  if (found)
+    findings.findings.push_back(burst_finding(name, bursts, swept ? std::optional(gain) : std::nullopt));
+  if (!swept) return tell_no_sweep(name, findings, context);
   context.say(
       fmt::format("  foretold by their neighbours, timed by receipt {:.1f} mm, by stamp {:.1f} mm (change "
                   "{:.1f} .. {:.1f})",
                   1e3 * gain.before, 1e3 * gain.after, 1e3 * gain.ci95[0], 1e3 * gain.ci95[1]));
-  if (bursts.p_value < kSure) findings.findings.push_back(burst_finding(name, bursts, gain));
+  if (auto told = sweep.told(name, stamps, found && gain.surely_falls(), context.seed())) {
+    told_.push_back(std::move(*told));
+  }
   judge_common_lag(sweep, stamps, name, context.seed(), findings, context);
   const Answers answers = sweep.answers(stamps);
+  context.say(
+      fmt::format("  every other scan put {:.0f} ms later by hand, and the rest earlier: {:.1f} mm; the "
+                  "other way about {:.1f} mm",
+                  1e3 * answers.by.back(), 1e3 * answers.by_turns.back(), 1e3 * answers.by_turns.front()));
   context.report({{name + "_answers",
                    {{"by", answers.by}, {"common", answers.common}, {"by_turns", answers.by_turns}}}});
   if (folder_) draw(*folder_, name, answers, context);
 }
 
 void DiagnoseSweepStage::finish(Outputs& out, Context& context) {
+  Findings own;
   for (std::size_t i = 0; i < lasers_.size(); ++i) {
-    if (!lasers_[i].scans().empty()) diagnose(i, findings_, context);
+    if (!lasers_[i].scans().empty()) diagnose(i, own, context);
     if (context.interrupted()) return;
   }
+  add_likeness(told_, own);
+  if (!told_.empty()) context.say(likeness_in_words(own));
+  findings_.append(own);
   out.give(std::move(findings_));
 }
 

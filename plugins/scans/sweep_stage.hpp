@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/data/likeness.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/scans/neighbours.hpp"
@@ -22,11 +23,12 @@ class DiagnoseSweepStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
-  void diagnose(std::size_t index, Findings& findings, Context& context) const;
+  void diagnose(std::size_t index, Findings& findings, Context& context);
 
   std::optional<std::filesystem::path> folder_;
   std::vector<ScanSeries> lasers_;
   std::map<std::string, ClockMap> clocks_;
+  std::vector<ToldApart> told_;
   Findings findings_;  // what diagnoses above it said, and then its own
 };
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/study/basin_stage.hpp"
 
-#include <fmt/format.h>
-
 #include "grabbers/simulate/world_options.hpp"
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "plugins/study/basin_text.hpp"
@@ -63,15 +62,13 @@ void BasinStage::describe(StageDescription<BasinStage>& d) {
 }
 
 void BasinStage::check(const RunSettings& run) const {
-  if (settings_.trial.lasers > run.rig.lasers.size()) {
-    throw Error(fmt::format("the rig has {} lasers, and {} are wanted", run.rig.lasers.size(),
-                            settings_.trial.lasers),
-                "set `lasers` to what the rig has at most");
-  }
-  if (settings_.range.tau_least > settings_.range.tau_most) {
-    throw Error("the least tau of a start is above the largest", "give a `tau_most` above `tau_least`");
-  }
-  make_motion(settings_.trial.motion, settings_.trial.duration, 1);
+  check_all([&] { check_lasers(settings_.trial, run.rig); },
+            [&] {
+              if (settings_.range.tau_least <= settings_.range.tau_most) return;
+              throw Error("the least tau of a start is above the largest",
+                          "give a `tau_most` above `tau_least`");
+            },
+            [&] { make_motion(settings_.trial.motion, settings_.trial.duration, 1); });
 }
 
 void BasinStage::process(const Inputs&, Outputs&, Context& context) {

@@ -8,6 +8,7 @@
 
 #include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/world_options.hpp"
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "plugins/study/bound_text.hpp"
 #include "plugins/study/parameter_kind.hpp"
@@ -92,10 +93,12 @@ std::vector<Effect> BoundStage::effects(const RunSettings& run) const {
 }
 
 void BoundStage::check(const RunSettings& run) const {
-  Calibration truth = truth_.drawn(run, run.seed);
-  add_terms(truth, effects(run), known_terms(run));
-  make_motion(scanner_.motion, scanner_.duration, run.seed);
-  scanner_.field.beams();
+  check_all(
+      [&] {
+        Calibration truth = truth_.drawn(run, run.seed);
+        add_terms(truth, effects(run), known_terms(run));
+      },
+      [&] { make_motion(scanner_.motion, scanner_.duration, run.seed); }, [&] { scanner_.field.beams(); });
 }
 
 void BoundStage::process(const Inputs&, Outputs&, Context& context) {

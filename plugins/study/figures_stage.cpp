@@ -16,7 +16,7 @@ void FiguresStage::describe(StageDescription<FiguresStage>& d) {
       "and without its lag (figure 4), RQE over tau and alpha (figure 5), at several kernel widths (figure "
       "6), "
       "and over eta (figure 7). Plain columns with a header; docs/figures holds scripts that draw them.");
-  d.option("folder", &FiguresStage::folder_, "where the files go").required();
+  d.option("folder", &FiguresStage::folder_, "where the files go").writes_into({"fig*.dat"}).required();
   d.option("eta", &FiguresStage::settings_, &FigureSettings::eta, "the true lag").unit("s").range(-0.1, 0.1);
   d.option("sigma", &FiguresStage::settings_, &FigureSettings::sigma, "kernel width in figure 5")
       .unit("m")

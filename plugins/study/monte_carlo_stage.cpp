@@ -6,6 +6,7 @@
 #include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/world_options.hpp"
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/stage/registry.hpp"
@@ -110,22 +111,23 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
 }
 
 void MonteCarloStage::check(const RunSettings& run) const {
-  if (settings_.trial.lasers > run.rig.lasers.size()) {
-    throw Error(fmt::format("the rig has {} lasers, and {} are wanted", run.rig.lasers.size(),
-                            settings_.trial.lasers),
-                "set `lasers` to what the rig has at most");
-  }
-  if (sigma_[0] < sigma_[1]) {
-    throw Error("the kernel has to become narrower, not wider", "write the larger sigma first");
-  }
   const MotionSettings& motion = settings_.trial.motion;
-  const bool steady = motion.kind == MotionKind::constant ||
-                      (motion.kind == MotionKind::varying && motion.min_rate == motion.max_rate);
-  if (steady) {
-    throw Error("a plate at constant speed does not tell eta from lambda",
-                "let max_rate be larger than min_rate, or choose another motion");
-  }
-  make_motion(motion, settings_.trial.duration, 1);
+  check_all([&] { check_lasers(settings_.trial, run.rig); },
+            [&] {
+              if (sigma_[0] >= sigma_[1]) return;
+              throw Error("the kernel has to become narrower, not wider", "write the larger sigma first");
+            },
+            [&] {
+              const bool steady = motion.kind == MotionKind::constant ||
+                                  (motion.kind == MotionKind::varying && motion.min_rate == motion.max_rate);
+              if (!steady) return;
+              throw Error("a plate at constant speed does not tell eta from lambda",
+                          "let max_rate be larger than min_rate, or choose another motion");
+            },
+            [&] { make_motion(motion, settings_.trial.duration, 1); }, [&] { check_effects(run); });
+}
+
+void MonteCarloStage::check_effects(const RunSettings& run) const {
   TrialSettings trial = settings_.trial;
   trial.rig = run.rig;
   effects_of_real_devices(likeness_.devices, run.rig, laser_catalogue(known_terms(run)));

@@ -29,7 +29,9 @@ class MonteCarloStage final : public Stage {
 
   /// Has the lasers scatter as real ones were measured to, if any are named.
   void use_likeness(TrialSettings& trial, Context& context) const;
-  /// Has them befallen by the effects that were asked for. Estimators are not told.
+  /// @throws Error if one of the effects that were asked for is not known, or befalls nobody
+  void check_effects(const RunSettings& run) const;
+  /// Has the lasers befallen by the effects that were asked for. Estimators are not told.
   void use_effects(TrialSettings& trial, const RunSettings& run) const;
 
   MonteCarloSettings settings_;

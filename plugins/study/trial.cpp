@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/study/trial.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -101,6 +103,12 @@ PlateTrajectory as_aligned(const PlateTrajectory& read, const RigPlate& plate) {
 TrialSettings::TrialSettings()
     : start{.tau = 0.02, .alpha = 3 * kDegree, .lambda = std::numbers::pi, .eta = 0},
       near{.tau = 0.005, .alpha = 0.7 * kDegree, .lambda = 0.7 * kDegree, .eta = 3e-4} {}
+
+void check_lasers(const TrialSettings& settings, const Rig& rig) {
+  if (settings.lasers <= rig.lasers.size()) return;
+  throw Error(fmt::format("the rig has {} lasers, and {} are wanted", rig.lasers.size(), settings.lasers),
+              "set `lasers` to what the rig has at most");
+}
 
 TrialRecording record(const TrialSettings& settings, std::uint64_t seed) {
   const ScannerSettings scanner = scanner_of(settings, seed);

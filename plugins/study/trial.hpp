@@ -47,6 +47,9 @@ struct TrialSettings {
   TrialSettings();
 };
 
+/// @throws Error if the rig has fewer lasers than the trials want
+void check_lasers(const TrialSettings& settings, const Rig& rig);
+
 /// A simulated recording.
 struct TrialRecording {
   SimulatedMeasurements simulated;

@@ -7,22 +7,33 @@
 
 #include "pipeline/pcd/cloud_table.hpp"
 #include "pipeline/pcd/parts.hpp"
+#include "plugins/write/parts_options.hpp"
 
 namespace crisp {
+namespace {
+
+/// In the header of each: which one it is.
+const std::string kCloud = "cloud";
+
+}  // namespace
 
 void WriteCloudsStage::describe(StageDescription<WriteCloudsStage>& d) {
   d.name("write.clouds").summary("writes each cloud as a PCD file of its own, as soon as it comes");
   d.details(
       "For clouds of a live scanner, below `assemble.revolutions`: NAME_0001.pcd, NAME_0002.pcd and so on. "
       "Each "
-      "file is whole from the moment at which it has its name. With `keep`, the oldest are removed, so that "
+      "file is whole from the moment at which it has its name. Those of an earlier run that are beyond the "
+      "last of this one are removed when it ends. With "
+      "`keep`, the oldest are removed, so that "
       "the "
       "disk does not fill. A disk that is full ends the writing, and the run's summary says so; the other "
       "stages go on. Clouds are written beside the other stages' work; one that comes while two still wait "
       "for "
       "the disk waits as well, and with it the stages above.");
   d.takes<Cloud>();
-  d.option("file", &WriteCloudsStage::file_, "where to write them, NAME.pcd").writes().required();
+  d.option("file", &WriteCloudsStage::file_, "where to write them, NAME.pcd")
+      .writes({"<stem>_####<ext>"})
+      .required();
   d.option("format", &WriteCloudsStage::format_, "how the points follow the header")
       .choices({{"binary_compressed", PcdFormat::binary_compressed},
                 {"binary", PcdFormat::binary},
@@ -32,7 +43,9 @@ void WriteCloudsStage::describe(StageDescription<WriteCloudsStage>& d) {
 
 void WriteCloudsStage::write(const Cloud& cloud) {
   AtomicFile file(part_path(file_, written_ + 1));
-  write_pcd(file, to_table(cloud), format_);
+  PcdTable table = to_table(cloud);
+  table.set_note(kCloud, std::to_string(written_ + 1));
+  write_pcd(file, table, format_);
   file.commit();
   kept_.push_back(file.path());
   ++written_;
@@ -73,6 +86,7 @@ void WriteCloudsStage::finish(Outputs&, Context& context) {
   writer_.reset();
   context.count("clouds that were not written", given_ - written_);
   for (const auto& file : kept_) context.wrote(file);
+  if (written_ > 0) tell_removed(remove_numbered_beyond(file_, written_, kCloud), context);
   context.report({{"clouds", written_}});
   context.say(fmt::format("{} clouds written, {} of them kept", written_, kept_.size()));
 }

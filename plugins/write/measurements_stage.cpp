@@ -15,7 +15,7 @@ void WriteMeasurementsStage::describe(StageDescription<WriteMeasurementsStage>& 
       "here.\n\n"
       "Where the plate's trajectory comes in pieces (recordings of several minutes), so do the files.");
   d.takes<Measurements>().holds<PlateTrajectory>();
-  describe_parts(d, &WriteMeasurementsStage::options_);
+  describe_parts(d, &WriteMeasurementsStage::options_, {"<stem>.plate.pcd", "<stem>_####.plate.pcd"});
 }
 
 void WriteMeasurementsStage::process(const Inputs& in, Outputs&, Context&) {

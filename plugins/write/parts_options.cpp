@@ -3,7 +3,22 @@
 
 #include <fmt/format.h>
 
+#include <system_error>
+
+#include "pipeline/stage/files_written.hpp"
+
 namespace crisp {
+
+void tell_removed(const std::vector<std::filesystem::path>& files, Context& context) {
+  if (files.empty()) return;
+  for (const auto& file : files) {
+    std::error_code not_there;
+    std::filesystem::remove(file.string() + kProvenance, not_there);
+  }
+  context.say(fmt::format("removed {} of an earlier run: {}{}", files.size() == 1 ? "a file" : "files",
+                          files.front().string(),
+                          files.size() == 1 ? "" : " to " + files.back().filename().string()));
+}
 
 void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what, Context& context) {
   const auto files = writer.commit();
@@ -12,6 +27,7 @@ void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what,
     names.push_back(file.string());
     context.wrote(file);
   }
+  tell_removed(writer.remove_older(), context);
   std::string where = files.front().string();
   if (files.size() > 1) {
     where += fmt::format(" {} {}", files.size() == 2 ? "and" : "to", files.back().filename().string());

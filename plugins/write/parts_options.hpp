@@ -26,9 +26,13 @@ struct PartsOptions {
   }
 };
 
+/// @param also  what is written beside the parts, see OptionDeclaration::writes
 template <class S>
-void describe_parts(StageDescription<S>& d, PartsOptions S::*options) {
-  d.option("file", options, &PartsOptions::file, "where to write it, NAME.pcd").writes().required();
+void describe_parts(StageDescription<S>& d, PartsOptions S::*options,
+                    std::initializer_list<std::string_view> also = {}) {
+  std::vector<std::string_view> files = {"<stem>_####<ext>"};
+  files.insert(files.end(), also.begin(), also.end());
+  d.option("file", options, &PartsOptions::file, "where to write it, NAME.pcd").writes(files).required();
   d.option("format", options, &PartsOptions::format, "how the points follow the header")
       .choices({{"binary_compressed", PcdFormat::binary_compressed},
                 {"binary", PcdFormat::binary},
@@ -42,7 +46,11 @@ void describe_parts(StageDescription<S>& d, PartsOptions S::*options) {
       .range(1e-3, 1e9);
 }
 
-/// Puts the files in their place and tells the run of them.
+/// Tells the run of files of an earlier one that were removed, and removes what said where those came from.
+void tell_removed(const std::vector<std::filesystem::path>& files, Context& context);
+
+/// Puts the files in their place, removes those of an earlier run under the same name, and tells the run of
+/// them.
 /// @param what they hold, for people: "points"
 void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what, Context& context);
 

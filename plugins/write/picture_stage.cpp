@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/files/atomic_file.hpp"
+#include "plugins/write/parts_options.hpp"
 
 namespace crisp {
 
@@ -57,7 +58,11 @@ void WritePictureStage::process(const Inputs& in, Outputs&, Context&) {
 
 void WritePictureStage::finish(Outputs&, Context& context) {
   if (!painter_) throw Error("no cloud came, so there is nothing to draw");
-  if (drawn_ == 0) context.warn("the picture is empty: no point lies in what it shows");
+  if (drawn_ == 0) {
+    std::error_code failure;
+    if (std::filesystem::remove(file_, failure)) tell_removed({file_}, context);
+    return context.warn(file_.string() + " is not written: no point lies in what it shows");
+  }
   write_file(file_, as_png(painter_->picture()));
   context.say(fmt::format("{} points in {}", drawn_, file_.string()));
   context.wrote(file_);

@@ -100,7 +100,9 @@ const std::map<std::string, Draw>& draws() {
          const std::string laser = d.laser();
          return Hidden{
              .scope = laser,
-             .truth = {{"separation", d.uniform(0.0135, 0.0167)}},
+             .truth = {{"separation", d.uniform(0.0135, 0.0167)},
+                       {"least", d.uniform(0.05, 0.35)},
+                       {"most", d.uniform(0.65, 0.95)}},
              .beside = fmt::format(", {}.noise.normal: {{sigma: {}}}", laser, d.uniform(4e-3, 6e-3)),
              .makes = "range.offset"};  // the farther peak is the higher one
        }},

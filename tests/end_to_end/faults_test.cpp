@@ -17,6 +17,7 @@ using test::bytes_of;
 using test::Outcome;
 using test::put_bytes;
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -46,7 +47,8 @@ class Faults : public testing::Test {
   static void expect_nothing_but(const std::string& error, const Outcome& outcome) {
     EXPECT_NE(outcome.status, ExitStatus::done);
     EXPECT_THAT(outcome.told, AllOf(HasSubstr("error: "), HasSubstr(error)));
-    EXPECT_THAT(outcome.files, IsEmpty());
+    EXPECT_THAT(outcome.files, ElementsAre("summary.json"));
+    EXPECT_THAT(outcome.summary.value("error", ""), HasSubstr(error));
   }
   static std::size_t points_of(const Outcome& outcome, unsigned laser) {
     return static_cast<std::size_t>(std::count_if(outcome.cloud->begin(), outcome.cloud->end(),
@@ -171,6 +173,8 @@ TEST_F(Faults, ADiskThatIsFullLeavesNothingHalfWritten) {
   EXPECT_THAT(bytes_of(workshop_ / "told"),
               AllOf(HasSubstr("error: write.pcd: cannot write"), HasSubstr("File too large"),
                     HasSubstr("make room on the disk")));
+  EXPECT_THAT(bytes_of(workshop_ / "full/summary.json"), HasSubstr("File too large"));
+  std::filesystem::remove(workshop_ / "full/summary.json");
   EXPECT_TRUE(std::filesystem::is_empty(workshop_ / "full"));
   EXPECT_EQ(crisp("100000"), 0) << bytes_of(workshop_ / "told");
   EXPECT_TRUE(std::filesystem::exists(workshop_ / "full/cloud.pcd"));

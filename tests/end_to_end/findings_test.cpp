@@ -138,6 +138,8 @@ TEST(Findings, OfScansThemselvesAreThoseThatWereSimulated) {
   // About 160 stalls in 20 s: their share and their length are told to a tenth.
   EXPECT_NEAR(parameter_of(findings, "latency.bursts", "together").value, 0.5, 4 * 0.05);
   EXPECT_NEAR(parameter_of(findings, "latency.bursts", "wait").value, 0.06, 4 * 0.006);
+  EXPECT_LT(findings.before_p, 0.01);
+  EXPECT_GT(findings.after_p, 0.01) << "with both the simulated scans are those of the simulation";
 }
 
 TEST(Findings, OfLasersAtRestNameWeakEchoesButNoIncidenceWhichNobodyKnows) {

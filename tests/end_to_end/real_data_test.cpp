@@ -22,6 +22,16 @@ std::vector<std::string> unobservable_in(const nlohmann::json& diagnosis) {
   return names;
 }
 
+double told_before(const nlohmann::json& diagnosis) { return diagnosis["indistinguishable"]["before_p"]; }
+double told_after(const nlohmann::json& diagnosis) { return diagnosis["indistinguishable"]["after_p"]; }
+
+nlohmann::json departure_over(const nlohmann::json& diagnosis, const std::string& covariate) {
+  for (const auto& each : diagnosis["departures"]) {
+    if (each["covariate"] == covariate) return each;
+  }
+  return {};
+}
+
 TEST_F(RealData, OverbotsBeamsAreInterleavedAndItsScansComeInBursts) {
   if (!run("overbot.yaml", "actuated/overbot_sick_lms_tilt/lidarscans20041211_194820.csv")) return;
   EXPECT_EQ(outcome_.stage("table")["report"]["rows"], 300);
@@ -43,6 +53,14 @@ TEST_F(RealData, OverbotsBeamsAreInterleavedAndItsScansComeInBursts) {
   EXPECT_LT(bursts["gain"][0]["ci95"][1], 0);
   EXPECT_LT(bursts["gain"][0]["after"], 0.02) << "as an independent look found: 1.5 cm instead of 6.1 cm";
   EXPECT_THAT(unobservable_in(diagnosis_), testing::ElementsAre("lms.eta", "lms.tau", "lms.alpha"));
+
+  EXPECT_LT(told_before(diagnosis_), 0.01);
+  const auto timed = departure_over(diagnosis_, "receipt less stamp");
+  EXPECT_LT(timed["p_value"], 0.01);
+  EXPECT_GT(timed["p_value_after"], 0.05) << "by their stamps scans are where their neighbours foretell them";
+  const auto taken_in_turn = departure_over(diagnosis_, "count of scans");
+  EXPECT_LT(taken_in_turn["amplitude_after"], 0.3 * taken_in_turn["amplitude"].get<double>());
+  EXPECT_LT(taken_in_turn["p_value_after"], 0.01) << "scans of one kind are not all alike either";
 }
 
 TEST_F(RealData, OverbotsOtherRecordingHasTheSameInterleave) {
@@ -51,6 +69,9 @@ TEST_F(RealData, OverbotsOtherRecordingHasTheSameInterleave) {
   ASSERT_TRUE(interleave.is_object());
   const double error = interleave["parameters"][0]["std_error"];
   EXPECT_NEAR(interleave["parameters"][0]["value"].get<double>(), 0.5 * kDegree, 3 * error + 0.005 * kDegree);
+  EXPECT_LT(told_after(diagnosis_), 0.01) << "as those of the first recording";
+  EXPECT_TRUE(finding("latency.bursts").is_object()) << "without a sweep as well";
+  EXPECT_EQ(outcome_.count("clock.convex_hull", "tilt: telegrams lost"), 0U);
 }
 
 TEST_F(RealData, UrgsWaysUpAndDownDifferByAboutAStepAndWhatIsPutInComesBack) {
@@ -58,10 +79,15 @@ TEST_F(RealData, UrgsWaysUpAndDownDifferByAboutAStepAndWhatIsPutInComesBack) {
   const auto& report = outcome_.stage("diagnose.passes")["report"]["urg"];
   EXPECT_NEAR(report["steps"], 1, 0.2) << "of the order of one step, by an independent look";
   EXPECT_NEAR(report["answer_ratio"], 1, 0.1);
+  for (const auto& each : report["answers"]) {
+    EXPECT_NEAR(each[1], each[0].get<double>(), 0.002 * kDegree) << "also of half a step";
+  }
   const auto play = finding("encoder.backlash");
   ASSERT_TRUE(play.is_object());
   EXPECT_THAT(play["confounded_with"], testing::ElementsAre("urg.eta"));
   EXPECT_LT(play["gain"][0]["ci95"][1], 0);
+  EXPECT_LT(told_before(diagnosis_), 1e-20);
+  EXPECT_GT(told_after(diagnosis_), 0.01);
 }
 
 TEST_F(RealData, UrgsShiftOverNinetyDegreesIsNotTheSameEverywhereAndHasNoName) {
@@ -71,22 +97,35 @@ TEST_F(RealData, UrgsShiftOverNinetyDegreesIsNotTheSameEverywhereAndHasNoName) {
   EXPECT_THAT(diagnosis_["findings"], testing::IsEmpty());
   ASSERT_THAT(diagnosis_["unnamed"], testing::SizeIs(1));
   EXPECT_EQ(diagnosis_["unnamed"][0]["quantity"], "plate angle");
+  EXPECT_EQ(diagnosis_["unnamed"][0]["p_value"], report["constant_p"]);
+  EXPECT_LT(told_before(diagnosis_), 1e-10);
+  EXPECT_LT(told_after(diagnosis_), 1e-3) << "what is not the same everywhere stays";
 }
 
 TEST_F(RealData, UrgsShortWayBackDoesNotTellTheShift) {
   if (!run("urg.yaml", "actuated/urg04lx_tilt_stand/room_240.csv", {"first=-2.086213827rad"})) return;
   EXPECT_THAT(diagnosis_["findings"], testing::IsEmpty());
   EXPECT_THAT(diagnosis_["unnamed"], testing::IsEmpty());
+  EXPECT_TRUE(diagnosis_["indistinguishable"]["before_p"].is_null()) << "nothing was compared";
 }
 
 TEST_F(RealData, HrlsSingleSweepTellsNeitherItsAnglesNorItsMounting) {
   if (!run("hrl.yaml", "actuated/hrl_utm30lx_tilt/ROStest_laserscans.csv")) return;
   EXPECT_THAT(diagnosis_["findings"], testing::IsEmpty());
   EXPECT_THAT(diagnosis_["unnamed"], testing::IsEmpty());
-  EXPECT_THAT(
-      unobservable_in(diagnosis_),
-      testing::ElementsAre("shift between passes (utm)", "utm: offset from the axis along the middle beam",
-                           "utm: offset from the axis along the fan's normal"));
+  EXPECT_THAT(unobservable_in(diagnosis_),
+              testing::ElementsAre("shift between passes (utm)", "utm.eta", "utm.tau", "utm.alpha",
+                                   "utm: offset from the axis along the middle beam",
+                                   "utm: offset from the axis along the fan's normal"));
+  EXPECT_THAT(std::string(diagnosis_["unobservable"][4]["reason"]),
+              testing::AllOf(testing::StartsWith("its standard error of "),
+                             testing::Not(testing::HasSubstr("windows"))));
+  EXPECT_GT(told_before(diagnosis_), 0.01) << "ranges are foretold as those of a simulated sweep are";
+  const auto& answers = outcome_.stage("sweep")["report"]["utm_answers"];
+  EXPECT_GT(answers["by_turns"].front(), 1.5 * answers["by_turns"][5].get<double>())
+      << "scans shifted by hand are seen";
+  EXPECT_LT(answers["common"].front(), 1.5 * answers["by_turns"][5].get<double>())
+      << "but not all of them alike";
   ASSERT_NE(outcome_.cloud, nullptr);
   EXPECT_EQ(outcome_.cloud->size(), 56073U);
 }
@@ -212,6 +251,8 @@ TEST_F(RealData, ALaserThatStartsLateIsToldWithinItsRecording) {
     return;
   }
   EXPECT_THAT(diagnosis_["findings"], testing::IsEmpty());
+  EXPECT_TRUE(diagnosis_["devices"][0]["period"].is_null())
+      << "its times are its count times the nominal period";
   ASSERT_EQ(diagnosis_["unnamed"].size(), 1U);
   const auto& backlog = diagnosis_["unnamed"][0];
   EXPECT_EQ(backlog["covariate"], "time");

@@ -16,16 +16,26 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
+/// Whether all rows were read: a table with decimal commas is refused.
+bool read_rows(TableReader& reader, TableItems& items) {
+  try {
+    while (const auto row = reader.next()) {
+      require(std::isfinite(row->angle) && std::isfinite(row->mirror));
+      for (const float range : row->ranges) require(range >= 0 && std::isfinite(range));
+      items.add(*row);
+    }
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
 void read(const std::string& text, const TableFormat& format) {
   std::istringstream in(text);
   TableReader reader(in, "table.csv", format);
   const TableScanSettings settings{.angle_step = 0.01, .beam_interval = 1e-5};
   TableItems items(format, settings, default_rig());
-  while (const auto row = reader.next()) {
-    require(std::isfinite(row->angle) && std::isfinite(row->mirror));
-    for (const float range : row->ranges) require(range >= 0 && std::isfinite(range));
-    items.add(*row);
-  }
+  if (!read_rows(reader, items)) return;
   require(reader.losses().empty() == !reader.first_fault());
   for (const auto& beams : items.take_measurements()) {
     for (std::size_t i = 0; i < beams->size(); ++i) {

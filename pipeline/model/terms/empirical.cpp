@@ -177,6 +177,7 @@ EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape) : on_(on), over_(ove
            .counts_from = over == Over::kTime         ? CountsFrom::kRunsEpoch
                           : over == Over::kPlateAngle ? CountsFrom::kEncodersZero
                                                       : CountsFrom::kNothing,
+           .needs_incidence = over == Over::kIncidence,
            .covariate = of};
 }
 

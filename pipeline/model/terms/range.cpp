@@ -74,7 +74,8 @@ struct RangeIncidence final : DifferentiableTerm<RangeIncidence> {
             "bias estimation via return waveform modelling, ICRA 2019) measured, an LMS-151 among the "
             "sensors. β comes from the surfaces, so the term does nothing until somebody has found them, "
             "and counts a β beyond 87° as 87°.",
-        .told_by = "the same range at many incidences; patches of different reflectance"};
+        .told_by = "the same range at many incidences; patches of different reflectance",
+        .needs_incidence = true};
     return kInfo;
   }
   template <class T>

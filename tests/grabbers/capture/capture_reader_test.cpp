@@ -300,6 +300,49 @@ TEST(CaptureReader, NamesTheRestartOfADeviceAndItsSilence) {
   EXPECT_EQ(device.silence_ns, kStart + 49 * 20 * kMillisecond);
 }
 
+/// Two recordings, one behind the other in a file, each of whose connections begins with the same number.
+std::vector<Frame> recorded_twice(const Scenario& scenario, std::int64_t apart_ns) {
+  auto frames = scenario.frames();
+  auto later = frames;
+  for (auto& frame : later) frame.time_ns += apart_ns;
+  frames.insert(frames.end(), later.begin(), later.end());
+  return frames;
+}
+
+TEST(CaptureReader, GivesAllOfARecordingThatWasAppendedToAnother) {
+  const Scenario scenario{.scans = 30, .beams = 541};
+  const auto reading = read_capture(pcap_file(recorded_twice(scenario, 3600'000 * kMillisecond)));
+  EXPECT_THAT(reading.items, SizeIs(2 * scenario.items().size()));
+  for (const auto* name : {"laser1", "laser2"}) {
+    EXPECT_EQ(reading.device(name).items, 60U);
+    EXPECT_EQ(reading.device(name).notes.of("TCP segments sent again"), 0U);
+  }
+}
+
+TEST(CaptureReader, TakesAPauseBetweenRecordingsForNoLoss) {
+  const Scenario scenario{.scans = 30};
+  const auto reading = read_capture(pcap_file(recorded_twice(scenario, 3600'000 * kMillisecond)));
+  EXPECT_EQ(reading.statistics.pauses, 1U);
+  EXPECT_NEAR(reading.statistics.paused, 3600 - 0.6, 0.1);
+  for (const auto* name : {"laser1", "laser2", "plate"}) {
+    EXPECT_TRUE(reading.device(name).losses.all().empty()) << name;
+  }
+  EXPECT_NEAR(reading.device("laser1").rate(), 50, 1e-9);
+  EXPECT_NEAR(reading.device("plate").rate(), 500, 1e-9);
+}
+
+TEST(CaptureReader, TakesTheSilenceOfOneDeviceForALoss) {
+  const Scenario scenario{.scans = 500, .handshake = false};
+  auto frames = scenario.frames();
+  std::erase_if(frames, [](const Frame& frame) {  // of the plate, for 8 s
+    return frame.bytes[29] == 10 && frame.time_ns > kStart + 1000 * kMillisecond &&
+           frame.time_ns < kStart + 9000 * kMillisecond;
+  });
+  const auto reading = read_capture(pcap_file(frames));
+  EXPECT_EQ(reading.statistics.pauses, 0U);
+  EXPECT_EQ(reading.device("plate").losses.of("readings that never came, by their sequence"), 4000U);
+}
+
 TEST(CaptureReader, InspectsACaptureWithoutARig) {
   const Scenario scenario{.scans = 40, .beams = 541};
   const TemporaryFolder folder;

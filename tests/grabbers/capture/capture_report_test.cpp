@@ -29,6 +29,13 @@ TEST(CaptureReport, SaysThatACaptureHoldsNothing) {
   EXPECT_THAT(to_text(inspect_capture(file.path())), HasSubstr("no lasers and no plate"));
 }
 
+TEST(CaptureReport, TellsOfThePausesBetweenRecordings) {
+  const CaptureStatistics statistics{.pauses = 1, .paused = 3595.04};
+  EXPECT_THAT(to_text(statistics), HasSubstr("2 recordings, one after the other: nothing came for 3595.0 s"));
+  EXPECT_EQ(to_json(statistics)["pauses"], 1);
+  EXPECT_EQ(to_json(statistics)["paused"], 3595.04);
+}
+
 TEST(CaptureReport, HintsAtStampsThatAreATurnLate) {
   CaptureStatistics statistics;
   statistics.devices.push_back({.items = 3, .median_handover = 3.1e-3, .period = 20.1e-3});

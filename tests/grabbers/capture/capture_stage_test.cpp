@@ -132,6 +132,35 @@ TEST_F(CaptureStageTest, WarnsOfDevicesThatTheRigDoesNotKnow) {
             10U);
 }
 
+TEST_F(CaptureStageTest, WarnsOfWhatALaserSentThatNeverCame) {
+  scenario_.scans = 300;
+  auto frames = scenario_.frames();
+  std::size_t of_laser2 = 0;
+  std::erase_if(frames, [&](const Frame& frame) {  // every 50th packet of laser2
+    return frame.bytes[29] == 2 && frame.bytes.size() > 60 && ++of_laser2 % 50 == 0;
+  });
+  write_file(folder_ / "hub.pcap", pcap_file(frames));
+  const auto result = run(file());
+  EXPECT_THAT(result.report.warnings,
+              Contains(HasSubstr("hub.pcap: 2.0 % of what laser2 (192.168.0.2) sent (6 of 300 scans)")));
+  EXPECT_THAT(result.report.warnings, testing::Not(Contains(HasSubstr("laser1"))));
+}
+
+TEST_F(CaptureStageTest, WarnsOfAFileThatEndsWithinARecord) {
+  auto cut = pcap_file(scenario_.frames());
+  cut.resize(cut.size() - 10);
+  write_file(folder_ / "hub.pcap", cut);
+  EXPECT_THAT(run(file()).report.warnings, Contains(HasSubstr("hub.pcap: the file ends ")));
+}
+
+TEST_F(CaptureStageTest, WarnsOfAFileThatIsDamaged) {
+  auto damaged = pcap_file(scenario_.frames());
+  const auto begin = damaged.begin() + static_cast<std::ptrdiff_t>(damaged.size() / 2);
+  std::fill(begin, begin + static_cast<std::ptrdiff_t>(damaged.size() / 20), std::uint8_t{0xFF});
+  write_file(folder_ / "hub.pcap", damaged);
+  EXPECT_THAT(run(file()).report.warnings, Contains(HasSubstr("% of the file")));
+}
+
 class CaptureFolder : public CaptureStageTest {
  protected:
   CaptureFolder() {
@@ -166,6 +195,31 @@ TEST_F(CaptureFolder, CapturesOfTheSameTimeAreRefused) {
   write_file(captures() / "a.pcap", later(0));
   write_file(captures() / "b.pcap", later(0));
   EXPECT_THAT(complaint(file()), HasSubstr("begins before a.pcap ends"));
+}
+
+TEST_F(CaptureFolder, WarnsOfEachThatCannotBeRead) {
+  write_file(captures() / "a.pcap", later(0));
+  write_file(captures() / "b.pcap", Bytes(1000, 7));
+  write_file(captures() / "c.pcap", Bytes(1, 7));
+  auto cut = later(100);
+  cut.resize(10);
+  write_file(captures() / "without_a_suffix", cut);
+  write_file(captures() / "empty.PCAPNG", Bytes());
+  write_file(captures() / "no_packets.cap", pcap_file({}));
+  const auto result = run(file());
+  EXPECT_EQ(Taker::items, describe(scenario_.items()));
+  EXPECT_THAT(
+      result.report.warnings,
+      testing::IsSupersetOf(
+          {HasSubstr("b.pcap is neither pcap nor pcapng"), HasSubstr("c.pcap is neither pcap nor pcapng"),
+           HasSubstr("without_a_suffix ends within its header"), HasSubstr("empty.PCAPNG is empty"),
+           HasSubstr("no_packets.cap holds no packet")}));
+  EXPECT_THAT(result.report.warnings, testing::Not(Contains(HasSubstr("notes.txt"))));
+}
+
+TEST_F(CaptureFolder, OneWithoutAnyThatCanBeReadIsRefusedWithTheReasons) {
+  write_file(captures() / "b.pcap", Bytes(1000, 7));
+  EXPECT_THAT(complaint(file()), HasSubstr("b.pcap is neither pcap nor pcapng"));
 }
 
 TEST_F(CaptureFolder, OneWithoutCapturesIsRefused) {

@@ -32,6 +32,9 @@ class TcpStreamTest : public testing::Test {
     TransportPacket segment{.sequence = sequence, .payload = as_bytes(text), .missing = missing};
     stream_.take(segment, time);
   }
+  void end(std::uint32_t sequence, std::int64_t time) {
+    stream_.take({.sequence = sequence, .fin = true}, time);
+  }
   void flag(std::uint32_t sequence, bool syn, bool reset, std::int64_t time) {
     stream_.take({.sequence = sequence, .syn = syn, .reset = reset}, time);
   }
@@ -119,6 +122,31 @@ TEST_F(TcpStreamTest, BeginsAnewWithANewConnection) {
   EXPECT_EQ(stream_.counts().connections, 2U);
   flag(5'000'000, true, false, 4);
   EXPECT_EQ(stream_.counts().connections, 2U) << "the same handshake again";
+}
+
+TEST_F(TcpStreamTest, TakesANewConnectionThatBeginsWithTheSameNumber) {
+  flag(99, true, false, 0);
+  send(100, "ab", 1);
+  end(102, 2);
+  flag(99, true, false, 3);
+  send(100, "cd", 4);
+  flag(102, false, true, 5);
+  flag(99, true, false, 6);
+  send(100, "ef", 7);
+  flag(99, true, false, 8 + kWait);  // nobody had ended the one before
+  send(100, "gh", 9 + kWait);
+  EXPECT_EQ(out_.text, "ab|cd|ef|gh");
+  EXPECT_EQ(stream_.counts().connections, 4U);
+  EXPECT_EQ(stream_.counts().repeated_segments, 0U);
+}
+
+TEST_F(TcpStreamTest, TakesAnUnansweredHandshakeThatIsTriedAgainForTheSame) {
+  constexpr std::int64_t kMinute = 60'000'000'000;
+  flag(99, true, false, 0);
+  flag(99, true, false, kMinute);
+  send(100, "ab", kMinute + 1);
+  EXPECT_EQ(out_.text, "ab");
+  EXPECT_EQ(stream_.counts().connections, 1U);
 }
 
 TEST_F(TcpStreamTest, EndsAtAResetAndGoesOnWithTheNextHandshake) {

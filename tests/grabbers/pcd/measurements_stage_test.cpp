@@ -177,6 +177,34 @@ TEST_F(GrabMeasurements, ACloudIsReadByItsOwnGrabber) {
   stage.feed();
   EXPECT_EQ(stage.given<Cloud>().at(0)->at(2).time, test::sample_cloud(3)[2].time);
   EXPECT_THAT(stage.report().read, testing::ElementsAre(folder_ / "cloud.pcd"));
+  EXPECT_THAT(stage.report().warnings, testing::IsEmpty());
+}
+
+TEST_F(GrabMeasurements, ACloudOfDoublesFarFromTheOriginIsWarnedOfUnlessItIsShifted) {
+  PcdTable table(30);
+  table.add<double>("x", [](std::size_t i) { return 691'607.5 + 0.1 * static_cast<double>(i); });
+  table.add<double>("y", [](std::size_t i) { return 5'334'712.3 + 0.1 * static_cast<double>(i); });
+  table.add<double>("z", [](std::size_t) { return 519.0; });
+  AtomicFile out(folder_ / "utm.pcd");
+  write_pcd(out, table, PcdFormat::binary);
+  out.commit();
+  auto options = file("utm.pcd");
+  auto far = StageDriver::of<GrabCloudStage>(options);
+  far.feed();
+  ASSERT_EQ(far.report().warnings.size(), 1U);
+  // Floats of 5e6 lie 0.5 m apart, so that one is changed by 0.25 m at the most; 5 334 712.8 becomes … 713.0
+  // and 5 334 713.2 as well, by 0.2 m each.
+  EXPECT_THAT(far.report().warnings[0],
+              testing::AllOf(HasSubstr("are kept as floats, which changes them by up to 0.2"),
+                             HasSubstr("shift: [691600m, 5334700m, 500m]")));
+  options["shift"] = std::vector<OptionScalar>{691'600.0, 5'334'700.0, 500.0};
+  auto near = StageDriver::of<GrabCloudStage>(options);
+  near.feed();
+  EXPECT_THAT(near.report().warnings, testing::IsEmpty());
+  const Cloud& cloud = *near.given<Cloud>().at(0);
+  EXPECT_NEAR(cloud[29].x, 7.5 + 2.9, 1e-6);
+  EXPECT_NEAR(cloud[29].y, 12.3 + 2.9, 1e-6);
+  EXPECT_NEAR(cloud[29].z, 19, 1e-6);
 }
 
 }  // namespace

@@ -5,12 +5,15 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <fstream>
 #include <thread>
 
+#include "grabbers/capture/capture_file.hpp"
 #include "grabbers/capture/capture_reader.hpp"
+#include "grabbers/capture/dissect.hpp"
 #include "grabbers/record/record_stage.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 #include "pipeline/data/error.hpp"
@@ -89,6 +92,58 @@ TEST_F(CaptureRecorderTest, PutsOnTheDiskWhatCameAlsoWhenNothingMoreComes) {
     safe = read(folder_ / "hub.pcap", true);
   }
   expect_same(safe, items);
+}
+
+/// The items as they would have come an hour later.
+std::vector<HubItem> an_hour_later(const std::vector<HubItem>& items) {
+  constexpr std::int64_t kHour = 3'600'000'000'000;
+  std::vector<HubItem> later;
+  for (const HubItem& item : items) {
+    if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
+      auto copy = **scan;
+      copy.receipt_ns += kHour;
+      later.emplace_back(std::make_shared<const Scan>(std::move(copy)));
+    } else {
+      auto copy = std::get<PlateReading>(item);
+      copy.receipt_ns += kHour;
+      later.emplace_back(copy);
+    }
+  }
+  return later;
+}
+
+TEST_F(CaptureRecorderTest, AppendsASecondRecordingOfWhichNothingIsLost) {
+  const auto first = test::simulated_items(0.5);
+  const auto second = an_hour_later(first);
+  for (const auto& items : {first, second}) {
+    CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {});
+    for (const HubItem& item : items) recorder.write(item);
+    recorder.close();
+  }
+  auto both = first;
+  both.insert(both.end(), second.begin(), second.end());
+  expect_same(read(folder_ / "hub.pcap"), both);
+}
+
+TEST_F(CaptureRecorderTest, BeginsTheConnectionsOfEachRecordingWithNumbersOfTheirOwn) {
+  const auto first = test::simulated_items(0.1);
+  std::vector<std::uint32_t> begins;
+  for (const auto& items : {first, an_hour_later(first)}) {
+    fs::remove(folder_ / "hub.pcap");
+    CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {});
+    for (const HubItem& item : items) recorder.write(item);
+    recorder.close();
+    CaptureFile file(folder_ / "hub.pcap");
+    while (const Packet* packet = file.next()) {
+      bool damaged = false;
+      const auto ip = std::get<IpPacket>(dissect_ip(*packet));
+      const auto segment = dissect_transport(ip, damaged);
+      if (segment && segment->syn) begins.push_back(segment->sequence);
+    }
+  }
+  ASSERT_THAT(begins, testing::SizeIs(12));  // of three lasers and the hub, twice
+  std::ranges::sort(begins);
+  EXPECT_EQ(std::unique(begins.begin(), begins.end()), begins.end());
 }
 
 /// No file may become larger, while it lives: as on a full disk.
@@ -189,6 +244,34 @@ TEST_F(CaptureRecorderTest, RefusesAFileThatIsNoCaptureAndAFolderThatIsNotThere)
   EXPECT_THROW(CaptureRecorder(folder_ / "none/hub.pcap", default_rig(), {}), Error);
   std::ofstream(folder_ / "text") << "no capture";
   EXPECT_THROW(CaptureRecorder(folder_ / "text", default_rig(), {}), Error);
+}
+
+TEST_F(CaptureRecorderTest, LeavesTheFileOfAnotherProgramAsItIs) {
+  const fs::path file = folder_ / "hub.pcap";
+  {
+    CaptureRecorder recorder(folder_ / "own.pcap", default_rig(), {});
+    for (const HubItem& item : test::simulated_items(0.1)) recorder.write(item);
+    recorder.close();
+    CaptureFile own(folder_ / "own.pcap");
+    PcapWriter foreign(file, PcapMode::Grow);
+    while (const Packet* packet = own.next()) {
+      Bytes frame(packet->bytes.begin(), packet->bytes.end());
+      frame[6] = 0;  // as a network card of some maker
+      foreign.write(packet->time_ns, frame);
+    }
+    foreign.close();
+  }
+  const auto before = fs::file_size(file);
+  EXPECT_THROW(CaptureRecorder(file, default_rig(), {}), Error);
+  auto stage = test::StageDriver::of<RecordStage>({{"file", OptionValue(OptionScalar(file.string()))}});
+  try {
+    stage.check();
+    FAIL() << "nothing is said before the recording";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("hub.pcap is there already"));
+  }
+  EXPECT_EQ(fs::file_size(file), before);
+  EXPECT_NO_THROW(CaptureRecorder(folder_ / "own.pcap", default_rig(), {}));
 }
 
 }  // namespace

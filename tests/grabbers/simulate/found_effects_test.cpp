@@ -150,14 +150,14 @@ TEST_F(FoundEffectsTest, HaveDelaysBurstsAndWandersAsTheyWereMeasured) {
 
 TEST_F(FoundEffectsTest, ThatNoSimulatorKnowsAreNamed) {
   Findings findings;
-  findings.findings = {finding("scene.moving", "plate", {}), finding("mirror.cone", "laser1", {})};
+  findings.findings = {finding("scene.moving", "scene", {}), finding("mirror.cone", "laser1", {})};
   findings.findings.push_back({.cause = "range.gremlins", .scope = "laser2", .accepted = false});
   findings.findings.push_back(
       finding("noise.mixed_pixels", "laser3", {{.name = "share_of_edges", .unit = "1", .value = 0.1}}));
   findings.unnamed = {{.covariate = "range", .quantity = "range", .scope = "laser3", .accepted = true}};
   const FoundEffects found = effects(findings);
   EXPECT_THAT(found.others,
-              ElementsAre("scene.moving of plate",
+              ElementsAre("scene.moving of scene",
                           HasSubstr("noise.mixed_pixels of laser3: the file has the share of edges"),
                           HasSubstr("range of laser3 over the range")));
   ASSERT_EQ(found.effects.size(), 1U);

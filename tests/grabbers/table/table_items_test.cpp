@@ -120,6 +120,23 @@ TEST(TableItems, TheDevicesCountTimesItsScansAcrossItsWrap) {
   EXPECT_THAT(items.losses(), ElementsAre(Pair("rows with the counter of the row before", 1)));
 }
 
+TEST(TableItems, SayWhatNoDeviceCountedOrTimed) {
+  const TableRow row{.time_ns = 1'000'000'000, .receipt_ns = 1'010'000'000, .ranges = {1}};
+  TableRow counted = row;
+  counted.counter = 7;
+  TableRow received = row;
+  received.time_ns.reset();
+  const auto taken = [](const TableRow& one) {
+    return *TableItems({.period = 0.01, .angle_column = 2}, {.angle_step = 0.1}, tilting(0, 0)).add(one);
+  };
+  EXPECT_FALSE(taken(row).reading->numbered) << "a table holds no count of an encoder's readings";
+  EXPECT_FALSE(taken(row).scan->numbered);
+  EXPECT_TRUE(taken(row).scan->timed);
+  EXPECT_TRUE(taken(counted).scan->numbered);
+  EXPECT_FALSE(taken(counted).scan->timed) << "by its count times the period";
+  EXPECT_FALSE(taken(received).scan->timed);
+}
+
 TEST(TableItems, AnglesGoOnAcrossAWholeTurn) {
   TableItems items({.angle_column = 1, .range_column = 2}, {.angle_step = 0.1}, tilting(0, 0));
   std::int64_t t = 0;

@@ -86,6 +86,18 @@ TEST_F(TableStageTest, RefusesWhatHoldsNothingWithThePlaceOfTheFirstFault) {
   EXPECT_THAT(complaint("0,0,1\n", kColumns), HasSubstr("fewer than two angles"));
 }
 
+TEST_F(TableStageTest, RefusesAnEmptyFileAndDecimalCommas) {
+  EXPECT_THAT(complaint("", kColumns), HasSubstr("t.csv is empty"));
+  EXPECT_THAT(complaint("t;a;r\n0,5;0;1,25\n", kColumns), HasSubstr("t.csv:2:2: error"));
+  EXPECT_THAT(complaint("0\t0\t1,25\n", kColumns), HasSubstr("decimal commas"));
+  for (const auto* whole : {" 1000,512\n 2000,513\n", "1000,512 \n2000,513 \n", "1000,512;\n2000,513;\n"}) {
+    EXPECT_THAT(complaint(whole, "time_column: 1, angle_column: 2"), Not(HasSubstr("decimal commas")))
+        << whole;
+  }
+  EXPECT_THAT(complaint("0;0;1,2,3\n1;0;1,2,3\n", kColumns), "nothing") << "commas between ranges";
+  EXPECT_THAT(complaint("0, 0, 1, 2\n1, 0, 1, 2\n", kColumns), "nothing");
+}
+
 TEST_F(TableStageTest, RefusesOptionsThatLeaveATimeOrAnAngleUnknown) {
   EXPECT_THAT(complaint("", "angle_column: 1, range_column: 2, angle_step: 1deg"),
               HasSubstr("give time_column"));
@@ -117,6 +129,7 @@ TEST_F(TableStageTest, ReadsAPartOfATableThatOnlyThePeriodTimes) {
 TEST_F(TableStageTest, SaysWhereTheRowsFirstAreOutOfOrder) {
   const auto result = run("0,0,1\n1,0,1\n90,0,1\n2,0,1\n3,0,1\n", kColumns);
   EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows that are earlier than the row before", 2)));
+  EXPECT_EQ(result.report.section["rows"], 3) << "what is left out is no row that was read";
   EXPECT_THAT(result.report.warnings,
               ElementsAre(HasSubstr("t.csv:4:1: here is the first of the rows that are")));
 }

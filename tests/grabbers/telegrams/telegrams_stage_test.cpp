@@ -78,6 +78,7 @@ TEST_F(TelegramsStageTest, GivesEachScanOnce) {
   EXPECT_THAT(scans[0]->echoes.at(0).ranges, ElementsAre(1.0F, 0.0F, 3.0F));
   EXPECT_THAT(driver.report().counts, ElementsAre(Pair("items that came twice", 1),
                                                   Pair("telegrams that never came, by their counter", 1)));
+  EXPECT_THAT(driver.report().warnings, ElementsAre(HasSubstr("list.json: 25.0 % of what laser2")));
 }
 
 TEST_F(TelegramsStageTest, SaysWhatIsWrong) {

@@ -24,7 +24,7 @@ TEST(PluginLoader, RegistersTheStagesOfAPluginAndTellsWhereTheyAreFrom) {
   EXPECT_EQ(loader.tried()[0].refusal, "");
   EXPECT_EQ(loader.tried()[0].name, "toy");
   EXPECT_EQ(loader.tried()[0].version, "1.5");
-  EXPECT_THAT(loader.tried()[0].stages, Contains("toy.write"));
+  EXPECT_THAT(loader.tried()[0].brings, Contains("stage toy.write"));
   ASSERT_NE(registrar.stages().find("toy.write"), nullptr);
   EXPECT_THAT(registrar.stages().find("toy.write")->origin, HasSubstr("toy_plugin.so"));
   EXPECT_EQ(registrar.origin(), "built in");
@@ -38,7 +38,7 @@ TEST(PluginLoader, RefusesAPluginOfAnotherCompilerBeforeAnyOfItsCodeRuns) {
   EXPECT_EQ(
       loader.tried().at(0).refusal,
       "it was built for 'gcc-4 cxx11_abi=0 eigen_align=16 crisp=0.0.1', and this program is '" CRISP_ABI_KEY
-      "'");
+      "'; rebuild it against this crisp with the same compiler flags");
   EXPECT_THAT(registrar.stages().names(), IsEmpty());
 }
 
@@ -50,6 +50,34 @@ TEST(PluginLoader, TakesNothingFromAPluginOfWhichAStageIsRefused) {
   EXPECT_THAT(loader.tried().at(0).refusal,
               HasSubstr("there are two stages toy.count: one built in, one from "));
   EXPECT_THAT(registrar.stages().names(), ElementsAre("toy.count"));
+}
+
+/// A registry of things that are not stages, as terms are.
+struct Things {
+  std::vector<std::string> names() const { return all; }
+  std::vector<std::string> all;
+};
+
+TEST(PluginLoader, ListsWhatElseAPluginBrings) {
+  Registrar registrar;
+  Things things{.all = {"old"}};
+  registrar.attach(things, "thing");
+  registrar.stage<toy::SumStage>();
+  const auto take_back = registrar.snapshot();
+  registrar.stage<toy::CountStage>();
+  things.all.emplace_back("new");
+  EXPECT_THAT(registrar.registered(),
+              ElementsAre("stage toy.count", "stage toy.sum", "thing new", "thing old"));
+  take_back();
+  EXPECT_THAT(registrar.registered(), ElementsAre("stage toy.sum", "thing old"));
+}
+
+TEST(PluginLoader, RefusesAPluginThatThrowsWhatIsNoException) {
+  Registrar registrar;
+  PluginLoader loader(registrar);
+  loader.load(THROWING_PLUGIN);
+  EXPECT_EQ(loader.tried().at(0).refusal, "registering its stages it threw what is no std::exception");
+  EXPECT_THAT(registrar.stages().names(), IsEmpty());
 }
 
 TEST(PluginLoader, SaysWhyAFileIsNoPlugin) {
@@ -72,7 +100,8 @@ TEST(PluginLoader, TriesEverySharedObjectOfAFolder) {
   loader.load(fs::path(TOY_PLUGIN).parent_path());
   std::vector<std::string> files;
   for (const auto& plugin : loader.tried()) files.push_back(plugin.file.filename().string());
-  EXPECT_THAT(files, ElementsAre("clashing_plugin.so", "foreign_plugin.so", "toy_plugin.so"));
+  EXPECT_THAT(files,
+              ElementsAre("clashing_plugin.so", "foreign_plugin.so", "throwing_plugin.so", "toy_plugin.so"));
 }
 
 }  // namespace

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program as people run it, with toy stages from a plugin.
-#include <fcntl.h>
 #include <gmock/gmock.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/files/yaml.hpp"
+#include "tests/pipeline/app/program_fixture.hpp"
 
 namespace crisp {
 namespace {
@@ -22,61 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
-
-struct Outcome {
-  int status = -1;
-  std::string out;
-  std::string error;
-};
-
-class ProgramTest : public testing::Test {
- protected:
-  ProgramTest() {
-    std::string pattern = (fs::temp_directory_path() / "crisp-program-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    write_file(folder_ / "sum.yaml",
-               "crisp: 1\n"
-               "pipeline:\n"
-               "  - {stage: toy.count, with: {n: 4}}\n"
-               "  - stage: toy.sum\n"
-               "  - {stage: toy.write, with: {file: ${output}/sum.txt}}\n");
-  }
-  ~ProgramTest() override { fs::remove_all(folder_); }
-
-  pid_t start(std::vector<std::string> words) {
-    words.insert(words.begin(), CRISP_PROGRAM);
-    if (words.size() > 1 && words[1] != "--help" && words[1] != "--version") {
-      words.insert(words.end(), {"--plugin", TOY_PLUGIN});
-    }
-    std::vector<char*> arguments;
-    for (auto& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC;
-    posix_spawn_file_actions_addopen(&actions, 1, (folder_ / "stdout").c_str(), kFlags, 0600);
-    posix_spawn_file_actions_addopen(&actions, 2, (folder_ / "stderr").c_str(), kFlags, 0600);
-    pid_t child = -1;
-    EXPECT_EQ(posix_spawn(&child, CRISP_PROGRAM, &actions, nullptr, arguments.data(), environ), 0);
-    posix_spawn_file_actions_destroy(&actions);
-    return child;
-  }
-
-  Outcome wait_for(pid_t child) {
-    int status = 0;
-    waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content("stdout"),
-            content("stderr")};
-  }
-
-  Outcome crisp(const std::vector<std::string>& words) { return wait_for(start(words)); }
-
-  std::string content(const std::string& name) const { return read_text_file(folder_ / name, 1 << 24); }
-  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(content(name)); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  fs::path folder_;
-};
 
 TEST_F(ProgramTest, RunsAPipelineAndWritesItsResultSummaryAndProvenance) {
   const auto run = crisp({"run", path("sum.yaml"), "-o", path("out"), "--seed", "7"});
@@ -90,6 +30,8 @@ TEST_F(ProgramTest, RunsAPipelineAndWritesItsResultSummaryAndProvenance) {
 
   const auto summary = json("out/summary.json");
   EXPECT_EQ(summary["trusted"], true);
+  EXPECT_EQ(summary["exit_status"], 0);
+  EXPECT_FALSE(summary.contains("error"));
   EXPECT_EQ(summary["seed"], 7);
   EXPECT_EQ(summary["stages"][0]["options"]["n"], 4);
   EXPECT_EQ(summary["stages"][0]["options"]["first"], 1);
@@ -120,52 +62,10 @@ TEST_F(ProgramTest, EndsWithThreeWhenTheResultCannotBeTrusted) {
   EXPECT_EQ(json("out/summary.json")["trusted"], false);
 }
 
-TEST_F(ProgramTest, EndsWithTwoAndEveryMistakeWhenThePipelineIsWrong) {
-  write_file(folder_ / "wrong.yaml",
-             "crisp: 1\npipeline:\n  - {stage: toy.sum}\n  - {stage: toy.count, with: {m: 4}}\n");
-  const std::string expected =
-      path("wrong.yaml") +
-      ":3:13: error: toy.sum: nothing above it gives the Number that it takes; put one of "
-      "these above it: toy.count, toy.doubt, toy.endless, toy.share, toy.throw, toy.wait\n" +
-      path("wrong.yaml") + ":4:31: error: toy.count: there is no option 'm'; did you mean 'n'?\n2 errors\n";
-  for (const std::string command : {"run", "validate"}) {
-    const auto outcome = crisp({command, path("wrong.yaml")});
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(outcome.error, expected);
-  }
-  const Outcome study = crisp({"monte-carlo", "--set", "study.monte_carlo.devices=lms11"});
-  EXPECT_EQ(study.status, 2);
-  EXPECT_THAT(study.error, HasSubstr("did you mean 'lms111'?"));
-}
-
 TEST_F(ProgramTest, ValidatesWithoutOpeningInputOrOutput) {
   const auto outcome = crisp({"validate", path("sum.yaml")});
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_EQ(outcome.out, path("sum.yaml") + ": right, 3 stages\n");
-}
-
-TEST_F(ProgramTest, RefusesToOverwriteWhatItReadsOrHasWritten) {
-  const auto error_of = [&](const std::string& stages) {
-    write_file(folder_ / "files.yaml", "crisp: 1\npipeline:\n" + stages);
-    const auto outcome = crisp({"run", path("files.yaml"), "-i", path("in.yaml"), "-o", path("out")});
-    EXPECT_EQ(outcome.status, 2);
-    return outcome.error;
-  };
-  write_file(folder_ / "in.yaml", "kept");
-  fs::create_symlink(folder_, folder_ / "link");
-  EXPECT_EQ(error_of("  - {stage: calibrate.load, with: {file: \"${input}\"}}\n"
-                     "  - {stage: write.calibration, with: {file: link/in.yaml}}\n"),
-            path("files.yaml") + ":4:13: error: write.calibration: it would overwrite " + path("in.yaml") +
-                ", which calibrate.load reads; let it write another file\n");
-  EXPECT_EQ(content("in.yaml"), "kept");
-  EXPECT_THAT(error_of("  - stage: toy.count\n  - stage: toy.sum\n"
-                       "  - {stage: toy.write, with: {file: \"${output}/x\"}}\n"
-                       "  - {stage: toy.write, with: {file: \"${output}/./x\"}}\n"),
-              HasSubstr(":6:13: error: toy.write-2: it would overwrite " + path("out/x") +
-                        ", which toy.write writes;"));
-  EXPECT_THAT(error_of("  - stage: toy.count\n  - stage: toy.sum\n"
-                       "  - {stage: toy.write, with: {file: files.yaml}}\n"),
-              HasSubstr("toy.write: it would overwrite " + path("files.yaml") + ", which this run reads;"));
 }
 
 TEST_F(ProgramTest, WarnsOfAStageThatWasPutTooLow) {
@@ -186,7 +86,25 @@ TEST_F(ProgramTest, EndsWithOneWhenAStageFailsAndWritesNothing) {
   const auto run = crisp({"run", path("fail.yaml"), "-o", path("out")});
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.error, path("fail.yaml") + ":4:13: error: toy.throw: it saw a three; avoid threes\n");
-  EXPECT_TRUE(fs::is_empty(folder_ / "out"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/sum.txt"));
+  const auto summary = json("out/summary.json");
+  EXPECT_EQ(summary["trusted"], false);
+  EXPECT_EQ(summary["exit_status"], 1);
+  EXPECT_EQ(summary["error"], path("fail.yaml") + ":4:13: error: toy.throw: it saw a three; avoid threes");
+}
+
+TEST_F(ProgramTest, NamesWhoThrewWhatIsNoException) {
+  write_file(folder_ / "fail.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.throw, with: {how: integer}}\n"
+             "  - {stage: toy.sum}\n");
+  const auto run = crisp({"run", path("fail.yaml"), "-o", path("out")});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.error, path("fail.yaml") +
+                           ":4:13: error: toy.throw: it threw what is no std::exception; let "
+                           "it throw crisp::Error\n");
+  const auto load = crisp({"stages", "--plugin", THROWING_PLUGIN});
+  EXPECT_EQ(load.status, 2);
+  EXPECT_THAT(load.error, HasSubstr("throwing_plugin.so was refused: registering its stages it threw"));
 }
 
 TEST_F(ProgramTest, RecordsWhereFilesOfAFailedRunCameFrom) {
@@ -201,7 +119,7 @@ TEST_F(ProgramTest, RecordsWhereFilesOfAFailedRunCameFrom) {
   EXPECT_EQ(provenance["inputs"][0]["file"], path("late.yaml"));
   EXPECT_EQ(provenance["failure"], path("late.yaml") + ":6:13: error: toy.end_badly: the end is bad");
   EXPECT_EQ(provenance["trusted"], false);
-  EXPECT_FALSE(fs::exists(folder_ / "out/summary.json")) << "it was the earlier run's";
+  EXPECT_EQ(json("out/summary.json")["error"], provenance["failure"]) << "not the earlier run's";
 }
 
 TEST_F(ProgramTest, SaysWhenItsOutputDoesNotArrive) {
@@ -221,6 +139,8 @@ TEST_F(ProgramTest, RefusesWhatCannotBeRun) {
               HasSubstr("cannot write into the folder " + path("sum.yaml")));
   EXPECT_THAT(crisp({"run", path("sum.yaml"), "-o", path("out"), "-i", path("nowhere")}).error,
               HasSubstr("there is no input " + path("nowhere")));
+  write_file(folder_ / "cut_0001.pcd", "");
+  EXPECT_EQ(crisp({"run", path("sum.yaml"), "-o", path("out"), "-i", path("cut.pcd")}).status, 0);
   EXPECT_EQ(crisp({"run", path("nowhere.yaml")}).status, 2);
   EXPECT_EQ(crisp({"run", path("sum.yaml"), "--threads", "0"}).status, 2);
   const auto unknown = crisp({"rnu"});
@@ -229,13 +149,42 @@ TEST_F(ProgramTest, RefusesWhatCannotBeRun) {
   EXPECT_THAT(crisp({"monte-carlo", "-n", "four"}).error,
               HasSubstr("'four' is not a whole number, 1 to 1000000"));
   EXPECT_THAT(crisp({"monte-carlo", "-n", "0"}).error, HasSubstr("0 is not from 1 to 1000000"));
+  const auto negative = crisp({"run", path("sum.yaml"), "-o", path("out"), "--seed", "-1"});
+  EXPECT_EQ(negative.status, 2);
+  EXPECT_THAT(negative.error, HasSubstr("error: --seed: '-1' is not a whole number"));
+  EXPECT_THAT(crisp({"run"}).error, testing::StartsWith("error: pipeline is required"));
+  const auto listen = crisp({"record", "-o", path("out"), "--listen", "here", "--duration", "1s"});
+  EXPECT_EQ(listen.status, 2);
+  EXPECT_THAT(listen.error, HasSubstr("\"here\" is no IP address"));
+}
+
+TEST_F(ProgramTest, RefusesOptionsThatAreEmpty) {
+  for (const char* option : {"--input", "--output", "--rig", "--set"}) {
+    const auto outcome = crisp({"run", path("sum.yaml"), option, ""});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.error, HasSubstr("error: " + std::string(option) + " is empty"));
+  }
+  const auto outcome = crisp({"run", path("sum.yaml"), "-i", "", "-o", path("out")});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.error, HasSubstr("error: --input is empty"));
+  EXPECT_THAT(crisp({"info", ""}).error, HasSubstr("error: file is empty"));
+}
+
+TEST_F(ProgramTest, RecordsNoLongerThanItWasToldAlsoWhereNoDeviceAnswers) {
+  write_file(folder_ / "rig.yaml",
+             "crisp: 1\nlasers: {a: {address: 127.0.0.1, port: 9, nominal: {lambda: 0, tau: 0.2}}}\n"
+             "plate: {address: 127.0.0.1, port: 47311}\n");
+  const auto outcome = crisp({"record", "--rig", path("rig.yaml"), "-o", path("out"), "--duration", "0.2s"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.error, HasSubstr("nothing was received"));
 }
 
 /// The stage is at work, with a half-written file, once that file is there.
 TEST_F(ProgramTest, StopsInGoodOrderOnSignals) {
   write_file(folder_ / "wait.yaml",
              "crisp: 1\npipeline:\n  - {stage: toy.wait, with: {file: ${output}/x.txt}}\n");
-  for (const auto& [signal, status] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}}) {
+  for (const auto& [signal, status] :
+       {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}, std::pair{SIGHUP, 129}}) {
     const pid_t child = start({"run", path("wait.yaml"), "-o", path("out")});
     while (!fs::exists(folder_ / "out") || fs::is_empty(folder_ / "out")) std::this_thread::yield();
     kill(child, signal);
@@ -243,6 +192,24 @@ TEST_F(ProgramTest, StopsInGoodOrderOnSignals) {
     EXPECT_EQ(outcome.status, status);
     EXPECT_THAT(outcome.error, HasSubstr("stopping; a second signal ends the program at once\n"));
     EXPECT_THAT(outcome.error, HasSubstr("interrupted: files that were not complete were not written\n"));
+    EXPECT_FALSE(fs::exists(folder_ / "out/x.txt"));
+    EXPECT_EQ(json("out/summary.json")["error"], "interrupted");
+    EXPECT_EQ(json("out/summary.json")["exit_status"], status);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 1);
+    fs::remove_all(folder_ / "out");
+  }
+}
+
+TEST_F(ProgramTest, LeavesNoPartsOfFilesWhenItIsEndedAtOnce) {
+  write_file(folder_ / "hang.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.hang, with: {file: ${output}/x.txt}}\n");
+  for (const int second : {SIGINT, SIGTERM}) {
+    const pid_t child = start({"run", path("hang.yaml"), "-o", path("out")});
+    while (!fs::exists(folder_ / "out") || fs::is_empty(folder_ / "out")) std::this_thread::yield();
+    kill(child, SIGINT);
+    while (content("stderr").find("stopping") == std::string::npos) std::this_thread::yield();
+    kill(child, second);
+    EXPECT_EQ(wait_for(child).status, -second);
     EXPECT_TRUE(fs::is_empty(folder_ / "out"));
     fs::remove(folder_ / "out");
   }
@@ -298,8 +265,9 @@ TEST_F(ProgramTest, DescribesPipelinesAsAJsonSchema) {
 }
 
 TEST_F(ProgramTest, ListsPluginsAndWhyTheyWereRefused) {
+  EXPECT_EQ(crisp({"plugins"}).status, 0);
   const auto outcome = crisp({"plugins", "--plugin", FOREIGN_PLUGIN});
-  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.out, HasSubstr("  refused: it was built for 'gcc-4"));
   EXPECT_THAT(outcome.out, HasSubstr("  toy 1.5\n"));
   const auto run = crisp({"run", path("sum.yaml"), "-o", path("out"), "--plugin", FOREIGN_PLUGIN});
@@ -331,11 +299,32 @@ TEST_F(ProgramTest, SaysWhatACalibrationHolds) {
   EXPECT_THAT(crisp({"info", CRISP_SOURCE_DIR "/configs/rig.yaml"}).error, HasSubstr("rig.yaml is a rig; "));
 
   const auto folder = nlohmann::json::parse(crisp({"info", folder_.string(), "--json"}).out);
-  EXPECT_EQ(folder.size(), 1U) << "noise is not counted";
+  EXPECT_EQ(folder.size(), 2U) << "noise is not counted, but hub.pcap ought to be a capture";
   EXPECT_EQ(folder[path("c.yaml")], data);
-  EXPECT_THAT(crisp({"info", folder_.string()}).out, HasSubstr("c.yaml: a calibration\n"));
   fs::create_directory(folder_ / "empty");
   EXPECT_THAT(crisp({"info", path("empty")}).error, HasSubstr("holds no file of a kind that is known"));
+}
+
+TEST_F(ProgramTest, SaysWhatTheOthersHoldWhereOneCannotBeRead) {
+  write_file(folder_ / "c.yaml",
+             "crisp: 1\nlasers: {a: {lambda: {value: 0, unit: rad}, tau: {value: 0.25, unit: m}, "
+             "alpha: {value: 0, unit: rad}, eta: {value: 0, unit: s}}}\n");
+  write_file(folder_ / "hub.pcap", "");
+  const std::string wrong = path("hub.pcap") + ": not read\nerror: " + path("hub.pcap") + " is empty\n";
+  for (const auto& words : {std::vector{folder_.string()}, {path("hub.pcap"), path("c.yaml")}}) {
+    auto request = words;
+    request.insert(request.begin(), "info");
+    const auto listing = crisp(request);
+    EXPECT_EQ(listing.status, 1);
+    EXPECT_THAT(listing.out, HasSubstr(path("c.yaml") + ": a calibration\n"));
+    EXPECT_THAT(listing.out, HasSubstr(wrong));
+    request.emplace_back("--json");
+    const auto data = nlohmann::json::parse(crisp(request).out);
+    EXPECT_EQ(data.size(), 2U);
+    EXPECT_EQ(data[path("hub.pcap")]["error"], "error: " + path("hub.pcap") + " is empty");
+    EXPECT_EQ(data[path("c.yaml")]["parameters"]["a.tau"]["value"], 0.25);
+  }
+  EXPECT_EQ(crisp({"info", path("c.yaml"), path("c.yaml")}).status, 0);
 }
 
 TEST_F(ProgramTest, SaysBeforeARecordingWhatItWouldDetermine) {

@@ -37,6 +37,25 @@ class WriteStage final : public Stage {
   int sum_ = 0;
 };
 
+/// Writes a file of which its options say nothing.
+class WriteUndeclaredStage final : public Stage {
+ public:
+  static void describe(StageDescription<WriteUndeclaredStage>& d) {
+    d.name("toy.write_undeclared").summary("writes what it does not declare").takes<Sum>();
+    d.option("folder", &WriteUndeclaredStage::folder_, "where to").required();
+    d.option("name", &WriteUndeclaredStage::name_, "which file");
+  }
+  void process(const Inputs&, Outputs&, Context&) override {}
+  void finish(Outputs&, Context& context) override {
+    write_file(folder_ / name_, "undeclared");
+    context.wrote(folder_ / name_);
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::string name_;
+};
+
 /// Opens a file aside, says so, and waits until it is interrupted.
 class WaitStage final : public Stage {
  public:
@@ -51,6 +70,22 @@ class WaitStage final : public Stage {
       context.progress(0.5, "waiting");
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
+  }
+
+ private:
+  std::filesystem::path file_;
+};
+
+/// Is long at work on a file, without asking whether it is to stop.
+class HangStage final : public Stage {
+ public:
+  static void describe(StageDescription<HangStage>& d) {
+    d.name("toy.hang").summary("hears no signal").gives<Word>();
+    d.option("file", &HangStage::file_, "what it is about to write").writes().required();
+  }
+  void process(const Inputs&, Outputs&, Context&) override {
+    const AtomicFile out(file_);
+    std::this_thread::sleep_for(std::chrono::minutes(2));
   }
 
  private:
@@ -88,6 +123,8 @@ void register_all(Registrar& registrar) {
   register_toys(registrar);
   registrar.stage<WriteStage>();
   registrar.stage<WaitStage>();
+  registrar.stage<HangStage>();
+  registrar.stage<WriteUndeclaredStage>();
   registrar.stage<EndBadlyStage>();
   registrar.stage<ComplainStage>();
 }

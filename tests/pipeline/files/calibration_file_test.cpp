@@ -168,5 +168,18 @@ TEST(CalibrationFile, DoesNotWriteWhatCouldNotBeRead) {
   EXPECT_THROW(to_yaml(c), Error);
 }
 
+TEST(CalibrationFile, SaysThatARigOrAPipelineIsNone) {
+  const auto complaint = [](const std::string& file) -> std::string {
+    try {
+      read_calibration(std::string(CRISP_SOURCE_DIR "/configs/") + file);
+    } catch (const Error& error) {
+      return error.message();
+    }
+    return "nothing";
+  };
+  EXPECT_THAT(complaint("rig.yaml"), HasSubstr("rig.yaml is a rig, not a calibration"));
+  EXPECT_THAT(complaint("assemble.yaml"), HasSubstr("assemble.yaml is a pipeline, not a calibration"));
+}
+
 }  // namespace
 }  // namespace crisp

@@ -67,7 +67,7 @@ TEST(FindingsFile, HoldsWhatProgramsAreToldToExpect) {
   EXPECT_THAT(keys_of(finding),
               testing::UnorderedElementsAre("cause", "scope", "parameters", "explained_fraction",
                                             "log10_odds", "p_value", "confounded_with", "told_apart_by",
-                                            "alternatives", "gain", "accepted"));
+                                            "alternatives", "gain", "accepted", "refused"));
   EXPECT_THAT(keys_of(finding["alternatives"][0]),
               testing::UnorderedElementsAre("cause", "scope", "log10_odds"));
   EXPECT_THAT(keys_of(json["departures"][0]),
@@ -126,18 +126,21 @@ TEST(FindingsFile, IsDocumentedKeyByKey) {
 TEST(FindingsFile, IsReadAsItWasWritten) {
   Findings written = some_findings();
   written.findings[0].parameters.push_back({"P", "m", 0.1 + 0.2, std::nan(""), true});
+  written.findings[0].parameters.push_back({.name = "T", .unit = "s", .value = 60});
   const Findings read = parse_findings(parse_yaml(findings_json(written), "diagnosis.json"));
   EXPECT_EQ(findings_json(read), findings_json(written));
   ASSERT_EQ(read.findings.size(), 1U);
   const Finding& finding = read.findings[0];
   EXPECT_EQ(finding.cause, "mirror.cone");
   EXPECT_EQ(finding.scope, "laser2");
-  ASSERT_EQ(finding.parameters.size(), 2U);
+  ASSERT_EQ(finding.parameters.size(), 3U);
   EXPECT_EQ(finding.parameters[0].value, 0.003);
   EXPECT_EQ(finding.parameters[1].value, 0.1 + 0.2) << "every digit";
   EXPECT_TRUE(std::isnan(finding.parameters[1].std_error)) << "null";
+  EXPECT_TRUE(std::isnan(finding.parameters[2].std_error)) << "of which none was told: not 0";
   EXPECT_EQ(finding.gain.at(0).ci95[0], -3e-4);
   EXPECT_TRUE(finding.accepted);
+  EXPECT_EQ(finding.refusal(), "");
   EXPECT_EQ(read.unnamed.at(0).quantity, "range");
   EXPECT_EQ(finding.alternatives.at(0).scope, "laser3");
   EXPECT_EQ(read.departures.at(0).amplitude, 0.004);
@@ -149,10 +152,24 @@ TEST(FindingsFile, IsReadAsItWasWritten) {
   EXPECT_EQ(read.before_p, 0.005);
 }
 
+TEST(FindingsFile, SaysWhyACauseWasRefused) {
+  Findings written = some_findings();
+  written.findings[0].accepted = false;
+  const auto said = [&] {
+    return nlohmann::json::parse(findings_json(written))["findings"][0]["refused"].get<std::string>();
+  };
+  EXPECT_THAT(said(), testing::HasSubstr("does not pay"));
+  written.findings[0].refused = "more is left than it takes";
+  EXPECT_EQ(said(), "more is left than it takes");
+  const Findings read = parse_findings(parse_yaml(findings_json(written), "diagnosis.json"));
+  EXPECT_EQ(read.findings.at(0).refusal(), "more is left than it takes");
+}
+
 TEST(FindingsFile, OfAnEarlierProgramIsReadWithoutWhatItDidNotTell) {
   auto json = nlohmann::ordered_json::parse(findings_json(some_findings()));
   json.erase("departures");
   json["findings"][0].erase("alternatives");
+  json["findings"][0].erase("refused");
   const Findings read = parse_findings(parse_yaml(json.dump(2), "diagnosis.json"));
   EXPECT_THAT(read.departures, testing::IsEmpty());
   EXPECT_EQ(read.findings.at(0).cause, "mirror.cone");

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "pipeline/data/degree.hpp"
 #include "tests/pipeline/files/errors_of.hpp"
 
@@ -134,6 +136,26 @@ TEST(RigFile, RefusesDevicesThatCouldNotBeToldApart) {
               ElementsAre(HasSubstr("rig.yaml:4:3: error: rig: 'a' and 'b' have the same address 10.0.0.1")));
   EXPECT_THAT(errors_of_rig("crisp: 1\nlasers:\n  a: " + laser + "\nplate: {name: a, address: 10.0.0.2}\n"),
               ElementsAre(HasSubstr("two devices are named 'a'")));
+  EXPECT_THAT(errors_of_rig("crisp: 1\nlasers:\n  a: " + laser +
+                            "\n  b: {address: 10.0.0.1, port: 99999, nominal: {lambda: 0, tau: 0}}\n"
+                            "plate: {address: 10.0.0.2}\n"),
+              ElementsAre(HasSubstr("99999")))
+      << "a port that is not known is nobody else's";
+  EXPECT_THAT(
+      errors_of_rig("crisp: 1\nlasers:\n  a: " + laser + "\n  b: " + laser + "\nplate: {prot: 1}\n"),
+      ElementsAre(HasSubstr("there is no key 'prot'"), HasSubstr("'a' and 'b' have the same address")));
+}
+
+TEST(RigFile, TheExampleOfItsPageIsOne) {
+  std::ifstream page(CRISP_SOURCE_DIR "/docs/rig.md");
+  std::string example;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("    ")) example += line.substr(4) + "\n";
+  }
+  const Rig rig = parse_rig(parse_yaml(example, "rig.md"));
+  ASSERT_EQ(rig.lasers.size(), 2U);
+  EXPECT_EQ(rig.lasers[1].name, "rear");
+  EXPECT_DOUBLE_EQ(rig.lasers[1].nominal.lambda.value, 180 * kDegree);
 }
 
 TEST(RigFile, NeedsNoAddressesForWhatIsReadFromATable) {

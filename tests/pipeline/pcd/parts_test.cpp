@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/folder.hpp"
+#include "pipeline/pcd/measurement_tables.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {
@@ -52,6 +54,47 @@ TEST_F(Parts, PartsOfAnEarlierLongerRecordingAreNotTakenForThisOnes) {
   write(3);
   write(2);
   EXPECT_THAT(read("x.pcd"), ElementsAre(1, 2));
+}
+
+TEST_F(Parts, OfAnEarlierRunAreRemovedWhenThisOnesAreComplete) {
+  const auto names = [&] {
+    std::vector<std::string> all;
+    for (const auto& file : files_in(folder_ / "")) all.push_back(file.filename().string());
+    return all;
+  };
+  const auto write = [&](int parts) {
+    PartsWriter writer(folder_ / "c.pcd", PcdFormat::binary);
+    for (int i = 1; i <= parts; ++i) {
+      const auto file = writer.write(to_table(test::sample_cloud(3)), i < parts);
+      writer.write_beside(plate_path(file), to_table(test::sample_cloud(1)));
+    }
+    writer.commit();
+    return writer.remove_older();
+  };
+  EXPECT_THAT(write(4), testing::IsEmpty());
+  write_file(folder_ / "c_0009.pcd", "of another program");
+  write_file(folder_ / "c_00004.pcd", "not a part's name");
+  EXPECT_THAT(write(2), testing::ElementsAre(folder_ / "c_0003.pcd", folder_ / "c_0004.pcd"));
+  EXPECT_THAT(names(), testing::ElementsAre("c_00004.pcd", "c_0001.pcd", "c_0001.plate.pcd", "c_0002.pcd",
+                                            "c_0002.plate.pcd", "c_0009.pcd"));
+  EXPECT_THAT(write(1), testing::SizeIs(2));
+  EXPECT_THAT(names(), testing::ElementsAre("c.pcd", "c.plate.pcd", "c_00004.pcd", "c_0009.pcd"));
+  EXPECT_THAT(write(2), testing::ElementsAre(folder_ / "c.pcd"));
+  EXPECT_THAT(names(), testing::ElementsAre("c_00004.pcd", "c_0001.pcd", "c_0001.plate.pcd", "c_0002.pcd",
+                                            "c_0002.plate.pcd", "c_0009.pcd"));
+}
+
+TEST_F(Parts, AFileOfAnotherProgramIsNoneOfAnEarlierRun) {
+  write_file(folder_ / "x.pcd", "of another program");
+  write_file(folder_ / "x_0003.plate.pcd", "of another program");
+  write(3);
+  PartsWriter writer(folder_ / "x.pcd", PcdFormat::binary);
+  writer.write(one_value(1), true);
+  writer.write(one_value(2), false);
+  writer.commit();
+  EXPECT_THAT(writer.remove_older(), ElementsAre(folder_ / "x_0003.pcd"));
+  EXPECT_TRUE(fs::exists(folder_ / "x.pcd"));
+  EXPECT_TRUE(fs::exists(folder_ / "x_0003.plate.pcd"));
 }
 
 TEST_F(Parts, AMissingOrRenamedPartIsAnError) {

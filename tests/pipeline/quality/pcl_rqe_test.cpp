@@ -77,5 +77,35 @@ TEST(PclRqe, RefusesToMeasureNothing) {
   EXPECT_THROW(adapter.compute(), Error);
 }
 
+TEST(PclRqe, RefusesWidthsThatNoNumberCanHoldTheResultOf) {
+  PclRqe<pcl::PointXYZ> adapter;
+  adapter.setInputCloud(as_pcl<pcl::PointXYZ>(test::room_corner(300, 1, 0.01, 5)));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double sigma : {1e-300, 1e-7, 0.0, -0.05, 1e7, 1e150, 1e200, 1e300, nan}) {
+    adapter.setSigma(sigma);
+    try {
+      adapter.compute();
+      FAIL() << sigma;
+    } catch (const Error& error) {
+      EXPECT_NE(error.advice().find("sigma must lie in 1e-06 to 1000000 m"), std::string::npos)
+          << error.what();
+    }
+  }
+  for (const double sigma : {1e-6, 1e6}) {
+    adapter.setSigma(sigma);
+    EXPECT_TRUE(std::isfinite(adapter.compute().value)) << sigma;
+  }
+}
+
+TEST(PclRqe, RefusesIndicesThatTheCloudDoesNotHave) {
+  PclRqe<pcl::PointXYZ> adapter;
+  adapter.setInputCloud(as_pcl<pcl::PointXYZ>(test::room_corner(300, 1, 0.01, 6)));
+  adapter.setWeights(std::vector<double>(300, 1));
+  for (const int index : {300, 1'000'000'000, -1}) {
+    adapter.setIndices(std::make_shared<pcl::Indices>(pcl::Indices{5, index}));
+    EXPECT_THROW(adapter.compute(), Error) << index;
+  }
+}
+
 }  // namespace
 }  // namespace crisp

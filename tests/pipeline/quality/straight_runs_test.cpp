@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include "pipeline/quality/run_costs.hpp"
+#include "tests/support/instruction_sets.hpp"
 
 namespace crisp {
 namespace {
@@ -104,7 +106,12 @@ TEST(StraightRuns, OfNothingAreNone) {
   EXPECT_TRUE(straight_runs(running_sums({{1, 0}}), {}).empty()) << "a stray is cheaper";
 }
 
-TEST(RunCosts, AreThoseOfEachBeginningByItself) {
+class RunCosts : public test::EachInstructionSet {};
+
+INSTANTIATE_TEST_SUITE_P(All, RunCosts, testing::ValuesIn(test::instruction_sets()),
+                         test::name_of_instruction_set);
+
+TEST_P(RunCosts, AreThoseOfEachBeginningByItself) {
   const auto running = running_sums(room(3));
   const LineSums here = running.back();
   for (std::size_t n = 1; n <= 19; ++n) {  // vectors, and what is left of them
@@ -115,10 +122,13 @@ TEST(RunCosts, AreThoseOfEachBeginningByItself) {
       for (std::size_t c = 0; c < 7; ++c) columns[c].push_back(row[c]);
     }
     std::vector<double> costs(n);
-    simd::run_costs({{columns[0].data(), columns[1].data(), columns[2].data(), columns[3].data(),
-                      columns[4].data(), columns[5].data()},
-                     columns[6].data()},
-                    {here.xx, here.xy, here.yy, here.x, here.y, here.one}, n, costs.data());
+    const auto [cheapest, least] =
+        simd::run_costs({{columns[0].data(), columns[1].data(), columns[2].data(), columns[3].data(),
+                          columns[4].data(), columns[5].data()},
+                         columns[6].data()},
+                        {here.xx, here.xy, here.yy, here.x, here.y, here.one}, n, costs.data());
+    EXPECT_EQ(least, std::ranges::min(costs));
+    EXPECT_EQ(cheapest, static_cast<std::size_t>(std::ranges::find(costs, least) - costs.begin()));
     for (std::size_t k = 0; k < n; ++k) {
       const LineSums sums = here - running[200 + k];
       double left = 0;  // each point's own

@@ -150,14 +150,15 @@ class LogStage final : public Stage {
 /// Throws what `how` says when it sees its third number.
 class ThrowStage final : public Stage {
  public:
-  enum class How { error, standard, memory, undeclared };
+  enum class How { error, standard, memory, undeclared, integer };
   static void describe(StageDescription<ThrowStage>& d) {
     d.name("toy.throw").summary("throws").takes<Number>().gives<Number>();
     d.option("how", &ThrowStage::how_, "what it throws")
         .choices({{"error", How::error},
                   {"standard", How::standard},
                   {"memory", How::memory},
-                  {"undeclared", How::undeclared}});
+                  {"undeclared", How::undeclared},
+                  {"integer", How::integer}});
   }
   void process(const Inputs& in, Outputs& out, Context&) override {
     if (in.get<Number>().value < 3) return out.give(*in.find<Number>());
@@ -169,7 +170,9 @@ class ThrowStage final : public Stage {
       case How::memory:
         throw std::bad_alloc();
       case How::undeclared:
-        out.give(Word{"three"});
+        return out.give(Word{"three"});
+      case How::integer:
+        throw 3;
     }
   }
 

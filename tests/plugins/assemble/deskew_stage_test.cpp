@@ -10,6 +10,7 @@
 #include "pipeline/data/error.hpp"
 #include "pipeline/data/measurements.hpp"
 #include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/model/catalogue.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "pipeline/stage/runner.hpp"
 #include "tests/support/stage_driver.hpp"
@@ -92,6 +93,25 @@ TEST_F(DeskewStageTest, PlacesEachBatchByTheCalibrationThatIsHeldAndThePieceOfTr
   EXPECT_EQ(stage_.report().section["calibration"], "given");
   EXPECT_EQ(stage_.report().counts.at("beams outside the plate's readings"), 0U);
   EXPECT_THAT(stage_.report().warnings, IsEmpty());
+}
+
+TEST_F(DeskewStageTest, SaysWhichTermsAreNotAppliedWhereNobodyHasFoundTheIncidence) {
+  register_built_in(terms_);
+  Calibration calibration = with_lambda(0);
+  for (const auto* name : {"range.incidence", "range.offset"}) {
+    calibration.lasers[1].terms.push_back(neutral_parameters(terms_.get(name)->info()));
+  }
+  for (const bool is_known : {true, false}) {
+    Measurements beams = beams_at({0.5});
+    if (is_known) beams.cos_incidence.assign(beams.size(), 0.5F);
+    StageDriver stage = StageDriver::of<DeskewStage>({});
+    stage.run().registrar = &registrar_;
+    stage.feed(beams, turning(0, 1), calibration);
+    stage.finish();
+    EXPECT_EQ(stage.report().warnings.size(), is_known ? 0U : 1U);
+    if (is_known) continue;
+    EXPECT_THAT(stage.report().warnings, ElementsAre(HasSubstr("without laser2.range.incidence: nobody")));
+  }
 }
 
 TEST_F(DeskewStageTest, TakesTheNominalValuesOfTheRigWhereNoCalibrationIsGiven) {

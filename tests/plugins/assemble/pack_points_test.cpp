@@ -6,10 +6,17 @@
 #include <numeric>
 #include <vector>
 
+#include "tests/support/instruction_sets.hpp"
+
 namespace crisp {
 namespace {
 
-TEST(PackPoints, EveryFieldOfEachPointIsWrittenWhateverTheirNumber) {
+class PackPoints : public test::EachInstructionSet {};
+
+INSTANTIATE_TEST_SUITE_P(All, PackPoints, testing::ValuesIn(test::instruction_sets()),
+                         test::name_of_instruction_set);
+
+TEST_P(PackPoints, EveryFieldOfEachPointIsWrittenWhateverTheirNumber) {
   constexpr std::size_t kMost = 40;  // some of the longest vectors, and all that can be left behind them
   std::vector<double> x(kMost), y(kMost), z(kMost), time(kMost);
   std::iota(x.begin(), x.end(), 1.1);

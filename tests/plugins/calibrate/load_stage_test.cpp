@@ -3,9 +3,16 @@
 
 #include <gmock/gmock.h>
 
+#include "pipeline/files/calibration_file.hpp"
+#include "pipeline/model/catalogue.hpp"
+#include "pipeline/stage/registry.hpp"
+#include "tests/support/stage_driver.hpp"
+#include "tests/support/temporary_folder.hpp"
+
 namespace crisp {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 Calibration of_lasers(const std::vector<std::string>& names) {
@@ -29,6 +36,26 @@ TEST(LoadCalibration, RefusesTheCalibrationOfAnotherRig) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("has no laser 'laser3'"));
   }
+}
+
+TEST(LoadCalibration, SaysWhichTermsHoldForOneRecordingAlone) {
+  const test::TemporaryFolder folder;
+  TermRegistry terms;
+  register_built_in(terms);
+  Registrar registrar;
+  registrar.attach(terms);
+  Calibration calibration = nominal_calibration(default_rig());
+  calibration.plate_terms = {neutral_parameters(terms.get("encoder.eccentricity")->info())};
+  for (const auto* name : {"range.step", "range.offset"}) {
+    calibration.lasers[2].terms.push_back(neutral_parameters(terms.get(name)->info()));
+  }
+  write_calibration(folder / "calibration.yaml", calibration);
+  auto stage = test::StageDriver::of<LoadCalibrationStage>(
+      {{"file", OptionScalar((folder / "calibration.yaml").string())}});
+  stage.run().registrar = &registrar;
+  stage.feed();
+  EXPECT_THAT(stage.report().warnings, ElementsAre(HasSubstr("laser3.range.step: what goes by the time")));
+  EXPECT_THAT(stage.report().lines, ElementsAre(HasSubstr("encoder.eccentricity: what goes by the plate's")));
 }
 
 }  // namespace

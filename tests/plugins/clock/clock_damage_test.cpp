@@ -24,6 +24,17 @@ TEST(ClockDamage, CountsLostTelegramsAndStillKnowsTheMirrorsPeriod) {
   EXPECT_LT(beam_time_errors(aligned, 0, laser, turns).worst, 25e-6);
 }
 
+TEST(ClockDamage, MissesNothingOfADeviceThatCountsNothing) {
+  auto readings = SimulatedPlate{}.readings(4, 10);
+  std::int64_t k = 0;
+  std::erase_if(readings, [&](const auto&) { return k++ % 7 == 3 || (k > 2000 && k < 4000); });
+  for (PlateReading& reading : readings) reading.numbered = false;
+  auto turns = three_lasers(4)[0].turns(4, 0, 10);
+  turns.erase(turns.begin() + 20, turns.begin() + 60);
+  for (auto& turn : turns) turn.scan.numbered = false;
+  for (const auto& device : align({turns}, readings).report.devices) EXPECT_EQ(device.lost, 0u);
+}
+
 TEST(ClockDamage, CutsAtAResetOfALaserAndGoesOnAfterIt) {
   SimulatedLaser laser;
   laser.beams = 2;

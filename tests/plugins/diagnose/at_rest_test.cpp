@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
+#include <random>
 
 #include "plugins/diagnose/noise_stage.hpp"
 #include "tests/support/stage_driver.hpp"
@@ -54,6 +56,43 @@ TEST(AtRest, ALaserThatMovesIsToldFromOneWithoutEchoes) {
     silent.add(scan);
   }
   EXPECT_THAT(why_nothing(silent), HasSubstr("no beam came back"));
+}
+
+/// Something 1 m nearer is before 8 beams, and walks on by a beam a scan; or hangs before one; or a share of
+/// all shots is anywhere.
+AtRest with(const std::function<bool(std::size_t scan, std::size_t beam)>& is_nearer) {
+  AtRest scans;
+  for (std::size_t i = 0; i < 60; ++i) {
+    Scan scan = scan_at(i);
+    for (std::size_t k = 0; k < 50; ++k) scan.echoes[0].ranges[k] -= is_nearer(i, k) ? 1.0F : 0.0F;
+    scans.add(scan);
+  }
+  return scans;
+}
+
+TEST(AtRest, WhatWalksByIsToldFromOutliersAndFromWhatFlickers) {
+  const auto walks = [](std::size_t scan, std::size_t beam) {
+    return beam >= 10 && beam < 30 && beam + 12 <= scan && scan < beam + 20;
+  };
+  const auto found = moved(with(walks).far_shots(), 1, 1);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->directions, 20U);
+  EXPECT_NEAR(found->share, 160.0 / 3000, 1e-9);
+  EXPECT_LT(found->p_value, 0.002);
+  const Finding finding = finding_of(*found);
+  EXPECT_EQ(finding.cause, "scene.moving");
+  EXPECT_TRUE(finding.accepted);
+  const auto rest = with(walks).errors(found->beams);
+  for (const float error : std::get<RangeErrors>(rest).value) EXPECT_LT(std::abs(error), 0.03);
+
+  std::mt19937 random(4);
+  const auto anywhere = [&](std::size_t, std::size_t) { return random() % 20 == 0; };
+  EXPECT_FALSE(moved(with(anywhere).far_shots(), 1, 1)) << "a twentieth of all shots";
+  const auto flickers = [](std::size_t scan, std::size_t beam) { return beam % 10 == 0 && scan % 3 == 0; };
+  EXPECT_FALSE(moved(with(flickers).far_shots(), 1, 1));
+  const auto all_at_once = [](std::size_t scan, std::size_t) { return scan > 50; };
+  EXPECT_FALSE(moved(with(all_at_once).far_shots(), 1, 1)) << "the laser itself";
+  EXPECT_FALSE(moved(with([](std::size_t, std::size_t) { return false; }).far_shots(), 1, 1));
 }
 
 TEST(PlateRest, APlateThatIsHeldShakesByASteps) {

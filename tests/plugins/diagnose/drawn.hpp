@@ -57,9 +57,8 @@ class Drawer {
     return record();
   }
 
-  /// Hides one of the errors that no term of the catalogue describes: `which` counts them.
+  /// Hides one of the errors that no term of the catalogue describes: see something_else.hpp.
   Drawn with_something_else(std::size_t which, double size);
-  static constexpr std::size_t kSomethingElse = 6;
 
  private:
   ScannerSettings& scanner() { return drawn_.recording.scanner; }
@@ -207,57 +206,5 @@ class Drawer {
   Scene scene_;
   Drawn drawn_;
 };
-
-/// Formulae of the test's own: of ranges, and of the angles that are reported.
-inline Drawn Drawer::with_something_else(std::size_t which, double size) {
-  const std::size_t laser = below(scanner().rig.lasers.size());
-  const double phase = uniform(0, 2 * std::numbers::pi);
-  const int order = 3 + static_cast<int>(below(2));
-  Drawn made = record();
-  Measurements& beams = made.recording.made.beams;
-  PlateTrajectory& plate = made.recording.made.plate;
-  const double sine = size * std::numbers::sqrt2;  // of this RMS
-  constexpr double kUsualRange = 3;                // [m]
-  const std::array<const char*, kSomethingElse> covariates = {"mirror angle", "plate angle",  "time",
-                                                              "range",        "mirror angle", "plate angle"};
-  made.covariate = covariates.at(which);
-  if (which == 5) {
-    std::vector<double> times;
-    std::vector<double> angles;
-    constexpr double kStep = 0.002;  // [s]
-    for (double t = beams.time.front() - 0.2; t < beams.time.back() + 0.2; t += kStep) {
-      const auto state = plate.at(t);
-      if (!state) continue;
-      times.push_back(t);
-      angles.push_back(state->angle + sine / kUsualRange * std::sin(order * state->angle + phase));
-    }
-    plate = PlateTrajectory(beams.epoch_ns, times, angles, 0.1);
-    return made;
-  }
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (beams.laser[i] != laser) continue;
-    const double mirror = double{beams.mirror_angle[i]};
-    const double turned = plate.at(beams.time[i]).value_or(PlateState{}).angle;
-    double error = 0;
-    switch (which) {
-      case 0:
-        error = sine * std::sin(order * mirror + phase);
-        break;
-      case 1:
-        error = sine * std::sin(order * turned + phase);
-        break;
-      case 2:
-        error = sine * std::sin(2 * std::numbers::pi * beams.time[i] / 5 + phase);
-        break;
-      case 3:
-        error = 2 * size * std::exp(-std::pow((double{beams.range[i]} - kUsualRange) / 0.7, 2));
-        break;
-      default:
-        beams.mirror_angle[i] += static_cast<float>(sine / kUsualRange * std::sin(order * mirror + phase));
-    }
-    beams.range[i] += static_cast<float>(error);
-  }
-  return made;
-}
 
 }  // namespace crisp::test

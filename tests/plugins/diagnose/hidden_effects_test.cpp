@@ -6,10 +6,11 @@
 #include <functional>
 #include <utility>
 
-#include "plugins/diagnose/held_out.hpp"
 #include "plugins/diagnose/report.hpp"
 #include "tests/plugins/diagnose/drawn.hpp"
 #include "tests/plugins/diagnose/hidden.hpp"
+#include "tests/plugins/diagnose/something_else.hpp"
+#include "tests/plugins/diagnose/true_gain.hpp"
 #include "tests/support/several_recordings.hpp"
 
 namespace crisp {
@@ -73,6 +74,12 @@ TEST(HiddenEffects, ACyclicErrorIsFoundWithItsPeriod) {
   EXPECT_LT(period->std_error, 0.01) << "m: no other period explains it as well";
 }
 
+const auto name_of_effect = [](const auto& effect) {
+  std::string name = effect.param.first;
+  std::ranges::replace(name, '.', '_');
+  return name;
+};
+
 /// A few of what hidden_trial draws: effect, owner, parameters, scene, rig and motion, all from the seed.
 class DrawnEffects : public testing::TestWithParam<std::pair<const char*, std::uint64_t>> {};
 
@@ -86,9 +93,12 @@ TEST_P(DrawnEffects, AreNamedWithTheirParameters) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(HiddenEffects, DrawnEffects,
-                         testing::Values(std::pair("encoder.backlash", 3302), std::pair("mirror.cone", 7302),
-                                         std::pair("mount.axial_offset", 10302)));
+INSTANTIATE_TEST_SUITE_P(
+    HiddenEffects, DrawnEffects,
+    testing::Values(std::pair("encoder.backlash", 3302), std::pair("encoder.second_harmonic", 5307),
+                    std::pair("mirror.cone", 7302), std::pair("mount.axial_offset", 10302),
+                    std::pair("plate.rocking", 14307), std::pair("range.intensity", 18307)),
+    name_of_effect);
 
 /// Drawn: the plate's foundation drifts by much and sways by little, so that the frequency of the sway is
 /// hardly told. By the curvature alone its error was eleven standard errors.
@@ -116,11 +126,6 @@ TEST(HiddenEffects, TwoAtOnceAreBothNamedAndEachPays) {
   }
 }
 
-double thickness_of(const HeldOut& held_out, const SensorModel& model) {
-  const auto score = held_out.score(model);
-  return HeldOut::gains(score, score).at(0).after;
-}
-
 /// Effects of about 8 mm RMS.
 class GainOnHeldOutTurns : public testing::TestWithParam<std::pair<const char*, std::vector<double>>> {};
 
@@ -132,17 +137,11 @@ TEST_P(GainOnHeldOutTurns, IsTheTrueOneAndLeavesACloudAsThinAsWithoutTheEffect) 
   const Gain gain = diagnosis.departures.at(0).gains.at(0);
   ASSERT_EQ(gain.metric, "cloud thickness");
 
-  const auto halves = [](const test::Recording& of) { return halves_of(covered(of.sample(), -0.05, 0.05)); };
-  const HeldOut with_effect(halves(recording), diagnosis.before.outcome.model, {});
-  const double truly_after =
-      thickness_of(with_effect, SensorModel(recording.scanner.truth, built_in_terms()));
-  EXPECT_GT(truly_after, gain.before + gain.ci95[0]);
-  EXPECT_LT(truly_after, gain.before + gain.ci95[1]);
-
-  const auto clean = test::hidden(41, 6, office(), {});
-  const SensorModel clean_truth(clean.scanner.truth, built_in_terms());
-  const double without_effect = thickness_of(HeldOut(halves(clean), clean_truth, {}), clean_truth);
-  EXPECT_NEAR(gain.after, without_effect, 0.03 * without_effect);
+  const auto truly =
+      test::true_thickness(recording, test::hidden(41, 6, office(), {}), diagnosis.before.outcome.model);
+  EXPECT_GT(truly.with_truth, gain.before + gain.ci95[0]);
+  EXPECT_LT(truly.with_truth, gain.before + gain.ci95[1]);
+  EXPECT_NEAR(gain.after, truly.clean, 0.03 * truly.clean);
   EXPECT_GT(gain.before, gain.after);
 }
 
@@ -150,11 +149,7 @@ INSTANTIATE_TEST_SUITE_P(HiddenEffects, GainOnHeldOutTurns,
                          testing::Values(std::pair("encoder.eccentricity", std::vector{0.003, -0.002}),
                                          std::pair("laser2.mirror.cone", std::vector{0.005}),
                                          std::pair("laser1.range.offset", std::vector{0.008})),
-                         [](const auto& effect) {
-                           std::string name = effect.param.first;
-                           std::ranges::replace(name, '.', '_');
-                           return name;
-                         });
+                         name_of_effect);
 
 TEST(HiddenEffects, ATimeBetweenBeamsIsOneOfAClass) {
   const auto recording = test::hidden(24, 10, office(), {{"laser1.timing.intra_scan", {2e-6}}});
@@ -211,6 +206,22 @@ TEST(HiddenEffects, WhatNoCauseExplainsStaysUnnamedWithItsCovariate) {
     EXPECT_FALSE(departure.accepted && departure.candidate.is_cause()) << departure.candidate.name;
   }
   EXPECT_EQ(diagnosis.departures[0].candidate.name, "laser2.empirical.range_by_mirror_angle");
+}
+
+TEST(HiddenEffects, ANameThatTakesAPartOfWhatNoShapeDescribesIsRefused) {
+  // A shock of a fifth of a second: shorter than any shape over the time.
+  constexpr std::uint64_t kSeed = 11742;
+  constexpr std::size_t kShock = 11;
+  const Diagnosis diagnosis =
+      test::diagnosed(test::Drawer(kSeed).with_something_else(kShock, 0.008).recording);
+  EXPECT_GE(std::ranges::count_if(diagnosis.departures, &Departure::leaves_more), 1);
+  for (const Departure& departure : diagnosis.departures) {
+    EXPECT_FALSE(departure.accepted && departure.candidate.is_cause()) << departure.candidate.name;
+  }
+  for (const auto& laser : diagnosis.after.outcome.model.calibration().lasers) {
+    for (const auto& term : laser.terms) EXPECT_TRUE(term.term.starts_with("empirical.")) << term.term;
+  }
+  EXPECT_LT(diagnosis.left_after.p_value, 0.01) << "what is left is told";
 }
 
 }  // namespace

@@ -9,8 +9,11 @@
 #include <map>
 #include <random>
 
+#include "pipeline/model/catalogue.hpp"
 #include "plugins/diagnose/common_change.hpp"
 #include "plugins/diagnose/likelihood_gain.hpp"
+#include "plugins/diagnose/noise_errors.hpp"
+#include "plugins/diagnose/noise_ways.hpp"
 
 namespace crisp {
 namespace {
@@ -82,9 +85,36 @@ TEST(Noise, AboutTwoValuesIsFoundWithTheirDistance) {
   const Finding& finding = found.findings[0];
   EXPECT_EQ(finding.cause, "noise.two_peaks");
   EXPECT_NEAR(value_of(finding, "separation"), 0.015, std::max(3 * error_of(finding, "separation"), 5e-4));
-  EXPECT_NEAR(value_of(finding, "least"), 0.2, 0.1);
-  EXPECT_NEAR(value_of(finding, "most"), 0.9, 0.1);
+  EXPECT_NEAR(value_of(finding, "least"), 0.2, 3 * error_of(finding, "least"));
+  EXPECT_NEAR(value_of(finding, "most"), 0.9, 3 * error_of(finding, "most"));
+  EXPECT_LT(error_of(finding, "least"), 0.02);
   EXPECT_GT(finding.gain.at(0).ci95[0], 0);
+}
+
+EffectParameter bounds_of(const std::string& effect, const std::string& parameter) {
+  TermRegistry terms;
+  register_built_in(terms);
+  const auto catalogue = effect_catalogue(terms);
+  const auto& parameters = std::ranges::find(catalogue, effect, &EffectInfo::name)->parameters;
+  return *std::ranges::find(parameters, parameter, &EffectParameter::name);
+}
+
+TEST(Noise, IsToldWithinTheBoundsOfTheCatalogue) {
+  const RangeErrors errors =
+      shots(11, 20, 40, [](Random& random, int, double) { return kSigma * normal(random); });
+  const auto ways = noise_ways(errors, kSigma);
+  const auto tails = std::ranges::find(ways, "noise.heavy_tail", &NoiseWay::cause);
+  ASSERT_NE(tails, ways.end());
+  NoiseLaw law{.tail_share = 0.002, .tail_scale = 1.5, .has_tail = true};
+  LawInParts fits{.law = law, .errors = errors, .times = {}, .places = {}};
+  law.tail_share = 0.004;
+  law.tail_scale = 3;
+  for (int part = 0; part < 20; ++part) fits.times.push_back({.share = 0.05, .law = law});
+  const auto told =
+      parameters_of(*tails, fits);  // all less what the fit is off by: 0.002 − 19 × 0.002, below 0
+  ASSERT_THAT(told, SizeIs(2));
+  EXPECT_EQ(told[0].value, bounds_of("noise.heavy_tail", "share").lower);
+  EXPECT_EQ(told[1].value, bounds_of("noise.heavy_tail", "scale").lower);
 }
 
 TEST(Noise, ThatGrowsWithTheRangeIsFoundWithItsSlope) {
@@ -237,6 +267,15 @@ TEST(Noise, OfAllBeamsTogetherIsAStepOrACreepingWithOdds) {
   const DoneTogether step = done_together(jumping, seconds, 1, 1);
   ASSERT_TRUE(step.change && step.change->is_step);
   EXPECT_FALSE(step.wander);
+  auto in_bursts = seconds;
+  for (std::size_t scan = 1; scan < in_bursts.size(); ++scan) {
+    if (scan % 4 != 0) in_bursts[scan] = in_bursts[scan - 1];
+  }
+  EXPECT_GE(done_together(drawn([](int scan) { return scan < 91 ? 0 : 0.003; }), in_bursts, 1, 1)
+                .change.value()
+                .shape_error,
+            0.019)
+      << "scans 90 and 91 came at once";
   // Means of 50 beams scatter by 1.1 mm; a straight line leaves 0.75 mm of the step: 200/2 lg 1.44 = 16.
   EXPECT_GT(step.change->log10_odds, 5);
   const Plot plot = common_plot("laser1", step, jumping, seconds);
@@ -250,6 +289,10 @@ TEST(Noise, OfAllBeamsTogetherIsAStepOrACreepingWithOdds) {
   ASSERT_TRUE(creeping.change && !creeping.change->is_step);
   EXPECT_GT(creeping.change->log10_odds, 2);
   EXPECT_FALSE(creeping.wander);
+  const auto quick =
+      done_together(drawn([](int scan) { return 0.02 * (1 - std::exp(-scan / 20.0)); }), seconds, 1, 1);
+  ASSERT_TRUE(quick.change && !quick.change->is_step);
+  EXPECT_GE(quick.change->shape, bounds_of("range.warmup", "T").lower) << "a tenth of the recording is 0.4 s";
 
   const auto slow = [](int scan) { return 0.003 * std::sin(2 * M_PI * scan / 130.0); };
   const DoneTogether wander = done_together(drawn(slow), seconds, 1, 1);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/profiles.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include <map>
+#include <string>
 
 #include "tests/plugins/diagnose/hidden.hpp"
 
@@ -105,6 +108,39 @@ TEST(SideBySide, KnowsHowMuchOfTheResidualsIsNoNoise) {
   const double most = 0.5 * 0.008 * 0.008;
   EXPECT_GT(beside(recording).excess, 0.5 * most) << "less what planes take of it";
   EXPECT_LT(beside(recording).excess, 1.1 * most);
+}
+
+TEST(SideBySide, SumsWhatIsUnexplainedOverLasersForEachCovariate) {
+  using testing::ElementsAre, testing::Pair, testing::DoubleNear;
+  const auto profile = [](const char* covariate, std::size_t laser, double rms, double p_value) {
+    return Profile{.covariate = covariate,
+                   .unit = "",
+                   .laser = laser,
+                   .bins = {},
+                   .share = 0.25,
+                   .rms = rms,
+                   .p_value = p_value};
+  };
+  const auto squares = [](double square) { return DoubleNear(square, 1e-12); };
+  SideBySide left;
+  EXPECT_TRUE(left.unexplained().empty());
+  left.profiles = {profile("time", 0, 0.002, 1e-9), profile("time", 1, 0.004, 1e-9),
+                   profile("range", 0, 0.003, 1e-9), profile("range", 1, 0.030, 0.02)};
+  EXPECT_THAT(left.unexplained(),
+              ElementsAre(Pair("range", squares(0.25 * 9e-6)), Pair("time", squares(0.25 * 20e-6))))
+      << "less what chance may have made";
+  EXPECT_THAT(left.unexplained(1), ElementsAre(Pair("time", squares(0.25 * 16e-6))));
+  EXPECT_TRUE(left.unexplained(2).empty()) << "nothing departs in its ranges";
+  left.profiles.push_back(profile("laser", kAllLasers, 0.001, 1e-9));
+  EXPECT_THAT(left.unexplained(2), ElementsAre(Pair("laser", squares(0.25 * 1e-6)))) << "lasers disagree";
+}
+
+TEST(SideBySide, KnowsOfEachProfileWhatShareOfTheBeamsIsInIt) {
+  const SideBySide left = beside(test::hidden(4, 3, office(), {}));
+  std::map<std::string, double> shares;
+  for (const Profile& profile : left.profiles) shares[profile.covariate] += profile.share;
+  ASSERT_TRUE(shares.contains("time") && shares.contains("laser"));
+  for (const auto& [covariate, share] : shares) EXPECT_NEAR(share, 1, 1e-9) << covariate;
 }
 
 TEST(SideBySide, GivesPlainNoiseAnyPValue) {

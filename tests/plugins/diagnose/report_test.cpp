@@ -96,6 +96,21 @@ TEST(Report, SaysOnceWhatATermWasRefusedFor) {
   EXPECT_THAT(over_the_mirror(reported(diagnosis)), SizeIs(1));
 }
 
+TEST(Report, SaysWhyACauseWasRefused) {
+  Diagnosis diagnosis = without_candidates(with_a_third_harmonic());
+  Departure departure{.candidate = {.owner = 2, .term = {.term = "range.step"}, .name = "laser3.range.step"},
+                      .look = {},
+                      .rivals = {},
+                      .gains = {},
+                      .accepted = false};
+  diagnosis.departures = {departure};
+  ASSERT_THAT(reported(diagnosis).findings, SizeIs(1));
+  EXPECT_THAT(in_words(reported(diagnosis).findings[0]), HasSubstr("refused: it does not pay on data"));
+  diagnosis.departures[0].leaves_more = true;
+  EXPECT_THAT(in_words(reported(diagnosis).findings[0]),
+              HasSubstr("refused: it takes less than what departs from the extended model"));
+}
+
 TEST(Report, HasNothingUnnamedThatChanceOrAWallsBumpsMayHaveMade) {
   const Diagnosis diagnosis = without_candidates(with_a_third_harmonic());
   Diagnosis chance = diagnosis;

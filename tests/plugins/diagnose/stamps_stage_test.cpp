@@ -59,6 +59,20 @@ TEST(StampsStage, FewStampsAreNoFacts) {
   }
 }
 
+TEST(StampsStage, SaysNothingOfAMirrorWhoseScansWereTimedByTheirNumber) {
+  const Told told = told_by(100, [](int, Scan& scan) {
+    scan.timed = false;
+    scan.scan_frequency = 4;
+  });
+  const DeviceFacts& facts = told.findings.devices.at(0);
+  EXPECT_TRUE(std::isfinite(facts.skew)) << "of its count";
+  EXPECT_TRUE(std::isnan(facts.period) && std::isnan(facts.period_std_error) && std::isnan(facts.wander));
+  ASSERT_EQ(told.findings.unobservable.size(), 1U);
+  EXPECT_EQ(told.findings.unobservable[0].parameter, "mirror.period of a");
+  EXPECT_THAT(told.findings.unobservable[0].reason, HasSubstr("nominal"));
+  EXPECT_THAT(told.report.lines, testing::Each(Not(testing::EndsWith("%"))));
+}
+
 TEST(StampsStage, TrustsAClockWithoutFault) {
   const Told told = told_by(200, [](int, Scan&) {});
   EXPECT_THAT(told.report.doubts, IsEmpty());
@@ -80,6 +94,24 @@ TEST(StampsStage, OneWrongReceiptIsNotTrusted) {
 TEST(StampsStage, ReceiptsThatStandStillAreNotTrusted) {
   const Told told = told_by(46, [&](int, Scan& scan) { scan.receipt_ns = kFirst_ns; });
   EXPECT_THAT(told.report.doubts, ElementsAre(HasSubstr("no steady clock")));
+}
+
+TEST(StampsStage, SaysWhatElseAStepCouldBeAndTheOddsAgainstIt) {
+  const Told told = told_by(1000, [](int k, Scan& scan) {
+    if (k >= 400) scan.receipt_ns += 30'000'000;
+  });
+  ASSERT_EQ(told.findings.findings.size(), 1U);
+  const Finding& finding = told.findings.findings[0];
+  EXPECT_EQ(finding.cause, "latency.step");
+  std::vector<std::string> others;
+  for (const OtherCause& other : finding.alternatives) {
+    others.push_back(other.cause);
+    EXPECT_EQ(other.scope, "a");
+    EXPECT_GE(other.log10_odds, finding.log10_odds) << "against the likeliest, or none at all";
+  }
+  EXPECT_THAT(others, testing::UnorderedElementsAre("clock.drift", "clock.step"));
+  EXPECT_GT(finding.log10_odds, 2);
+  EXPECT_THAT(finding.confounded_with, IsEmpty());
 }
 
 TEST(StampsStage, NamesNoDepartureWithoutASize) {

@@ -5,7 +5,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
 
+#include "pipeline/data/robust.hpp"
+#include "plugins/diagnose/device_jumps.hpp"
 #include "plugins/diagnose/stamps_plots.hpp"
 #include "tests/support/simulated_stamps.hpp"
 
@@ -138,6 +143,48 @@ TEST(Stamps, OfABacklogThatIsCaughtUpAreNotTakenForALinkThatBecameShorter) {
     const auto as_they_were = without_step(track.stamps(), *found);
     EXPECT_EQ(as_they_were.front().stamp.lead, track.stamps().front().stamp.lead);
   }
+}
+
+TEST(Stamps, GiveTheOddsAgainstEveryOtherWay) {
+  using Kind = ClockDeparture::Kind;
+  const auto rivals = [](const Hidden& hidden) {
+    const auto found = clock_departure(track_of(3, hidden, kDelays).stamps(), 4, 1);
+    std::map<std::optional<Kind>, double> odds;
+    for (const auto& rival : found->rivals) odds[rival.kind] = rival.log10_odds;
+    EXPECT_TRUE(std::ranges::is_sorted(found->rivals, {}, &ClockDeparture::Rival::log10_odds));
+    return odds;
+  };
+  for (const auto& [what, hidden, others] :
+       {std::tuple{"drift", Hidden{.drift = 2e-6}, std::set<std::optional<Kind>>{{}, Kind::latency_step}},
+        {"clock", Hidden{.clock_step = 0.004, .at = 20}, {{}, Kind::drift, Kind::latency_step}},
+        {"link", Hidden{.latency_step = 0.004, .at = 20}, {{}, Kind::drift, Kind::clock_step}}}) {
+    const auto odds = rivals(hidden);
+    ASSERT_EQ(odds.size(), others.size()) << what;
+    for (const auto& [kind, log10_odds] : odds) {
+      EXPECT_TRUE(others.contains(kind)) << what;
+      EXPECT_GT(log10_odds, 2) << what << ": a hundred to one";
+    }
+  }
+  // Forty times the interval's spread on a side, in place of four thousand.
+  const double small = rivals({.latency_step = 0.00004, .at = 20})[Kind::clock_step];
+  EXPECT_GT(small, 2);
+  EXPECT_LT(small, rivals({.latency_step = 0.004, .at = 20})[Kind::clock_step]);
+}
+
+TEST(Stamps, TellAJumpOfAClockByTheSpreadOfItsIntervals) {
+  std::vector<CountedStamp> stamps;
+  constexpr double kSpread = 1e-4;  // [s] by turns early and late
+  for (int k = 0; k < 60; ++k) {
+    const double late = (k % 2 == 0 ? 0.5 : -0.5) * kSpread + (k < 30 ? 0 : 3 * kSpread);
+    stamps.push_back({.count = k, .stamp = {.device = 0.02 * k + late, .lead = 0}});
+  }
+  // Student's density at 3 and at 0 widths: 2 log10(1 + 9/3) ...
+  const double width = kSigmaByMedian * kSpread;
+  const double jump = device_jump(stamps, 30);
+  EXPECT_NEAR(log10_odds_of_jump(stamps, 30, jump), 2 * std::log10(1 + std::pow(jump / width, 2) / 3), 1e-9);
+  EXPECT_NEAR(log10_odds_of_jump(stamps, 30, 2 * jump), 0, 1e-9) << "half-way between the two";
+  EXPECT_LT(log10_odds_of_jump(stamps, 20, 3 * kSpread), 0) << "where nothing jumps";
+  EXPECT_EQ(largest_device_jump(stamps, 1, 60), 30U);
 }
 
 TEST(Stamps, GiveTheUsualOfAClock) {

@@ -10,6 +10,8 @@
 #include <random>
 
 #include "plugins/diagnose/noise.hpp"
+#include "plugins/diagnose/report.hpp"
+#include "tests/support/kolmogorov.hpp"
 
 namespace crisp {
 namespace {
@@ -60,28 +62,14 @@ NoiseLaw with_two_peaks() {
   return law;
 }
 
-/// The largest difference of their distribution from an even one.
-double kolmogorov(std::vector<double> chances) {
-  std::ranges::sort(chances);
-  double most = 0;
-  for (std::size_t k = 0; k < chances.size(); ++k) {
-    for (const std::size_t below : {k, k + 1}) {
-      const double share = static_cast<double>(below) / static_cast<double>(chances.size());
-      most = std::max(most, std::abs(chances[k] - share));
-    }
-  }
-  return most;
-}
-
 /// Whether ranges of a law are told from it as often as chance has it.
 void expect_even(const NoiseLaw& like, const Error& error) {
   constexpr int kSeeds = 16;
-  constexpr double kOneInAHundred = 1.63;  // √n times what is met that often
   std::vector<double> chances;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     chances.push_back(beside_law(shots(seed, error), like, {}, BeamsOf::kLaserAtRest, 1).p_value);
   }
-  EXPECT_LT(kolmogorov(chances) * std::sqrt(kSeeds), kOneInAHundred) << ::testing::PrintToString(chances);
+  EXPECT_LT(test::unevenness(chances), test::kUnevenOnceInAHundred) << ::testing::PrintToString(chances);
 }
 
 TEST(ToldApart, PlainRangesAreAsOftenAsChanceHasIt) { expect_even({}, plain); }
@@ -106,7 +94,7 @@ TEST(ToldApart, SpreadsOfEachBeamsOwnAreNoLawsOfTheSimulator) {
   ASSERT_TRUE(found.has_relative());
   const ToldApart told = told_apart("laser1", measured, found, {}, BeamsOf::kLaserAtRest, 1);
   EXPECT_LT(told.after.p_value, 1e-12);
-  const RangeLook worst = *std::ranges::min_element(told.after.looks, {}, &RangeLook::p_value);
+  const LikenessLook worst = *std::ranges::min_element(told.after.looks, {}, &LikenessLook::p_value);
   EXPECT_EQ(worst.quantity, "noise");
   EXPECT_EQ(worst.covariate, "beam");
   // About √(4² + 8²) / √2 = 6.3 mm, beams scatter by 2.3 mm less or 1.7 mm more: 2.0 mm RMS.
@@ -120,7 +108,7 @@ TEST(ToldApart, AJumpOfAllRangesIsTheSimulatorsOnceThatIsFound) {
       shots(5, [&](Random& random, int, int scan) { return 4e-3 * standard(random) + jump[scan]; });
   const ToldApart told = told_apart("laser1", measured, {}, jump, BeamsOf::kLaserAtRest, 1);
   EXPECT_LT(told.before.p_value, 1e-6);
-  const RangeLook worst = *std::ranges::min_element(told.before.looks, {}, &RangeLook::p_value);
+  const LikenessLook worst = *std::ranges::min_element(told.before.looks, {}, &LikenessLook::p_value);
   EXPECT_EQ(worst.quantity, "range");
   EXPECT_EQ(worst.covariate, "time");
   EXPECT_NEAR(worst.amplitude, 1e-3, 0.25e-3);  // three errors: of 50 means, each known to 0.5 mm
@@ -131,9 +119,9 @@ TEST(ToldApart, RangesThatFollowOneAnotherAreNot) {
   double last = 0;
   const RangeErrors measured =
       shots(6, [&](Random& random, int, int) { return last = 0.2 * last + 4e-3 * standard(random); });
-  const BesideLaw told = beside_law(measured, {}, {}, BeamsOf::kLaserAtRest, 1);
+  const Likeness told = beside_law(measured, {}, {}, BeamsOf::kLaserAtRest, 1);
   EXPECT_LT(told.p_value, 1e-6);
-  const RangeLook worst = *std::ranges::min_element(told.looks, {}, &RangeLook::p_value);
+  const LikenessLook worst = *std::ranges::min_element(told.looks, {}, &LikenessLook::p_value);
   EXPECT_EQ(worst.covariate, "next scan");
   EXPECT_NEAR(worst.amplitude, 0.2, 0.05);
 }
@@ -146,26 +134,27 @@ TEST(ToldApart, RangesOfASingleBeamAreLookedAtAsWell) {
 
 TEST(ToldApart, ADevicesStepsAreSimulatedToo) {
   constexpr double kStep = 8e-3;  // two standard deviations
-  const BesideLaw told = beside_law(shots(7, plain, kStep), {}, {}, BeamsOf::kLaserAtRest, 1);
+  const Likeness told = beside_law(shots(7, plain, kStep), {}, {}, BeamsOf::kLaserAtRest, 1);
   EXPECT_GT(told.p_value, 0.05);
 }
 
-TEST(ToldApart, OfSeveralLasersTheWorstCountsAsOneOfThem) {
-  const auto one = [](double before, double after) {
-    return ToldApart{.laser = "laser1",
-                     .before = {.looks = {{.covariate = "beam", .p_value = before}}, .p_value = before},
-                     .after = {.looks = {{.covariate = "beam", .p_value = after}}, .p_value = after}};
-  };
+TEST(ToldApart, WhatNothingExplainsIsUnnamedOnce) {
+  const Likeness left{.looks = {{"remission", "range", "m", 0.0028, 1e-30},
+                                {"next beam", "correlation", "1", 0.18, 1e-20},
+                                {"beam", "noise", "m", 0.002, 1e-9},
+                                {"time", "noise", "m", 0.001, 0.05}},
+                      .p_value = 1e-30};
   Findings all;
-  add_likeness({one(0.1, 0.5), one(1e-9, 0.2)}, all);
-  EXPECT_NEAR(all.before_p, 2e-9, 1e-15);
-  EXPECT_NEAR(all.after_p, 0.36, 1e-12);  // 1 − 0.8²
-  ASSERT_EQ(all.departures.size(), 1U);
-  EXPECT_NEAR(all.departures[0].p_value, 2e-9, 1e-15);
-  EXPECT_NEAR(all.departures[0].p_value_after, 0.36, 1e-12);
-  Findings none;
-  add_likeness({}, none);
-  EXPECT_TRUE(std::isnan(none.before_p)) << "nobody compared";
+  all.unnamed = {{.covariate = "beam", .quantity = "noise", .scope = "laser1"}};
+  add_left_over("laser1", left, 3, all);
+  ASSERT_EQ(all.unnamed.size(), 3U) << "the beams' own noise is known, and one look may be chance";
+  EXPECT_EQ(all.unnamed[1].covariate, "remission");
+  EXPECT_EQ(all.unnamed[1].amplitude, 0.0028);
+  EXPECT_EQ(all.unnamed[2].covariate, "next beam");
+  EXPECT_EQ(all.unnamed[2].unit, "1");
+  EXPECT_NE(headline(all.unnamed[2]).find("correlation of laser1 depends on the next beam, by 0.180"),
+            std::string::npos);
+  EXPECT_FALSE(all.unnamed[2].accepted);
 }
 
 }  // namespace

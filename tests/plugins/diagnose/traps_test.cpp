@@ -2,6 +2,12 @@
 // Ways in which a diagnosis of this kind deceives itself, each on a recording in which it would.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "plugins/diagnose/evidence.hpp"
 #include "plugins/diagnose/held_out.hpp"
 #include "plugins/diagnose/profiles.hpp"
@@ -110,6 +116,30 @@ TEST(Traps, PointsAreNotChosenByTheModelThatIsJudged) {
   const auto likelihood = std::ranges::find(gains, HeldOut::kLikelihood, &Gain::metric);
   EXPECT_LT(likelihood->ci95[1], 0);
 }
+
+class CommonCauses : public testing::TestWithParam<std::pair<const char*, std::vector<double>>> {};
+
+TEST_P(CommonCauses, AreNamedOfEachLaser) {
+  // Of lasers of one make: views of a patch agree all the same, and mended in one laser alone, lasers do not.
+  const auto& [term, values] = GetParam();
+  std::map<std::string, std::vector<double>> effects;
+  for (const std::string laser : {"laser1.", "laser2.", "laser3."}) effects[laser + term] = values;
+  const Diagnosis diagnosis = test::diagnosed(test::hidden(24, 10, office(), effects));
+  std::vector<std::string> names;
+  for (const auto& [name, value] : effects) names.push_back(name);
+  EXPECT_THAT(test::names_in(diagnosis), testing::UnorderedElementsAreArray(names));
+  EXPECT_GT(diagnosis.left_after.p_value, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Traps, CommonCauses,
+                         testing::Values(std::pair("range.offset", std::vector{0.02}),
+                                         std::pair("range.warmup", std::vector{0.02, 3.0}),
+                                         std::pair("range.incidence", std::vector{0.047, 0.06})),
+                         [](const auto& cause) {
+                           std::string name = cause.param.first;
+                           std::ranges::replace(name, '.', '_');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace crisp

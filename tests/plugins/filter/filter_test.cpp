@@ -65,17 +65,46 @@ TEST(Voxel, KeepsOnePointInEachCellOfADenseCube) {
   int kept = 0;
   for (int i = 0; i < 40 * 40 * 40; ++i) {
     const auto coordinate = [](int step) { return (static_cast<float>(step) + 0.5F) / 10 - 2; };
-    kept += voxels.is_first(coordinate(i % 40), coordinate(i / 40 % 40), coordinate(i / 1600)) ? 1 : 0;
+    const auto found = voxels.put(coordinate(i % 40), coordinate(i / 40 % 40), coordinate(i / 1600));
+    kept += found == InVoxel::first ? 1 : 0;
   }
   EXPECT_EQ(kept, 4 * 4 * 4);
 }
 
 TEST(Voxel, PointsThatHaveNoCellAreNotKept) {
   Voxels voxels(1e-4);
-  EXPECT_FALSE(voxels.is_first(kNan, 0, 0));
-  EXPECT_FALSE(voxels.is_first(0, std::numeric_limits<float>::infinity(), 0));
-  EXPECT_FALSE(voxels.is_first(0, 0, -3e5F));
-  EXPECT_TRUE(voxels.is_first(0, 0, -2e5F));
+  EXPECT_EQ(voxels.put(0, kNan, 0), InVoxel::nowhere);
+  EXPECT_EQ(voxels.put(0, std::numeric_limits<float>::infinity(), 0), InVoxel::too_far);
+  EXPECT_EQ(voxels.put(0, 0, -3e5F), InVoxel::too_far);
+  EXPECT_EQ(voxels.put(0, 0, -2e5F), InVoxel::first);
+}
+
+TEST(Voxel, PointsBeyondTheGridAreALossOfTheirOwnAndWarnedOf) {
+  auto stage = StageDriver::of<VoxelStage>({{"size", OptionScalar(1e-3)}});
+  stage.feed(cloud_of({point_at(0, 0, 1, 1), point_at(0, 0, 1, 2), point_at(0, 5e9F, 0, 3)}));
+  stage.feed(cloud_of({point_at(1e30F, 0, 1, 4), point_at(0, 0, 2, 5), point_at(kNan, 0, 1, 6)}));
+  stage.finish();
+  EXPECT_EQ(stage.report().counts.at("points whose place is no number"), 1U);
+  EXPECT_EQ(stage.report().counts.at("points in a cell that had one"), 1U);
+  EXPECT_EQ(stage.report().counts.at("points too far away for this grid"), 2U);
+  ASSERT_EQ(stage.report().warnings.size(), 1U);
+  EXPECT_THAT(stage.report().warnings[0], testing::HasSubstr("2 points are dropped that are 2.15e+03 km"));
+}
+
+TEST(Voxel, ThePclFilterRefusesAnEdgeThatIsNoLengthAndCountsWhatHasNoVoxel) {
+  FirstInVoxel<pcl::PointXYZ> filter;
+  for (const double size :
+       {0.0, -0.05, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(filter.setLeafSize(size), Error) << size;
+  }
+  EXPECT_EQ(filter.getLeafSize(), 0.05) << "what was refused changes nothing";
+  const auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  for (const float x : {0.1F, 1e30F, 0.2F}) cloud->push_back({x, 0, 0});
+  filter.setInputCloud(cloud);
+  pcl::PointCloud<pcl::PointXYZ> thinned;
+  filter.filter(thinned);
+  EXPECT_EQ(thinned.size(), 2U);
+  EXPECT_EQ(filter.getTooFar(), 1U);
 }
 
 TEST(Voxel, ThePclFilterThinsAnyCloudAndHeedsItsIndices) {

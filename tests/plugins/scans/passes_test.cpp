@@ -53,6 +53,13 @@ TEST(PassShift, IsFoundBetweenStepsInNoiseLargerThanWhatAStepChanges) {
   EXPECT_GT(found.constant_p, 0.01);
 }
 
+TEST(PassShift, ComesBackBetweenStepsAsOnThem) {
+  const auto passes = up_and_down(0);
+  for (const auto& [put_in, answer] : find_shift(passes[0], passes[1], 1).answers) {
+    EXPECT_NEAR(answer, put_in, 0.05 * kStep) << "of " << put_in / kStep << " steps";
+  }
+}
+
 TEST(PassShift, PaysOnAnglesThatItWasNotFoundIn) {
   const auto passes = up_and_down(2 * kStep);
   const auto found = find_shift(passes[0], passes[1], 1);

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
 
 #include "plugins/scans/passes_stage.hpp"
 #include "plugins/scans/rest_stage.hpp"
@@ -55,6 +59,11 @@ TEST(DiagnoseRestStage, NamesInterleavedBeamsAndGivesScansWithTheirTrueAngles) {
   const Finding& found = findings[0]->findings[0];
   EXPECT_EQ(found.cause, "mirror.interleave");
   EXPECT_NEAR(found.parameters[0].value, 0.5 * kDegree, 3 * found.parameters[0].std_error + 0.005 * kDegree);
+  EXPECT_LT(findings[0]->before_p, 0.001);
+  EXPECT_GT(findings[0]->after_p, 0.01);
+  ASSERT_THAT(findings[0]->departures, SizeIs(1));
+  EXPECT_EQ(findings[0]->departures[0].covariate, "count of scans");
+  EXPECT_EQ(findings[0]->departures[0].p_value_after, findings[0]->after_p);
   ASSERT_THAT(found.gain, SizeIs(2)) << "at rest and in the sweep";
   EXPECT_LT(found.gain[1].ci95[1], 0);
   const auto scans = stage.given<Scan>();
@@ -71,6 +80,9 @@ TEST(DiagnoseRestStage, LeavesScansThatAreAlikeAsTheyAre) {
   stage.finish();
   EXPECT_THAT(stage.given<Findings>().at(0)->findings, IsEmpty());
   EXPECT_THAT(stage.given<Findings>().at(0)->unnamed, IsEmpty());
+  EXPECT_THAT(stage.given<Findings>().at(0)->departures, IsEmpty());
+  EXPECT_GT(stage.given<Findings>().at(0)->before_p, 0.01);
+  EXPECT_EQ(stage.given<Findings>().at(0)->after_p, stage.given<Findings>().at(0)->before_p);
   for (const auto& scan : stage.given<Scan>()) EXPECT_DOUBLE_EQ(scan->start_angle, 20 * kDegree);
 }
 
@@ -88,6 +100,29 @@ TEST(DiagnoseSweepStage, NamesBurstsAndCallsACommonLagUnobservable) {
   EXPECT_EQ(findings.findings[0].cause, "latency.bursts");
   EXPECT_TRUE(findings.findings[0].accepted);
   EXPECT_GT(findings.findings[0].gain.at(0).before, 2 * findings.findings[0].gain.at(0).after);
+  EXPECT_LT(findings.before_p, 0.01);
+  EXPECT_GT(findings.after_p, 0.01);
+  EXPECT_THAT(findings.unobservable, ElementsAre(Field(&Unobservable::parameter, "laser1.eta"),
+                                                 Field(&Unobservable::parameter, "laser1.tau"),
+                                                 Field(&Unobservable::parameter, "laser1.alpha")));
+}
+
+TEST(DiagnoseSweepStage, NamesBurstsWithoutASweepToo) {
+  auto stage = driver<DiagnoseSweepStage>();
+  test::TiltingScene scene(0.005);
+  for (std::uint16_t i = 0; i < 100; ++i) {
+    const double receipt = kScanPeriod * (i + 1 - i % 2) - (i % 2 == 0 ? 0.001 : 0);
+    stage.feed(test::reading_at(60 * kDegree, receipt));
+    stage.feed(std::shared_ptr<const Scan>(scene.scan(60 * kDegree, 20 * kDegree, 140, i, receipt)));
+  }
+  stage.feed(even_clock());
+  stage.finish();
+  const auto& findings = *stage.given<Findings>().at(0);
+  ASSERT_THAT(findings.findings, SizeIs(1));
+  EXPECT_EQ(findings.findings[0].cause, "latency.bursts");
+  EXPECT_FALSE(findings.findings[0].accepted) << "no range says that stamps are better";
+  EXPECT_EQ(findings.findings[0].refusal(), "no sweep says whether its stamps time its scans better");
+  EXPECT_THAT(findings.findings[0].gain, IsEmpty());
   EXPECT_THAT(findings.unobservable, ElementsAre(Field(&Unobservable::parameter, "laser1.eta"),
                                                  Field(&Unobservable::parameter, "laser1.tau"),
                                                  Field(&Unobservable::parameter, "laser1.alpha")));
@@ -99,6 +134,7 @@ TEST(DiagnoseSweepStage, FindsNothingInScansThatComeEvenly) {
   stage.feed(even_clock());
   stage.finish();
   EXPECT_THAT(stage.given<Findings>().at(0)->findings, IsEmpty());
+  EXPECT_GT(stage.given<Findings>().at(0)->before_p, 0.01);
 }
 
 TEST(DiagnosePassesStage, SaysThatASingleSweepTellsNothing) {
@@ -108,6 +144,7 @@ TEST(DiagnosePassesStage, SaysThatASingleSweepTellsNothing) {
   stage.finish();
   EXPECT_THAT(stage.given<Findings>().at(0)->unobservable,
               ElementsAre(Field(&Unobservable::reason, HasSubstr("goes only one way"))));
+  EXPECT_TRUE(std::isnan(stage.given<Findings>().at(0)->before_p)) << "nothing was compared";
   EXPECT_THAT(stage.given<PlateTrajectory>(), SizeIs(1));
 }
 
@@ -146,31 +183,57 @@ TEST(DiagnosePassesStage, AnActuatorAtRestDoesNotGoOneWay) {
               ElementsAre(Field(&Unobservable::reason, HasSubstr("is never on its way for"))));
 }
 
-TEST(DiagnosePassesStage, NamesPlayTogetherWithALagAndMendsHalfOfItOnEitherWay) {
-  constexpr double kStep = 0.1 * kDegree;
+constexpr double kActuatorStep = 0.1 * kDegree;  // of the actuator
+
+/// Feeds 500 steps up and 500 down, and ends.
+/// @param behind  steps that the actuator is behind what is read on the way down, so many steps up
+/// @return what is read, scan by scan
+std::vector<double> feed_up_and_down(test::StageDriver& stage, const std::function<double(int at)>& behind) {
   test::TiltingScene scene(0.01);
-  auto stage = driver<DiagnosePassesStage>();
   std::vector<double> times, angles;
   for (int i = 0; i < 1000; ++i) {
     const bool up = i <= 500;
-    const double read = 30 * kDegree + (up ? i : 1000 - i) * kStep;
+    const int at = up ? i : 1000 - i;
+    const double read = 30 * kDegree + at * kActuatorStep;
     times.push_back(0.1 * i);
     angles.push_back(read);
     stage.feed(test::reading_at(read, times.back()));
-    stage.feed(std::shared_ptr<const Scan>(scene.scan(read - (up ? 0 : 2 * kStep), 20 * kDegree, 140,
-                                                      static_cast<std::uint16_t>(i), times.back())));
+    stage.feed(
+        std::shared_ptr<const Scan>(scene.scan(read - (up ? 0 : behind(at) * kActuatorStep), 20 * kDegree,
+                                               140, static_cast<std::uint16_t>(i), times.back())));
   }
   stage.feed(PlateTrajectory(0, times, angles, 1));
   stage.finish();
+  return angles;
+}
+
+TEST(DiagnosePassesStage, NamesPlayTogetherWithALagAndMendsHalfOfItOnEitherWay) {
+  auto stage = driver<DiagnosePassesStage>();
+  const std::vector<double> angles = feed_up_and_down(stage, [](int) { return 2; });
   const auto& findings = *stage.given<Findings>().at(0);
   ASSERT_THAT(findings.findings, SizeIs(1)) << stage.report().lines.at(0);
   const Finding& found = findings.findings[0];
   EXPECT_EQ(found.cause, "encoder.backlash");
   EXPECT_THAT(found.confounded_with, ElementsAre("laser1.eta"));
-  EXPECT_NEAR(found.parameters[0].value, kStep, 3 * found.parameters[0].std_error + 0.02 * kStep);
+  EXPECT_NEAR(found.parameters[0].value, kActuatorStep,
+              3 * found.parameters[0].std_error + 0.02 * kActuatorStep);
+  EXPECT_GT(found.log10_odds, 6) << "against none";
+  EXPECT_LT(found.p_value, 1e-6);
+  EXPECT_LT(findings.before_p, 1e-6);
+  EXPECT_GT(findings.after_p, 0.01);
   const auto mended = stage.given<PlateTrajectory>().at(0);
-  EXPECT_NEAR(mended->angles()[200] - angles[200], kStep, 0.2 * kStep);
-  EXPECT_NEAR(mended->angles()[700] - angles[700], -kStep, 0.2 * kStep);
+  EXPECT_NEAR(mended->angles()[200] - angles[200], kActuatorStep, 0.2 * kActuatorStep);
+  EXPECT_NEAR(mended->angles()[700] - angles[700], -kActuatorStep, 0.2 * kActuatorStep);
+}
+
+TEST(DiagnosePassesStage, AShiftThatIsNotTheSameEverywhereHasThePThatItSays) {
+  auto stage = driver<DiagnosePassesStage>();
+  feed_up_and_down(stage, [](int at) { return 3.0 * at / 500; });
+  const auto& findings = *stage.given<Findings>().at(0);
+  ASSERT_THAT(findings.unnamed, SizeIs(1)) << stage.report().lines.at(0);
+  EXPECT_EQ(findings.unnamed[0].p_value, stage.report().section["laser1"]["constant_p"]);
+  EXPECT_THAT(stage.report().lines.at(0),
+              HasSubstr(fmt::format("p {:.3g} that it is the same", findings.unnamed[0].p_value)));
 }
 
 }  // namespace

@@ -50,6 +50,23 @@ TEST(WriteClouds, KeepsAsManyOfTheLastAsItIsTold) {
   EXPECT_THAT(stage.report().written, testing::ElementsAre(folder / "c_0004.pcd", folder / "c_0005.pcd"));
 }
 
+TEST(WriteClouds, ThoseOfAnEarlierLongerRunAreRemovedWithTheirRecords) {
+  const test::TemporaryFolder folder;
+  const auto write = [&](int clouds) {
+    auto stage = test::StageDriver::of<WriteCloudsStage>({{"file", text(folder / "c.pcd")}});
+    for (int i = 0; i < clouds; ++i) stage.feed(cloud_of(1));
+    stage.finish();
+  };
+  write(3);
+  std::ofstream(folder / "c_0003.pcd.provenance.json") << "{}";
+  std::ofstream(folder / "c_0004.pcd") << "of another program";
+  write(2);
+  EXPECT_TRUE(fs::exists(folder / "c_0002.pcd"));
+  EXPECT_FALSE(fs::exists(folder / "c_0003.pcd"));
+  EXPECT_FALSE(fs::exists(folder / "c_0003.pcd.provenance.json"));
+  EXPECT_TRUE(fs::exists(folder / "c_0004.pcd"));
+}
+
 TEST(WriteClouds, EndsWithoutThePipelineWhereItCannotWrite) {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "taken") << "a file, no folder";

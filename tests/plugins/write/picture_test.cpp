@@ -85,6 +85,19 @@ TEST(Picture, IsAPngThatHoldsWhatWasDrawn) {
   EXPECT_EQ(driver.report().written.size(), 1U);
 }
 
+TEST(Picture, ThatWouldBeEmptyIsNotWritten) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "picture.png";
+  write_file(file, "of an earlier run");
+  write_file(file.string() + ".provenance.json", "{}");
+  auto driver = test::StageDriver::of<WritePictureStage>({{"file", OptionScalar(file.string())}});
+  driver.feed(cloud_of({{1000, 0, 0}}, 1));
+  driver.finish();
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nor is one left that shows something else";
+  EXPECT_TRUE(driver.report().written.empty());
+  EXPECT_THAT(driver.report().warnings, testing::ElementsAre(testing::HasSubstr("no point lies in")));
+}
+
 TEST(Picture, OfNothingIsAnError) {
   auto driver = test::StageDriver::of<WritePictureStage>({{"file", OptionScalar(std::string("x.png"))}});
   EXPECT_THROW(driver.finish(), Error);

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/loss_warnings.hpp"
+
+#include <fmt/format.h>
+
+#include "grabbers/capture/capture_report.hpp"
+#include "grabbers/capture/packet.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kTolerable = 0.01;  // share lost of which nobody needs to be told
+
+double share(std::uint64_t lost, std::uint64_t all) {
+  return all == 0 ? 0 : static_cast<double>(lost) / static_cast<double>(all);
+}
+
+}  // namespace
+
+std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, const std::string& source) {
+  std::vector<std::string> warnings;
+  const auto warn = [&](const std::string& what) {
+    warnings.push_back(source.empty() ? what : source + ": " + what);
+  };
+  if (const auto cut_off = statistics.losses.of(file_loss::kCutOff); cut_off > 0) {
+    warn(fmt::format("the file ends {} bytes into a record: the recording or the copy was cut short",
+                     cut_off));
+  }
+  const auto skipped = statistics.losses.of(file_loss::kSkippedBytes);
+  if (const auto part = share(skipped, statistics.file_bytes); part > kTolerable) {
+    warn(fmt::format("{:.1f} % of the file ({} bytes) are damaged and were skipped; is there a good copy?",
+                     100 * part, skipped));
+  }
+  for (const auto& device : statistics.devices) {
+    const auto lost = never_came(device);
+    const auto sent = device.items + lost;
+    if (device.name.empty() || share(lost, sent) <= kTolerable) continue;
+    const bool laser = device.kind == DeviceKind::Laser;
+    warn(
+        fmt::format("{:.1f} % of what {} sent ({} of {} {}) never came, by its own count: look after the "
+                    "cable, the switch and how busy the hub is, or for a good copy",
+                    100 * share(lost, sent), title(device), lost, sent, laser ? "scans" : "readings"));
+  }
+  return warnings;
+}
+
+}  // namespace crisp

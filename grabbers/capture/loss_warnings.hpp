@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "grabbers/capture/capture_statistics.hpp"
+
+namespace crisp {
+
+/// What a person should know of a source before trusting what is made of it: each device of the rig of which
+/// more than one item in a hundred never came, and a file that is damaged to that degree or ends too early.
+/// @param source  what the warnings call it: the file's name; empty for devices that are live
+std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, const std::string& source = "");
+
+}  // namespace crisp

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+/// Does something, and hands each Error that it throws to `tell`.
+template <class Action, class Tell>
+void for_each_error(Action&& action, Tell&& tell) {
+  try {
+    action();
+  } catch (const Errors& several) {
+    for (const auto& error : several.all()) tell(error);
+  } catch (const Error& error) {
+    tell(error);
+  }
+}
+
+/// Errors that are told together.
+class AllErrors {
+ public:
+  /// Does something, and keeps each Error that it throws.
+  template <class Action>
+  void keep_of(Action&& action) {
+    for_each_error(action, [&](const Error& error) { errors_.push_back(error); });
+  }
+  /// @throws Errors  all that were kept, if there are any
+  void throw_any() {
+    if (!errors_.empty()) throw Errors(std::move(errors_));
+  }
+
+ private:
+  std::vector<Error> errors_;
+};
+
+/// Makes checks that do not build on each other, so that people are told of all mistakes at once.
+/// @throws Errors  all that any of them threw
+template <class... Checks>
+void check_all(Checks&&... checks) {
+  AllErrors errors;
+  (errors.keep_of(checks), ...);
+  errors.throw_any();
+}
+
+}  // namespace crisp

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/yaml.hpp"
+
+namespace crisp {
+
+/// How a run of the program ended, and what it said.
+struct Outcome {
+  int status = -1;
+  std::string out;
+  std::string error;
+};
+
+/// Runs the program as people do, in a folder of its own, with toy stages from a plugin.
+class ProgramTest : public testing::Test {
+ protected:
+  ProgramTest() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "crisp-program-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    write_file(folder_ / "sum.yaml",
+               "crisp: 1\n"
+               "pipeline:\n"
+               "  - {stage: toy.count, with: {n: 4}}\n"
+               "  - stage: toy.sum\n"
+               "  - {stage: toy.write, with: {file: ${output}/sum.txt}}\n");
+  }
+  ~ProgramTest() override { std::filesystem::remove_all(folder_); }
+
+  pid_t start(std::vector<std::string> words) {
+    words.insert(words.begin(), CRISP_PROGRAM);
+    if (words.size() > 1 && words[1] != "--help" && words[1] != "--version") {
+      words.insert(words.end(), {"--plugin", TOY_PLUGIN});
+    }
+    std::vector<char*> arguments;
+    for (auto& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC;
+    posix_spawn_file_actions_addopen(&actions, 1, (folder_ / "stdout").c_str(), kFlags, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, (folder_ / "stderr").c_str(), kFlags, 0600);
+    pid_t child = -1;
+    EXPECT_EQ(posix_spawn(&child, CRISP_PROGRAM, &actions, nullptr, arguments.data(), environ), 0);
+    posix_spawn_file_actions_destroy(&actions);
+    return child;
+  }
+
+  Outcome wait_for(pid_t child) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content("stdout"),
+            content("stderr")};
+  }
+
+  Outcome crisp(const std::vector<std::string>& words) { return wait_for(start(words)); }
+
+  std::string content(const std::string& name) const { return read_text_file(folder_ / name, 1 << 24); }
+  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(content(name)); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the program refuses of pipelines: files that would overwrite each other, and all mistakes at once.
+#include <gmock/gmock.h>
+
+#include "tests/pipeline/app/program_fixture.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+TEST_F(ProgramTest, EndsWithTwoAndEveryMistakeWhenThePipelineIsWrong) {
+  write_file(folder_ / "wrong.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.sum}\n  - {stage: toy.count, with: {m: 4}}\n");
+  const std::string expected =
+      path("wrong.yaml") +
+      ":3:13: error: toy.sum: nothing above it gives the Number that it takes; put one of "
+      "these above it: toy.count, toy.doubt, toy.endless, toy.share, toy.throw, toy.wait\n" +
+      path("wrong.yaml") + ":4:31: error: toy.count: there is no option 'm'; did you mean 'n'?\n2 errors\n";
+  for (const std::string command : {"run", "validate"}) {
+    const auto outcome = crisp({command, path("wrong.yaml")});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.error, expected);
+  }
+  const Outcome study = crisp({"monte-carlo", "--set", "study.monte_carlo.devices=lms11"});
+  EXPECT_EQ(study.status, 2);
+  EXPECT_THAT(study.error, HasSubstr("did you mean 'lms111'?"));
+}
+
+TEST_F(ProgramTest, RefusesToOverwriteWhatItReadsOrHasWritten) {
+  const auto error_of = [&](const std::string& stages) {
+    write_file(folder_ / "files.yaml", "crisp: 1\npipeline:\n" + stages);
+    const auto outcome = crisp({"run", path("files.yaml"), "-i", path("in.yaml"), "-o", path("out")});
+    EXPECT_EQ(outcome.status, 2);
+    return outcome.error;
+  };
+  write_file(folder_ / "in.yaml", "kept");
+  fs::create_symlink(folder_, folder_ / "link");
+  EXPECT_EQ(error_of("  - {stage: calibrate.load, with: {file: \"${input}\"}}\n"
+                     "  - {stage: write.calibration, with: {file: link/in.yaml}}\n"),
+            path("files.yaml") + ":4:45: error: write.calibration: it would overwrite " + path("in.yaml") +
+                ", which calibrate.load reads; let it write another file\n");
+  EXPECT_EQ(content("in.yaml"), "kept");
+  EXPECT_THAT(error_of("  - stage: toy.count\n  - stage: toy.sum\n"
+                       "  - {stage: toy.write, with: {file: \"${output}/x\"}}\n"
+                       "  - {stage: toy.write, with: {file: \"${output}/./x\"}}\n"),
+              HasSubstr(":6:37: error: toy.write-2: it would overwrite " + path("out/x") +
+                        ", which toy.write writes;"));
+  EXPECT_THAT(error_of("  - stage: toy.count\n  - stage: toy.sum\n"
+                       "  - {stage: toy.write, with: {file: files.yaml}}\n"),
+              HasSubstr("toy.write: it would overwrite " + path("files.yaml") + ", which this run reads;"));
+  EXPECT_THAT(error_of("  - stage: toy.count\n  - stage: toy.sum\n"
+                       "  - {stage: toy.write, with: {file: \"${output}/summary.json\"}}\n"),
+              HasSubstr(":5:37: error: toy.write: it would overwrite " + path("out/summary.json") +
+                        ", which this run writes; let it write another file"));
+}
+
+TEST_F(ProgramTest, RefusesToOverwriteWhatComesOfAnotherStagesFile) {
+  const auto error_of = [&](const std::string& one, const std::string& other) {
+    write_file(folder_ / "files.yaml",
+               "crisp: 1\npipeline:\n  - {stage: grabber.capture, with: {file: x}}\n"
+               "  - stage: clock.convex_hull\n  - stage: assemble.deskew\n  - " +
+                   one + "\n  - " + other + "\n");
+    const auto outcome = crisp({"validate", path("files.yaml")});
+    EXPECT_EQ(outcome.status, outcome.error.empty() ? 0 : 2);
+    return outcome.error;
+  };
+  const auto picture = [](const std::string& name) {
+    return "{stage: write.picture, with: {file: \"${output}/" + name + "\"}}";
+  };
+  const std::string cloud = "{stage: write.pcd, with: {file: \"${output}/a.pcd\"}}";
+  const std::string beams = "{stage: write.measurements, with: {file: \"${output}/a.pcd\"}}";
+  EXPECT_THAT(
+      error_of(cloud, picture("a_0001.pcd")),
+      HasSubstr(":7:41: error: write.picture: its /output/a_0001.pcd could overwrite /output/a_*.pcd, "
+                "which write.pcd writes; let it write another file"));
+  EXPECT_THAT(error_of(picture("a_0001.pcd"), cloud), HasSubstr("its /output/a_*.pcd could overwrite"));
+  EXPECT_THAT(error_of(beams, picture("a.plate.pcd")),
+              HasSubstr("write.picture: it would overwrite /output/a.plate.pcd, which write.measurements"));
+  EXPECT_THAT(error_of(beams, picture("a_0002.plate.pcd")), HasSubstr("/output/a_*.plate.pcd"));
+  EXPECT_THAT(error_of(cloud, picture("a.pcd.provenance.json")), HasSubstr("which write.pcd writes"));
+  EXPECT_THAT(error_of(picture("summary.json"), cloud), HasSubstr("which this run writes"));
+  const std::string clouds = "{stage: write.clouds, with: {file: \"${output}/a.pcd\"}}";
+  EXPECT_THAT(error_of(clouds, picture("a_0001.pcd")), HasSubstr("which write.clouds writes"));
+  const std::string stamps = "{stage: diagnose.stamps, with: {folder: \"${output}\"}}";
+  EXPECT_THAT(error_of(stamps, picture("laser1_stamps.svg")),
+              HasSubstr("could overwrite /output/*_stamps.svg, which diagnose.stamps writes"));
+  EXPECT_THAT(error_of("{stage: write.capture, with: {file: \"${output}/h.pcap\"}}", picture("h-2.pcap")),
+              HasSubstr("could overwrite /output/h-*.pcap, which write.capture writes"));
+  for (const auto* other :
+       {"a_1.png", "a_1.pcd", "a_001.pcd", "a_plate.pcd", "b_0001.pcd", "deeper/a_0001.pcd", "stamps.svg"}) {
+    EXPECT_EQ(error_of(cloud, picture(other)), "") << other;
+    EXPECT_EQ(error_of(stamps, picture(other)), "") << other;
+  }
+}
+
+TEST_F(ProgramTest, DoesNotReplaceWhatAStageWroteByARecordOfItsOwn) {
+  write_file(folder_ / "hidden.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n"
+             "  - {stage: toy.write_undeclared, with: {folder: \"${output}\", name: summary.json}}\n");
+  const auto run = crisp({"run", path("hidden.yaml"), "-o", path("out")});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.error, HasSubstr("error: toy.write_undeclared: it wrote " + path("out/summary.json") +
+                                   ", where the run's own record belongs; let it write another file\n"));
+  EXPECT_EQ(content("out/summary.json"), "undeclared");
+  write_file(folder_ / "twice.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n"
+             "  - {stage: toy.write, with: {file: \"${output}/x\"}}\n"
+             "  - {stage: toy.write_undeclared, with: {folder: \"${output}\", name: x}}\n");
+  const auto twice = crisp({"run", path("twice.yaml"), "-o", path("out")});
+  EXPECT_EQ(twice.status, 1);
+  EXPECT_THAT(twice.error, HasSubstr(":6:13: error: toy.write_undeclared: it has overwritten " +
+                                     path("out/x") + ", which toy.write wrote; let it write another file"));
+}
+
+TEST_F(ProgramTest, ValidatesEveryStageThoughAnotherIsWrong) {
+  const auto errors_of = [&](const std::string& rig) {
+    write_file(folder_ / "wrong.yaml",
+               "crisp: 1\n" + rig +
+                   "pipeline:\n  - {stage: grabber.capture, with: {file: x}}\n  - stage: clock.convex_hull\n"
+                   "  - {stage: filter.range, with: {range: [9m, 1m], lasers: [nobody]}}\n"
+                   "  - {stage: assemble.deskew, with: {nonsense: 1}}\n"
+                   "  - {stage: filter.crop, with: {x: [2m, 1m], z: [4m, 3m]}}\n"
+                   "  - {stage: write.pcd, with: {file: \"${output}/a.pcd\"}}\n"
+                   "  - {stage: write.picture, with: {file: \"${output}/a.pcd\"}}\n");
+    return crisp({"validate", path("wrong.yaml")}).error;
+  };
+  const std::string all = errors_of("");
+  const auto has = [](const std::string& text) { return HasSubstr(text); };
+  EXPECT_THAT(all, has(":5:13: error: filter.range: the rig has no laser 'nobody'"));
+  EXPECT_THAT(all, has(":5:13: error: filter.range: range"));
+  EXPECT_THAT(all, has("error: assemble.deskew: there is no option 'nonsense'"));
+  EXPECT_THAT(all, has(":7:13: error: filter.crop: x"));
+  EXPECT_THAT(all, has(":7:13: error: filter.crop: z"));
+  EXPECT_THAT(all, has("error: write.picture: it would overwrite /output/a.pcd, which write.pcd writes"));
+  EXPECT_THAT(all, testing::EndsWith("\n6 errors\n"));
+  const std::string of_a_rig = errors_of("rig: {crisp: 1, plate: {}}\n");
+  EXPECT_THAT(of_a_rig, has(":2:6: error: rig: 'lasers' is missing"));
+  EXPECT_THAT(of_a_rig, has("assemble.deskew: there is no option 'nonsense'"));
+  EXPECT_THAT(of_a_rig, has("write.picture: it would overwrite"));
+  EXPECT_THAT(of_a_rig, testing::Not(has("nobody"))) << "which lasers there are is not known";
+}
+
+}  // namespace
+}  // namespace crisp
