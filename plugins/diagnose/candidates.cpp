@@ -119,4 +119,19 @@ void add_to(Calibration& calibration, const Candidate& candidate) {
   terms_of(calibration, candidate.owner).push_back(candidate.term);
 }
 
+Calibration with_terms(Calibration calibration, const std::vector<Candidate>& chosen) {
+  for (auto& laser : calibration.lasers) laser.terms.clear();
+  calibration.plate_terms.clear();
+  for (const Candidate& candidate : chosen) add_to(calibration, candidate);
+  return calibration;
+}
+
+std::vector<Candidate> with_values_of(const Calibration& calibration, std::vector<Candidate> chosen) {
+  for (Candidate& candidate : chosen) {
+    const TermParameters* found = find_term(terms_of(calibration, candidate.owner), candidate.term.term);
+    if (found) candidate.term = *found;
+  }
+  return chosen;
+}
+
 }  // namespace crisp

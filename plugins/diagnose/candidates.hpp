@@ -76,4 +76,10 @@ const TermParameters* find_term(const std::vector<TermParameters>& terms, const 
 /// The calibration with the candidate's term.
 void add_to(Calibration& calibration, const Candidate& candidate);
 
+/// The calibration with the candidates' terms in place of its own.
+Calibration with_terms(Calibration calibration, const std::vector<Candidate>& chosen);
+
+/// The candidates with the values that a calibration has for them.
+std::vector<Candidate> with_values_of(const Calibration& calibration, std::vector<Candidate> chosen);
+
 }  // namespace crisp

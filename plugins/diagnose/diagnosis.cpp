@@ -15,17 +15,11 @@
 #include "pipeline/model/terms_in.hpp"
 #include "plugins/diagnose/evidence.hpp"
 #include "plugins/diagnose/forms.hpp"
+#include "plugins/diagnose/gate.hpp"
 #include "plugins/diagnose/held_out.hpp"
 
 namespace crisp {
 namespace {
-
-Calibration with_terms(Calibration calibration, const std::vector<Candidate>& chosen) {
-  for (auto& laser : calibration.lasers) laser.terms.clear();
-  calibration.plate_terms.clear();
-  for (const Candidate& candidate : chosen) add_to(calibration, candidate);
-  return calibration;
-}
 
 std::set<std::string> names_of(const std::vector<Candidate>& candidates) {
   std::set<std::string> names;
@@ -40,15 +34,6 @@ std::vector<std::size_t> base_of(const Refinement& refinement) {
     if (!declared(refinement.outcome.model, parameter)) base.push_back(parameter);
   }
   return base;
-}
-
-/// The candidates with the values that a calibration has for them.
-std::vector<Candidate> with_values_of(const Calibration& calibration, std::vector<Candidate> chosen) {
-  for (Candidate& candidate : chosen) {
-    const TermParameters* found = find_term(terms_of(calibration, candidate.owner), candidate.term.term);
-    if (found) candidate.term = *found;
-  }
-  return chosen;
 }
 
 std::vector<Departure::Rival> rivals(const Choice& choice, const Dictionary& dictionary) {
@@ -226,65 +211,20 @@ class Diagnoser {
     }
   }
 
-  /// What was accepted so far, and how the rest is judged.
-  struct Judged {
-    const Calibration& found;
-    const HeldOut& held_out;
-    std::vector<Candidate> accepted;
-    HeldOut::Score score;
-  };
-
-  /// Whether some departures pay together; if so, they are part of the model from then on.
-  bool accepts(const std::vector<Departure*>& some, Judged& judged) const {
-    auto tried = judged.accepted;
-    for (const Departure* departure : some) tried.push_back(departure->candidate);
-    tried = with_values_of(judged.found, tried);
-    auto score = judged.held_out.score(
-        refined(with_terms(judged.found, tried), judged.held_out.fitted()).outcome.model);
-    const auto gains = HeldOut::gains(judged.score, score);
-    const bool is_paid = pays(gains);
-    for (Departure* departure : some) {
-      if (some.size() > 1 && !is_paid) continue;  // that of each by itself is told
-      departure->gains = gains;
-      departure->accepted = is_paid;
-    }
-    if (!is_paid) return false;
-    judged.accepted = std::move(tried);
-    judged.score = std::move(score);
-    return true;
-  }
-
-  /// Fits models with one departure more each to half of the turns, and asks the other half.
+  /// Asks each departure of turns that models are not fitted to.
   void judge(Diagnosis& result) const {
     if (result.departures.empty()) return;
     const HeldOut held_out(halves_of(inside_), result.before.outcome.model, settings_.refinement.surfels);
     const Calibration found = result.after.outcome.model.calibration();
-    Judged judged{.found = found, .held_out = held_out, .accepted = {}, .score = {}};
-    judged.score = held_out.score(
-        refined(with_terms(result.before.outcome.model.calibration(), {}), held_out.fitted()).outcome.model);
-    std::vector<Departure*> open;
-    for (Departure& departure : result.departures) open.push_back(&departure);
-    while (!open.empty()) {
-      if (!goes_on(1, "judging by held-out turns")) return;
-      std::vector<Departure*> alike;  // of all lasers: mended in one alone, they disagree
-      std::ranges::copy_if(open, std::back_inserter(alike), [&](const Departure* other) {
-        return other->candidate.term.term == open.front()->candidate.term.term;
-      });
-      std::vector<Departure*> one = {open.front()};
-      if (!accepts(one, judged) && alike.size() > 1 && accepts(alike, judged)) one = alike;
-      std::erase_if(open, [&](Departure* other) { return std::ranges::find(one, other) != one.end(); });
-    }
-    const std::vector<Candidate>& accepted = judged.accepted;
+    const auto accepted = accepted_by(
+        held_out, result.departures, result.before.outcome.model.calibration(), found,
+        [this](const Calibration& start, const Sample& sample) {
+          return refined(start, sample).outcome.model;
+        },
+        [this] { return goes_on(1, "judging by held-out turns"); });
     if (accepted.size() < result.departures.size()) {
       result.after = refined(with_terms(found, accepted), sample_);
     }
-  }
-
-  /// Whether the likelihood of held-out turns rises; by how little for sure is told, but no reason to refuse
-  /// what is significant on the others.
-  static bool pays(const std::vector<Gain>& gains) {
-    const auto likelihood = std::ranges::find(gains, HeldOut::kLikelihood, &Gain::metric);
-    return likelihood != gains.end() && likelihood->after > likelihood->before;
   }
 
   SideBySide left_by(const Refinement& refinement) const {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
+#include "plugins/diagnose/departure.hpp"
 #include "plugins/diagnose/profiles.hpp"
 #include "plugins/diagnose/selection.hpp"
 
@@ -19,28 +18,6 @@ struct DiagnosisSettings {
   SelectionSettings selection;
   std::size_t beams = 150'000;  ///< that candidates are looked at with
   int rounds = 5;               ///< most times that the model is extended and looked at again
-};
-
-/// One departure from the model that was found.
-struct Departure {
-  Candidate candidate;  ///< with the values that were found
-  Look look;
-  struct Rival {
-    std::string name;
-    double behind = 0;  ///< by how much its BIC is less
-    std::string term = {};
-    std::size_t owner = 0;
-  };
-  std::vector<Rival> rivals;  ///< what else could explain it, the likeliest first
-  std::vector<Gain> gains;    ///< on turns of the plate that the model was not fitted to
-  bool accepted = true;       ///< whether it is part of the extended model
-  double unexplained = 0;     ///< [m²] mean square of what else departs there and has no cause
-  bool leaves_more = false;   ///< whether that is more than it takes, so that it is not, though it paid
-
-  /// [m²] Mean square of what it takes of the residuals and the others leave.
-  ///
-  /// @param noise  [m] of ranges
-  double square(double noise) const { return std::pow(look.visible * noise, 2); }
 };
 
 struct Diagnosis {

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "plugins/diagnose/departure.hpp"
+#include "plugins/diagnose/held_out.hpp"
+
+namespace crisp {
+
+/// Fits a calibration, with the terms that it has, to all beams of a sample.
+using RefinedOn = std::function<SensorModel(const Calibration& start, const Sample& sample)>;
+
+/// Judges departures by turns of the plate that models were not fitted to: in their order, models with one
+/// more each are fitted to the other turns. What all lasers have alike and what does not pay for one of them
+/// alone is asked of all of them together: mended in one alone, they disagree.
+///
+/// @param departures  their gains and whether they are accepted are set
+/// @param plain       without any; where the fit starts that the first has to beat
+/// @param found       with all of them; where the other fits start
+/// @param goes_on     asked before each; false ends it
+/// @return            those that pay, with the values that `found` has
+std::vector<Candidate> accepted_by(const HeldOut& held_out, std::vector<Departure>& departures,
+                                   const Calibration& plain, const Calibration& found,
+                                   const RefinedOn& refined, const std::function<bool()>& goes_on);
+
+}  // namespace crisp
