@@ -11,8 +11,10 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
 
 if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
   find_program(CRISP_CCACHE ccache)
-  if(CRISP_CCACHE)
-    set(CMAKE_CXX_COMPILER_LAUNCHER "${CRISP_CCACHE}")
+  if(CRISP_CCACHE)  # what it holds serves any checkout
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1
+                                    "${CRISP_CCACHE}")
+    add_compile_options("-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=")
   endif()
 endif()
 
@@ -43,9 +45,6 @@ if(CRISP_SANITIZE)
     # The thread sanitizer knows no fences; Asio's are beside its mutexes, which it knows.
     add_compile_definitions(BOOST_ASIO_DISABLE_FENCED_BLOCK)
   endif()
-endif()
-if(CRISP_BUILD_FUZZERS)  # the libraries report their coverage to libFuzzer, whose main only the targets get
-  add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
 # Programs and libraries find each other wherever the whole is put.
@@ -89,24 +88,50 @@ function(crisp_library name)
           FILES_MATCHING PATTERN "*.hpp")
 endfunction()
 
-# crisp_test(<name> [THREADS] [SLOW] SOURCES ... LIBRARIES ...) makes one GoogleTest program of a folder's tests.
-# With THREADS they are also what the thread sanitizer runs (target threaded_tests, label threads); SLOW ones are
-# run by the release build alone (label slow).
+# crisp_test(<name> [THREADS] [OPTIMISED] [SLOW <filter>] [LONG <filter>] SOURCES ... LIBRARIES ...) makes one
+# GoogleTest program of a folder's tests. Sanitizers run all but those that a filter of GoogleTest's calls slow,
+# which `check` has the release build run (label slow), or long, which `check all` runs (label long). With THREADS
+# they are also what the thread sanitizer runs (target threaded_tests, label threads); with OPTIMISED `check` has the
+# release build run them, too (label optimised): they depend on what the optimiser makes of the code.
 function(crisp_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS;SLOW" "" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS;OPTIMISED" "SLOW;LONG" "SOURCES;LIBRARIES")
   add_executable(${name}_test ${arg_SOURCES})
-  target_link_libraries(${name}_test PRIVATE ${arg_LIBRARIES} GTest::gmock GTest::gtest_main crisp_settings)
-  target_compile_definitions(${name}_test PRIVATE CRISP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${name}_test PRIVATE ${arg_LIBRARIES} crisp_source_dir GTest::gmock GTest::gtest_main
+                                             crisp_settings)
   set_target_properties(${name}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
-  set(properties TIMEOUT 600)
+  set(labels)
   if(arg_THREADS)
-    list(APPEND properties LABELS threads)
+    list(APPEND labels threads)
     add_dependencies(threaded_tests ${name}_test)
   endif()
-  if(arg_SLOW)
-    list(APPEND properties LABELS slow)
+  if(arg_OPTIMISED)
+    list(APPEND labels optimised)
   endif()
-  gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST PROPERTIES ${properties})
+  if(arg_OPTIMISED OR arg_SLOW)
+    add_dependencies(release_tests ${name}_test)
+  endif()
+  if(arg_SLOW STREQUAL "*" AND CRISP_SANITIZE)
+    set_target_properties(${name}_test PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
+  crisp_discover(${name}_test "-${arg_SLOW}:${arg_LONG}" "${labels}")
+  if(arg_SLOW)
+    crisp_discover(${name}_test "${arg_SLOW}-${arg_LONG}" "${labels};slow")
+  endif()
+  if(arg_LONG)
+    crisp_discover(${name}_test "${arg_LONG}" "${labels};long")
+  endif()
+endfunction()
+
+# crisp_discover(<target> <filter> <labels>) makes tests of those of a program that a filter of GoogleTest's lets
+# through.
+function(crisp_discover target filter labels)
+  set(properties TIMEOUT 600)
+  list(REMOVE_ITEM labels "")
+  if(labels)
+    list(JOIN labels "+" label)  # as one, since lists do not pass what follows; presets ask for a part of it
+    list(APPEND properties LABELS "${label}")
+  endif()
+  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "${filter}" PROPERTIES ${properties})
 endfunction()
 
 # crisp_fuzz(<name> SOURCES ... LIBRARIES ...) makes one fuzz target, <name>_fuzz, of sources that define
@@ -124,7 +149,13 @@ function(crisp_fuzz name)
   set_target_properties(${name}_fuzz PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
   if(CRISP_BUILD_FUZZERS)
     target_link_options(${name}_fuzz PRIVATE -fsanitize=fuzzer)
-    add_dependencies(fuzzers ${name}_fuzz)
+    foreach(library ${name}_fuzz ${arg_LIBRARIES})  # what reports its coverage
+      get_target_property(aliased ${library} ALIASED_TARGET)
+      if(aliased)
+        set(library ${aliased})
+      endif()
+      target_compile_options(${library} PRIVATE -fsanitize=fuzzer-no-link)
+    endforeach()
     set(found "${CMAKE_BINARY_DIR}/fuzz/${name}")
     file(MAKE_DIRECTORY "${found}/corpus")
     add_test(NAME fuzz.${name} COMMAND ${name}_fuzz -max_total_time=${CRISP_FUZZ_SECONDS} -timeout=10
@@ -148,6 +179,6 @@ function(crisp_benchmark name)
   add_executable(${name}_bench ${arg_SOURCES})
   target_link_libraries(${name}_bench PRIVATE ${arg_LIBRARIES} benchmark::benchmark_main crisp_allocator
                         crisp_settings)
-  target_compile_definitions(${name}_bench PRIVATE CRISP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set_target_properties(${name}_bench PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bench")
+  add_dependencies(benchmarks ${name}_bench)
 endfunction()

@@ -18,6 +18,7 @@
 #include "pipeline/pcd/cloud_table.hpp"
 #include "tests/end_to_end/calibration_errors.hpp"
 #include "tests/end_to_end/workshop.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -28,7 +29,7 @@ using testing::UnorderedElementsAre;
 
 TEST(Configs, EachPipelineHasATestThatRunsIt) {
   std::vector<std::string> pipelines;
-  for (const auto& entry : fs::directory_iterator(CRISP_SOURCE_DIR "/configs")) {
+  for (const auto& entry : fs::directory_iterator(source_dir() + "/configs")) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
@@ -126,7 +127,7 @@ TEST(Configs, MonteCarloWritesEveryRunAndTheTable) {
 struct FreeLoopback {
   explicit FreeLoopback(const fs::path& file) {
     constexpr std::size_t kLimit = 1 << 20;
-    std::string text = read_text_file(CRISP_SOURCE_DIR "/configs/loopback.yaml", kLimit);
+    std::string text = read_text_file(source_dir() + "/configs/loopback.yaml", kLimit);
     boost::asio::io_context context;
     const auto loopback = boost::asio::ip::make_address("127.0.0.1");
     std::vector<boost::asio::ip::tcp::acceptor> taken;  // at once, so that they differ
@@ -152,7 +153,7 @@ struct Emulation {
   Emulation(const fs::path& rig, const std::string& plate_port)
       : thread([rig, plate_port] {
           Builtin builtin;
-          RunRequest request{.file = CRISP_SOURCE_DIR "/configs/emulate.yaml", .quiet = true};
+          RunRequest request{.file = source_dir() + "/configs/emulate.yaml", .quiet = true};
           request.arguments.rig = rig;
           request.arguments.set = {"grabber.simulate.duration=1s",
                                    "emulate.rig.plate_to=127.0.0.1:" + plate_port};
@@ -188,7 +189,7 @@ TEST(Configs, LasersAndPlateMayBeGrabbedByAStageEach) {
   const test::Workshop workshop;
   workshop.simulate("made", {"duration=1s"});
   const FreeLoopback ports(workshop / "rig.yaml");
-  std::string text = read_text_file(CRISP_SOURCE_DIR "/configs/live.yaml", 1 << 20);
+  std::string text = read_text_file(source_dir() + "/configs/live.yaml", 1 << 20);
   const std::string both = "  - stage: grabber.live\n    with: {duration: \"${duration}\"}\n";
   ASSERT_NE(text.find(both), std::string::npos);
   text.replace(text.find(both), both.size(),
@@ -228,8 +229,8 @@ TEST(Configs, EmulateHasTheRigOfLoopback) {
   Builtin builtin;
   RunSettings run;
   run.registrar = &builtin.registrar();
-  load_pipeline(fs::path(CRISP_SOURCE_DIR "/configs/emulate.yaml"), {.only_validate = true}, run);
-  const Rig loopback = read_rig(CRISP_SOURCE_DIR "/configs/loopback.yaml");
+  load_pipeline(fs::path(source_dir() + "/configs/emulate.yaml"), {.only_validate = true}, run);
+  const Rig loopback = read_rig(source_dir() + "/configs/loopback.yaml");
   ASSERT_EQ(run.rig.lasers.size(), loopback.lasers.size());
   for (std::size_t i = 0; i < loopback.lasers.size(); ++i) {
     EXPECT_EQ(run.rig.lasers[i].name, loopback.lasers[i].name);

@@ -9,6 +9,7 @@
 
 #include "tests/end_to_end/room.hpp"
 #include "tests/end_to_end/workshop.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -35,7 +36,7 @@ class Faults : public testing::Test {
                          {"calibration=" + (workshop_ / "made/truth.yaml").string()}, workshop_ / "rig.yaml");
   }
   std::string default_rig_but(const std::string& what, const std::string& with) const {
-    std::string yaml = bytes_of(CRISP_SOURCE_DIR "/configs/rig.yaml");
+    std::string yaml = bytes_of(source_dir() + "/configs/rig.yaml");
     return yaml.replace(yaml.find(what), what.size(), with);
   }
 
@@ -161,11 +162,10 @@ TEST_F(Faults, ADiskThatIsFullLeavesNothingHalfWritten) {
   simulate({"duration=2s"});
   const auto crisp = [&](const std::string& kilobytes) {
     const std::string command =
-        "ulimit -f " + kilobytes +
-        "; exec " CRISP_PROGRAM " run " CRISP_SOURCE_DIR "/configs/assemble.yaml --quiet -i " +
-        (workshop_ / "made/hub.pcap").string() + " -o " + (workshop_ / "full").string() +
-        " --set calibration=" + (workshop_ / "made/truth.yaml").string() + " 2> " +
-        (workshop_ / "told").string();
+        "ulimit -f " + kilobytes + "; exec " CRISP_PROGRAM " run " + source_dir() +
+        "/configs/assemble.yaml --quiet -i " + (workshop_ / "made/hub.pcap").string() + " -o " +
+        (workshop_ / "full").string() + " --set calibration=" + (workshop_ / "made/truth.yaml").string() +
+        " 2> " + (workshop_ / "told").string();
     put_bytes(workshop_ / "full.sh", command);
     return WEXITSTATUS(std::system(("bash " + (workshop_ / "full.sh").string()).c_str()));
   };

@@ -8,6 +8,7 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/files/findings_file.hpp"
 #include "tests/end_to_end/workshop.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -39,7 +40,7 @@ Findings diagnosed(const test::Workshop& workshop, const std::string& config,
   const auto simulated = workshop.run(config, input, "made", options);
   EXPECT_EQ(simulated.status, ExitStatus::done) << simulated.told;
   const auto outcome = workshop.run("real/sick.yaml", workshop / "made/hub.pcap", output, {},
-                                    CRISP_SOURCE_DIR "/configs/rig.yaml");
+                                    source_dir() + "/configs/rig.yaml");
   EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
   return read_findings(workshop / (output + "/diagnosis.json"));
 }
@@ -126,7 +127,7 @@ TEST(Findings, OfScansThemselvesAreThoseThatWereSimulated) {
                              "effects={laser1.mirror.interleave: {shift: 0.25deg, period: 2, kind: 1}, "
                              "laser2.latency.bursts: {together: 0.5, interval: 20ms, wait: 60ms}}"});
   const auto outcome = workshop.run(workshop / "scans.yaml", workshop / "made/hub.pcap", "out", {},
-                                    CRISP_SOURCE_DIR "/configs/rig.yaml");
+                                    source_dir() + "/configs/rig.yaml");
   ASSERT_EQ(outcome.status, ExitStatus::done) << outcome.told;
   const Findings findings = read_findings(workshop / "out/diagnosis.json");
   std::vector<std::string> named;

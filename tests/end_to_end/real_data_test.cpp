@@ -10,6 +10,7 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/findings_file.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -135,7 +136,7 @@ constexpr const char* kVelodyne = "actuated/velodyne_vlp16_static/sample_velodyn
 /// The VLP-16's azimuths, with those of every other laser turned by hand before the calibration.
 struct TurnedHead {
   TurnedHead(const test::Workshop& workshop, const std::filesystem::path& capture, double by) {
-    Calibration start = read_calibration(CRISP_SOURCE_DIR "/configs/real/vlp16_start.yaml");
+    Calibration start = read_calibration(source_dir() + "/configs/real/vlp16_start.yaml");
     for (std::size_t i = 1; i < start.lasers.size(); i += 2) start.lasers[i].lambda.value += by;
     write_calibration(workshop / "start.yaml", start);
     outcome =

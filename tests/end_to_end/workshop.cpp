@@ -10,6 +10,7 @@
 
 #include "pipeline/app/builtin.hpp"
 #include "pipeline/pcd/cloud_table.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp::test {
 namespace {
@@ -70,7 +71,7 @@ Outcome Workshop::run(const std::string& config, const fs::path& input, const st
   const fs::path out = folder_ / output;
   std::error_code not_there;
   fs::remove_all(out, not_there);
-  RunRequest request{.file = fs::path(CRISP_SOURCE_DIR) / "configs" / config,
+  RunRequest request{.file = fs::path(source_dir()) / "configs" / config,
                      .arguments = {.output = out, .set = set},
                      .quiet = true};
   if (!input.empty()) request.arguments.input = input;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tests/sources/type_names.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp::test {
 namespace {
@@ -42,14 +43,14 @@ namespace crisp::simd { struct Fourth {}; }
 TEST(TypeNames, AreDefinedOnceInTheLibraries) {
   std::map<std::string, std::vector<std::string>> places;
   for (const char* folder : {"pipeline", "grabbers", "plugins"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(CRISP_SOURCE_DIR) / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(source_dir()) / folder)) {
       const auto kind = entry.path().extension();
       if (kind != ".cpp" && kind != ".hpp" && kind != ".cu") continue;
       std::ostringstream text;
       text << std::ifstream(entry.path()).rdbuf();
       for (const auto& type : named_types(text.str())) {
         places[type.name].push_back(
-            fmt::format("{}:{}", entry.path().lexically_relative(CRISP_SOURCE_DIR).string(), type.line));
+            fmt::format("{}:{}", entry.path().lexically_relative(source_dir()).string(), type.line));
       }
     }
   }

@@ -12,6 +12,7 @@
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/error.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -54,7 +55,7 @@ std::ptrdiff_t habits_in(const std::filesystem::path& file) {
 
 TEST_F(RealDevicesTest, AreThoseOfTheFilesWithAllTheirHabitsOfEachLaser) {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(CRISP_SOURCE_DIR "/configs/devices")) {
+  for (const auto& entry : std::filesystem::directory_iterator(source_dir() + "/configs/devices")) {
     files.push_back(entry.path().stem().string());
     const auto of_all = effects({files.back()});
     EXPECT_EQ(std::ssize(of_all), 3 * habits_in(entry.path())) << files.back();

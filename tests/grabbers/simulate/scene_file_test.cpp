@@ -10,6 +10,7 @@
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/error.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -174,7 +175,7 @@ TEST(SceneFile, BoundsHowMuchARepetitionCanMake) {
 
 TEST(SceneFile, ReadsTheScenesThatUsersCopyAsTheBuiltInOnes) {
   for (const auto& name : built_in_scenes()) {
-    const Scene from_file = read_scene(std::string(CRISP_SOURCE_DIR) + "/configs/scenes/" + name + ".yaml");
+    const Scene from_file = read_scene(source_dir() + "/configs/scenes/" + name + ".yaml");
     const Scene built_in = built_in_scene(name);
     EXPECT_EQ(from_file.name, name);
     ASSERT_EQ(from_file.surfaces.size(), built_in.surfaces.size());

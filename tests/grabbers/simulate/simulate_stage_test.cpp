@@ -15,6 +15,7 @@
 #include "pipeline/model/catalogue.hpp"
 #include "pipeline/stage/pipeline_file.hpp"
 #include "pipeline/stage/runner.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -107,7 +108,7 @@ TEST_F(SimulateStageTest, WritesTheSameCaptureAndTruthForTheSameSeed) {
 }
 
 TEST_F(SimulateStageTest, RunsThePipelineThatUsersCopy) {
-  const fs::path file = fs::path(CRISP_SOURCE_DIR) / "configs/simulate.yaml";
+  const fs::path file = fs::path(source_dir()) / "configs/simulate.yaml";
   auto loaded =
       load_pipeline(file, {.output = folder_ / "out", .set = {"grabber.simulate.duration=0.2s"}}, run_);
   run_pipeline(loaded.pipeline, run_);

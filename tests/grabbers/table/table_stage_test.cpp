@@ -6,6 +6,7 @@
 #include "grabbers/table/register.hpp"
 #include "pipeline/stage/pipeline_file.hpp"
 #include "pipeline/stage/runner.hpp"
+#include "tests/support/source_dir.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {
@@ -107,7 +108,7 @@ TEST_F(TableStageTest, RefusesOptionsThatLeaveATimeOrAnAngleUnknown) {
   EXPECT_THAT(
       complaint("", "time_column: 3, counter_column: 4, angle_column: 1, range_column: 2, angle_step: 1deg"),
       HasSubstr("give the period"));
-  rig_ = CRISP_SOURCE_DIR "/configs/rig.yaml";
+  rig_ = source_dir() + "/configs/rig.yaml";
   EXPECT_THAT(complaint("", kColumns), HasSubstr("give laser_column"));
 }
 

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <random>
 
+#include "tests/support/source_dir.hpp"
+
 namespace crisp {
 
 Bytes from_hex(std::string_view hex) {
@@ -22,7 +24,7 @@ Bytes from_hex(std::string_view hex) {
 }
 
 Bytes real_telegram(std::string_view file) {
-  std::ifstream in(std::filesystem::path(CRISP_SOURCE_DIR) / "tests/grabbers/wire/telegrams" / file);
+  std::ifstream in(std::filesystem::path(source_dir()) / "tests/grabbers/wire/telegrams" / file);
   return from_hex(std::string(std::istreambuf_iterator<char>(in), {}));
 }
 

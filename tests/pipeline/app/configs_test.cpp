@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "pipeline/files/yaml.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -17,7 +18,7 @@ bool is_pipeline(const fs::path& file) {
 
 TEST(Configs, AreRight) {
   int pipelines = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(CRISP_SOURCE_DIR "/configs")) {
+  for (const auto& entry : fs::recursive_directory_iterator(source_dir() + "/configs")) {
     if (!is_pipeline(entry.path())) continue;
     ++pipelines;
     // Neither errors nor warnings.

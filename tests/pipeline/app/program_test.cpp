@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "tests/pipeline/app/program_fixture.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -296,7 +297,7 @@ TEST_F(ProgramTest, SaysWhatACalibrationHolds) {
   EXPECT_EQ(crisp({"info", path("hub.pcap")}).error, "error: " + path("hub.pcap") + " is empty\n");
   EXPECT_EQ(crisp({"info", path("sum.yaml")}).error,
             "error: " + path("sum.yaml") + " is a pipeline; crisp validate checks it, crisp run runs it\n");
-  EXPECT_THAT(crisp({"info", CRISP_SOURCE_DIR "/configs/rig.yaml"}).error, HasSubstr("rig.yaml is a rig; "));
+  EXPECT_THAT(crisp({"info", source_dir() + "/configs/rig.yaml"}).error, HasSubstr("rig.yaml is a rig; "));
 
   const auto folder = nlohmann::json::parse(crisp({"info", folder_.string(), "--json"}).out);
   EXPECT_EQ(folder.size(), 2U) << "noise is not counted, but hub.pcap ought to be a capture";

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "pipeline/files/yaml.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -19,7 +20,7 @@ std::set<std::string> pages_of(const fs::path& folder) {
 }
 
 TEST(Reference, SaysWhatTheStagesDeclare) {
-  const fs::path written = fs::path(CRISP_SOURCE_DIR) / "docs" / "reference";
+  const fs::path written = fs::path(source_dir()) / "docs" / "reference";
   const fs::path fresh = fs::path(testing::TempDir()) / "crisp-reference";
   fs::remove_all(fresh);
   ASSERT_EQ(std::system((CRISP_PROGRAM " stages --markdown --output " + fresh.string()).c_str()), 0);
@@ -36,7 +37,7 @@ TEST(Reference, SaysWhatTheStagesDeclare) {
 }
 
 TEST(Reference, SaysWhatTheEffectsDeclare) {
-  const fs::path written = fs::path(CRISP_SOURCE_DIR) / "docs" / "effects.md";
+  const fs::path written = fs::path(source_dir()) / "docs" / "effects.md";
   const fs::path fresh = fs::path(testing::TempDir()) / "crisp-effects.md";
   ASSERT_EQ(std::system((CRISP_PROGRAM " effects --markdown > " + fresh.string()).c_str()), 0);
   constexpr std::size_t kLimit = 1 << 20;

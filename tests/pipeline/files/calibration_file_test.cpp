@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/pipeline/files/errors_of.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -171,7 +172,7 @@ TEST(CalibrationFile, DoesNotWriteWhatCouldNotBeRead) {
 TEST(CalibrationFile, SaysThatARigOrAPipelineIsNone) {
   const auto complaint = [](const std::string& file) -> std::string {
     try {
-      read_calibration(std::string(CRISP_SOURCE_DIR "/configs/") + file);
+      read_calibration(source_dir() + "/configs/" + file);
     } catch (const Error& error) {
       return error.message();
     }

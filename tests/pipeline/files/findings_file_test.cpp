@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "tests/pipeline/files/errors_of.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -100,7 +101,7 @@ TEST(FindingsFile, HoldsWhatSeveralDiagnosesSay) {
 }
 
 TEST(FindingsFile, IsDocumentedKeyByKey) {
-  std::ifstream page(CRISP_SOURCE_DIR "/docs/diagnosis.md");
+  std::ifstream page(source_dir() + "/docs/diagnosis.md");
   std::ostringstream text;
   text << page.rdbuf();
   const auto json = nlohmann::json::parse(findings_json(some_findings()));

@@ -7,6 +7,7 @@
 
 #include "pipeline/data/degree.hpp"
 #include "tests/pipeline/files/errors_of.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -19,7 +20,7 @@ std::vector<std::string> errors_of_rig(const std::string& text) {
 }
 
 TEST(RigFile, ReadsTheDefaultRigOfTheConfigs) {
-  const Rig rig = read_rig(CRISP_SOURCE_DIR "/configs/rig.yaml");
+  const Rig rig = read_rig(source_dir() + "/configs/rig.yaml");
   const Rig expected = default_rig();
   ASSERT_EQ(rig.lasers.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -147,7 +148,7 @@ TEST(RigFile, RefusesDevicesThatCouldNotBeToldApart) {
 }
 
 TEST(RigFile, TheExampleOfItsPageIsOne) {
-  std::ifstream page(CRISP_SOURCE_DIR "/docs/rig.md");
+  std::ifstream page(source_dir() + "/docs/rig.md");
   std::string example;
   for (std::string line; std::getline(page, line);) {
     if (line.starts_with("    ")) example += line.substr(4) + "\n";

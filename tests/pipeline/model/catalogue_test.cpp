@@ -11,6 +11,7 @@
 
 #include "pipeline/data/error.hpp"
 #include "tests/pipeline/model/terms_support.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -87,7 +88,7 @@ TEST(Catalogue, HasEveryCauseThatAStageCanName) {
   for (const auto& effect : effect_catalogue(built_in_terms())) catalogue.insert(effect.name);
   std::set<std::string> named;
   for (const char* folder : {"plugins/diagnose", "plugins/scans"}) {
-    const auto path = std::filesystem::path(CRISP_SOURCE_DIR) / folder;
+    const auto path = std::filesystem::path(source_dir()) / folder;
     for (const auto& file : std::filesystem::directory_iterator(path)) named.merge(names_in(file.path()));
   }
   for (const char* some : {"scene.moving", "mirror.interleave", "range.warmup", "noise.two_peaks"}) {

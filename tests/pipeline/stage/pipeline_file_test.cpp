@@ -6,6 +6,7 @@
 
 #include "pipeline/files/atomic_file.hpp"
 #include "tests/pipeline/stage/toy_stages.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -286,7 +287,7 @@ TEST_F(PipelineFileTest, ReadsTheRigBesideItOrTheOneOfTheCommandLine) {
   const std::string stages = "pipeline: [{stage: toy.count}]\n";
   EXPECT_THAT(errors_of("crisp: 1\nrig: nowhere.yaml\n" + stages),
               ElementsAre("p.yaml:2:6: error: cannot read /there/nowhere.yaml: No such file or directory"));
-  const PipelineArguments arguments = {.rig = CRISP_SOURCE_DIR "/configs/rig.yaml"};
+  const PipelineArguments arguments = {.rig = source_dir() + "/configs/rig.yaml"};
   EXPECT_THAT(errors_of("crisp: 1\nrig: nowhere.yaml\n" + stages, arguments), IsEmpty());
   EXPECT_THAT(
       errors_of(
