@@ -18,7 +18,7 @@ constexpr std::uint32_t kFirstSerialNumber = 18090001;
 constexpr double kRounding = 1e-9;         // [rad] that an angle may be off on the wire
 constexpr std::size_t kHeaderBytes = 110;  // what a telegram needs beside its values, about
 
-void check(const ScannerSettings& settings) {
+void check_unit(const ScannerSettings& settings) {
   if (settings.range.max_distance > kFarthest) {
     throw Error("a laser's telegrams cannot hold ranges beyond 65 m", "lower the largest distance");
   }
@@ -57,7 +57,7 @@ LaserUnit::LaserUnit(const RecordingSettings& settings, const RecordingTruth& tr
       link_(truth_.link, truth_.minimum_delay, settings.scanner.seed, rig_.name, truth_.latency),
       handover_(settings.scanner.seed, rig_.name + ".handover"),
       losses_(settings.scanner.seed, rig_.name + ".losses") {
-  check(settings.scanner);
+  check_unit(settings.scanner);
   RandomStream random(settings.scanner.seed, rig_.name + ".counters");
   scan_counter_ = static_cast<std::uint16_t>(random.bits());
   counter_difference_ = static_cast<std::uint16_t>(random.bits() % 512);

@@ -10,7 +10,7 @@
 namespace crisp {
 namespace {
 
-constexpr double kMargin = 0.1;  // [s] of readings before the first and after the last sweep
+constexpr double kPlateMargin = 0.1;  // [s] of readings before the first and after the last sweep
 
 }  // namespace
 
@@ -24,7 +24,7 @@ RecordingSimulator::RecordingSimulator(const RecordingSettings& settings, const 
       truth_(draw_devices(settings)),
       motion_(make_motion(settings.scanner.motion, settings.scanner.duration, settings.scanner.seed)),
       sweeps_(settings.scanner, scene, motion_, terms),
-      plate_(settings, truth_, motion_, -kMargin) {
+      plate_(settings, truth_, motion_, -kPlateMargin) {
   for (std::size_t i = 0; i < truth_.lasers.size(); ++i) {
     lasers_.emplace_back(settings, truth_, static_cast<std::uint16_t>(i));
   }
@@ -46,7 +46,7 @@ std::optional<HubEvent> RecordingSimulator::next() {
 bool RecordingSimulator::fire() {
   const double sweep = upcoming_.revolution.begin;
   const double end = settings_.scanner.duration;
-  if (sweep >= end && plate_.next_time() > end + kMargin) return false;
+  if (sweep >= end && plate_.next_time() > end + kPlateMargin) return false;
   if (sweep < end && sweep <= plate_.next_time()) {
     if (auto telegram = lasers_[upcoming_.laser].send(upcoming_)) hold(std::move(*telegram));
     upcoming_ = sweeps_.next();

@@ -82,14 +82,14 @@ Scene read_ellipsoid(const YamlNode& node, bool, ErrorList& errors) {
   return one({.name = "ellipsoid", .shape = ellipsoid});
 }
 
-using Reader = Scene (*)(const YamlNode& node, bool as_body, ErrorList& errors);
-constexpr std::array<std::pair<const char*, Reader>, 7> kReaders = {{{"box", read_box},
-                                                                     {"rectangle", read_rectangle},
-                                                                     {"polygon", read_polygon},
-                                                                     {"walls", read_walls},
-                                                                     {"cylinder", read_cylinder},
-                                                                     {"sphere", read_sphere},
-                                                                     {"ellipsoid", read_ellipsoid}}};
+using ReadShape = Scene (*)(const YamlNode& node, bool as_body, ErrorList& errors);
+constexpr std::array<std::pair<const char*, ReadShape>, 7> kReaders = {{{"box", read_box},
+                                                                        {"rectangle", read_rectangle},
+                                                                        {"polygon", read_polygon},
+                                                                        {"walls", read_walls},
+                                                                        {"cylinder", read_cylinder},
+                                                                        {"sphere", read_sphere},
+                                                                        {"ellipsoid", read_ellipsoid}}};
 
 Scene read_shape(YamlMap& item, const YamlNode& node, const std::map<std::string, Scene>& shapes) {
   const std::string name = item.text("shape", "");
