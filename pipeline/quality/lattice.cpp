@@ -6,16 +6,13 @@
 #include <cstdint>
 #include <utility>
 
+#include "pipeline/quality/axes.hpp"
 #include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr std::size_t kSlab = 8;  // planes; a point reaches 6, so only into the next slab
-
-std::array<std::span<const double>, 3> axes(const PointsView& points) {
-  return {points.x, points.y, points.z};
-}
 
 /// The first node and the number of nodes along one axis. Nodes lie at multiples of the step, so that they
 /// stay where they are when points move.

@@ -10,7 +10,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kChunk = 1024;  // beams whose rows are in memory at once
+constexpr std::size_t kBeamsAtOnce = 1024;  // beams whose rows are in memory at once
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -123,8 +123,8 @@ SurfelSums sums_of(const Surfel& surfel, std::span<const std::uint32_t> members,
   std::vector<SurfelSums> parts(blocks_of(members.size(), kBlock));
   for_blocks(members.size(), kBlock, [&](std::size_t part, std::size_t begin, std::size_t end) {
     parts[part] = summer.none(members.subspan(begin, end - begin));
-    for (std::size_t k = begin; k < end; k += kChunk) {
-      const std::size_t count = std::min(kChunk, end - k);
+    for (std::size_t k = begin; k < end; k += kBeamsAtOnce) {
+      const std::size_t count = std::min(kBeamsAtOnce, end - k);
       summer.add(members.subspan(k, count), residuals.subspan(k, count), parts[part]);
     }
   });

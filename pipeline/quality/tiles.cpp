@@ -6,14 +6,11 @@
 #include <limits>
 #include <utility>
 
+#include "pipeline/quality/axes.hpp"
 #include "pipeline/quality/blocks.hpp"
 
 namespace crisp {
 namespace {
-
-std::array<std::span<const double>, 3> axes(const PointsView& points) {
-  return {points.x, points.y, points.z};
-}
 
 constexpr std::size_t kCutBlock = 65536;     // points
 constexpr std::size_t kGatherBlock = 16384;  // points

@@ -47,7 +47,7 @@ Ended run(const std::string& command) {
 TEST(LiveViewer, PrintsThePointsOfEachRevolution) {
   const test::TemporaryFolder folder;
   RecordingSettings settings;
-  settings.scanner.duration = 20;
+  settings.scanner.duration = 300;  // it ends with the viewer, whatever a busy machine loses before
   settings.scanner.motion.kind = MotionKind::constant;
   RecordingSimulator simulator(settings, office());
   Rig rig = default_rig();
