@@ -23,9 +23,9 @@ struct Glance {
 };
 
 /// The cells' sizes: as wide as the plate turns between two scans.
-class Grid {
+class RepeatGrid {
  public:
-  Grid(const Measurements& beams, const PlateTrajectory& plate) : plate_(plate) {
+  RepeatGrid(const Measurements& beams, const PlateTrajectory& plate) : plate_(plate) {
     constexpr double kNarrowest = std::numbers::pi / 90;
     std::vector<double> turned;
     std::vector<double> rates;
@@ -92,7 +92,7 @@ class Grid {
 /// What most of the beams of one glance say, if they agree.
 class Glances {
  public:
-  explicit Glances(const Grid& grid) : grid_(grid), counts_(grid.cells() * grid.whens()) {}
+  explicit Glances(const RepeatGrid& grid) : grid_(grid), counts_(grid.cells() * grid.whens()) {}
 
   void add(const Glance& glance, Glimpse glimpse) {
     Count& count = counts_[grid_.cell(glance) * grid_.whens() + glance.when];
@@ -124,7 +124,7 @@ class Glances {
   struct Count {
     std::uint16_t surface = 0, hidden = 0;
   };
-  const Grid& grid_;
+  const RepeatGrid& grid_;
   std::vector<Count> counts_;
 };
 
@@ -132,7 +132,7 @@ bool changes(const std::vector<Glimpse>& looks) {
   return std::ranges::count(looks, Glimpse::kSurface) > 0 && std::ranges::count(looks, Glimpse::kHidden) > 0;
 }
 
-ChangingDirections changing_among(const Grid& grid, const Glances& glances, double beams) {
+ChangingDirections changing_among(const RepeatGrid& grid, const Glances& glances, double beams) {
   std::vector<bool> does_change(grid.cells());
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) does_change[cell] = changes(glances.looks(cell));
   constexpr std::ptrdiff_t kMostOfNine = 6;
@@ -183,7 +183,7 @@ ChangingDirections changing_directions(const Measurements& beams, const PlateTra
                                        const Met& met, double usual) {
   constexpr double kBefore = 0.3;                  // [m] before the surface, at least, is what hides it
   constexpr double kSeenWithin = 4, kFarOff = 10;  // usual errors
-  const Grid grid(beams, plate);
+  const RepeatGrid grid(beams, plate);
   Glances glances(grid);
   double ahead = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {

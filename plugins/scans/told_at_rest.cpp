@@ -17,7 +17,7 @@ namespace {
 
 using Row = std::vector<double>;
 
-constexpr double kLargestError = 0.1;      // [m] between profiles; more counts as that
+constexpr double kLargestRestError = 0.1;  // [m] between profiles; more counts as that
 constexpr std::size_t kFewestOfAKind = 4;  // scans in half of a rest
 constexpr std::size_t kFewestBeams = 20;   // of all rests
 constexpr std::size_t kSimulations = 499;
@@ -119,7 +119,7 @@ double shift_of(const std::vector<Rest>& rests, const std::vector<Row>& referenc
         if (k >= profiles[r].size()) continue;
         const double error =
             std::abs(profiles[r][k] - straight_at(references[r], static_cast<double>(k) + shift));
-        sum += std::pow(std::fmin(kLargestError, error), 2);
+        sum += std::pow(std::fmin(kLargestRestError, error), 2);
       }
     }
     if (sum < least) {

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kStretch = 6;  // scans …
 constexpr std::size_t kUsed = 4;     // … of which so many count
 constexpr std::size_t kFewest = 10;  // stretches: of fewer, one draw of signs in a hundred pulls as much
-constexpr int kDraws = 4999;
+constexpr int kSweepDraws = 4999;
 
 /// How scans pull along one course of their lags.
 struct Course {
@@ -61,14 +61,14 @@ std::vector<double> chances_of(const std::vector<Course>& courses, std::uint64_t
   std::vector<double> signs(courses.front().pulls.size(), 1);
   std::vector<double> seen;
   for (const Course& course : courses) seen.push_back(course.size(signs));
-  std::vector<double> chances(courses.size(), 1.0 / (kDraws + 1));
+  std::vector<double> chances(courses.size(), 1.0 / (kSweepDraws + 1));
   std::mt19937_64 random(seed);
-  for (int i = 0; i < kDraws; ++i) {
+  for (int i = 0; i < kSweepDraws; ++i) {
     for (double& sign : signs) sign = random() % 2 == 0 ? 1 : -1;
     double largest = 0;
     for (const Course& course : courses) largest = std::max(largest, course.size(signs));
     for (std::size_t k = 0; k < courses.size(); ++k) {
-      if (largest >= seen[k]) chances[k] += 1.0 / (kDraws + 1);
+      if (largest >= seen[k]) chances[k] += 1.0 / (kSweepDraws + 1);
     }
   }
   return chances;
