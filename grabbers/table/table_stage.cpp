@@ -118,10 +118,10 @@ void TableStage::check_columns() const {
 }
 
 void TableStage::check(const RunSettings& run) const {
-  std::vector<Error> errors;
-  for_each_error([&] { check_columns(); }, [&](const Error& error) { errors.push_back(error); });
+  AllErrors errors;
+  errors.keep_of([&] { check_columns(); });
   const auto refuse_if = [&](bool wrong, std::string what, std::string advice) {
-    if (wrong) errors.emplace_back(std::move(what), std::move(advice));
+    if (wrong) errors.add(Error(std::move(what), std::move(advice)));
   };
   const bool timed = format_.time_column || format_.receipt_column;
   refuse_if(!timed && format_.period == 0, "nothing says when the rows were measured",
@@ -136,7 +136,7 @@ void TableStage::check(const RunSettings& run) const {
   refuse_if(run.rig.lasers.size() > 1 && !format_.laser_column,
             fmt::format("the rig has {} lasers, and nothing says whose a row is", run.rig.lasers.size()),
             "give laser_column, or a rig of one laser");
-  if (!errors.empty()) throw Errors(std::move(errors));
+  errors.throw_any();
 }
 
 void TableStage::read(TableReader& reader, TableItems& items, Outputs& out, Context& context) const {

@@ -26,8 +26,9 @@ class AllErrors {
   /// Does something, and keeps each Error that it throws.
   template <class Action>
   void keep_of(Action&& action) {
-    for_each_error(action, [&](const Error& error) { errors_.push_back(error); });
+    for_each_error(action, [&](const Error& error) { add(error); });
   }
+  void add(Error error) { errors_.push_back(std::move(error)); }
   /// @throws Errors  all that were kept, if there are any
   void throw_any() {
     if (!errors_.empty()) throw Errors(std::move(errors_));

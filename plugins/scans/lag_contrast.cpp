@@ -11,7 +11,6 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kMostLags = 8;
 constexpr double kClip = 0.3;  // [m]
 constexpr std::size_t kShuffles = 1999;
 

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace crisp {
 
+/// Counts by which scans at rest are compared; more is another rest.
+inline constexpr std::size_t kMostLags = 8;
+
 /// By how much more scans at rest differ some counts apart than other counts apart. Differences count up to
-/// 0.3 m, so that edges do not outweigh all else; counts up to 8 apart are looked at.
+/// 0.3 m, so that edges do not outweigh all else; counts up to kMostLags apart are looked at.
 class LagContrast {
  public:
   /// @param rows    of each scan its ranges [m], or what a model leaves of them; NaN where there is none
-  /// @param counts  of the scans, rising; more than 8 apart is another rest, and is not compared
+  /// @param counts  of the scans, rising; what is farther apart is another rest, and is not compared
   LagContrast(std::vector<std::vector<double>> rows, const std::vector<std::int64_t>& counts);
 
   /// [m] Element l − 1: mean size of the difference between scans l apart; NaN where there are none.

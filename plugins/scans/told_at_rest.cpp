@@ -88,10 +88,10 @@ std::vector<std::size_t> straight_beams(const std::vector<Row>& rows) {
 }
 
 std::vector<Rest> rests_of(std::span<const SeriesScan> scans, std::size_t period) {
-  constexpr std::int64_t kApart = 8;  // counts, as for LagContrast
   std::vector<Rest> all;
   for (const SeriesScan& scan : scans) {
-    if (all.empty() || scan.count - all.back().counts.back() > kApart) all.emplace_back();
+    if (all.empty() || scan.count - all.back().counts.back() > static_cast<std::int64_t>(kMostLags))
+      all.emplace_back();
     all.back().rows.push_back(row_of(scan));
     all.back().kinds.push_back(kind_of(scan, period));
     all.back().counts.push_back(scan.count);

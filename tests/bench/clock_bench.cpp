@@ -13,7 +13,11 @@
 namespace crisp {
 namespace {
 
-using namespace testing;  // NOLINT(google-build-using-namespace)
+using testing::exponential_delays;
+using testing::mean_device_time;
+using testing::simulated_stamps;
+using testing::SimulatedLaser;
+using testing::SimulatedPlate;
 
 using Event = std::variant<std::shared_ptr<const Scan>, PlateReading>;
 
