@@ -223,7 +223,7 @@ std::optional<std::int64_t> PcapngBlocks::to_ns(std::uint64_t ticks, const Inter
     for (unsigned i = 9; i < n; ++i) fraction /= 10;
     ns = fraction;
   }
-  constexpr std::int64_t kMostSeconds = 9'223'372'035;
+  constexpr std::int64_t kMostSeconds = 9'223'372'034;  // a second more still fits
   const bool fits = seconds <= static_cast<std::uint64_t>(kMostSeconds) &&
                     interface.offset_s <= kMostSeconds && interface.offset_s >= -kMostSeconds;
   const auto total = fits ? static_cast<std::int64_t>(seconds) + interface.offset_s : -1;

@@ -96,10 +96,14 @@ EmulatedLedger Emulator::ledger() {
 void Emulator::in_thread(const std::function<void()>& work) {
   std::promise<void> done;
   asio::post(context_, [&] {
-    work();
-    done.set_value();
+    try {
+      work();
+      done.set_value();
+    } catch (...) {
+      done.set_exception(std::current_exception());
+    }
   });
-  done.get_future().wait();
+  done.get_future().get();
 }
 
 std::size_t Emulator::waiting_bytes() {

@@ -28,28 +28,19 @@ TableItems::TableItems(const TableFormat& format, const TableScanSettings& setti
   ends_.assign(rig_.lasers.size(), -std::numeric_limits<double>::infinity());
 }
 
-/// False for a row whose counter says that it came before.
-bool TableItems::count_turns(const TableRow& row) {
-  if (!row.counter) {
-    ++turn_;
-    return true;
-  }
+std::optional<std::int64_t> TableItems::turn_of(const TableRow& row) const {
+  if (!row.counter) return turn_ + 1;
+  if (!last_counter_) return 0;
   const std::int64_t modulus = format_.counter_modulus;
-  if (last_counter_) {
-    const std::int64_t on = (((*row.counter - *last_counter_) % modulus) + modulus) % modulus;
-    if (on == 0) return false;
-    turn_ += on;
-  } else {
-    turn_ = 0;
-  }
-  last_counter_ = row.counter;
-  return true;
+  const std::int64_t on = (((*row.counter - *last_counter_) % modulus) + modulus) % modulus;
+  if (on == 0) return {};
+  return turn_ + on;
 }
 
-std::int64_t TableItems::time_of(const TableRow& row) const {
+std::int64_t TableItems::time_of(const TableRow& row, std::int64_t turn) const {
   if (row.time_ns) return *row.time_ns;
   if (row.receipt_ns) return *row.receipt_ns;
-  return std::llround(static_cast<double>(turn_) * format_.period * kNano);
+  return std::llround(static_cast<double>(turn) * format_.period * kNano);
 }
 
 double TableItems::seconds(std::int64_t ns) const { return static_cast<double>(ns - epoch_ns_) / kNano; }
@@ -119,17 +110,20 @@ std::optional<std::int64_t> TableItems::admit(const TableRow& row) {
     ++losses_["rows of a laser that the rig does not have"];
     return {};
   }
-  if (!count_turns(row)) {
+  const auto turn = turn_of(row);
+  if (!turn) {
     ++losses_["rows with the counter of the row before"];
     return {};
   }
-  const std::int64_t time_ns = time_of(row);
+  const std::int64_t time_ns = time_of(row, *turn);
   if (last_ns_ && time_ns < *last_ns_) {
     ++losses_["rows that are earlier than the row before"];
     if (first_early_line_ == 0) first_early_line_ = row.line;
     return {};
   }
   last_ns_ = time_ns;
+  turn_ = *turn;
+  if (row.counter) last_counter_ = row.counter;
   return time_ns;
 }
 

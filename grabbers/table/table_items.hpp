@@ -65,9 +65,10 @@ class TableItems {
   std::uint64_t overlapping() const { return overlapping_; }
 
  private:
-  bool count_turns(const TableRow& row);
+  /// Turns of the mirror since the first row; nothing for a row whose counter is that of the row before.
+  std::optional<std::int64_t> turn_of(const TableRow& row) const;
   void note_end(const TableRow& row, double time);
-  std::int64_t time_of(const TableRow& row) const;
+  std::int64_t time_of(const TableRow& row, std::int64_t turn) const;
   double unwrapped(double angle) const;
   void note_angle(double time, double angle);
   std::shared_ptr<const Scan> scan_of(const TableRow& row, std::int64_t time_ns) const;

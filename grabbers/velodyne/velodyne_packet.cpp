@@ -27,11 +27,16 @@ double velodyne_shot(std::size_t block, std::size_t firing, std::size_t laser) {
   return static_cast<double>(2 * block + firing) * kFiring + static_cast<double>(laser) * kLaser;
 }
 
+std::uint32_t velodyne_passed_us(std::uint32_t from, std::uint32_t to) {
+  return to >= from ? to - from : kVelodyneHour_us - (from - to);
+}
+
 std::optional<VelodynePacket> parse_velodyne(ByteView bytes) {
   if (bytes.size() != kVelodynePacket || bytes[kProductAt] != kVlp16) return {};
   if (bytes[kModeAt] != kStrongest && bytes[kModeAt] != kLast) return {};
   VelodynePacket packet;
   packet.time_us = little<std::uint32_t>(bytes, kTimeAt);
+  if (packet.time_us >= kVelodyneHour_us) return {};
   for (std::size_t b = 0; b < kVelodyneBlocks; ++b) {
     const std::size_t at = b * kBlockBytes;
     const auto azimuth = little<std::uint16_t>(bytes, at + 2);

@@ -11,7 +11,8 @@ namespace crisp {
 
 inline constexpr std::size_t kVelodyneLasers = 16;
 inline constexpr std::size_t kVelodyneBlocks = 12;
-inline constexpr std::size_t kVelodynePacket = 1206;  ///< [bytes] of a packet of measurements
+inline constexpr std::size_t kVelodynePacket = 1206;              ///< [bytes] of a packet of measurements
+inline constexpr std::uint32_t kVelodyneHour_us = 3'600'000'000;  ///< where a packet's time begins anew
 
 /// One return of one laser.
 struct VelodyneReturn {
@@ -31,7 +32,11 @@ struct VelodynePacket {
 /// (VLP-16 User Manual, 63-9243).
 double velodyne_shot(std::size_t block, std::size_t firing, std::size_t laser);
 
-/// Reads a packet. Nothing for other sizes, flags, products, modes, and azimuths beyond a turn.
+/// [µs] from one packet's time to a later one's, which is less than an hour after it.
+std::uint32_t velodyne_passed_us(std::uint32_t from, std::uint32_t to);
+
+/// Reads a packet. Nothing for other sizes, flags, products, modes, times beyond an hour and azimuths beyond
+/// a turn.
 std::optional<VelodynePacket> parse_velodyne(ByteView bytes);
 
 }  // namespace crisp

@@ -13,7 +13,6 @@
 namespace crisp {
 namespace {
 
-constexpr std::uint32_t kHour_us = 3'600'000'000;
 constexpr double kMaxGap = 0.05;  // [s] of the azimuths, which come every 0.11 ms
 
 std::optional<TransportPacket> datagram_of(const Packet& packet) {
@@ -54,7 +53,7 @@ void VelodyneStage::take(const VelodynePacket& packet, std::int64_t receipt_ns, 
     epoch_ns_ = receipt_ns;
     last_us_ = packet.time_us;
   }
-  packet_time_ += 1e-6 * static_cast<double>((packet.time_us + kHour_us - last_us_) % kHour_us);
+  packet_time_ += 1e-6 * static_cast<double>(velodyne_passed_us(last_us_, packet.time_us));
   last_us_ = packet.time_us;
   Measurements beams;
   beams.epoch_ns = *epoch_ns_;
@@ -94,7 +93,7 @@ void VelodyneStage::process(const Inputs&, Outputs& out, Context& context) {
       context.count("packets that are not a VLP-16's measurements");
       continue;
     }
-    if (epoch_ns_ && (data->time_us + kHour_us - last_us_) % kHour_us > kHour_us / 2) {
+    if (epoch_ns_ && velodyne_passed_us(last_us_, data->time_us) > kVelodyneHour_us / 2) {
       context.count("packets that are older than the one before");
       continue;
     }

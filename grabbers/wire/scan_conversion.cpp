@@ -64,6 +64,7 @@ class Gathering {
                channel.angle_step != first_->angle_step) {
       failure_ = ScanFailure::ChannelsDisagree;
     } else if (std::abs(double{1} * channel.start_angle) > kTurn ||
+               (channel.angle_step == 0 && channel.raw.size() > 1) ||
                double{1} * channel.angle_step * static_cast<double>(channel.raw.size()) > 1.01 * kTurn) {
       failure_ = ScanFailure::BadAngles;
     }
@@ -104,7 +105,7 @@ std::string_view to_string(ScanFailure failure) {
     case ScanFailure::BadScale:
       return "a scale factor or offset that is no finite number";
     case ScanFailure::BadAngles:
-      return "angles beyond a full turn";
+      return "angles beyond a full turn, or the same for all values";
   }
   return "unknown";
 }

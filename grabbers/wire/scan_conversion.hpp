@@ -18,7 +18,7 @@ enum class ScanFailure : std::uint8_t {
   NoDistances,       ///< no channel DISTn
   ChannelsDisagree,  ///< channels of one scan with different angles or numbers of values
   BadScale,          ///< a scale factor or an offset that is no finite number
-  BadAngles,         ///< angles beyond a full turn
+  BadAngles,         ///< angles beyond a full turn, or the same for all values
 };
 
 std::string_view to_string(ScanFailure failure);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "grabbers/wire/cola.hpp"
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 
@@ -19,7 +20,10 @@ constexpr double kMostRaw = std::numeric_limits<std::uint16_t>::max();
 /// The least whole scale under which all values fit into `most`.
 float scale_for(const std::vector<float>& values, double factor, double most) {
   float largest = 0;
-  for (const float value : values) largest = std::max(largest, value);
+  for (const float value : values) {
+    if (!(value >= 0)) throw Error(fmt::format("a scan has a value of {}, which no telegram can say", value));
+    largest = std::max(largest, value);
+  }
   const double scale = std::max(1.0, std::ceil(largest * factor / most - 1e-6));
   if (!(scale <= kMostRaw)) {
     throw Error(fmt::format("a scan has a value of {}, which no telegram can say", largest));
@@ -46,10 +50,20 @@ void check_angles(const Scan& scan) {
   if (!start || !step) throw Error("a scan has angles that no telegram can say");
 }
 
+/// Whichever the dialect: CoLa-A takes up to five characters for a value.
+void check_size(const Scan& scan) {
+  constexpr std::size_t kCharacters = 5, kRest = 4096;
+  std::size_t values = 0;
+  for (const Echo& echo : scan.echoes) values += echo.ranges.size() + echo.remissions.size();
+  if (values * kCharacters + kRest <= kLargestColaPayload) return;
+  throw Error(fmt::format("a scan has {} values, more than a telegram can hold", values));
+}
+
 }  // namespace
 
 ScanData to_scan_data(const Scan& scan) {
   check_angles(scan);
+  check_size(scan);
   ScanData data;
   data.serial_number = scan.serial_number;
   data.device_status = scan.device_status;

@@ -235,7 +235,7 @@ void thin(FlatWindow& window) {
 
 std::vector<FlatWindow> flat_windows(const Pass& pass, const FanGeometry& fan, double side) {
   std::vector<FlatWindow> windows;
-  if (pass.scans.size() < 2) return windows;
+  if (pass.scans.size() < 2 || fan.step == 0) return windows;
   const double first_angle = pass.scans.front().angle;
   const auto beams_across = static_cast<std::size_t>(std::max(1.0, side / std::abs(fan.step)));
   const std::size_t beams = pass.scans.front().ranges->size();

@@ -38,7 +38,7 @@ struct FlatWindow {
 };
 
 /// Cuts the sweep into windows of about `side` [rad] both ways and keeps those that are flat by the noise
-/// between neighbouring beams. Each is allowed an offset of the optical centre of its own, so that no value
+/// of each beam from scan to scan. Each is allowed an offset of the optical centre of its own, so that no value
 /// of what is to be found is preferred by the choice.
 std::vector<FlatWindow> flat_windows(const Pass& pass, const FanGeometry& fan, double side);
 

@@ -21,6 +21,7 @@ constexpr double kLeastMotion = 1e-3;                  // [rad] of the actuator 
 /// missing.
 std::optional<double> range_at(const SeriesScan& scan, double first_angle, double angle) {
   constexpr double kRounding = 1e-6;
+  if (scan.scan->angle_step == 0) return {};  // a single beam
   const double beam = (angle - first_angle) / scan.scan->angle_step;
   const double floor = std::floor(beam + kRounding);
   const double on = std::max(0.0, beam - floor);

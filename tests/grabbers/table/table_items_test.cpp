@@ -120,6 +120,18 @@ TEST(TableItems, TheDevicesCountTimesItsScansAcrossItsWrap) {
   EXPECT_THAT(items.losses(), ElementsAre(Pair("rows with the counter of the row before", 1)));
 }
 
+TEST(TableItems, ARowThatIsLeftOutDoesNotMoveTheCount) {
+  TableItems items({.counter_column = 1, .counter_modulus = 65536, .period = 0.01, .angle_column = 2},
+                   {.angle_step = 0.1}, tilting(0, 0));
+  std::vector<std::uint32_t> stamps;
+  for (const std::int64_t counter : {10, 9, 11}) {
+    const auto item = items.add({.time_ns = counter * 10 * kMs, .counter = counter, .ranges = {1}});
+    if (item) stamps.push_back(item->scan->scan_time_us);
+  }
+  EXPECT_THAT(stamps, ElementsAre(0, 10'000));
+  EXPECT_THAT(items.losses(), ElementsAre(Pair("rows that are earlier than the row before", 1)));
+}
+
 TEST(TableItems, SayWhatNoDeviceCountedOrTimed) {
   const TableRow row{.time_ns = 1'000'000'000, .receipt_ns = 1'010'000'000, .ranges = {1}};
   TableRow counted = row;

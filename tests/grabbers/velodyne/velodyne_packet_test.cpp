@@ -47,11 +47,19 @@ TEST(VelodynePacket, ShotsFollowOneAnotherAsTheManualSays) {
   EXPECT_NEAR(velodyne_shot(11, 1, 15), 1306.368e-6, 1e-10);
 }
 
+TEST(VelodynePacket, TimeGoesOnOverSilencesAndTheFullHour) {
+  EXPECT_EQ(velodyne_passed_us(5, 5), 0U);
+  EXPECT_EQ(velodyne_passed_us(0, 1'000'000'000), 1'000'000'000U);
+  EXPECT_EQ(velodyne_passed_us(3'599'000'000, 1'000'000), 2'000'000U);
+  EXPECT_EQ(velodyne_passed_us(1'000'000, 0), 3'599'000'000U);
+}
+
 TEST(VelodynePacket, OfAnotherKindIsNone) {
   for (const auto& [at, value] : {std::pair{std::size_t{0}, 0xFE},
                                   {std::size_t{1204}, 0x39},
                                   {std::size_t{1205}, 0x21},
-                                  {std::size_t{103}, 0xFF}}) {
+                                  {std::size_t{103}, 0xFF},
+                                  {std::size_t{1203}, 0xFF}}) {
     auto bytes = sample();
     bytes[at] = static_cast<std::uint8_t>(value);
     EXPECT_FALSE(parse_velodyne(bytes)) << at;

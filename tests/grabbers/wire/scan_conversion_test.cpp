@@ -120,6 +120,9 @@ TEST(ScanConversion, RefusesTelegramsThatMakeNoScan) {
       ScanFailure::BadScale);
   EXPECT_EQ(to_scan(data_with({{.raw = std::vector<std::uint16_t>(800, 100)}}), 0, 0, scan),
             ScanFailure::BadAngles);
+  ScanData without_step = data_with({{.raw = {100, 200}}});
+  without_step.channels16[0].angle_step = 0;
+  EXPECT_EQ(to_scan(without_step, 0, 0, scan), ScanFailure::BadAngles);
 }
 
 }  // namespace

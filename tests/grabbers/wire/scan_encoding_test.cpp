@@ -59,6 +59,15 @@ TEST(ScanEncoding, RefusesWhatNoTelegramCanSay) {
   scan = decoded(telegram());
   scan.angle_step = 1;
   EXPECT_THROW(to_scan_data(scan), Error);
+  for (const float remission : {-20.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    scan = decoded(telegram());
+    scan.echoes[0].remissions[0] = remission;
+    EXPECT_THROW(to_scan_data(scan), Error) << remission;
+  }
+  scan = decoded(telegram());
+  scan.echoes.resize(1);
+  scan.echoes[0] = {.ranges = std::vector<float>(20'000, 1.0F)};
+  EXPECT_THROW(to_scan_data(scan), Error);
 }
 
 }  // namespace
