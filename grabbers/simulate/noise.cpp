@@ -27,26 +27,31 @@ void check(const RangeSettings& range, const NoiseEffects& effects, const std::s
 
 }  // namespace
 
-RangeNoise::RangeNoise(const RangeSettings& range, const NoiseEffects& effects, std::size_t beams,
-                       std::uint64_t seed, const std::string& laser)
+RangeNoise::RangeNoise(const RangeSettings& range, const NoiseEffects& effects, std::uint64_t seed,
+                       const std::string& laser)
     : sizes_{effects.sigma > 0 ? effects.sigma : range.sigma, effects.slope, effects.spread, effects.jitter},
       quantum_(effects.step > 0 ? effects.step : range.quantum),
       effects_(effects),
       normal_(seed, laser + ".noise"),
       tail_(seed, laser + ".noise.tail"),
-      peak_(seed, laser + ".noise.peaks") {
+      peak_(seed, laser + ".noise.peaks"),
+      weight_(seed, laser + ".noise.weights") {
   check(range, effects, laser);
-  if (effects.separation == 0) return;
-  RandomStream random(seed, laser + ".noise.weights");
-  for (std::size_t i = 0; i < beams; ++i) {
-    weights_.push_back(random.uniform(effects.least_weight, effects.most_weight));
+}
+
+double RangeNoise::weight_of(std::uint16_t beam) {
+  while (weights_.size() <= beam) {
+    weights_.push_back(weight_.uniform(effects_.least_weight, effects_.most_weight));
   }
+  return weights_[beam];
 }
 
 RangeNoise::Draw RangeNoise::draw(std::uint16_t beam) {
   Draw draw{.normal = normal_.normal()};
   if (effects_.tail_share > 0 && tail_.chance(effects_.tail_share)) draw.normal *= effects_.tail_scale;
-  if (!weights_.empty()) draw.shift = effects_.separation * (peak_.chance(weights_[beam]) ? 0.5 : -0.5);
+  if (effects_.separation != 0) {
+    draw.shift = effects_.separation * (peak_.chance(weight_of(beam)) ? 0.5 : -0.5);
+  }
   return draw;
 }
 

@@ -40,9 +40,8 @@ struct NoiseEffects {
 class RangeNoise {
  public:
   /// @param laser  its name, for its random numbers
-  /// @param beams  so many are in a scan
   /// @throws Error if a setting makes no sense
-  RangeNoise(const RangeSettings& range, const NoiseEffects& effects, std::size_t beams, std::uint64_t seed,
+  RangeNoise(const RangeSettings& range, const NoiseEffects& effects, std::uint64_t seed,
              const std::string& laser);
 
   /// What fate has for one beam, whatever it will meet. To be drawn for every beam, in the order of firing.
@@ -56,13 +55,16 @@ class RangeNoise {
   double reported(const EchoConditions& echo, const Draw& draw) const;
 
  private:
+  double weight_of(std::uint16_t beam);
+
   ByPart sizes_;
   double quantum_;
   NoiseEffects effects_;
   RandomStream normal_;
   RandomStream tail_;
   RandomStream peak_;
-  std::vector<double> weights_;  ///< by beam, of the farther peak
+  RandomStream weight_;
+  std::vector<double> weights_;  ///< by beam as far as one was drawn, of the farther peak
 };
 
 }  // namespace crisp

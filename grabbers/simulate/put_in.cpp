@@ -53,8 +53,7 @@ PutIn::PutIn(const PutInEffects& effects, std::uint64_t seed, std::string name)
 
 Scan PutIn::changed(const Scan& scan) {
   if (!noise_) {
-    const std::size_t beams = scan.echoes.empty() ? 0 : scan.echoes.front().ranges.size();
-    noise_.emplace(RangeSettings{.sigma = 0, .quantum = 0}, effects_.laser.noise, beams, seed_, name_);
+    noise_.emplace(RangeSettings{.sigma = 0, .quantum = 0}, effects_.laser.noise, seed_, name_);
     last_us_ = scan.scan_time_us;
     first_ns_ = scan.receipt_ns;
   }

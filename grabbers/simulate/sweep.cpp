@@ -77,14 +77,14 @@ SweepSimulator::SweepSimulator(const ScannerSettings& settings, const Scene& sce
     MirrorSettings mirror = settings_.mirror;
     if (!effects.mirror_drawn) mirror.slowest = 0;
     if (effects.mirror_wander > 0) mirror.wander = Mirror::wander_of_rms(effects.mirror_wander);
-    Laser& laser = lasers_.emplace_back(Laser{
-        .mirror = Mirror(mirror, settings_.seed, name, effects.mirror_excess),
-        .noise = RangeNoise(settings_.range, effects.noise, settings_.field.beams(), settings_.seed, name),
-        .foliage = RandomStream(settings_.seed, name + ".foliage"),
-        .spot = Spot(effects.noise, settings_.range.max_distance, reflectances),
-        .upcoming = {},
-        .interleave = effects.interleave,
-        .parameters = {}});
+    Laser& laser =
+        lasers_.emplace_back(Laser{.mirror = Mirror(mirror, settings_.seed, name, effects.mirror_excess),
+                                   .noise = RangeNoise(settings_.range, effects.noise, settings_.seed, name),
+                                   .foliage = RandomStream(settings_.seed, name + ".foliage"),
+                                   .spot = Spot(effects.noise, settings_.range.max_distance, reflectances),
+                                   .upcoming = {},
+                                   .interleave = effects.interleave,
+                                   .parameters = {}});
     laser.upcoming = laser.mirror.next();
     for (const auto slot : model_.chain(i).slots) {
       laser.parameters.push_back(model_.values()[static_cast<Eigen::Index>(slot)]);

@@ -17,7 +17,7 @@ using test::Moments;
 
 /// Of the errors of one kind of echo, of beams 0 to 9 in turn.
 Moments errors_at(const NoiseEffects& effects, const EchoConditions& echo) {
-  RangeNoise noise(kPlain, effects, 10, 1, "laser1");
+  RangeNoise noise(kPlain, effects, 1, "laser1");
   std::uint16_t beam = 0;
   return test::moments([&] {
     beam = static_cast<std::uint16_t>((beam + 1) % 10);
@@ -82,7 +82,7 @@ TEST(RangeNoise, HasTheVarianceAndTheKurtosisOfAMixture) {
 TEST(RangeNoise, HasTwoPeaksWhoseWeightsAreTheBeamsOwn) {
   const NoiseEffects effects{.separation = 0.015, .least_weight = 0.2, .most_weight = 0.9};
   const RangeSettings quiet{.sigma = 0, .quantum = 0};
-  RangeNoise noise(quiet, effects, 4, 1, "laser1");
+  RangeNoise noise(quiet, effects, 1, "laser1");
   double least = 1, most = 0;
   for (std::uint16_t beam = 0; beam < 4; ++beam) {
     int far = 0;
@@ -101,8 +101,8 @@ TEST(RangeNoise, HasTwoPeaksWhoseWeightsAreTheBeamsOwn) {
 }
 
 TEST(RangeNoise, IsRoundedToTheStepOfTheLaserOrOfAll) {
-  RangeNoise coarse({.sigma = 0.012, .quantum = 0.001}, {.step = 0.01}, 1, 1, "laser1");
-  RangeNoise fine({.sigma = 0.012, .quantum = 0.001}, {}, 1, 1, "laser1");
+  RangeNoise coarse({.sigma = 0.012, .quantum = 0.001}, {.step = 0.01}, 1, "laser1");
+  RangeNoise fine({.sigma = 0.012, .quantum = 0.001}, {}, 1, "laser1");
   for (int i = 0; i < 100; ++i) {
     const double centimetres = coarse.reported({.range = 5}, coarse.draw(0)) * 100;
     const double millimetres = fine.reported({.range = 5}, fine.draw(0)) * 1000;
@@ -112,13 +112,13 @@ TEST(RangeNoise, IsRoundedToTheStepOfTheLaserOrOfAll) {
 }
 
 TEST(RangeNoise, RefusesWhatMakesNoSense) {
-  const auto make = [](const NoiseEffects& effects) { return RangeNoise(kPlain, effects, 1, 1, "laser1"); };
+  const auto make = [](const NoiseEffects& effects) { return RangeNoise(kPlain, effects, 1, "laser1"); };
   EXPECT_THROW(make({.slope = -1}), Error);
   EXPECT_THROW(make({.spread = -1}), Error);
   EXPECT_THROW(make({.jitter = -1}), Error);
   EXPECT_THROW(make({.tail_share = 1.1}), Error);
   EXPECT_THROW(make({.separation = 0.01, .least_weight = 0.9, .most_weight = 0.2}), Error);
-  EXPECT_THROW(RangeNoise({.sigma = -1}, {}, 1, 1, "laser1"), Error);
+  EXPECT_THROW(RangeNoise({.sigma = -1}, {}, 1, "laser1"), Error);
 }
 
 }  // namespace

@@ -96,6 +96,20 @@ TEST(PutIn, OfRangesAddsWhatTheEffectSaysAndLeavesCodesAlone) {
   EXPECT_NEAR(std::sqrt(squares / count), 5e-3, 4 * 5e-3 / std::sqrt(2 * count));
 }
 
+TEST(PutIn, OfTwoPeaksIsAlsoForBeamsThatCameLater) {
+  auto stage = driver({{"noise.two_peaks", {{"separation", "20mm", {}}}, {}}});
+  Scan scan = scan_number(0);
+  for (const std::size_t beams : {0, 2, 1000}) {
+    scan.echoes[0].ranges.assign(beams, 2.0F);
+    stage.feed(scan);
+  }
+  const auto changed = stage.given<Scan>();
+  for (std::size_t n = 0; n < 3; ++n) {
+    for (const float range : changed.at(n)->echoes[0].ranges) EXPECT_NEAR(std::abs(range - 2), 0.01, 1e-6);
+  }
+  EXPECT_EQ(changed.at(2)->echoes[0].ranges.size(), 1000U);
+}
+
 TEST(PutIn, WithoutEffectsChangesNothing) {
   auto stage = driver({});
   stage.feed(scan_number(7));
