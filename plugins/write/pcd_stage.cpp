@@ -3,9 +3,10 @@
 
 #include <pcl/common/point_tests.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "pipeline/data/recordings.hpp"
 #include "pipeline/pcd/cloud_table.hpp"
 
 namespace crisp {
@@ -20,8 +21,10 @@ void WritePcdStage::describe(StageDescription<WritePcdStage>& d) {
       "that "
       "memory does not grow with it; and what comes after a pause of 5 s, maybe of another place, is in a "
       "file of "
-      "its own. The files appear when all of them are complete.");
-  d.takes<Cloud>();
+      "its own: a pause of the plate's readings or, where no stage above gives these, between two clouds. "
+      "The "
+      "files appear when all of them are complete.");
+  d.takes<Cloud>().holds<PlateTrajectory>(Need::optional);
   describe_parts(d, &WritePcdStage::options_);
 }
 
@@ -32,24 +35,29 @@ void WritePcdStage::process(const Inputs& in, Outputs&, Context& context) {
   const double shift =
       1e-6 * (static_cast<double>(cloud.header.stamp) - static_cast<double>(pending_.header.stamp));
   std::size_t lost = 0;
+  bool is_first = true;
   for (Point point : cloud) {
     point.time += shift;  // 0 within a run of crisp
     if (!pcl::isXYZFinite(point) || !std::isfinite(point.time)) {
       ++lost;
-    } else {
-      add(point);
+      continue;
     }
+    if (std::exchange(is_first, false)) borders_.begin_cloud(in.share<PlateTrajectory>(), point.time);
+    add(point);
   }
   context.count("points that are not numbers", lost);
 }
 
 void WritePcdStage::add(const Point& point) {
-  if (!pending_.empty() && (options_.is_full(pending_.size(), pending_.front().time, point.time) ||
-                            point.time - pending_.back().time > kPause)) {
+  const std::size_t recording = borders_.number(point.time);
+  const bool is_of_next = recording > recording_;
+  if (!pending_.empty() &&
+      (is_of_next || options_.is_full(pending_.size(), pending_.front().time, point.time))) {
     writer_->write(to_table(pending_), true);
     written_ += pending_.size();
     pending_.clear();
   }
+  recording_ = std::max(recording_, recording);
   pending_.push_back(point);
 }
 

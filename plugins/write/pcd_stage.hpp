@@ -5,6 +5,7 @@
 
 #include "pipeline/data/cloud.hpp"
 #include "plugins/write/parts_options.hpp"
+#include "plugins/write/recording_borders.hpp"
 
 namespace crisp {
 
@@ -21,6 +22,8 @@ class WritePcdStage final : public Stage {
   PartsOptions options_;
   std::optional<PartsWriter> writer_;
   Cloud pending_;
+  RecordingBorders borders_;
+  std::size_t recording_ = 0;  ///< of what is pending
   std::size_t written_ = 0;
 };
 
