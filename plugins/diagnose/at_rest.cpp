@@ -17,7 +17,8 @@ constexpr double kMostSpread = 0.03;  // [m]
 
 void AtRest::add(const Scan& scan) {
   constexpr std::size_t kMostScans = 4000;  // bounds the memory; so many tell all there is to tell
-  if (scan.echoes.empty() || receipt_ns_.size() >= kMostScans) {
+  const bool has_ranges = !scan.echoes.empty() && !scan.echoes.front().ranges.empty();
+  if (!has_ranges || receipt_ns_.size() >= kMostScans) {
     ++left_out_;
     return;
   }

@@ -40,7 +40,8 @@ class KnownSurface {
       most = most.cwiseMax(feet.back());
     }
     if (feet.empty()) return;
-    least_ = least - Eigen::Vector2d::Constant(kSide);  // a rim of unknown cells all around
+    // A rim of unknown cells all around, wherever rounding puts the outermost feet.
+    least_ = least - Eigen::Vector2d::Constant(1.5 * kSide);
     columns_ = along(most.x() - least_.x()) + 2;
     counts_.resize(columns_ * (along(most.y() - least_.y()) + 2));
     for (const auto& at : feet) {

@@ -196,7 +196,7 @@ NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, 
   result.law = result.plain;
   NoiseLaw named = result.plain;
   const double least_rise = std::max(kBic, 2 * least_gain * static_cast<double>(errors.size()));
-  auto left = noise_ways(errors, result.plain.sigma());
+  auto left = noise_ways(all, result.plain.sigma());  // the law is asked of all, and knows all beams
   std::vector<Found> found;
   while (!left.empty()) {
     const Tried best = best_of(scope, left, result.law, errors);

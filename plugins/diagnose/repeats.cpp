@@ -89,52 +89,58 @@ class RepeatGrid {
   double start_ = 0;      // [s]
 };
 
-/// What most of the beams of one glance say, if they agree.
+/// What most of the beams of one glance say, if they agree. Of each cell only the times at which a beam was
+/// fired into it are kept: on a head that turns fast nearly all others would be empty.
 class Glances {
  public:
-  explicit Glances(const RepeatGrid& grid) : grid_(grid), counts_(grid.cells() * grid.whens()) {}
+  explicit Glances(const RepeatGrid& grid) : whens_(grid.whens()), cells_(grid.cells()) {}
 
-  void add(const Glance& glance, Glimpse glimpse) {
-    Count& count = counts_[grid_.cell(glance) * grid_.whens() + glance.when];
-    if (glimpse == Glimpse::kSurface) ++count.surface;
-    if (glimpse == Glimpse::kHidden) ++count.hidden;
+  /// Glances at a cell come in the order of time.
+  void add(std::size_t cell, std::size_t when, Glimpse glimpse) {
+    auto& counts = cells_[cell];
+    if (counts.empty() || counts.back().when != when) counts.push_back({static_cast<std::uint32_t>(when)});
+    if (glimpse == Glimpse::kSurface) ++counts.back().surface;
+    if (glimpse == Glimpse::kHidden) ++counts.back().hidden;
   }
 
   std::vector<Glimpse> looks(std::size_t cell) const {
-    constexpr double kAgree = 0.8;
-    constexpr int kEnough = 2;
-    std::vector<Glimpse> looks(grid_.whens(), Glimpse::kNone);
-    for (std::size_t when = 0; when < looks.size(); ++when) {
-      const Count& count = counts_[cell * grid_.whens() + when];
-      const int all = count.surface + count.hidden;
-      if (all < kEnough) continue;
-      if (count.surface >= kAgree * all) looks[when] = Glimpse::kSurface;
-      if (count.hidden >= kAgree * all) looks[when] = Glimpse::kHidden;
-    }
+    std::vector<Glimpse> looks(whens_, Glimpse::kNone);
+    for (const Count& count : cells_[cell]) looks[count.when] = count.glimpse();
     return looks;
+  }
+  bool changes(std::size_t cell) const {
+    const auto saw = [&](Glimpse glimpse) {
+      return std::ranges::any_of(cells_[cell], [&](const Count& c) { return c.glimpse() == glimpse; });
+    };
+    return saw(Glimpse::kSurface) && saw(Glimpse::kHidden);
   }
   std::size_t hidden(std::size_t cell) const {
     std::size_t sum = 0;
-    for (std::size_t when = 0; when < grid_.whens(); ++when)
-      sum += counts_[cell * grid_.whens() + when].hidden;
+    for (const Count& count : cells_[cell]) sum += count.hidden;
     return sum;
   }
 
  private:
   struct Count {
+    std::uint32_t when = 0;
     std::uint16_t surface = 0, hidden = 0;
-  };
-  const RepeatGrid& grid_;
-  std::vector<Count> counts_;
-};
 
-bool changes(const std::vector<Glimpse>& looks) {
-  return std::ranges::count(looks, Glimpse::kSurface) > 0 && std::ranges::count(looks, Glimpse::kHidden) > 0;
-}
+    Glimpse glimpse() const {
+      constexpr double kAgree = 0.8;
+      constexpr int kEnough = 2;
+      const int all = surface + hidden;
+      if (all < kEnough) return Glimpse::kNone;
+      if (surface >= kAgree * all) return Glimpse::kSurface;
+      return hidden >= kAgree * all ? Glimpse::kHidden : Glimpse::kNone;
+    }
+  };
+  std::size_t whens_;
+  std::vector<std::vector<Count>> cells_;
+};
 
 ChangingDirections changing_among(const RepeatGrid& grid, const Glances& glances, double beams) {
   std::vector<bool> does_change(grid.cells());
-  for (std::size_t cell = 0; cell < grid.cells(); ++cell) does_change[cell] = changes(glances.looks(cell));
+  for (std::size_t cell = 0; cell < grid.cells(); ++cell) does_change[cell] = glances.changes(cell);
   constexpr std::ptrdiff_t kMostOfNine = 6;
   ChangingDirections result;
   std::map<std::size_t, std::size_t> place;  // of a cell among those that count
@@ -192,8 +198,10 @@ ChangingDirections changing_directions(const Measurements& beams, const PlateTra
     if (!glance) continue;
     ahead += 1;
     const double error{met.error[i]};
-    if (std::abs(error) < kSeenWithin * usual) glances.add(*glance, Glimpse::kSurface);
-    if (error < -std::max(kBefore, kFarOff * usual)) glances.add(*glance, Glimpse::kHidden);
+    if (std::abs(error) < kSeenWithin * usual)
+      glances.add(grid.cell(*glance), glance->when, Glimpse::kSurface);
+    if (error < -std::max(kBefore, kFarOff * usual))
+      glances.add(grid.cell(*glance), glance->when, Glimpse::kHidden);
   }
   return changing_among(grid, glances, ahead);
 }

@@ -47,6 +47,16 @@ TEST(AtRest, FewScansSayNothing) {
   EXPECT_EQ(why_nothing(of_scans(10)), "");
 }
 
+TEST(AtRest, AScanWithoutRangesDoesNotSayHowManyBeamsThereAre) {
+  AtRest scans;
+  Scan empty = scan_at(0);
+  empty.echoes[0].ranges.clear();
+  scans.add(empty);
+  for (std::size_t i = 1; i < 20; ++i) scans.add(scan_at(i));
+  EXPECT_EQ(why_nothing(scans), "");
+  EXPECT_EQ(scans.left_out(), 1U);
+}
+
 TEST(AtRest, ALaserThatMovesIsToldFromOneWithoutEchoes) {
   EXPECT_THAT(why_nothing(of_scans(20, 0.1F)), HasSubstr("it moves"));
   AtRest silent;

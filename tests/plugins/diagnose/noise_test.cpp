@@ -91,6 +91,23 @@ TEST(Noise, AboutTwoValuesIsFoundWithTheirDistance) {
   EXPECT_GT(finding.gain.at(0).ci95[0], 0);
 }
 
+/// Of many ranges a part is asked; a beam may not be among them.
+TEST(Noise, OfALawIsKnownOfEachBeamAlsoOfThoseThatWereNotAsked) {
+  const auto about_two_values = [](Random& random, int, double) {
+    return 0.005 * normal(random) + (std::bernoulli_distribution(0.5)(random) ? 0.015 : 0);
+  };
+  RangeErrors all = shots(3, 650, 200, about_two_values);
+  const RangeErrors part = thinned(all, 120'000);
+  std::uint32_t block = 0;  // none of the part
+  while (std::ranges::count(part.block, block) > 0) ++block;
+  all.append(all, static_cast<std::size_t>(std::ranges::find(all.block, block) - all.block.begin()));
+  all.beam.back() = 700;
+  const NoiseDiagnosis found = diagnose_noise("laser1", all, 1);
+  ASSERT_TRUE(found.law.has_peaks());
+  EXPECT_TRUE(std::isfinite(found.law.log_density(0, {.range = 3}, 700)));
+  EXPECT_EQ(found.law.weight.size(), 701U);
+}
+
 EffectParameter bounds_of(const std::string& effect, const std::string& parameter) {
   TermRegistry terms;
   register_built_in(terms);
