@@ -17,6 +17,7 @@
 #include "pipeline/app/signals.hpp"
 #include "pipeline/app/status_board.hpp"
 #include "pipeline/app/summary.hpp"
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/pcd/parts.hpp"
 
 namespace crisp {
@@ -68,7 +69,9 @@ std::size_t terminal_width() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
-std::vector<NodeResult> run_with_progress(Pipeline& pipeline, const RunSettings& run,
+/// The pipeline is gone when this returns or throws, and with it what is left of files that are not complete:
+/// on a full disk the run's records need the room.
+std::vector<NodeResult> run_with_progress(Pipeline pipeline, const RunSettings& run,
                                           const RunRequest& request, RunRecord& record) {
   StatusBoard board(tags_of(pipeline));
   std::optional<MetricsServer> metrics;
@@ -92,16 +95,23 @@ std::vector<NodeResult> run_with_progress(Pipeline& pipeline, const RunSettings&
   return run_pipeline(pipeline, run, hooks);
 }
 
-/// Whether it could be written.
+/// Each part is tried though another failed: a summary without the rest still says what happened.
+/// @return whether all of it could be written
 bool keep_record(RunRecord& record, const fs::path& folder) {
-  try {
-    if (record.failure.empty() || record.wrote_any()) record.inputs = hash_inputs(record);
-    write_records(record, folder);
-    return true;
-  } catch (const Error& error) {
-    print_errors(error);
-    return false;
-  }
+  bool all_kept = true;
+  const auto keep = [&](const auto& part) {
+    for_each_error(part, [&](const Error& error) {
+      print_errors(error);
+      all_kept = false;
+      if (!record.failure.empty()) return;
+      record.failure = error.what();
+      record.exit_status = static_cast<int>(ExitStatus::failed);
+    });
+  };
+  if (record.failure.empty() || record.wrote_any()) keep([&] { record.inputs = hash_inputs(record); });
+  keep([&] { write_provenance(record); });
+  keep([&] { write_summary(record, folder); });
+  return all_kept;
 }
 
 ExitStatus status_of(int signal) {
@@ -121,7 +131,7 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
     return status;
   };
   try {
-    record.nodes = run_with_progress(loaded.pipeline, run, request, record);
+    record.nodes = run_with_progress(std::move(loaded.pipeline), run, request, record);
   } catch (const Interrupted&) {
     std::cerr << "interrupted: files that were not complete were not written\n";
     return end_early("interrupted", status_of(StopOnSignal::signal()));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "pipeline/data/all_errors.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/stage/files_written.hpp"
@@ -143,17 +144,24 @@ Json provenance_json(const RunRecord& record, const fs::path& file) {
   return json;
 }
 
-void write_records(const RunRecord& record, const fs::path& folder) {
+void write_provenance(const RunRecord& record) {
+  AllErrors errors;
+  for (const auto& node : record.nodes) {
+    for (const auto& file : node.report.written) {
+      errors.keep_of(
+          [&] { write_record(file.string() + kProvenance, provenance_json(record, file), record); });
+    }
+  }
+  errors.throw_any();
+}
+
+void write_summary(const RunRecord& record, const fs::path& folder) {
+  if (folder.empty()) return;
   const fs::path summary = folder / kSummary;
   std::error_code not_there;
   // It speaks of what an earlier run wrote, and must not stay if what follows fails.
-  if (!folder.empty() && !writer_of(summary, record)) fs::remove(summary, not_there);
-  for (const auto& node : record.nodes) {
-    for (const auto& file : node.report.written) {
-      write_record(file.string() + kProvenance, provenance_json(record, file), record);
-    }
-  }
-  if (!folder.empty()) write_record(summary, summary_json(record), record);
+  if (!writer_of(summary, record)) fs::remove(summary, not_there);
+  write_record(summary, summary_json(record), record);
 }
 
 }  // namespace crisp

@@ -48,8 +48,13 @@ nlohmann::ordered_json summary_json(const RunRecord& record);
 /// What is put beside each file that a run wrote: how it came to be.
 nlohmann::ordered_json provenance_json(const RunRecord& record, const std::filesystem::path& file);
 
-/// Writes summary.json into the folder (if it is not empty), and FILE.provenance.json beside every file that
-/// the stages wrote. A run that failed says so in its summary; that of an earlier one is gone in any case.
-void write_records(const RunRecord& record, const std::filesystem::path& folder);
+/// Writes FILE.provenance.json beside every file that the stages wrote. Each is tried.
+/// @throws Errors  why some could not be written
+void write_provenance(const RunRecord& record);
+
+/// Writes summary.json into the folder (if it is not empty). A run that failed says so in it; that of an
+/// earlier run is gone in any case.
+/// @throws Error  if it cannot be written
+void write_summary(const RunRecord& record, const std::filesystem::path& folder);
 
 }  // namespace crisp

@@ -121,6 +121,35 @@ TEST_F(ProgramTest, RecordsWhereFilesOfAFailedRunCameFrom) {
   EXPECT_EQ(json("out/summary.json")["error"], provenance["failure"]) << "not the earlier run's";
 }
 
+TEST_F(ProgramTest, RemovesWhatIsNotCompleteBeforeItWritesItsRecords) {
+  write_file(folder_ / "full.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n"
+             "  - {stage: toy.in_the_way, with: {file: ${output}/summary.json}}\n");
+  const auto run = crisp({"run", path("full.yaml"), "-o", path("out")});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.error, path("full.yaml") + ":5:13: error: toy.in_the_way: there is no room\n");
+  EXPECT_EQ(json("out/summary.json")["trusted"], false);
+}
+
+TEST_F(ProgramTest, WritesEachRecordThoughAnotherCannotBeWritten) {
+  write_file(folder_ / "two.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n"
+             "  - {stage: toy.write, with: {file: ${output}/a}}\n"
+             "  - {stage: toy.write, with: {file: ${output}/b}}\n"
+             "  - {stage: toy.write, with: {file: ${output}/c}}\n");
+  fs::create_directories(folder_ / "out/a.provenance.json");
+  fs::create_directories(folder_ / "out/b.provenance.json");
+  const auto run = crisp({"run", path("two.yaml"), "-o", path("out")});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.error, HasSubstr("cannot write " + path("out/a.provenance.json")));
+  EXPECT_THAT(run.error, HasSubstr("cannot write " + path("out/b.provenance.json")));
+  EXPECT_TRUE(fs::is_regular_file(folder_ / "out/c.provenance.json"));
+  const auto summary = json("out/summary.json");
+  EXPECT_EQ(summary["stages"][4]["outputs"][0], path("out/c"));
+  EXPECT_EQ(summary["exit_status"], 1);
+  EXPECT_THAT(std::string(summary["error"]), HasSubstr("a.provenance.json"));
+}
+
 TEST_F(ProgramTest, SaysWhenItsOutputDoesNotArrive) {
   for (const auto& command :
        std::vector<std::string>{"stages", "--help", "run " + path("sum.yaml") + " -o " + path("out")}) {

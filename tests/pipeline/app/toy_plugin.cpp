@@ -102,6 +102,24 @@ class EndBadlyStage final : public Stage {
   void finish(Outputs&, Context&) override { throw Error("the end is bad"); }
 };
 
+/// Stands, as long as it lives, where another file belongs: as what a full disk holds of files that are not
+/// complete. Throws at the end.
+class InTheWayStage final : public Stage {
+ public:
+  ~InTheWayStage() override { std::filesystem::remove_all(file_); }
+  static void describe(StageDescription<InTheWayStage>& d) {
+    d.name("toy.in_the_way").summary("is in the way").takes<Sum>();
+    d.option("file", &InTheWayStage::file_, "of what").required();
+  }
+  void process(const Inputs&, Outputs&, Context&) override {
+    std::filesystem::create_directories(file_ / "filled");
+  }
+  void finish(Outputs&, Context&) override { throw Error("there is no room"); }
+
+ private:
+  std::filesystem::path file_;
+};
+
 /// Waits until it is interrupted, and complains of what it could not do.
 class ComplainStage final : public Stage {
  public:
@@ -126,6 +144,7 @@ void register_all(Registrar& registrar) {
   registrar.stage<HangStage>();
   registrar.stage<WriteUndeclaredStage>();
   registrar.stage<EndBadlyStage>();
+  registrar.stage<InTheWayStage>();
   registrar.stage<ComplainStage>();
 }
 
