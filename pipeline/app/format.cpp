@@ -29,6 +29,16 @@ std::string format_amount(double amount, const std::string& unit) {
   return fmt::format("{:.{}f} {}{}{}", amount, digits, kPrefixes[prefix], word ? " " : "", unit);
 }
 
+std::string_view first_columns(std::string_view text, std::size_t columns) {
+  const auto goes_on = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; };
+  std::size_t end = 0;
+  for (; columns > 0 && end < text.size(); --columns) {
+    ++end;
+    while (end < text.size() && goes_on(text[end])) ++end;
+  }
+  return text.substr(0, end);
+}
+
 std::string format_count(std::uint64_t count) {
   std::string text = fmt::format("{}", count);
   for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) {

@@ -20,8 +20,8 @@ bool ProgressPrinter::is_due(double now) const {
 }
 
 void ProgressPrinter::print(const std::string& text) {
-  if (terminal_)
-    out_ << "\r\x1b[K" << text << std::flush;
+  if (terminal_)  // a line that reached the last column would be two, of which one is refreshed
+    out_ << "\r\x1b[K" << (width_ > 1 ? first_columns(text, width_ - 1) : text) << std::flush;
   else
     out_ << text << std::endl;
   on_screen_ = terminal_;
@@ -33,7 +33,7 @@ void ProgressPrinter::show_status(const std::string& line) {
   if (!begins && !is_due(now)) return;
   shown_ = now;
   status_shown_ = true;
-  print(terminal_ && width_ > 1 && line.size() >= width_ ? line.substr(0, width_ - 1) : line);
+  print(line);
 }
 
 void ProgressPrinter::log(const std::string& line) {

@@ -15,15 +15,15 @@ class ProgressPrinter {
  public:
   using Clock = std::function<double()>;  ///< seconds since any fixed moment
 
-  /// @param width  of the terminal; 0: unknown
+  /// @param width  columns of the terminal, at which lines are cut; 0: unknown
   ProgressPrinter(std::ostream& out, bool terminal, Clock clock, std::size_t width = 0);
   ~ProgressPrinter() { clear(); }
   ProgressPrinter(const ProgressPrinter&) = delete;
   ProgressPrinter& operator=(const ProgressPrinter&) = delete;
 
   void show(const std::string& tag, const Progress& progress);
-  /// The status of a run without end: on a terminal the line is refreshed and cut at its width, elsewhere it
-  /// is a plain line every ten seconds.
+  /// The status of a run without end: on a terminal the line is refreshed, elsewhere it is a plain line every
+  /// ten seconds.
   void show_status(const std::string& line);
   /// What happened: a line that stays, on a terminal as well.
   void log(const std::string& line);

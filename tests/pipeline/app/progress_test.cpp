@@ -31,6 +31,16 @@ TEST_F(ProgressTest, RefreshesOneLineOfATerminalWithBarRateAndTimeLeft) {
             "\r\x1b[K");
 }
 
+TEST_F(ProgressTest, CutsTheLineBeforeTheLastColumnOfTheTerminal) {
+  {
+    ProgressPrinter printer(out, true, clock, 67);
+    printer.show("calibrate.refine", {.done = 0.25, .what = "σ 5 cm, λ and τ"});
+  }
+  EXPECT_EQ(out.str(),
+            "\r\x1b[Kcalibrate.refine       [######                  ]  25 %  σ 5 cm, λ"
+            "\r\x1b[K");
+}
+
 TEST_F(ProgressTest, PrintsPlainLinesAtMostEveryTenSecondsElsewhere) {
   {
     ProgressPrinter printer(out, false, clock);
@@ -67,6 +77,14 @@ TEST(Format, WritesFiguresAsPeopleReadThem) {
   EXPECT_EQ(format_count(0), "0");
   EXPECT_EQ(format_count(123), "123");
   EXPECT_EQ(format_count(1234567), "1 234 567");
+}
+
+TEST(Format, CutsATextBetweenCharacters) {
+  EXPECT_EQ(first_columns("σ 5 cm", 1), "σ");
+  EXPECT_EQ(first_columns("σ 5 cm", 0), "");
+  EXPECT_EQ(first_columns("σ 5 cm", 6), "σ 5 cm");
+  EXPECT_EQ(first_columns("σ", 80), "σ");
+  EXPECT_EQ(first_columns("\x80\x80", 1), "\x80\x80");
 }
 
 }  // namespace
