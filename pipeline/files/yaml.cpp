@@ -15,6 +15,8 @@
 #include <set>
 #include <sstream>
 
+#include "pipeline/files/control_characters.hpp"
+
 namespace crisp {
 namespace {
 
@@ -47,21 +49,12 @@ std::string show_variables(std::string text) {
 
 /// Refuses what no person writes into a text file, and what would be taken for a hidden brace.
 void check_characters(std::string_view text, const std::string& file) {
-  int line = 1;
-  int column = 1;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool control = (byte < 0x20 && c != '\t' && c != '\n' && c != '\r') || byte == 0x7f;
-    if (control) {
-      throw Error(fmt::format("there is a control character (0x{:02x})", byte), "is this a text file?",
-                  {file, line, column});
-    }
-    ++column;
-    if (c == '\n') {
-      ++line;
-      column = 1;
-    }
-  }
+  const std::size_t at = find_control_character(text);
+  if (at == std::string_view::npos) return;
+  const std::string_view before = text.substr(0, at);
+  const auto line = static_cast<int>(std::ranges::count(before, '\n')) + 1;
+  const auto column = static_cast<int>(at - (before.rfind('\n') + 1)) + 1;  // npos + 1 is 0
+  throw Error(control_character_in_words(text[at]), "is this a text file?", {file, line, column});
 }
 
 /// The first line up to `last` that has a tab before its text.

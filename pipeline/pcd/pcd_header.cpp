@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/control_characters.hpp"
 
 namespace crisp {
 namespace {
@@ -50,9 +51,9 @@ class HeaderReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(what, "the header of a PCD file is wrong here, or the file is damaged",
-                {.file = name_, .line = line_, .column = 1});
+  [[noreturn]] void fail(const std::string& what, std::size_t column = 1) const {
+    throw Error(what, "this is no PCD file, or its header is wrong here",
+                {.file = name_, .line = line_, .column = static_cast<int>(column)});
   }
 
   std::string_view next_line() {
@@ -61,6 +62,8 @@ class HeaderReader {
     if (end == std::string_view::npos) fail("the file ends before the line DATA");
     const auto line = file_.substr(header_.data_begin, end - header_.data_begin);
     header_.data_begin = end + 1;
+    if (const auto at = find_control_character(line); at != std::string_view::npos)
+      fail(control_character_in_words(line[at]), at + 1);
     return line;
   }
 
@@ -76,7 +79,8 @@ class HeaderReader {
     if (key == "HEIGHT") return read_once(height_, words);
     if (key == "POINTS") return read_once(points_, words);
     if (key == "DATA") return read_data(words);
-    if (key != "SIZE" && key != "TYPE" && key != "COUNT") fail(fmt::format("'{:.40}' is no key of PCD", key));
+    if (key != "SIZE" && key != "TYPE" && key != "COUNT")
+      fail(fmt::format("'{}' is no key of PCD", shown(key)));
     if (words.size() != header_.fields.size() + 1) {
       fail(fmt::format("{} has {} values for {} fields", key, words.size() - 1, header_.fields.size()));
     }
@@ -98,7 +102,7 @@ class HeaderReader {
 
   void read_property(PcdField& field, std::string_view key, std::string_view word) {
     if (key == "TYPE") {
-      if (word != "F" && word != "I" && word != "U") fail(fmt::format("there is no type '{:.40}'", word));
+      if (word != "F" && word != "I" && word != "U") fail(fmt::format("there is no type '{}'", shown(word)));
       field.type = word[0];
     } else if (key == "SIZE") {
       field.size = number(word);
@@ -127,7 +131,7 @@ class HeaderReader {
     std::size_t value = 0;
     const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (code != std::errc() || end != word.data() + word.size()) {
-      fail(fmt::format("'{:.40}' is no whole number", word));
+      fail(fmt::format("'{}' is no whole number", shown(word)));
     }
     return value;
   }

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/control_characters.hpp"
 #include "pipeline/files/yaml.hpp"
 #include "pipeline/pcd/pcd_number.hpp"
 #include "pipeline/pcd/pcd_table.hpp"
@@ -120,7 +121,7 @@ class BodyReader {
       if (code == std::errc::result_out_of_range) return static_cast<float>(number_of<double>(word, row));
     }
     if (code != std::errc() || end != word.data() + word.size() || word.empty()) {
-      fail(fmt::format("has '{:.40}' in place of a number, in point {}", word, row + 1));
+      fail(fmt::format("has '{}' in place of a number, in point {}", shown(word), row + 1));
     }
     return value;
   }

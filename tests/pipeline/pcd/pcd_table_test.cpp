@@ -113,6 +113,23 @@ TEST(PcdTable, AValueThatIsNotANumberIsShown) {
   EXPECT_THAT(complaint(ascii_file("FIELDS x\nSIZE 1\nTYPE U\nWIDTH 1", "256\n")), HasSubstr("'256'"));
 }
 
+TEST(PcdTable, WhatIsNoPcdDoesNothingToATerminal) {
+  const auto said_of = [](const std::string& bytes) {
+    const std::string text = complaint(bytes);
+    for (const char c : text) EXPECT_FALSE(static_cast<unsigned char>(c) < 0x20 || c == 0x7f) << text;
+    return text;
+  };
+  EXPECT_THAT(said_of("VERSION 0.7\nab\x1b[31mc\n"),
+              HasSubstr("x.pcd:2:3: error: there is a control character (0x1b);"));
+  EXPECT_THAT(said_of(std::string("\x7f"
+                                  "ELF\0\0\n",
+                                  8)),
+              HasSubstr("x.pcd:1:1: error: there is a control"));
+  EXPECT_THAT(said_of("\x8b\xe9\n"), HasSubstr("'\\x8b\\xe9' is no key of PCD;"));
+  EXPECT_THAT(said_of(ascii_file("FIELDS x\nSIZE 4\nWIDTH 1", std::string("\0\x1b[2J", 5))),
+              HasSubstr("x.pcd has '\\x00\\x1b[2J' in place of a number, in point 1; the file is damaged"));
+}
+
 TEST(PcdTable, ColumnsAreRefusedThatAreNotThereOrDoNotFit) {
   const auto table = parse_pcd(ascii_file("FIELDS x n\nSIZE 4 4\nTYPE F I\nWIDTH 1", "1 70000\n"), "x.pcd");
   EXPECT_THROW(table.column<float>("y"), Error);
