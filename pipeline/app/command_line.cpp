@@ -227,8 +227,9 @@ void CommandLine::add_monte_carlo() {
 }
 
 void CommandLine::add_validate() {
-  validate_app = command("validate", "Check a pipeline without running it; exit status 2 on any mistake");
-  validate_app->add_option("pipeline", validate_file, "The pipeline's YAML file")
+  validate_app =
+      command("validate", "Check a pipeline without running it, or a rig; exit status 2 on any mistake");
+  validate_app->add_option("pipeline", validate_file, "The pipeline's YAML file, or the rig's")
       ->required()
       ->type_name("FILE");
   add_arguments(validate_app, validate);

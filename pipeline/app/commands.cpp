@@ -7,9 +7,12 @@
 #include <iostream>
 
 #include "pipeline/app/effect_reference.hpp"
+#include "pipeline/data/counted.hpp"
 #include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/file_kind.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/nearest.hpp"
+#include "pipeline/files/rig_file.hpp"
 #include "pipeline/model/catalogue.hpp"
 #include "pipeline/stage/reference.hpp"
 
@@ -45,6 +48,13 @@ ExitStatus print_one_stage(const StagesRequest& request, const StageRegistry& st
   return ExitStatus::done;
 }
 
+void validate_rig(const YamlNode& root, const fs::path& file, const PipelineArguments& arguments) {
+  if (arguments.rig || !arguments.set.empty())
+    throw Error(file.string() + " is a rig", "--rig and --set are for pipelines");
+  const Rig rig = parse_rig(root);
+  std::cout << fmt::format("{}: right, a rig of {}\n", file.string(), counted(rig.lasers.size(), "laser"));
+}
+
 }  // namespace
 
 std::string error_text(const Error& error) {
@@ -70,9 +80,15 @@ ExitStatus validate_command(const fs::path& file, PipelineArguments arguments, c
   run.registrar = &registrar;
   arguments.only_validate = true;
   try {
-    const auto loaded = load_pipeline(file, arguments, run);
+    const YamlNode root = read_yaml(file);
+    if (kind_of(root) == FileKind::rig) {
+      validate_rig(root, file, arguments);
+      return ExitStatus::done;
+    }
+    const auto loaded = load_pipeline(root, file, arguments, run);
     print_warnings(loaded.pipeline);
-    std::cout << fmt::format("{}: right, {} stages\n", file.string(), loaded.pipeline.nodes.size());
+    std::cout << fmt::format("{}: right, {}\n", file.string(),
+                             counted(loaded.pipeline.nodes.size(), "stage"));
   } catch (const Error& error) {
     print_errors(error);
     return ExitStatus::misused;

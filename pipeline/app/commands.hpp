@@ -38,8 +38,8 @@ struct RunRequest {
 /// Runs a pipeline; writes its summary to stdout, progress and errors to stderr.
 ExitStatus run_command(const RunRequest& request, const Registrar& registrar);
 
-/// `crisp validate`: prints every mistake of a pipeline to stderr. Opens no file but the pipeline's and the
-/// rig's.
+/// `crisp validate`: prints every mistake of a pipeline, or of a rig, to stderr. Opens no file but the
+/// pipeline's and the rig's.
 ExitStatus validate_command(const std::filesystem::path& file, PipelineArguments arguments,
                             const Registrar& registrar);
 

@@ -42,7 +42,7 @@ std::optional<Error> of_other_commands(const fs::path& file) {
   if (head.find("\npipeline:") != std::string::npos)
     return Error(file.string() + " is a pipeline", "crisp validate checks it, crisp run runs it");
   if (head.find("\nlasers:") != std::string::npos)
-    return Error(file.string() + " is a rig", "crisp validate PIPELINE --rig FILE checks it");
+    return Error(file.string() + " is a rig", "crisp validate checks it, --rig takes it");
   return std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pipeline/files/calibration_file.hpp"
+#include "pipeline/files/file_kind.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
 namespace crisp {
@@ -195,17 +196,6 @@ class CalibrationReader {
   std::vector<Error> errors_;
 };
 
-/// Rigs and pipelines lie beside calibrations, and are YAML as these are.
-void refuse_other_kinds(const YamlNode& root, const std::filesystem::path& file) {
-  constexpr const char* kAdvice = "configs/calibrate.yaml makes a calibration";
-  if (root.find("pipeline")) throw Error(file.string() + " is a pipeline, not a calibration", kAdvice);
-  const YamlNode* lasers = root.find("lasers");
-  if (!lasers) return;
-  for (const auto& laser : lasers->entries) {
-    if (laser.value.find("nominal")) throw Error(file.string() + " is a rig, not a calibration", kAdvice);
-  }
-}
-
 }  // namespace
 
 Calibration parse_calibration(const YamlNode& root, const JudgeTerm& judge) {
@@ -214,7 +204,7 @@ Calibration parse_calibration(const YamlNode& root, const JudgeTerm& judge) {
 
 Calibration read_calibration(const std::filesystem::path& file, const JudgeTerm& judge) {
   const YamlNode root = read_yaml(file);
-  refuse_other_kinds(root, file);
+  refuse_other_kinds(root, file, FileKind::calibration);
   return parse_calibration(root, judge);
 }
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "pipeline/files/file_kind.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
 namespace crisp {
@@ -175,6 +176,10 @@ class RigReader {
 
 Rig parse_rig(const YamlNode& root) { return RigReader().read(root); }
 
-Rig read_rig(const std::filesystem::path& file) { return parse_rig(read_yaml(file)); }
+Rig read_rig(const std::filesystem::path& file) {
+  const YamlNode root = read_yaml(file);
+  refuse_other_kinds(root, file, FileKind::rig);
+  return parse_rig(root);
+}
 
 }  // namespace crisp

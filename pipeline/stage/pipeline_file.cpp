@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "pipeline/data/all_errors.hpp"
+#include "pipeline/files/file_kind.hpp"
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/rig_file.hpp"
 #include "pipeline/files/yaml_map.hpp"
@@ -214,10 +215,9 @@ PipelinePlan parse_plan(const YamlNode& root, const fs::path& folder, const Pipe
   return PlanReader(folder, arguments, stages, errors).read(root);
 }
 
-namespace {
-
-LoadedPipeline load(const YamlNode& root, const fs::path& file, const PipelineArguments& arguments,
-                    RunSettings& run) {
+LoadedPipeline load_pipeline(const YamlNode& root, const fs::path& file, const PipelineArguments& arguments,
+                             RunSettings& run) {
+  refuse_other_kinds(root, file, FileKind::pipeline);
   std::vector<Error> errors;
   const fs::path folder = fs::absolute(file).parent_path();
   PipelinePlan plan = parse_plan(root, folder, arguments, run.registrar->stages(), errors);
@@ -233,15 +233,13 @@ LoadedPipeline load(const YamlNode& root, const fs::path& file, const PipelineAr
   return {std::move(pipeline), file, std::move(plan.rig_file)};
 }
 
-}  // namespace
-
 LoadedPipeline load_pipeline(const fs::path& file, const PipelineArguments& arguments, RunSettings& run) {
-  return load(read_yaml(file), file, arguments, run);
+  return load_pipeline(read_yaml(file), file, arguments, run);
 }
 
 LoadedPipeline load_pipeline(std::string_view text, const fs::path& name, const PipelineArguments& arguments,
                              RunSettings& run) {
-  return load(parse_yaml(text, name.string()), name, arguments, run);
+  return load_pipeline(parse_yaml(text, name.string()), name, arguments, run);
 }
 
 }  // namespace crisp

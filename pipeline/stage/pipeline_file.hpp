@@ -48,6 +48,10 @@ struct LoadedPipeline {
 LoadedPipeline load_pipeline(const std::filesystem::path& file, const PipelineArguments& arguments,
                              RunSettings& run);
 
+/// The same of a file that was read already.
+LoadedPipeline load_pipeline(const YamlNode& root, const std::filesystem::path& file,
+                             const PipelineArguments& arguments, RunSettings& run);
+
 /// The same for a pipeline's text.
 /// @param name  to call it by; what paths in it are relative to lies in the folder of such a file
 LoadedPipeline load_pipeline(std::string_view text, const std::filesystem::path& name,

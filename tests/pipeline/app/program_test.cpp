@@ -67,6 +67,35 @@ TEST_F(ProgramTest, ValidatesWithoutOpeningInputOrOutput) {
   EXPECT_EQ(outcome.out, path("sum.yaml") + ": right, 3 stages\n");
 }
 
+TEST_F(ProgramTest, ValidatesARig) {
+  write_file(folder_ / "rig.yaml",
+             "crisp: 1\nlasers:\n  one: {nominal: {lambda: 0deg, tau: 20cm}}\nplate: {}\n");
+  const auto right = crisp({"validate", path("rig.yaml")});
+  EXPECT_EQ(right.status, 0) << right.error;
+  EXPECT_EQ(right.out, path("rig.yaml") + ": right, a rig of 1 laser\n");
+  EXPECT_EQ(crisp({"validate", path("rig.yaml"), "--rig", path("rig.yaml")}).error,
+            "error: " + path("rig.yaml") + " is a rig; --rig and --set are for pipelines\n");
+  write_file(folder_ / "rig.yaml",
+             "crisp: 1\nlasers:\n  one: {tau: 20cm, nominal: {lambda: 0, tua: 20cm}}\nplate: {}\n");
+  const auto wrong = crisp({"validate", path("rig.yaml")});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.error, HasSubstr(path("rig.yaml") + ":3:9: error: "));
+  EXPECT_THAT(wrong.error, HasSubstr("did you mean 'tau'?"));
+  EXPECT_THAT(wrong.error, testing::EndsWith("3 errors\n"));
+}
+
+TEST_F(ProgramTest, SaysWhatAFileIsThatWasGivenInTheWrongPlace) {
+  write_file(folder_ / "rig.yaml",
+             "crisp: 1\nlasers:\n  one: {nominal: {lambda: 0deg, tau: 20cm}}\nplate: {}\n");
+  const auto rig = crisp({"run", path("rig.yaml"), "-o", path("out")});
+  EXPECT_EQ(rig.status, 2);
+  EXPECT_EQ(rig.error, "error: " + path("rig.yaml") +
+                           " is a rig, not a pipeline; give it with --rig; configs/calibrate.yaml is a "
+                           "pipeline\n");
+  EXPECT_EQ(crisp({"run", path("sum.yaml"), "-o", path("out"), "--rig", path("sum.yaml")}).error,
+            "error: " + path("sum.yaml") + " is a pipeline, not a rig; configs/rig.yaml is a rig\n");
+}
+
 TEST_F(ProgramTest, WarnsOfAStageThatWasPutTooLow) {
   write_file(folder_ / "low.yaml",
              "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n  - {stage: toy.throw}\n");
