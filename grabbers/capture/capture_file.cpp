@@ -9,16 +9,31 @@
 
 namespace crisp {
 
+namespace {
+
+/// Files of other kinds that are taken for captures, by their first bytes, and what to do with them.
+Error no_capture(const std::filesystem::path& path, std::string_view begin) {
+  if (begin.starts_with("\x1f\x8b"))
+    return Error(path.string() + " is compressed by gzip", "gunzip it first");
+  if (begin.starts_with("# .PCD") || begin.starts_with("VERSION "))
+    return Error(path.string() + " is a PCD file, not a capture",
+                 "grabber.pcd reads measurements, grabber.cloud a cloud");
+  return Error(path.string() + " is neither pcap nor pcapng",
+               "captures come from tcpdump, dumpcap or Wireshark");
+}
+
+}  // namespace
+
 CaptureFile::CaptureFile(const std::filesystem::path& path) : file_(path) {
-  const auto begin = file_.peek(4);
+  constexpr std::size_t kTelling = 8;  // bytes
+  const auto begin = file_.peek(kTelling);
   if (begin.empty()) throw Error(path.string() + " is empty", "capture it again");
   if (PcapRecords::recognises(begin)) {
     records_.emplace<PcapRecords>(file_, losses_);
   } else if (PcapngBlocks::recognises(begin)) {
     records_.emplace<PcapngBlocks>(file_, losses_);
   } else {
-    throw Error(path.string() + " is neither pcap nor pcapng",
-                "captures come from tcpdump, dumpcap or Wireshark");
+    throw no_capture(path, as_text(begin));
   }
 }
 

@@ -7,7 +7,7 @@
 #include "grabbers/capture/captures_in.hpp"
 #include "grabbers/capture/loss_warnings.hpp"
 #include "grabbers/capture/read_ahead.hpp"
-#include "pipeline/data/error.hpp"
+#include "grabbers/capture/strangers.hpp"
 
 namespace crisp {
 
@@ -53,29 +53,36 @@ void CaptureStage::process(const Inputs&, Outputs& out, Context& context) {
   const auto [files, left_out] = captures_in(file_);
   for (const auto& why : left_out) context.warn("left out: " + why + "; is there a good copy?");
   std::uint64_t found = 0;
-  std::string others;
+  std::vector<CaptureStatistics> captures;
   auto sections = nlohmann::json::array();
   for (const auto& file : files) {
     if (files.size() > 1) context.say(file.filename().string());
     const double done = static_cast<double>(sections.size()) / static_cast<double>(files.size());
-    const CaptureStatistics statistics =
-        read(file, done, 1 / static_cast<double>(files.size()), out, context);
+    captures.push_back(read(file, done, 1 / static_cast<double>(files.size()), out, context));
     if (context.interrupted()) return;
-    found += report(statistics, file, context);
-    for (const auto& device : statistics.devices) {
-      if (device.name.empty()) others += (others.empty() ? "" : ", ") + title(device);
-    }
-    sections.push_back(to_json(statistics));
+    found += report(captures.back(), file, context);
+    sections.push_back(to_json(captures.back()));
     sections.back()["file"] = file.string();
   }
   context.report(files.size() == 1 ? sections.front() : nlohmann::json{{"captures", sections}});
+  const std::string others = strangers(captures);
   if (!others.empty()) context.warn("not in the rig: " + others);
-  if (found == 0) {
-    throw Error(fmt::format("{} holds no scan and no reading of the rig's devices", file_.string()),
-                others.empty()
-                    ? "no laser and no plate speaks in it at all: was the right interface captured?"
-                    : "it holds " + others + ": correct the addresses in the rig");
-  }
+  if (found == 0) throw nothing_found(others);
+  if (given_ == 0) throw nothing_left();
+  for (auto& doubt : doubts_of_addresses(captures)) context.distrust(std::move(doubt));
+}
+
+Error CaptureStage::nothing_found(const std::string& others) const {
+  return Error(fmt::format("{} holds no scan and no reading of the rig's devices", file_.string()),
+               others.empty() ? "no laser and no plate speaks in it at all: was the right interface captured?"
+                              : "it holds " + others + ": correct the addresses in the rig");
+}
+
+Error CaptureStage::nothing_left() const {
+  const double length = 1e-9 * static_cast<double>(last_ns_ - *first_ns_);
+  return Error(fmt::format("begin and duration leave nothing of {}, which ends after {:.1f} s",
+                           file_.string(), length),
+               "let it begin earlier, or last longer");
 }
 
 CaptureStatistics CaptureStage::read(const std::filesystem::path& file, double done, double share,
@@ -109,11 +116,14 @@ void CaptureStage::refuse_overlap(std::int64_t first_ns, const std::filesystem::
               "join captures of several interfaces with mergecap, and give each scanner a folder of its own");
 }
 
-void CaptureStage::give(const HubItem& item, Outputs& out, Context& context) const {
+void CaptureStage::give(const HubItem& item, Outputs& out, Context& context) {
   const double since_begin = 1e-9 * static_cast<double>(receipt_ns(item) - *first_ns_) - begin_;
   if (since_begin < 0 || (duration_ && since_begin >= *duration_)) {
     context.count("items left out because of begin and duration");
-  } else if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
+    return;
+  }
+  ++given_;
+  if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
     out.give(*scan);
   } else {
     out.give(std::get<PlateReading>(item));

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "grabbers/capture/capture_reader.hpp"
+#include "pipeline/data/error.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 
@@ -24,9 +25,13 @@ class CaptureStage final : public Stage {
   CaptureStatistics read(const std::filesystem::path& file, double done, double share, Outputs& out,
                          Context& context);
   void refuse_overlap(std::int64_t first_ns, const std::filesystem::path& file) const;
-  void give(const HubItem& item, Outputs& out, Context& context) const;
+  void give(const HubItem& item, Outputs& out, Context& context);
   static std::uint64_t report(const CaptureStatistics& statistics, const std::filesystem::path& file,
                               Context& context);
+
+  /// @param others  that speak in it, for people
+  Error nothing_found(const std::string& others) const;
+  Error nothing_left() const;
 
   std::filesystem::path file_;
   CaptureSettings settings_;
@@ -35,6 +40,7 @@ class CaptureStage final : public Stage {
   std::optional<std::int64_t> first_ns_;  // of the first packet of all
   std::filesystem::path before_;          // the capture before the present one
   std::int64_t last_ns_ = 0;              // of its last packet
+  std::uint64_t given_ = 0;               // items
 };
 
 }  // namespace crisp

@@ -138,9 +138,11 @@ TEST_F(Faults, AResetOfADevicesClockIsFoundAndTheCloudStaysSound) {
 TEST_F(Faults, ARigOfOtherAddressesIsToldWhoSpeaks) {
   simulate({"duration=1s"});
   const Outcome moved = assemble_with_rig(default_rig_but("192.168.0.2", "192.168.7.2"));
-  EXPECT_EQ(moved.status, ExitStatus::done);
+  EXPECT_EQ(moved.status, ExitStatus::not_trusted);
   EXPECT_THAT(moved.told, AllOf(HasSubstr("holds nothing of laser2 (192.168.7.2"),
-                                HasSubstr("not in the rig: laser at 192.168.0.2")));
+                                HasSubstr("not in the rig: laser at 192.168.0.2"),
+                                HasSubstr("nothing came of laser2 (192.168.7.2), but there is a laser at "
+                                          "192.168.0.2:2112")));
   EXPECT_EQ(points_of(moved, 1), 0U);
   const Outcome unheard = assemble_with_rig(default_rig_but("port: 4000", "port: 4001"));
   expect_nothing_but("there is no reading of the plate", unheard);

@@ -132,6 +132,31 @@ TEST_F(CaptureStageTest, WarnsOfDevicesThatTheRigDoesNotKnow) {
             10U);
 }
 
+TEST_F(CaptureStageTest, DoubtsWhatComesWhereALaserSpeaksFromAnotherAddress) {
+  rig_.lasers[1].address.ip = "192.168.0.20";
+  const auto result = run(file());
+  EXPECT_THAT(result.report.doubts,
+              testing::ElementsAre("nothing came of laser2 (192.168.0.20), but there is a laser at "
+                                   "192.168.0.2:2112, which the rig does not have; correct the addresses in "
+                                   "the rig",
+                                   HasSubstr("nothing came of laser3")));
+}
+
+TEST_F(CaptureStageTest, SaysWhatIsLeftOfACaptureThatIsShorterThanBegin) {
+  EXPECT_THAT(complaint(file() + ", begin: 100s"),
+              testing::AllOf(HasSubstr("begin and duration leave nothing of " +
+                                       (folder_ / "hub.pcap").string() + ", which ends after 0.7 s"),
+                             HasSubstr("let it begin earlier")));
+}
+
+TEST_F(CaptureStageTest, SaysWhatAFileIsThatIsNoCapture) {
+  write_file(folder_ / "hub.pcap", Bytes{0x1F, 0x8B, 8, 0, 0, 0, 0, 0, 0});
+  EXPECT_THAT(complaint(file()), HasSubstr("hub.pcap is compressed by gzip; gunzip it first"));
+  const std::string pcd = "# .PCD v0.7 - Point Cloud Data file format\n";
+  write_file(folder_ / "hub.pcap", Bytes(pcd.begin(), pcd.end()));
+  EXPECT_THAT(complaint(file()), HasSubstr("hub.pcap is a PCD file, not a capture; grabber.pcd reads"));
+}
+
 TEST_F(CaptureStageTest, WarnsOfWhatALaserSentThatNeverCame) {
   scenario_.scans = 300;
   auto frames = scenario_.frames();
