@@ -32,6 +32,12 @@ Error::Error(std::string what, std::string advice, Place place)
       advice_(std::move(advice)),
       place_(std::move(place)) {}
 
+Error Error::of_option(std::string name) const {
+  Error error = *this;
+  error.option_ = std::move(name);
+  return error;
+}
+
 Errors::Errors(std::vector<Error> errors)
     : Error(errors.size() == 1 ? errors.front() : Error(joined(errors))), errors_(std::move(errors)) {}
 

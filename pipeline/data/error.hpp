@@ -27,10 +27,15 @@ class Error : public std::runtime_error {
   const std::string& advice() const { return advice_; }
   const Place& place() const { return place_; }
 
+  /// The same, and that it is an option of a stage that is wrong, whose place the pipeline knows.
+  Error of_option(std::string name) const;
+  const std::string& option() const { return option_; }  ///< empty: none
+
  private:
   std::string message_;
   std::string advice_;
   Place place_;
+  std::string option_;
 };
 
 /// Several errors found in one go (all mistakes of a pipeline at once).

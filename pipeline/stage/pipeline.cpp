@@ -41,8 +41,8 @@ class Builder {
   /// Asks a stage whether its options agree with each other and the rig.
   void check(const PipelineNode& node) {
     const auto tell = [&](const Error& error) {
-      fail(error.place().file.empty() ? node.place : error.place(), node.tag + ": " + error.message(),
-           error.advice());
+      fail(error.place().file.empty() ? node.place_of(error.option()) : error.place(),
+           node.tag + ": " + error.message(), error.advice());
     };
     for_each_error([&] { node.stage->check(run_); }, tell);
   }

@@ -16,7 +16,10 @@ void comes_from_command_line(YamlNode& node, const Place& place) {
   node.place = place;
   node.from_command_line = true;
   for (auto& item : node.items) comes_from_command_line(item, place);
-  for (auto& entry : node.entries) comes_from_command_line(entry.value, place);
+  for (auto& entry : node.entries) {
+    entry.place = place;
+    comes_from_command_line(entry.value, place);
+  }
 }
 
 /// The value as YAML, or null with an error added if it is none.

@@ -8,6 +8,7 @@
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/estimate/wanted_terms.hpp"
+#include "pipeline/stage/option_check.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/calibrate/report.hpp"
 
@@ -57,13 +58,15 @@ void RefineStage::describe(StageDescription<RefineStage>& d) {
 
 void RefineStage::check(const RunSettings& run) const {
   Calibration nominal = nominal_calibration(run.rig);
-  check_all(
-      [&] {
-        if (settings_.surfels.largest >= settings_.surfels.smallest) return;
-        throw Error("the largest patch is smaller than the smallest", "give a `largest` above `smallest`");
-      },
-      [&] { check_fixed(settings_.fixed, nominal); },
-      [&] { add_wanted_terms(nominal, settings_.terms, run.registrar->get<TermRegistry>()); });
+  check_all(of_option("largest",
+                      [&] {
+                        if (settings_.surfels.largest >= settings_.surfels.smallest) return;
+                        throw Error("the largest patch is smaller than the smallest",
+                                    "give a `largest` above `smallest`");
+                      }),
+            of_option("fixed", [&] { check_fixed(settings_.fixed, nominal); }), of_option("terms", [&] {
+              add_wanted_terms(nominal, settings_.terms, run.registrar->get<TermRegistry>());
+            }));
 }
 
 void RefineStage::process(const Inputs& in, Outputs&, Context&) {

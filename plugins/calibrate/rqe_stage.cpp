@@ -2,6 +2,7 @@
 #include "plugins/calibrate/rqe_stage.hpp"
 
 #include "pipeline/data/all_errors.hpp"
+#include "pipeline/stage/option_check.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/report.hpp"
@@ -74,12 +75,15 @@ std::unique_ptr<Measure> RqeStage::make_measure(const RunSettings& run) const {
 
 void RqeStage::check(const RunSettings& run) const {
   const auto narrows = [](const auto& sigma, const char* name) {
-    if (sigma[0] >= sigma[1]) return;
-    throw Error(std::string(name) + ": the kernel has to become narrower, not wider",
-                "write the larger sigma first");
+    return of_option(name, [&sigma, name] {
+      if (sigma[0] >= sigma[1]) return;
+      throw Error(std::string(name) + ": the kernel has to become narrower, not wider",
+                  "write the larger sigma first");
+    });
   };
-  check_all([&] { narrows(sigma_, "sigma"); }, [&] { narrows(in_plane_sigma_, "in_plane_sigma"); },
-            [&] { check_fixed(settings_.fixed, nominal_calibration(run.rig)); }, [&] { make_measure(run); });
+  check_all(narrows(sigma_, "sigma"), narrows(in_plane_sigma_, "in_plane_sigma"),
+            of_option("fixed", [&] { check_fixed(settings_.fixed, nominal_calibration(run.rig)); }),
+            of_option("measure", [&] { make_measure(run); }));
 }
 
 void RqeStage::process(const Inputs& in, Outputs&, Context&) {

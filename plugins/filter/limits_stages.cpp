@@ -8,6 +8,7 @@
 #include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/nearest.hpp"
+#include "pipeline/stage/option_check.hpp"
 
 namespace crisp {
 namespace {
@@ -34,8 +35,11 @@ void CropStage::describe(StageDescription<CropStage>& d) {
 }
 
 void CropStage::check(const RunSettings&) const {
-  check_all([&] { check_limits(limits_.x, "x"); }, [&] { check_limits(limits_.y, "y"); },
-            [&] { check_limits(limits_.z, "z"); }, [&] { check_limits(limits_.distance, "distance"); });
+  const auto right = [](const auto& limits, const char* name) {
+    return of_option(name, [&limits, name] { check_limits(limits, name); });
+  };
+  check_all(right(limits_.x, "x"), right(limits_.y, "y"), right(limits_.z, "z"),
+            right(limits_.distance, "distance"));
 }
 
 void CropStage::process(const Inputs& in, Outputs& out, Context& context) {
@@ -67,8 +71,9 @@ void RangeStage::describe(StageDescription<RangeStage>& d) {
 }
 
 void RangeStage::check(const RunSettings& run) const {
-  check_all([&] { check_limits(range_, "range"); }, [&] { check_limits(mirror_angle_, "mirror_angle"); },
-            [&] { limits(run.rig); });
+  check_all(of_option("range", [&] { check_limits(range_, "range"); }),
+            of_option("mirror_angle", [&] { check_limits(mirror_angle_, "mirror_angle"); }),
+            of_option("lasers", [&] { limits(run.rig); }));
 }
 
 RangeLimits RangeStage::limits(const Rig& rig) const {

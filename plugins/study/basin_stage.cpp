@@ -5,6 +5,7 @@
 #include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
+#include "pipeline/stage/option_check.hpp"
 #include "plugins/study/basin_text.hpp"
 #include "plugins/study/rqe.hpp"
 
@@ -63,11 +64,12 @@ void BasinStage::describe(StageDescription<BasinStage>& d) {
 
 void BasinStage::check(const RunSettings& run) const {
   check_all([&] { check_lasers(settings_.trial, run.rig); },
-            [&] {
-              if (settings_.range.tau_least <= settings_.range.tau_most) return;
-              throw Error("the least tau of a start is above the largest",
-                          "give a `tau_most` above `tau_least`");
-            },
+            of_option("tau_most",
+                      [&] {
+                        if (settings_.range.tau_least <= settings_.range.tau_most) return;
+                        throw Error("the least tau of a start is above the largest",
+                                    "give a `tau_most` above `tau_least`");
+                      }),
             [&] { make_motion(settings_.trial.motion, settings_.trial.duration, 1); });
 }
 

@@ -9,6 +9,7 @@
 #include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
+#include "pipeline/stage/option_check.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/study/rqe.hpp"
 #include "plugins/study/table.hpp"
@@ -113,10 +114,12 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
 void MonteCarloStage::check(const RunSettings& run) const {
   const MotionSettings& motion = settings_.trial.motion;
   check_all([&] { check_lasers(settings_.trial, run.rig); },
-            [&] {
-              if (sigma_[0] >= sigma_[1]) return;
-              throw Error("the kernel has to become narrower, not wider", "write the larger sigma first");
-            },
+            of_option("sigma",
+                      [&] {
+                        if (sigma_[0] >= sigma_[1]) return;
+                        throw Error("the kernel has to become narrower, not wider",
+                                    "write the larger sigma first");
+                      }),
             [&] {
               const bool steady = motion.kind == MotionKind::constant ||
                                   (motion.kind == MotionKind::varying && motion.min_rate == motion.max_rate);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/app/program_fixture.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace crisp {
 namespace {
@@ -128,11 +129,11 @@ TEST_F(ProgramTest, ValidatesEveryStageThoughAnotherIsWrong) {
   };
   const std::string all = errors_of("");
   const auto has = [](const std::string& text) { return HasSubstr(text); };
-  EXPECT_THAT(all, has(":5:13: error: filter.range: the rig has no laser 'nobody'"));
-  EXPECT_THAT(all, has(":5:13: error: filter.range: range"));
+  EXPECT_THAT(all, has(":5:59: error: filter.range: the rig has no laser 'nobody'"));
+  EXPECT_THAT(all, has(":5:41: error: filter.range: range"));
   EXPECT_THAT(all, has("error: assemble.deskew: there is no option 'nonsense'"));
-  EXPECT_THAT(all, has(":7:13: error: filter.crop: x"));
-  EXPECT_THAT(all, has(":7:13: error: filter.crop: z"));
+  EXPECT_THAT(all, has(":7:36: error: filter.crop: x"));
+  EXPECT_THAT(all, has(":7:49: error: filter.crop: z"));
   EXPECT_THAT(all, has("error: write.picture: it would overwrite /output/a.pcd, which write.pcd writes"));
   EXPECT_THAT(all, testing::EndsWith("\n6 errors\n"));
   const std::string of_a_rig = errors_of("rig: {crisp: 1, plate: {}}\n");
@@ -140,6 +141,19 @@ TEST_F(ProgramTest, ValidatesEveryStageThoughAnotherIsWrong) {
   EXPECT_THAT(of_a_rig, has("assemble.deskew: there is no option 'nonsense'"));
   EXPECT_THAT(of_a_rig, has("write.picture: it would overwrite"));
   EXPECT_THAT(of_a_rig, testing::Not(has("nobody"))) << "which lasers there are is not known";
+}
+
+TEST_F(ProgramTest, SaysThatASettingIsWrongWhereItIsGiven) {
+  const auto error_of = [&](const std::string& pipeline, const std::string& setting) {
+    return crisp({"validate", source_dir() + "/configs/" + pipeline, "--set", setting}).error;
+  };
+  for (const std::string setting :
+       {"calibrate.refine.fixed=laser1.tua", "calibrate.refine.terms=cone", "calibrate.rqe.measure=none"}) {
+    EXPECT_THAT(error_of("calibrate.yaml", setting), testing::StartsWith("--set " + setting + ": error: "));
+  }
+  const std::string effects = "grabber.simulate.effects={laser2.mirror.eccentricty: {a: 0.1deg}}";
+  EXPECT_THAT(error_of("simulate.yaml", effects),
+              testing::StartsWith("--set " + effects + ": error: grabber.simulate: there is no effect"));
 }
 
 }  // namespace
