@@ -86,6 +86,18 @@ void refuse_same(const OwnFiles& writer, const OwnFiles& other, const char* what
   }
 }
 
+/// Adds an error if a folder has the name of one of the files that `writer` makes.
+void refuse_folders(const OwnFiles& writer, std::vector<Error>& errors) {
+  for (const auto& name : writer.names) {
+    const auto file = name.file();
+    std::error_code unknown;
+    if (!file || !fs::is_directory(*file, unknown)) continue;
+    errors.emplace_back(
+        fmt::format("{}: where {} would be written there is a folder", writer.who, file->string()),
+        "remove the folder, or name another file", writer.place);
+  }
+}
+
 }  // namespace
 
 void check_files_written(const Pipeline& pipeline, const FilesOfRun& run, std::vector<Error>& errors) {
@@ -100,8 +112,10 @@ void check_files_written(const Pipeline& pipeline, const FilesOfRun& run, std::v
     OwnFiles& own = others.emplace_back();
     own.who = "this run";
     own.names.emplace_back(one_name(run.summary));
+    refuse_folders(own, errors);
   }
   for (const auto& writer : files.written) {
+    refuse_folders(writer, errors);
     const std::size_t before = errors.size();
     for (const auto& reader : files.read) {
       if (errors.size() == before) refuse_same(writer, reader, "reads", errors);

@@ -20,7 +20,8 @@ struct FilesOfRun {
 };
 
 /// Adds an error for each stage that could write a file that another one reads or writes: the options of
-/// paths say which those are, the records of their origin included. Opens no file.
+/// paths say which those are, the records of their origin included; and for each that would write where a
+/// folder is. Opens no file.
 void check_files_written(const Pipeline& pipeline, const FilesOfRun& run, std::vector<Error>& errors);
 
 }  // namespace crisp

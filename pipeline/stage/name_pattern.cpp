@@ -75,6 +75,11 @@ bool NamePattern::overlaps(const NamePattern& other) const {
   return same[0][0];
 }
 
+std::optional<std::filesystem::path> NamePattern::file() const {
+  const bool known = std::ranges::none_of(text_, [](char c) { return is_open(c) || c == kAnyDigit; });
+  return known ? std::optional<std::filesystem::path>(text_) : std::nullopt;
+}
+
 std::string NamePattern::shown() const {
   std::string text = text_;
   std::erase(text, kAnyDigit);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -23,6 +24,8 @@ class NamePattern {
 
   /// Whether some file has a name of both patterns.
   bool overlaps(const NamePattern& other) const;
+  /// The file, if all of its name is known.
+  std::optional<std::filesystem::path> file() const;
   /// For people, with * for what is not known.
   std::string shown() const;
 

@@ -153,7 +153,7 @@ TEST_F(ProgramTest, RecordsWhereFilesOfAFailedRunCameFrom) {
 TEST_F(ProgramTest, RemovesWhatIsNotCompleteBeforeItWritesItsRecords) {
   write_file(folder_ / "full.yaml",
              "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n"
-             "  - {stage: toy.in_the_way, with: {file: ${output}/summary.json}}\n");
+             "  - {stage: toy.in_the_way, with: {folder: \"${output}\", name: summary.json}}\n");
   const auto run = crisp({"run", path("full.yaml"), "-o", path("out")});
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.error, path("full.yaml") + ":5:13: error: toy.in_the_way: there is no room\n");
@@ -161,13 +161,14 @@ TEST_F(ProgramTest, RemovesWhatIsNotCompleteBeforeItWritesItsRecords) {
 }
 
 TEST_F(ProgramTest, WritesEachRecordThoughAnotherCannotBeWritten) {
-  write_file(folder_ / "two.yaml",
-             "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n"
-             "  - {stage: toy.write, with: {file: ${output}/a}}\n"
-             "  - {stage: toy.write, with: {file: ${output}/b}}\n"
-             "  - {stage: toy.write, with: {file: ${output}/c}}\n");
-  fs::create_directories(folder_ / "out/a.provenance.json");
-  fs::create_directories(folder_ / "out/b.provenance.json");
+  write_file(
+      folder_ / "two.yaml",
+      "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n"
+      "  - {stage: toy.write, with: {file: ${output}/a}}\n"
+      "  - {stage: toy.write, with: {file: ${output}/b}}\n"
+      "  - {stage: toy.write, with: {file: ${output}/c}}\n"
+      "  - {stage: toy.in_the_way, with: {folder: \"${output}\", name: a.provenance.json, stays: true}}\n"
+      "  - {stage: toy.in_the_way, with: {folder: \"${output}\", name: b.provenance.json, stays: true}}\n");
   const auto run = crisp({"run", path("two.yaml"), "-o", path("out")});
   EXPECT_EQ(run.status, 1);
   EXPECT_THAT(run.error, HasSubstr("cannot write " + path("out/a.provenance.json")));

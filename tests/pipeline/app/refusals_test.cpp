@@ -115,6 +115,21 @@ TEST_F(ProgramTest, DoesNotReplaceWhatAStageWroteByARecordOfItsOwn) {
                                      path("out/x") + ", which toy.write wrote; let it write another file"));
 }
 
+TEST_F(ProgramTest, RefusesToRunWhereAFolderIsInTheWayOfWhatItWouldWrite) {
+  fs::create_directories(folder_ / "out/sum.txt");
+  const auto file = crisp({"run", path("sum.yaml"), "-o", path("out")});
+  EXPECT_EQ(file.status, 2);
+  EXPECT_EQ(file.error, path("sum.yaml") + ":5:37: error: toy.write: where " + path("out/sum.txt") +
+                            " would be written there is a folder; remove the folder, or name another file\n");
+  fs::remove(folder_ / "out/sum.txt");
+  fs::create_directories(folder_ / "out/sum.txt.provenance.json");
+  fs::create_directories(folder_ / "out/summary.json");
+  const auto records = crisp({"run", path("sum.yaml"), "-o", path("out")});
+  EXPECT_THAT(records.error,
+              HasSubstr("toy.write: where " + path("out/sum.txt.provenance.json") + " would be"));
+  EXPECT_THAT(records.error, HasSubstr("error: this run: where " + path("out/summary.json") + " would be"));
+}
+
 TEST_F(ProgramTest, ValidatesEveryStageThoughAnotherIsWrong) {
   const auto errors_of = [&](const std::string& rig) {
     write_file(folder_ / "wrong.yaml",

@@ -103,21 +103,29 @@ class EndBadlyStage final : public Stage {
 };
 
 /// Stands, as long as it lives, where another file belongs: as what a full disk holds of files that are not
-/// complete. Throws at the end.
+/// complete. Throws at the end, unless it stays for good.
 class InTheWayStage final : public Stage {
  public:
-  ~InTheWayStage() override { std::filesystem::remove_all(file_); }
+  ~InTheWayStage() override {
+    if (!stays_) std::filesystem::remove_all(folder_ / name_);
+  }
   static void describe(StageDescription<InTheWayStage>& d) {
     d.name("toy.in_the_way").summary("is in the way").takes<Sum>();
-    d.option("file", &InTheWayStage::file_, "of what").required();
+    d.option("folder", &InTheWayStage::folder_, "where").required();
+    d.option("name", &InTheWayStage::name_, "of which file");
+    d.option("stays", &InTheWayStage::stays_, "whether it does when it is gone");
   }
   void process(const Inputs&, Outputs&, Context&) override {
-    std::filesystem::create_directories(file_ / "filled");
+    std::filesystem::create_directories(folder_ / name_ / "filled");
   }
-  void finish(Outputs&, Context&) override { throw Error("there is no room"); }
+  void finish(Outputs&, Context&) override {
+    if (!stays_) throw Error("there is no room");
+  }
 
  private:
-  std::filesystem::path file_;
+  std::filesystem::path folder_;
+  std::string name_;
+  bool stays_ = false;
 };
 
 /// Waits until it is interrupted, and complains of what it could not do.
