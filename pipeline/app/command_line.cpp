@@ -254,7 +254,8 @@ void CommandLine::add_stages() {
 }
 
 void CommandLine::add_info() {
-  info_app = command("info", "Say what files, or folders of them, hold: captures, clouds, calibrations");
+  info_app =
+      command("info", "Say what files, or folders of them, hold: captures, clouds, calibrations, diagnoses");
   info_app->add_option("file", info.paths, "The files or folders")->required()->type_name("FILE");
   info_app->add_option("--rig", info.rig, "The rig whose devices are to be named")->type_name("FILE");
   info_app->add_flag("--json", info.json, "For programs");

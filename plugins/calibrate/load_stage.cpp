@@ -35,7 +35,9 @@ void LoadCalibrationStage::describe(StageDescription<LoadCalibrationStage>& d) {
 
 void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context) {
   if (!std::filesystem::exists(file_)) {
-    throw Error("there is no calibration " + file_.string(), "calibrate first, or name another file");
+    throw Error(
+        "there is no calibration " + file_.string(),
+        "configs/calibrate.yaml makes one; name it by the option file, or --set calibrate.load.file=FILE");
   }
   const auto& terms = context.run().registrar->get<TermRegistry>();
   const Calibration read = read_calibration(file_, judge_by(terms));

@@ -250,6 +250,7 @@ TEST(Configs, AssembleSaysWhichCalibrationItMisses) {
   const auto none = workshop.run("assemble.yaml", workshop / "made/hub.pcap", "out");
   EXPECT_EQ(none.status, ExitStatus::failed);
   EXPECT_THAT(none.told, testing::HasSubstr("there is no calibration " + (workshop / "out").string()));
+  EXPECT_THAT(none.told, testing::HasSubstr("--set calibrate.load.file=FILE"));
   EXPECT_THAT(none.files, ElementsAre("summary.json"));
 }
 
