@@ -6,6 +6,7 @@
 
 #include <numbers>
 
+#include "pipeline/data/counted.hpp"
 #include "pipeline/data/recordings.hpp"
 
 namespace crisp {
@@ -133,8 +134,8 @@ std::string device_table(const CaptureStatistics& statistics) {
 }
 
 std::string to_text(const CaptureStatistics& statistics) {
-  auto text =
-      fmt::format("{} packets, {:.1f} MB", statistics.packets, 1e-6 * static_cast<double>(statistics.bytes));
+  auto text = fmt::format("{}, {:.1f} MB", counted(statistics.packets, "packet"),
+                          1e-6 * static_cast<double>(statistics.bytes));
   if (statistics.packets > 0) {
     const auto first = static_cast<std::time_t>(statistics.first_ns / 1'000'000'000);
     text += fmt::format(", {:.3f} s from {:%Y-%m-%d %H:%M:%S} UTC",

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "pipeline/app/own_pipelines.hpp"
+#include "pipeline/app/usage_error.hpp"
 
 namespace crisp {
 namespace {
@@ -41,11 +42,8 @@ CommandLine::CommandLine() {
   app.set_version_flag("--version", "crisp " CRISP_VERSION);
   app.footer(kFooter);
   app.require_subcommand(1);
-  app.failure_message([](const CLI::App* asked, const CLI::Error& error) {
-    const CLI::App* parent = asked->get_parent();
-    const std::string name = (parent ? parent->get_name() + " " : "") + asked->get_name();
-    return "error: " + std::string(error.what()) + "; " + name + " --help tells more\n";
-  });
+  app.failure_message(
+      [](const CLI::App* asked, const CLI::Error& error) { return usage_error(*asked, error); });
   add_run();
   add_record();
   add_emulate();
@@ -243,8 +241,8 @@ void CommandLine::add_effects() {
 }
 
 void CommandLine::add_stages() {
-  stages_app = command("stages", "List the stages, or tell all of one");
-  stages_app->add_option("name", stages.name, "A stage")->type_name("STAGE");
+  stages_app = command("stages", "List the stages, or those of a family, or tell all of one");
+  stages_app->add_option("name", stages.name, "A stage, or a family of them")->type_name("STAGE");
   stages_app->add_flag("--names", stages.names, "Names only");
   CLI::Option* markdown = stages_app->add_flag("--markdown", stages.markdown, "As Markdown");
   stages_app->add_flag("--json-schema", stages.json_schema, "A JSON schema of pipeline files, for editors");

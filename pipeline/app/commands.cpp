@@ -15,20 +15,29 @@
 #include "pipeline/files/rig_file.hpp"
 #include "pipeline/model/catalogue.hpp"
 #include "pipeline/stage/reference.hpp"
+#include "pipeline/stage/unknown_names.hpp"
 
 namespace crisp {
 namespace {
 
 namespace fs = std::filesystem;
 
-void print_stage_list(const StageRegistry& stages) {
-  std::string family;
+std::string_view family_of(const StageType& type) {
+  return std::string_view(type.name).substr(0, type.name.find('.'));
+}
+
+/// @param wanted  the family to list; empty: all
+/// @return whether there was any
+bool print_stage_list(const StageRegistry& stages, std::string_view wanted) {
+  std::string_view before;
   for (const auto* type : stages.all()) {
-    const std::string of = type->name.substr(0, type->name.find('.'));
-    if (!family.empty() && of != family) std::cout << "\n";
-    family = of;
+    const std::string_view family = family_of(*type);
+    if (!wanted.empty() && family != wanted) continue;
+    if (!before.empty() && family != before) std::cout << "\n";
+    before = family;
     std::cout << fmt::format("{:<26}{}\n", type->name, type->summary);
   }
+  return !before.empty();
 }
 
 void write_reference(const StageRegistry& stages, const fs::path& folder) {
@@ -36,12 +45,12 @@ void write_reference(const StageRegistry& stages, const fs::path& folder) {
   write_file(folder / "README.md", index_markdown(stages));
 }
 
-ExitStatus print_one_stage(const StagesRequest& request, const StageRegistry& stages) {
+/// A stage, or a family of them.
+ExitStatus print_named(const StagesRequest& request, const StageRegistry& stages) {
   const StageType* type = stages.find(request.name);
+  if (!type && print_stage_list(stages, request.name)) return ExitStatus::done;
   if (!type) {
-    print_errors(Error("there is no stage '" + request.name + "'",
-                       did_you_mean(request.name, stages.names(),
-                                    "crisp stages lists them; a plugin's are known with --plugin FILE")));
+    print_errors(no_such_stage(request.name, stages));
     return ExitStatus::misused;
   }
   std::cout << (request.markdown ? stage_markdown(*type) : stage_text(*type));
@@ -101,7 +110,7 @@ ExitStatus stages_command(const StagesRequest& request, const Registrar& registr
   if (request.json_schema) {
     std::cout << json_text(pipeline_schema(stages), 2) << "\n";
   } else if (!request.name.empty()) {
-    return print_one_stage(request, stages);
+    return print_named(request, stages);
   } else if (request.names) {
     for (const auto& name : stages.names()) std::cout << name << "\n";
   } else if (request.markdown && request.output) {
@@ -110,7 +119,7 @@ ExitStatus stages_command(const StagesRequest& request, const Registrar& registr
     std::cout << index_markdown(stages);
     for (const auto* type : stages.all()) std::cout << "\n" << stage_markdown(*type);
   } else {
-    print_stage_list(stages);
+    print_stage_list(stages, {});
   }
   return ExitStatus::done;
 }

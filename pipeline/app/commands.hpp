@@ -45,7 +45,7 @@ ExitStatus validate_command(const std::filesystem::path& file, PipelineArguments
 
 /// `crisp stages`.
 struct StagesRequest {
-  std::string name;  ///< empty: all of them
+  std::string name;  ///< of a stage or a family; empty: all of them
   bool names = false;
   bool markdown = false;
   bool json_schema = false;

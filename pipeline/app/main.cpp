@@ -65,8 +65,14 @@ bool load_plugins(const CommandLine& line, PluginLoader& loader) {
     }
   }
   const std::size_t not_asked_for = loader.tried().size();
-  for (const auto& path : line.plugins) loader.load(path);
   bool all_loaded = true;
+  for (const auto& path : line.plugins) {
+    const std::size_t before = loader.tried().size();
+    loader.load(path);
+    if (loader.tried().size() > before) continue;
+    all_loaded = false;
+    print_errors(Error("the folder " + path + " holds no plugin", "plugins are files NAME.so"));
+  }
   for (std::size_t i = not_asked_for; i < loader.tried().size(); ++i) {
     const PluginRecord& plugin = loader.tried()[i];
     if (plugin.is_loaded()) continue;

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "pipeline/files/findings_file.hpp"
 #include "pipeline/files/yaml_map.hpp"
@@ -231,6 +233,11 @@ Findings parse_findings(const YamlNode& root) {
   return all;
 }
 
-Findings read_findings(const std::filesystem::path& file) { return parse_findings(read_yaml(file)); }
+Findings read_findings(const std::filesystem::path& file) {
+  std::ifstream stream(file);  // whether it can be read, reading it says
+  if (stream && !nlohmann::json::accept(stream))
+    throw Error("this is not JSON", "it was cut short, or changed by hand", {.file = file.string()});
+  return parse_findings(read_yaml(file));
+}
 
 }  // namespace crisp

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "pipeline/data/all_errors.hpp"
-#include "pipeline/files/nearest.hpp"
+#include "pipeline/stage/unknown_names.hpp"
 #include "pipeline/stage/wiring.hpp"
 
 namespace crisp {
@@ -26,9 +26,8 @@ class Builder {
     check_tag(node, above);
     node.type = run_.registrar->stages().find(spec.stage);
     if (!node.type) {
-      fail(spec.place, fmt::format("there is no stage '{}'", spec.stage),
-           did_you_mean(spec.stage, run_.registrar->stages().names(),
-                        "crisp stages lists them; a plugin's are known with --plugin FILE"));
+      const Error unknown = no_such_stage(spec.stage, run_.registrar->stages());
+      fail(spec.place, unknown.message(), unknown.advice());
       return node;
     }
     node.stage = node.type->make();

@@ -15,6 +15,7 @@
 #include "pipeline/stage/files_written.hpp"
 #include "pipeline/stage/option_yaml.hpp"
 #include "pipeline/stage/settings.hpp"
+#include "pipeline/stage/unknown_names.hpp"
 #include "pipeline/stage/variables.hpp"
 
 namespace crisp {
@@ -121,6 +122,11 @@ class PlanReader {
   }
 
   void read_stage(const YamlNode& node) {
+    if (node.kind == YamlNode::Kind::scalar) {
+      errors_.emplace_back("stage: " + describe(node) + " is not a map", "write `- stage: " + node.text + "`",
+                           node.place);
+      return;
+    }
     YamlMap map(node, "stage", errors_);
     StageSpec spec;
     spec.place = node.place;

@@ -5,6 +5,7 @@
 
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/stage/option_yaml.hpp"
+#include "pipeline/stage/unknown_names.hpp"
 
 namespace crisp {
 namespace {
@@ -34,14 +35,19 @@ YamlNode parse_value(const std::string& value, const std::string& text, std::vec
   return node;
 }
 
-}  // namespace
-
-std::string no_such_option(const StageType& type, const std::string& name) {
-  std::vector<std::string> known;
-  for (const auto& option : type.options) known.push_back(option.name);
-  return did_you_mean(name, known,
-                      known.empty() ? "it has none" : "crisp stages " + type.name + " lists them");
+/// What a name that is neither a variable nor a tag could have been meant to be: an option whose stage was
+/// left out, or a tag that is near.
+std::string meant(const std::string& name, const std::vector<StageSpec>& specs, const StageRegistry& stages) {
+  std::vector<std::string> tags;
+  for (const auto& spec : specs) {
+    tags.push_back(spec.tag);
+    const StageType* type = stages.find(spec.stage);
+    if (type && type->find_option(name)) return "did you mean '" + spec.tag + "." + name + "'?";
+  }
+  return did_you_mean(name, tags, {});
 }
+
+}  // namespace
 
 Settings::Settings(const std::vector<std::string>& texts, std::vector<Error>& errors) {
   for (const auto& text : texts) {
@@ -79,10 +85,8 @@ void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const Stag
   const std::string tag = setting.target.substr(0, dot);
   const auto spec = std::find_if(specs.begin(), specs.end(), [&](const auto& s) { return s.tag == tag; });
   if (dot == std::string::npos || spec == specs.end()) {
-    std::vector<std::string> tags;
-    for (const auto& s : specs) tags.push_back(s.tag);
     const std::string what = dot == std::string::npos ? "variable" : "stage with the tag";
-    errors.emplace_back("the pipeline has no " + what + " '" + tag + "'", did_you_mean(tag, tags, {}), place);
+    errors.emplace_back("the pipeline has no " + what + " '" + tag + "'", meant(tag, specs, stages), place);
     return;
   }
   const StageType* type = stages.find(spec->stage);

@@ -10,9 +10,6 @@
 
 namespace crisp {
 
-/// What an unknown option could have been meant to be, and where the known ones are listed.
-std::string no_such_option(const StageType& type, const std::string& name);
-
 /// The settings of a command line, `tag.option=value` and `variable=value`, which go before those of the
 /// file.
 class Settings {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "pipeline/data/counted.hpp"
 #include "plugins/study/parameter_kind.hpp"
 
 namespace crisp {
@@ -63,8 +64,8 @@ std::string basin_text(const std::vector<BasinRecording>& recordings) {
   const auto line = [&](const char* what, std::size_t n) {
     return fmt::format("{:<46}{:>7}  {:>6.2f} %\n", what, n, percent * static_cast<double>(n));
   };
-  std::string text =
-      fmt::format("{} starts on {} recordings\n", tally.starts, recordings.size() - tally.failed);
+  std::string text = fmt::format("{} on {}\n", counted(tally.starts, "start"),
+                                 counted(recordings.size() - tally.failed, "recording"));
   text += line("ended in the optimum at the truth", tally.same);
   text += line("  of these said to be not sure", tally.same_doubted);
   text += line("elsewhere, and said to be not sure", tally.doubted);

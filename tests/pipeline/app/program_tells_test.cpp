@@ -23,7 +23,13 @@ TEST_F(ProgramTest, TellsAllOfAStage) {
   EXPECT_THAT(crisp({"stages"}).out, HasSubstr("write.calibration"));
   const auto wrong = crisp({"stages", "toy.wirte"});
   EXPECT_EQ(wrong.status, 2);
-  EXPECT_EQ(wrong.error, "error: there is no stage 'toy.wirte'; did you mean 'toy.write'?\n");
+  EXPECT_EQ(wrong.error,
+            "error: there is no stage 'toy.wirte'; did you mean 'toy.write'? a plugin's are known with "
+            "--plugin FILE\n");
+  const auto family = crisp({"stages", "toy"});
+  EXPECT_EQ(family.status, 0);
+  EXPECT_THAT(family.out, testing::StartsWith("toy.complain "));
+  EXPECT_THAT(family.out, testing::Not(HasSubstr("filter.range")));
 }
 
 TEST_F(ProgramTest, TellsAllOfAnEffect) {

@@ -130,6 +130,32 @@ TEST_F(ProgramTest, RefusesToRunWhereAFolderIsInTheWayOfWhatItWouldWrite) {
   EXPECT_THAT(records.error, HasSubstr("error: this run: where " + path("out/summary.json") + " would be"));
 }
 
+TEST_F(ProgramTest, SaysWhatWasMeantByWordsThatItDoesNotExpect) {
+  const auto thread = crisp({"run", path("sum.yaml"), "--thread", "4", "--sead=1"});
+  EXPECT_EQ(thread.status, 2);
+  EXPECT_EQ(
+      thread.error,
+      "error: not expected: --thread 4 --sead=1; did you mean '--threads'?; crisp run --help tells more\n");
+  EXPECT_EQ(crisp({"plugins", "one", "two"}).error,
+            "error: not expected: one two; crisp plugins --help tells more\n");
+  EXPECT_EQ(crisp({"run"}).error, "error: pipeline is required; crisp run --help tells more\n");
+}
+
+TEST_F(ProgramTest, RefusesAFolderThatHoldsNoPlugin) {
+  fs::create_directories(folder_ / "none");
+  const auto outcome = crisp({"stages", "--plugin", path("none")});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.error,
+            "error: the folder " + path("none") + " holds no plugin; plugins are files NAME.so\n");
+}
+
+TEST_F(ProgramTest, SaysHowAStageIsWritten) {
+  write_file(folder_ / "plain.yaml", "crisp: 1\npipeline:\n  - toy.count\n");
+  EXPECT_EQ(
+      crisp({"validate", path("plain.yaml")}).error,
+      path("plain.yaml") + ":3:5: error: stage: 'toy.count' is not a map; write `- stage: toy.count`\n");
+}
+
 TEST_F(ProgramTest, ValidatesEveryStageThoughAnotherIsWrong) {
   const auto errors_of = [&](const std::string& rig) {
     write_file(folder_ / "wrong.yaml",

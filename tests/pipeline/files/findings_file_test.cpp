@@ -212,6 +212,11 @@ TEST(FindingsFile, ThatIsDamagedIsRefusedWithTheLine) {
   const std::string whole = findings_json(some_findings());
   EXPECT_FALSE(complaints(whole.substr(0, whole.size() / 2)).empty());
   EXPECT_FALSE(complaints("").empty());
+  const std::filesystem::path cut = std::filesystem::temp_directory_path() / "crisp-cut-diagnosis.json";
+  std::ofstream(cut) << whole.substr(0, whole.size() / 2);
+  EXPECT_THAT(errors_of([&] { read_findings(cut); }),
+              ElementsAre(cut.string() + ": error: this is not JSON; it was cut short, or changed by hand"));
+  std::filesystem::remove(cut);
   EXPECT_THAT(errors_of([] { read_findings("nowhere/diagnosis.json"); }),
               ElementsAre(HasSubstr("nowhere/diagnosis.json")));
 }

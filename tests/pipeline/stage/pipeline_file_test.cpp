@@ -233,7 +233,7 @@ TEST_F(PipelineFileTest, PathsOfTheFileAreRelativeToItAndThoseOfTheCommandLineTo
 
 TEST_F(PipelineFileTest, RefusesSettingsOfNoUse) {
   const PipelineArguments arguments = {.set = {"toy.evrything.count=1", "toy.everything.cuont=1",
-                                               "toy.everything.count=x", "n=1", "flag",
+                                               "toy.everything.count=x", "n=1", "flag", "sigma=[1m]",
                                                "toy.everything.sigma=[1"}};
   EXPECT_THAT(
       errors_of(with("file: y"), arguments),
@@ -245,6 +245,8 @@ TEST_F(PipelineFileTest, RefusesSettingsOfNoUse) {
                                     HasSubstr("--set toy.everything.count=x: error: toy.everything: option "
                                               "'count': 'x' is not a whole number"),
                                     HasSubstr("--set n=1: error: the pipeline has no variable 'n'"),
+                                    HasSubstr("the pipeline has no variable 'sigma'; did you mean "
+                                              "'toy.everything.sigma'?"),
                                     HasSubstr("--set flag: error: a setting needs a name and a value"),
                                     HasSubstr("this is not YAML")));
 }
@@ -276,7 +278,8 @@ TEST_F(PipelineFileTest, FindsMistakesOfSchemaStagesAndWiringAtOnce) {
       testing::UnorderedElementsAre(
           HasSubstr("p.yaml:2:1: error: pipeline: there is no key 'pipelin'; did you mean 'pipeline'?"),
           HasSubstr("p.yaml:4:12: error: toy.sum: nothing above it gives the Number"),
-          HasSubstr("p.yaml:5:12: error: there is no stage 'toy.cuont'; did you mean 'toy.count'?"),
+          HasSubstr(
+              "p.yaml:5:12: error: there is no stage 'toy.cuont'; did you mean 'toy.count'? a plugin's"),
           HasSubstr("p.yaml:6:5: error: stage: there is no key 'whit'; did you mean 'with'?"),
           HasSubstr("p.yaml:7:5: error: stage: 'stage' is missing"),
           HasSubstr("p.yaml:8:29: error: stage: 'a b' is not a tag"),

@@ -57,7 +57,8 @@ TEST_F(WiringTest, PointsAtAStageAboveThatInputsLeavesOut) {
 
 TEST_F(WiringTest, SuggestsTheNearestStageAndTag) {
   EXPECT_THAT(errors_of({{.stage = "toy.cuont"}}),
-              ElementsAre("error: there is no stage 'toy.cuont'; did you mean 'toy.count'?"));
+              ElementsAre("error: there is no stage 'toy.cuont'; did you mean 'toy.count'? a plugin's are "
+                          "known with --plugin FILE"));
   EXPECT_THAT(errors_of({{.stage = "toy.count", .tag = "left"},
                          {.stage = "toy.sum", .inputs = {{{"lfet", {"p.yaml", 3, 9}}}}}}),
               ElementsAre("p.yaml:3:9: error: toy.sum: there is no stage with the tag 'lfet'; did you mean "

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/app/usage_error.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "pipeline/files/nearest.hpp"
+
+namespace crisp {
+namespace {
+
+std::vector<std::string> options_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// CLI11 itself tells these in reverse order.
+std::string not_expected(const CLI::App& command) {
+  const std::vector<std::string> words = command.remaining();
+  std::string text = "not expected:";
+  for (const auto& word : words) text += " " + word;
+  const auto option = std::ranges::find_if(words, [](const auto& word) { return word.starts_with("--"); });
+  if (option == words.end()) return text;
+  const std::string name = option->substr(0, option->find('='));
+  const std::string hint = did_you_mean(name, options_of(command), {});
+  return hint.empty() ? text : text + "; " + hint;
+}
+
+}  // namespace
+
+std::string usage_error(const CLI::App& app, const CLI::Error& error) {
+  const auto asked = app.get_subcommands();
+  const CLI::App& command = asked.empty() ? app : *asked.front();
+  const bool extras = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  const std::string what = extras ? not_expected(command) : error.what();
+  const std::string name = app.get_name() + (asked.empty() ? "" : " " + command.get_name());
+  return "error: " + what + "; " + name + " --help tells more\n";
+}
+
+}  // namespace crisp
