@@ -24,11 +24,15 @@ void WritePcdStage::describe(StageDescription<WritePcdStage>& d) {
       "its own: a pause of the plate's readings or, where no stage above gives these, between two clouds. "
       "The "
       "files appear when all of them are complete.");
-  d.takes<Cloud>().holds<PlateTrajectory>(Need::optional);
+  d.takes<Cloud>().takes<PlateTrajectory>(Need::optional);
   describe_parts(d, &WritePcdStage::options_);
 }
 
 void WritePcdStage::process(const Inputs& in, Outputs&, Context& context) {
+  if (const auto plate = in.share<PlateTrajectory>()) {
+    borders_.add(*plate);
+    return;
+  }
   if (!writer_) writer_.emplace(options_.file, options_.format);
   const Cloud& cloud = in.get<Cloud>();
   if (written_ == 0 && pending_.empty()) pending_.header = cloud.header;
@@ -42,7 +46,7 @@ void WritePcdStage::process(const Inputs& in, Outputs&, Context& context) {
       ++lost;
       continue;
     }
-    if (std::exchange(is_first, false)) borders_.begin_cloud(in.share<PlateTrajectory>(), point.time);
+    if (std::exchange(is_first, false)) borders_.begin_cloud(point.time);
     add(point);
   }
   context.count("points that are not numbers", lost);

@@ -69,19 +69,21 @@ TEST_F(WritePcd, PointsInAnyOrderOfTimeAreOneRecording) {
   EXPECT_EQ(read("cloud.pcd").size(), 1U);
 }
 
-std::shared_ptr<const PlateTrajectory> turning_at(const std::vector<double>& times) {
+PlateTrajectory turning_at(const std::vector<double>& times) {
   std::vector<double> angles;
   for (const double time : times) angles.push_back(0.01 * time);
-  return std::make_shared<const PlateTrajectory>(0, times, angles, 0.1);
+  return {0, times, angles, 0.1};
 }
 
 TEST_F(WritePcd, APauseIsOneOfThePlateWhereThereIsOne) {
   auto stage = writer();
-  const auto first = turning_at({0, 1, 2, 3, 4, 8, 12, 16, 20, 30, 31});
-  stage.feed(cloud_of_times({0, 1, 19, 20}), first);  // whom a filter took what was between
-  stage.feed(cloud_of_times({30, 31}), first);
-  stage.feed(cloud_of_times({35}), turning_at({31.5, 35}));
-  stage.feed(cloud_of_times({51}), turning_at({50, 51}));
+  stage.feed(turning_at({0, 1, 2, 3, 4, 8, 12, 16, 20, 30, 31}));
+  stage.feed(turning_at({31.5, 35}));
+  stage.feed(cloud_of_times({0, 1, 19, 20}));  // whom a filter took what was between
+  stage.feed(cloud_of_times({30, 31}));
+  stage.feed(turning_at({50, 51}));
+  stage.feed(cloud_of_times({35}));
+  stage.feed(cloud_of_times({51}));
   stage.finish();
   const auto clouds = read("cloud.pcd");
   ASSERT_EQ(clouds.size(), 3U);
