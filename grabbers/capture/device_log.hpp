@@ -35,7 +35,6 @@ class DeviceLog {
 
   void lose(std::string_view what, std::uint64_t n = 1) { statistics_.losses.add(what, n); }
   void note(std::string_view what, std::uint64_t n = 1) { statistics_.notes.add(what, n); }
-  void set_address(const Address& address) { statistics_.address = address; }
 
   DeviceStatistics statistics() const;
 

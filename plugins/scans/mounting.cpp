@@ -202,8 +202,8 @@ double noise_between_scans(const FlatWindow& window) {
     but_one = last;
     last = sight.range;
   }
-  constexpr double kOfNormal = 0.6745, kSecond = 2.449489742783178;  // √6
-  return middle_of(second) / kOfNormal / kSecond;
+  constexpr double kSecond = 2.449489742783178;  // √6
+  return middle_of(second) * kSigmaByMedian / kSecond;
 }
 
 /// Flat, with an optical centre of its own.
