@@ -38,8 +38,8 @@ struct FlatWindow {
 };
 
 /// Cuts the sweep into windows of about `side` [rad] both ways and keeps those that are flat by the noise
-/// of each beam from scan to scan. Each is allowed an offset of the optical centre of its own, so that no value
-/// of what is to be found is preferred by the choice.
+/// of each beam from scan to scan. Each is allowed an offset of the optical centre of its own, so that no
+/// value of what is to be found is preferred by the choice.
 std::vector<FlatWindow> flat_windows(const Pass& pass, const FanGeometry& fan, double side);
 
 /// What all windows together say.
