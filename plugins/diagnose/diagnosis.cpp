@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 
 #include "pipeline/estimate/free_parameters.hpp"
-#include "pipeline/estimate/wanted_terms.hpp"
 #include "pipeline/model/terms_in.hpp"
 #include "plugins/diagnose/evidence.hpp"
 #include "plugins/diagnose/forms.hpp"
@@ -27,92 +25,10 @@ std::set<std::string> names_of(const std::vector<Candidate>& candidates) {
   return names;
 }
 
-/// λ, τ, α, η as far as the refinement left them free.
-std::vector<std::size_t> base_of(const Refinement& refinement) {
-  std::vector<std::size_t> base;
-  for (const std::size_t parameter : refinement.outcome.free) {
-    if (!declared(refinement.outcome.model, parameter)) base.push_back(parameter);
-  }
-  return base;
-}
-
-std::vector<Departure::Rival> rivals(const Choice& choice, const Dictionary& dictionary) {
-  constexpr std::size_t kMost = 5;
-  std::vector<Departure::Rival> result;
-  for (const Alternative& other : choice.alternatives) {
-    if (result.size() == kMost) break;
-    const Candidate& candidate = dictionary.candidates()[other.candidate];
-    result.push_back({.name = candidate.name,
-                      .behind = other.behind,
-                      .term = candidate.term.term,
-                      .owner = candidate.owner});
-  }
-  return result;
-}
-
-/// [m] By how much a candidate can change ranges (RMS) without being taken: because it is not significant, or
-/// because the other parameters leave too little of it to be seen.
-double limit_of(const Candidate& candidate, const Look& look, const SelectionSettings& settings,
-                std::size_t beams) {
-  const auto parameters = static_cast<double>(look.value.size()) + (candidate.forms > 1 ? 1 : 0);
-  const double significant =
-      std::sqrt(settings.bic + parameters * std::log(static_cast<double>(beams))) * look.ranges_error;
-  return look.visible > 0 ? std::max(significant, look.ranges * settings.visible / look.visible)
-                          : std::numeric_limits<double>::infinity();
-}
-
-/// Candidates that could be a quarter of the noise of ranges, in every form, without being seen beside those
-/// that were taken.
-///
-/// @param noise  [m] of ranges
-std::vector<Diagnosis::Limit> hidden(const std::vector<std::size_t>& taken, const Dictionary& dictionary,
-                                     const NormalEquations& equations, const SelectionSettings& settings,
-                                     double noise) {
-  constexpr double kMuch = 0.25;
-  struct Least {
-    double limit = 0;
-    std::size_t candidate = 0;
-  };
-  const auto looks = looks_beside(taken, dictionary, equations);
-  std::map<std::string, Least> limits;
-  for (std::size_t c = 0; c < looks.size(); ++c) {
-    const Candidate& candidate = dictionary.candidates()[c];
-    if (!looks[c] || !candidate.is_cause()) continue;
-    const Least own{.limit = limit_of(candidate, *looks[c], settings, equations.beams), .candidate = c};
-    const auto [known, is_new] = limits.try_emplace(candidate.name, own);
-    if (own.limit < known->second.limit) known->second = own;
-  }
-  std::vector<Diagnosis::Limit> hidden;
-  for (const auto& [name, least] : limits) {
-    if (least.limit < kMuch * noise) continue;
-    hidden.push_back({.name = name,
-                      .size = least.limit,
-                      .combination = known_instead(least.candidate, taken, dictionary, equations)});
-  }
-  return hidden;
-}
-
-/// One look at a model: what it needs, as candidates with values.
-void look(const Evidence& evidence, const TermRegistry& terms, const DiagnosisSettings& settings,
-          const std::set<std::string>& refused, Diagnosis& result) {
-  const SensorModel& model = result.after.outcome.model;
-  const Dictionary dictionary(model, base_of(result.after),
-                              candidates(terms, model.calibration(), evidence.lasting()), terms);
-  const NormalEquations equations = from_neutral(dictionary, evidence.equations(dictionary));
-  result.departures.clear();
-  std::vector<std::size_t> taken;
-  for (const Choice& choice : choose(dictionary, equations, settings.selection, refused)) {
-    taken.push_back(choice.candidate);
-    result.departures.push_back(
-        {.candidate = valued(dictionary.candidates()[choice.candidate], choice.look, terms),
-         .look = choice.look,
-         .rivals = rivals(choice, dictionary),
-         .gains = {}});
-  }
-  result.unobservable =
-      hidden(taken, dictionary, equations, settings.selection, settings.refinement.surfels.noise);
-  result.looks = names_of(dictionary.candidates()).size();
-  result.unshared = unshared_causes(terms, evidence.lasting());
+std::set<std::string> names_of(const std::vector<Departure>& departures) {
+  std::set<std::string> names;
+  for (const auto& departure : departures) names.insert(departure.candidate.name);
+  return names;
 }
 
 class Diagnoser {
@@ -150,16 +66,35 @@ class Diagnoser {
     return !report_ || report_(share, what);
   }
 
+  /// Whether fainter causes may be told: not beside what is off and has no cause, of which each would take a
+  /// part.
+  bool asks_for_a_closer_look(const std::vector<Departure>& found, const Evidence& evidence) const {
+    return settings_.closer > settings_.beams &&
+           std::ranges::all_of(found, [](const Departure& one) { return one.candidate.is_cause(); }) &&
+           side_by_side(evidence, settings_.refinement.surfels, 1).p_value > settings_.selection.p_value;
+  }
+
   /// Adds what is needed, until nothing is missing.
   void extend(Diagnosis& result) const {
     std::vector<Candidate> chosen;
     std::set<std::string> refused;
+    bool is_close = false;
     for (int round = 0; round < settings_.rounds; ++round) {
       const double share = round / (settings_.rounds + 2.0);
       if (!goes_on(share, fmt::format("round {}: looking at all candidates", round + 1))) return;
       const Evidence evidence(result.after.outcome.model, inside_, settings_.refinement.surfels,
                               settings_.beams);
-      look(evidence, terms_, settings_, refused, result);
+      result.unshared = unshared_causes(terms_, evidence.lasting());
+      const Survey survey(evidence, result.after, terms_, settings_);
+      if (!is_close) result.departures = survey.needs(refused);
+      is_close = is_close || (names_of(result.departures) == names_of(chosen) &&
+                              asks_for_a_closer_look(result.departures, evidence));
+      if (is_close) {
+        if (!goes_on(share, fmt::format("round {}: looking closer", round + 1))) return;
+        result.departures = survey.closer_needs(refused);
+      }
+      result.unobservable = survey.unobservable(result.departures);
+      result.looks = survey.looks();
       std::vector<Candidate> next;
       for (const Departure& departure : result.departures) next.push_back(departure.candidate);
       // What was found needless once the model had it would be taken again for ever.
@@ -169,7 +104,8 @@ class Diagnoser {
       result.settled = names_of(next) == names_of(chosen);
       if (result.settled) return;
       if (!goes_on(share, fmt::format("round {}: refining with what was found", round + 1))) return;
-      chosen = with_sharper_forms(next, result.after.outcome.model, base_of(result.after), evidence, terms_);
+      chosen = with_sharper_forms(next, result.after.outcome.model, survey.base(), evidence,
+                                  is_close ? settings_.closer : settings_.beams, terms_);
       for (const Candidate& candidate : chosen) {
         if (!candidate.other_forms.empty()) result.other_forms[candidate.name] = candidate.other_forms;
       }

@@ -9,16 +9,9 @@
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "plugins/diagnose/departure.hpp"
 #include "plugins/diagnose/profiles.hpp"
-#include "plugins/diagnose/selection.hpp"
+#include "plugins/diagnose/survey.hpp"
 
 namespace crisp {
-
-struct DiagnosisSettings {
-  RefinementSettings refinement;
-  SelectionSettings selection;
-  std::size_t beams = 150'000;  ///< that candidates are looked at with
-  int rounds = 5;               ///< most times that the model is extended and looked at again
-};
 
 struct Diagnosis {
   Refinement before;  ///< without any terms
@@ -26,12 +19,6 @@ struct Diagnosis {
   std::vector<Departure> departures;
   /// Of candidates with a form, by name, what else was tried. `after` counts on it.
   std::map<std::string, std::vector<Candidate::OtherForm>> other_forms;
-  /// A candidate of which these data tell little.
-  struct Limit {
-    std::string name;
-    double size = 0;          ///< [m] RMS change of ranges that would not be seen; may be infinite
-    std::string combination;  ///< that is known instead: see known_instead()
-  };
   std::vector<Limit> unobservable;
   std::vector<std::string> unshared;  ///< terms that were not looked for: recordings cannot share them
   std::size_t looks = 0;              ///< different things that were looked for

@@ -53,27 +53,35 @@ Surfels thinned(const Surfels& surfels, std::size_t most) {
 
 Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings& settings, std::size_t most)
     : sample_(std::move(sample)), placed_(model, sample_), settings_(settings) {
-  Surfels all = surfaces(placed_.view(), settings_);
-  sample_.beams.cos_incidence = incidences(all, placed_.view());
+  all_ = surfaces(placed_.view(), settings_);
+  sample_.beams.cos_incidence = incidences(all_, placed_.view());
   // Terms that ask for the incidence move beams, mostly those that graze, and so the surfaces.
   if (PlacedBeams moved(model, sample_); are_elsewhere(moved.view(), placed_.view())) {
-    all = surfaces(moved.view(), settings_);
-    sample_.beams.cos_incidence = incidences(all, moved.view());
+    all_ = surfaces(moved.view(), settings_);
+    sample_.beams.cos_incidence = incidences(all_, moved.view());
     placed_ = PlacedBeams(model, sample_);
   }
-  surfels_ = thinned(all, most);
+  surfels_ = thinned(all_, most);
   const auto [first, last] = std::ranges::minmax(sample_.beams.time);
   const auto recordings = recordings_of(*sample_.plate);
   lasting_ = {.first = first,
               .last = last,
               .one_begin = recordings.size() < 2,
               .one_zero = recordings.empty() || recordings.front().zero == recordings.back().zero};
-  shared_ = shared_errors(sample_.beams, surfels_, placed_.view());
+  shared_ = shared_errors(sample_.beams, all_, placed_.view());
+}
+
+NormalEquations Evidence::equations_of(const Surfels& surfels, const Dictionary& dictionary) const {
+  return normal_equations(surfels, placed_.view(), dictionary.parameters(), dictionary.rows(sample_),
+                          settings_, shared_);
 }
 
 NormalEquations Evidence::equations(const Dictionary& dictionary) const {
-  return normal_equations(surfels_, placed_.view(), dictionary.parameters(), dictionary.rows(sample_),
-                          settings_, shared_);
+  return equations_of(surfels_, dictionary);
+}
+
+NormalEquations Evidence::equations(const Dictionary& dictionary, std::size_t most) const {
+  return equations_of(thinned(all_, most), dictionary);
 }
 
 }  // namespace crisp

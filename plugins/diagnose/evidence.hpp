@@ -15,7 +15,7 @@ namespace crisp {
 class Evidence {
  public:
   /// @param sample  all beams, which the plate's readings cover; how they met their surfaces is filled in
-  /// @param most    so many beams are looked at, evenly chosen; more cost time and tell little
+  /// @param most    so many beams are looked at, evenly chosen
   Evidence(const SensorModel& model, Sample sample, const SurfelSettings& settings, std::size_t most);
 
   const Sample& sample() const { return sample_; }
@@ -24,13 +24,19 @@ class Evidence {
   Lasting lasting() const { return lasting_; }
 
   /// Near the model, in the dictionary's parameters; with what errors beams may share.
+  ///
+  /// @param most  so many beams are looked at instead
+  NormalEquations equations(const Dictionary& dictionary, std::size_t most) const;
   NormalEquations equations(const Dictionary& dictionary) const;
 
  private:
+  NormalEquations equations_of(const Surfels& surfels, const Dictionary& dictionary) const;
+
   Sample sample_;
   PlacedBeams placed_;
   SurfelSettings settings_;
-  Surfels surfels_;
+  Surfels all_;      ///< with all beams
+  Surfels surfels_;  ///< with those that are looked at
   Lasting lasting_;
   std::vector<Division> shared_;
 };

@@ -13,14 +13,14 @@ namespace {
 /// Looks at some forms of one candidate, each beside the others.
 std::vector<Look> looks_at(const std::vector<Candidate>& forms, const std::vector<Candidate>& others,
                            const SensorModel& model, const std::vector<std::size_t>& base,
-                           const Evidence& evidence, const TermRegistry& terms) {
+                           const Evidence& evidence, std::size_t beams, const TermRegistry& terms) {
   std::vector<Candidate> all = forms;
   all.insert(all.end(), others.begin(), others.end());
   std::vector<std::size_t> taken(others.size());
   std::iota(taken.begin(), taken.end(), forms.size());
   const Dictionary dictionary(model, base, all, terms);
   const auto found =
-      looks_beside(taken, dictionary, from_neutral(dictionary, evidence.equations(dictionary)));
+      looks_beside(taken, dictionary, from_neutral(dictionary, evidence.equations(dictionary, beams)));
   std::vector<Look> looks;
   for (std::size_t k = 0; k < forms.size(); ++k) looks.push_back(*found[k]);
   return looks;
@@ -40,12 +40,13 @@ Eigen::VectorXd values_of(const Candidate& candidate) {
 /// All forms that are tried, beside the best.
 std::vector<Candidate::OtherForm> other_forms(const Candidate& best, const std::vector<Candidate>& others,
                                               const SensorModel& model, const std::vector<std::size_t>& base,
-                                              const Evidence& evidence, const TermRegistry& terms) {
+                                              const Evidence& evidence, std::size_t beams,
+                                              const TermRegistry& terms) {
   std::vector<Candidate> forms = {best};
   for (std::size_t k = 0; k < best.forms; ++k) {
     forms.push_back(in_form(best, static_cast<double>(k), terms, evidence.lasting()));
   }
-  const std::vector<Look> looks = looks_at(forms, others, model, base, evidence, terms);
+  const std::vector<Look> looks = looks_at(forms, others, model, base, evidence, beams, terms);
   const Eigen::VectorXd values = values_of(valued(best, looks.front(), terms));
   std::vector<Candidate::OtherForm> result;
   for (std::size_t k = 1; k < forms.size(); ++k) {
@@ -59,7 +60,7 @@ std::vector<Candidate::OtherForm> other_forms(const Candidate& best, const std::
 
 std::vector<Candidate> with_sharper_forms(std::vector<Candidate> chosen, const SensorModel& model,
                                           const std::vector<std::size_t>& base, const Evidence& evidence,
-                                          const TermRegistry& terms) {
+                                          std::size_t beams, const TermRegistry& terms) {
   constexpr int kZooms = 3;
   constexpr int kHalf = 4;  // forms to either side
   for (std::size_t c = 0; c < chosen.size(); ++c) {
@@ -73,9 +74,9 @@ std::vector<Candidate> with_sharper_forms(std::vector<Candidate> chosen, const S
       for (int k = -kHalf; k <= kHalf; ++k) {
         forms.push_back(in_form(chosen[c], chosen[c].form + k * step, terms, evidence.lasting()));
       }
-      chosen[c] = forms[best_of(looks_at(forms, others, model, base, evidence, terms))];
+      chosen[c] = forms[best_of(looks_at(forms, others, model, base, evidence, beams, terms))];
     }
-    chosen[c].other_forms = other_forms(chosen[c], others, model, base, evidence, terms);
+    chosen[c].other_forms = other_forms(chosen[c], others, model, base, evidence, beams, terms);
   }
   return chosen;
 }

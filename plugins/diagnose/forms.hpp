@@ -12,10 +12,11 @@ namespace crisp {
 /// that were tried, each beside all the others. Those of candidates that the model already has stay; the
 /// others are told how far off another form may be.
 ///
-/// @param base  indices of λ, τ, α, η that are estimated with them
+/// @param base   indices of λ, τ, α, η that are estimated with them
+/// @param beams  that forms are looked at with
 std::vector<Candidate> with_sharper_forms(std::vector<Candidate> chosen, const SensorModel& model,
                                           const std::vector<std::size_t>& base, const Evidence& evidence,
-                                          const TermRegistry& terms);
+                                          std::size_t beams, const TermRegistry& terms);
 
 /// By how much another form than the best may be the right one, for all of the term's parameters: the
 /// covariance of those that they have in all forms that are tried, each as likely as the data make it. A form

@@ -2,7 +2,8 @@
 #include "plugins/diagnose/looks.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <boost/math/distributions/chi_squared.hpp>
+#include <algorithm>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <limits>
 
@@ -26,18 +27,41 @@ Eigen::MatrixXd seen_directions(const Eigen::MatrixXd& matrix, const Eigen::Vect
 struct StepSpread {
   Eigen::MatrixXd covariance;
   double wald = std::numeric_limits<double>::infinity();
+  double p_value = 1;
 };
+
+/// How many squares of one normal law would scatter as the sum of these does: as many as there are if all are
+/// alike, fewer if some count for most.
+double alike(const Eigen::VectorXd& values) {
+  const double squares = values.squaredNorm();
+  return squares > 0 ? 3 * squares * squares / values.array().pow(4).sum() : 0;
+}
+
+/// Hotelling's: a covariance that is known from n blocks only, p of whose freedoms the steps themselves have
+/// taken, makes large multiples of it likelier than χ² has them.
+///
+/// @param steps  p, not none; so many blocks count as are alike along them
+double p_value_of(const Eigen::MatrixXd& pulls, const Eigen::VectorXd& steps, const Eigen::VectorXd& solved) {
+  const auto p = static_cast<double>(steps.size());
+  const double n = std::min(alike(pulls.transpose() * solved), static_cast<double>(pulls.cols()));
+  const double left = n - 2 * p + 1;
+  if (!(left > 0)) return 1;
+  return cdf(complement(boost::math::fisher_f(p, left), steps.dot(solved) * left / (n * p)));
+}
 
 /// By the division into blocks by which the steps are the most ordinary.
 StepSpread widest(const NormalEquations& equations, const std::vector<std::size_t>& of,
                   const Eigen::MatrixXd& directions, const Eigen::VectorXd& steps) {
-  StepSpread widest;
+  if (steps.size() == 0) return {.covariance = Eigen::MatrixXd(0, 0), .wald = 0};
+  StepSpread widest{.covariance = {}, .p_value = 0};
   for (std::size_t division = 0; division < equations.pulls.size(); ++division) {
     const Eigen::MatrixXd pulls = equations.pulls_along(division, of, directions);
     const Eigen::MatrixXd covariance = pulls * pulls.transpose();
-    const double wald =
-        steps.size() > 0 ? steps.dot(covariance.completeOrthogonalDecomposition().solve(steps)) : 0;
-    if (wald < widest.wald) widest = {.covariance = covariance, .wald = wald};
+    const Eigen::VectorXd solved = covariance.completeOrthogonalDecomposition().solve(steps);
+    widest.p_value = std::max(widest.p_value, p_value_of(pulls, steps, solved));
+    if (steps.dot(solved) > widest.wald) continue;
+    widest.wald = steps.dot(solved);
+    widest.covariance = covariance;
   }
   return widest;
 }
@@ -71,7 +95,7 @@ Look look_at(const NormalEquations& equations, const std::vector<std::size_t>& o
   look.ranges_error = seen.cols() < matrix.cols() ? std::numeric_limits<double>::infinity()
                                                   : std::sqrt(in_ranges.dot(look.covariance.diagonal()));
   look.wald = spread.wald;
-  if (seen.cols() > 0) look.p_value = cdf(complement(boost::math::chi_squared(count), look.wald));
+  look.p_value = spread.p_value;
   return look;
 }
 

@@ -15,9 +15,9 @@ struct Look {
   Eigen::MatrixXd covariance;  ///< p × p: of these, by the scatter of blocks that may share an error
   double gain = 0;  ///< by how much the squares fall, in units of the residuals' variance: 2 ln(likelihood)
   double bic = 0;   ///< gain − p ln n: what is left of that after the price of parameters (Schwarz)
-  double wald = 0;  ///< valueᵀ covariance⁻¹ value: of χ² with p degrees of freedom, where nothing is there;
-                    ///< of several divisions into blocks, by the one by which it is least
-  double p_value = 1;  ///< of that
+  double wald = 0;  ///< valueᵀ covariance⁻¹ value: of several divisions into blocks, by the one by which it
+                    ///< is least
+  double p_value = 1;  ///< of that, or greater, where nothing is there (Hotelling's law: blocks are few)
   /// By how much errors that beams share make the value's variance larger than independent ones would, along
   /// the value. It holds where the model has the value: elsewhere blocks share what is missing. 1 where it
   /// may be chance.

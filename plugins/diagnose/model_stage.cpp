@@ -59,8 +59,11 @@ void DiagnoseModelStage::describe(StageDescription<DiagnoseModelStage>& d) {
       .gives<Calibration>();
   d.option("noise", &DiagnoseModelStage::noise_, "standard deviation of a range").unit("m").range(1e-6, 1);
   d.option("beams", &DiagnoseModelStage::settings_, &DiagnosisSettings::beams,
-           "that candidates are looked at with; more cost time and tell little")
+           "that candidates are looked at with at first, and residuals are compared of")
       .range(1000, 1e8);
+  d.option("closer", &DiagnoseModelStage::settings_, &DiagnosisSettings::closer,
+           "beams that causes are looked at with in the end, which shows fainter ones; 0: not at all")
+      .range(0, 1e8);
   d.option("rounds", &DiagnoseModelStage::settings_, &DiagnosisSettings::rounds,
            "most times that the model is extended and looked at again")
       .range(1, 100);

@@ -139,7 +139,7 @@ std::string gain_in_words(const std::vector<Gain>& gains) {
   return words;
 }
 
-std::string reason_of(const Diagnosis::Limit& limit, const std::string& told_by) {
+std::string reason_of(const Limit& limit, const std::string& told_by) {
   const std::string needs = told_by.empty() ? "" : "; what tells it: " + told_by;
   if (!std::isfinite(limit.size)) return "the other parameters do all that it could do to these data" + needs;
   return fmt::format(
@@ -225,7 +225,7 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
     }
   }
   add_left_over(diagnosis.left_after, calibration, settings.visible * noise, all);
-  for (const Diagnosis::Limit& limit : diagnosis.unobservable) {
+  for (const Limit& limit : diagnosis.unobservable) {
     all.unobservable.push_back({.parameter = limit.name,
                                 .reason = reason_of(limit, told_by(limit.name, terms)),
                                 .combination = limit.combination});

@@ -96,11 +96,11 @@ std::vector<std::optional<Look>> looks_in(const NormalEquations& left, const std
 class Chooser {
  public:
   Chooser(const Dictionary& dictionary, const NormalEquations& equations, const SelectionSettings& settings,
-          const std::set<std::string>& refused)
+          const std::set<std::string>& refused, std::size_t looks)
       : dictionary_(dictionary), equations_(equations), settings_(settings), refused_(refused) {
     std::set<std::string> names;
     for (const auto& candidate : dictionary.candidates()) names.insert(candidate.name);
-    looks_ = std::max<std::size_t>(1, names.size());
+    looks_ = std::max(looks, names.size());
     of_all_ = causes_of_all_lasers(dictionary.candidates());
   }
 
@@ -260,8 +260,9 @@ std::string known_instead(std::size_t candidate, const std::vector<std::size_t>&
 }
 
 std::vector<Choice> choose(const Dictionary& dictionary, const NormalEquations& equations,
-                           const SelectionSettings& settings, const std::set<std::string>& refused) {
-  const Chooser chooser(dictionary, equations, settings, refused);
+                           const SelectionSettings& settings, const std::set<std::string>& refused,
+                           std::size_t looks) {
+  const Chooser chooser(dictionary, equations, settings, refused, looks);
   std::vector<std::size_t> taken;
   std::set<std::vector<std::size_t>> seen;
   double rough = 0;

@@ -50,9 +50,12 @@ std::string known_instead(std::size_t candidate, const std::vector<std::size_t>&
 ///
 /// @param equations  in the dictionary's parameters, with blocks, where the model is
 /// @param refused    names of candidates that are not to be taken
+/// @param looks      different things that were looked for, if some of them are not in the dictionary any
+/// more
 /// @return  in the order in which they were taken
 std::vector<Choice> choose(const Dictionary& dictionary, const NormalEquations& equations,
-                           const SelectionSettings& settings, const std::set<std::string>& refused = {});
+                           const SelectionSettings& settings, const std::set<std::string>& refused = {},
+                           std::size_t looks = 0);
 
 /// The equations as they would be seen from a model whose candidates are all neutral.
 NormalEquations from_neutral(const Dictionary& dictionary, NormalEquations equations);

@@ -63,7 +63,7 @@ void count_hidden(const Drawn& drawn, const Diagnosis& diagnosis, const std::str
     }
   } else if (taken([&](const Departure& departure) { return stands_for(departure, name); })) {
     ++outcome.in_class;
-  } else if (const auto limit = std::ranges::find(diagnosis.unobservable, name, &Diagnosis::Limit::name);
+  } else if (const auto limit = std::ranges::find(diagnosis.unobservable, name, &Limit::name);
              limit != diagnosis.unobservable.end()) {
     ++(std::isfinite(limit->size) ? outcome.said_small : outcome.in_span);
   }

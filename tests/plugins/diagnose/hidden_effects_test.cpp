@@ -162,6 +162,18 @@ TEST(HiddenEffects, ATimeBetweenBeamsIsOneOfAClass) {
   EXPECT_LT(diagnosis.departures[0].rivals[0].behind, SelectionSettings{}.odds);
 }
 
+TEST(HiddenEffects, AFaintCauseShowsInMoreBeams) {
+  // It changes ranges by 3 mm, of which λ, τ, α and η take all but 0.14 mm.
+  const test::Drawn drawn = test::Drawer(7323).with({"mirror.cone"}, 0.003);
+  DiagnosisSettings never_closer;
+  never_closer.closer = 0;
+  EXPECT_THAT(test::diagnosed(drawn.recording, never_closer).departures, IsEmpty());
+  const Diagnosis diagnosis = test::diagnosed(drawn.recording);
+  EXPECT_EQ(test::names_in(diagnosis), drawn.names);
+  expect_within_errors(diagnosis, drawn.recording, drawn.names.at(0), 1);
+  EXPECT_TRUE(diagnosis.settled);
+}
+
 /// Of the same scanner in office and hall.
 Diagnosis diagnosed_in_two_places(const std::map<std::string, std::vector<double>>& effects, bool new_zeros) {
   const auto first = test::hidden(31, 4, office(), effects);

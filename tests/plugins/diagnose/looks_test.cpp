@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 namespace crisp {
@@ -52,6 +54,33 @@ TEST(Look, HasAnEvenPValueWhereNothingIs) {
     small += look_at(equations, {0, 1}).p_value < 0.1 ? 1 : 0;
   }
   EXPECT_NEAR(small, 40, 4 * 6);  // binomial: √(400 · 0.1 · 0.9) = 6
+}
+
+/// As where the model has the parameters: pulls are of what they leave.
+TEST(Look, HasAnEvenPValueAlsoWhereBlocksAreFew) {
+  constexpr std::size_t kParameters = 12;
+  std::vector<std::size_t> all(kParameters);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  int small = 0;
+  for (unsigned seed = 1; seed <= 1000; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    const Eigen::MatrixXd rows =
+        Eigen::MatrixXd::NullaryExpr(100, kParameters, [&] { return normal(random); });
+    const Eigen::VectorXd noise = Eigen::VectorXd::NullaryExpr(100, [&] { return normal(random); });
+    NormalEquations equations(kParameters, {100});
+    equations.matrix = rows.transpose() * rows;
+    equations.vector = rows.transpose() * noise;
+    equations.squares = equations.matrix.diagonal();
+    const Eigen::VectorXd left = noise - rows * equations.matrix.ldlt().solve(equations.vector);
+    equations.pulls[0] = rows.transpose() * left.asDiagonal();
+    equations.influence = noise.squaredNorm();
+    equations.beams = 100;
+    equations.freedom = equations.weight = equations.stiffness = 100;
+    small += look_at(equations, all).p_value < 0.01 ? 1 : 0;
+  }
+  EXPECT_LT(small, 10 + 4 * 3.2) << "by χ² of twelve freedoms it would be hundreds";
+  EXPECT_GT(small, 0);
 }
 
 TEST(Look, IsAsSureAsTheDivisionByWhichItIsLeastSure) {
