@@ -71,17 +71,9 @@ Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings
   shared_ = shared_errors(sample_.beams, all_, placed_.view());
 }
 
-NormalEquations Evidence::equations_of(const Surfels& surfels, const Dictionary& dictionary) const {
-  return normal_equations(surfels, placed_.view(), dictionary.parameters(), dictionary.rows(sample_),
-                          settings_, shared_);
-}
-
-NormalEquations Evidence::equations(const Dictionary& dictionary) const {
-  return equations_of(surfels_, dictionary);
-}
-
 NormalEquations Evidence::equations(const Dictionary& dictionary, std::size_t most) const {
-  return equations_of(thinned(all_, most), dictionary);
+  return normal_equations(thinned(all_, most), placed_.view(), dictionary.parameters(),
+                          dictionary.rows(sample_), settings_, shared_);
 }
 
 }  // namespace crisp

@@ -15,28 +15,25 @@ namespace crisp {
 class Evidence {
  public:
   /// @param sample  all beams, which the plate's readings cover; how they met their surfaces is filled in
-  /// @param most    so many beams are looked at, evenly chosen
+  /// @param most    so many beams lie on surfels(), evenly chosen
   Evidence(const SensorModel& model, Sample sample, const SurfelSettings& settings, std::size_t most);
 
   const Sample& sample() const { return sample_; }
-  const Surfels& surfels() const { return surfels_; }  ///< with the beams that are looked at
+  const Surfels& surfels() const { return surfels_; }  ///< with `most` beams
   BeamsView beams() const { return placed_.view(); }
   Lasting lasting() const { return lasting_; }
 
   /// Near the model, in the dictionary's parameters; with what errors beams may share.
   ///
-  /// @param most  so many beams are looked at instead
+  /// @param most  so many beams are looked at, evenly chosen
   NormalEquations equations(const Dictionary& dictionary, std::size_t most) const;
-  NormalEquations equations(const Dictionary& dictionary) const;
 
  private:
-  NormalEquations equations_of(const Surfels& surfels, const Dictionary& dictionary) const;
-
   Sample sample_;
   PlacedBeams placed_;
   SurfelSettings settings_;
   Surfels all_;      ///< with all beams
-  Surfels surfels_;  ///< with those that are looked at
+  Surfels surfels_;  ///< with `most` of them
   Lasting lasting_;
   std::vector<Division> shared_;
 };

@@ -30,7 +30,7 @@ class Looked {
         evidence_(model_, covered(recording.sample(), -0.05, 0.05), {}, kBeams),
         dictionary_(model_, base(), candidates(built_in_terms(), model_.calibration(), evidence_.lasting()),
                     built_in_terms()),
-        equations_(evidence_.equations(dictionary_)) {}
+        equations_(evidence_.equations(dictionary_, kBeams)) {}
 
   const Evidence& evidence() const { return evidence_; }
   Look of(const std::string& name) const {
