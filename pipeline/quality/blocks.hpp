@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "pipeline/data/interrupted.hpp"
+
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
 #endif
@@ -37,6 +39,7 @@ inline std::size_t blocks_of(std::size_t n, std::size_t size) { return (n + size
 
 /// Calls work(block, begin, end) for consecutive blocks of 0 … n − 1, in parallel. What a block is depends on
 /// nothing but n and size, so that sums made a block at a time do not depend on the threads.
+/// @throws  what one of them threw; the others may then not have been called
 template <class Work>
 void for_blocks(std::size_t n, std::size_t size, const Work& work) {
   if (n > 0 && n <= size)
@@ -47,8 +50,11 @@ void for_blocks(std::size_t n, std::size_t size, const Work& work) {
     detail::from_workers.give();
   };
   detail::to_workers.give();
-  tbb::parallel_for(std::size_t{0}, blocks_of(n, size), one);
+  tbb::task_group_context group;  // is cancelled with that of the block that this is called in
+  tbb::parallel_for(std::size_t{0}, blocks_of(n, size), one, group);
   detail::from_workers.take();
+  // Then something else threw, which is told there, and blocks are missing here.
+  if (group.is_group_execution_cancelled()) throw Interrupted();
 }
 
 /// The sum of what add(sum, begin, end) adds up of each block, each beginning with `zero`, in their order.

@@ -4,21 +4,15 @@
 #include <atomic>
 #include <cstdint>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "pipeline/data/interrupted.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/pipeline.hpp"
 
 namespace crisp {
-
-/// The run was told to stop.
-class Interrupted : public std::runtime_error {
- public:
-  Interrupted() : std::runtime_error("interrupted") {}
-};
 
 /// What one stage of a run did.
 struct NodeResult {
