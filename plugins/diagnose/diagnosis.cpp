@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "pipeline/data/interrupted.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/model/terms_in.hpp"
 #include "plugins/diagnose/evidence.hpp"
@@ -31,6 +32,8 @@ std::set<std::string> names_of(const std::vector<Departure>& departures) {
   return names;
 }
 
+bool is_new(const Departure& departure) { return !departure.candidate.in_model; }
+
 class Diagnoser {
  public:
   Diagnoser(const SensorModel& start, const Sample& sample, const TermRegistry& terms,
@@ -41,12 +44,13 @@ class Diagnoser {
   }
 
   Diagnosis run() {
+    tell(0, "refining without any terms");
     const Refinement plain = refined(with_terms(start_, {}), sample_);
     Diagnosis result{.before = plain, .after = plain};
     extend(result);
-    if (!goes_on(1, "judging by held-out turns")) return result;
+    tell(0.8, "judging by held-out turns");
     judge(result);
-    if (!goes_on(1, "simulating the scanner again")) return result;
+    tell(0.9, "simulating the scanner again");
     compare(result);
     refuse_what_leaves_more(result);
     add_form_errors(result);
@@ -58,12 +62,18 @@ class Diagnoser {
     RefinementSettings settings = settings_.refinement;
     settings.terms = terms_in(calibration, terms_);
     settings.forms = true;
-    return refine_by_surfels(SensorModel(calibration, terms_), sample, settings,
-                             [this](int) { return goes_on(told_.first, told_.second); });
+    return refine_by_surfels(SensorModel(calibration, terms_), sample, settings, [this](int) {
+      stop_if_asked();
+      return true;
+    });
   }
-  bool goes_on(double share, const std::string& what) const {
-    told_ = {share, what};
-    return !report_ || report_(share, what);
+
+  void stop_if_asked() const {
+    if (settings_.interrupted && settings_.interrupted()) throw Interrupted();
+  }
+  void tell(double fraction, const std::string& what) const {
+    stop_if_asked();
+    if (report_) report_(fraction, what);
   }
 
   /// Whether fainter causes may be told: not beside what is off and has no cause, of which each would take a
@@ -79,20 +89,26 @@ class Diagnoser {
     std::vector<Candidate> chosen;
     std::set<std::string> refused;
     bool is_close = false;
-    for (int round = 0; round < settings_.rounds; ++round) {
-      const double share = round / (settings_.rounds + 2.0);
-      if (!goes_on(share, fmt::format("round {}: looking at all candidates", round + 1))) return;
+    for (int round = 0; round <= settings_.rounds; ++round) {
+      const auto tell_step = [this, round](double of_round, const char* what) {
+        const double fraction = 0.8 * (round + 0.25 + of_round) / (round + 2.25);
+        tell(fraction, fmt::format("round {}: {}", round + 1, what));
+      };
+      tell_step(0, "looking at all candidates");
       const Evidence evidence(result.after.outcome.model, inside_, settings_.refinement.surfels,
-                              settings_.beams);
+                              settings_.beams, settings_.interrupted);
       result.unshared = unshared_causes(terms_, evidence.lasting());
       const Survey survey(evidence, result.after, terms_, settings_);
       if (!is_close) result.departures = survey.needs(refused);
       is_close = is_close || (names_of(result.departures) == names_of(chosen) &&
                               asks_for_a_closer_look(result.departures, evidence));
       if (is_close) {
-        if (!goes_on(share, fmt::format("round {}: looking closer", round + 1))) return;
+        tell_step(0.4, "looking closer");
         result.departures = survey.closer_needs(refused);
       }
+      result.settled = names_of(result.departures) == names_of(chosen);
+      // What is asked for in the end would not be looked at any more with the model that has it.
+      if (round == settings_.rounds) std::erase_if(result.departures, is_new);
       result.unobservable = survey.unobservable(result.departures);
       result.looks = survey.looks();
       std::vector<Candidate> next;
@@ -101,9 +117,8 @@ class Diagnoser {
       for (const std::string& name : names_of(chosen)) {
         if (!names_of(next).contains(name)) refused.insert(name);
       }
-      result.settled = names_of(next) == names_of(chosen);
-      if (result.settled) return;
-      if (!goes_on(share, fmt::format("round {}: refining with what was found", round + 1))) return;
+      if (names_of(next) == names_of(chosen)) return;
+      tell_step(0.7, "refining with what was found");
       chosen = with_sharper_forms(next, result.after.outcome.model, survey.base(), evidence,
                                   is_close ? settings_.closer : settings_.beams, terms_);
       for (const Candidate& candidate : chosen) {
@@ -152,12 +167,10 @@ class Diagnoser {
     if (result.departures.empty()) return;
     const HeldOut held_out(halves_of(inside_), result.before.outcome.model, settings_.refinement.surfels);
     const Calibration found = result.after.outcome.model.calibration();
-    const auto accepted = accepted_by(
-        held_out, result.departures, result.before.outcome.model.calibration(), found,
-        [this](const Calibration& start, const Sample& sample) {
-          return refined(start, sample).outcome.model;
-        },
-        [this] { return goes_on(1, "judging by held-out turns"); });
+    const auto accepted = accepted_by(held_out, result.departures, result.before.outcome.model.calibration(),
+                                      found, [this](const Calibration& start, const Sample& sample) {
+                                        return refined(start, sample).outcome.model;
+                                      });
     if (accepted.size() < result.departures.size()) {
       result.after = refined(with_terms(found, accepted), sample_);
     }
@@ -221,7 +234,6 @@ class Diagnoser {
   const DiagnosisReporter& report_;
   Calibration start_;
   Sample inside_;
-  mutable std::pair<double, std::string> told_;  ///< last: told again with each round of a refinement
 };
 
 }  // namespace

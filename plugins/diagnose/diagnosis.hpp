@@ -27,8 +27,8 @@ struct Diagnosis {
   SideBySide left_after;
 };
 
-/// Told what is done, and how much of it; returns whether to go on.
-using DiagnosisReporter = std::function<bool(double fraction, const std::string& what)>;
+/// Told what is done next, and how much is done by then (about: nobody knows how many rounds it takes).
+using DiagnosisReporter = std::function<void(double fraction, const std::string& what)>;
 
 /// Looks for what the model of the sensor lacks: refines it, looks at all terms that could be added (score
 /// tests), adds those that are needed, and so on until nothing is missing. What does not pay on held-out
@@ -37,7 +37,8 @@ using DiagnosisReporter = std::function<bool(double fraction, const std::string&
 ///
 /// @param start   right to some centimetres and degrees
 /// @param sample  all beams; need not be covered
-/// @throws Error  as refine_by_surfels() does
+/// @throws Error        as refine_by_surfels() does
+/// @throws Interrupted  where `settings.interrupted` says so
 Diagnosis diagnose(const SensorModel& start, const Sample& sample, const TermRegistry& terms,
                    const DiagnosisSettings& settings, const DiagnosisReporter& report = {});
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/interrupted.hpp"
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/incidence.hpp"
@@ -51,8 +52,12 @@ Surfels thinned(const Surfels& surfels, std::size_t most) {
 
 }  // namespace
 
-Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings& settings, std::size_t most)
-    : sample_(std::move(sample)), placed_(model, sample_), settings_(settings) {
+Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings& settings, std::size_t most,
+                   std::function<bool()> interrupted)
+    : sample_(std::move(sample)),
+      placed_(model, sample_),
+      settings_(settings),
+      interrupted_(std::move(interrupted)) {
   all_ = surfaces(placed_.view(), settings_);
   sample_.beams.cos_incidence = incidences(all_, placed_.view());
   // Terms that ask for the incidence move beams, mostly those that graze, and so the surfaces.
@@ -72,8 +77,12 @@ Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings
 }
 
 NormalEquations Evidence::equations(const Dictionary& dictionary, std::size_t most) const {
-  return normal_equations(thinned(all_, most), placed_.view(), dictionary.parameters(),
-                          dictionary.rows(sample_), settings_, shared_);
+  const auto rows = [this, all = dictionary.rows(sample_)](const auto&... of_surfel) {
+    if (interrupted_ && interrupted_()) throw Interrupted();
+    all(of_surfel...);
+  };
+  return normal_equations(thinned(all_, most), placed_.view(), dictionary.parameters(), rows, settings_,
+                          shared_);
 }
 
 }  // namespace crisp

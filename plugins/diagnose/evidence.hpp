@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -16,7 +17,9 @@ class Evidence {
  public:
   /// @param sample  all beams, which the plate's readings cover; how they met their surfaces is filled in
   /// @param most    so many beams lie on surfels(), evenly chosen
-  Evidence(const SensorModel& model, Sample sample, const SurfelSettings& settings, std::size_t most);
+  /// @param interrupted  asked while equations() works, from several threads, whether that is to end
+  Evidence(const SensorModel& model, Sample sample, const SurfelSettings& settings, std::size_t most,
+           std::function<bool()> interrupted = {});
 
   const Sample& sample() const { return sample_; }
   const Surfels& surfels() const { return surfels_; }  ///< with `most` beams
@@ -26,6 +29,7 @@ class Evidence {
   /// Near the model, in the dictionary's parameters; with what errors beams may share.
   ///
   /// @param most  so many beams are looked at, evenly chosen
+  /// @throws Interrupted
   NormalEquations equations(const Dictionary& dictionary, std::size_t most) const;
 
  private:
@@ -36,6 +40,7 @@ class Evidence {
   Surfels surfels_;  ///< with `most` of them
   Lasting lasting_;
   std::vector<Division> shared_;
+  std::function<bool()> interrupted_;
 };
 
 }  // namespace crisp

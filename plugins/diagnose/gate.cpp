@@ -58,11 +58,11 @@ class Gate {
 
 std::vector<Candidate> accepted_by(const HeldOut& held_out, std::vector<Departure>& departures,
                                    const Calibration& plain, const Calibration& found,
-                                   const RefinedOn& refined, const std::function<bool()>& goes_on) {
+                                   const RefinedOn& refined) {
   Gate gate(held_out, plain, found, refined);
   std::vector<Departure*> open;
   for (Departure& departure : departures) open.push_back(&departure);
-  while (!open.empty() && goes_on()) {
+  while (!open.empty()) {
     std::vector<Departure*> alike;
     std::ranges::copy_if(open, std::back_inserter(alike), [&](const Departure* other) {
       return other->candidate.term.term == open.front()->candidate.term.term;

@@ -19,10 +19,9 @@ using RefinedOn = std::function<SensorModel(const Calibration& start, const Samp
 /// @param departures  their gains and whether they are accepted are set
 /// @param plain       without any; where the fit starts that the first has to beat
 /// @param found       with all of them; where the other fits start
-/// @param goes_on     asked before each; false ends it
 /// @return            those that pay, with the values that `found` has
 std::vector<Candidate> accepted_by(const HeldOut& held_out, std::vector<Departure>& departures,
                                    const Calibration& plain, const Calibration& found,
-                                   const RefinedOn& refined, const std::function<bool()>& goes_on);
+                                   const RefinedOn& refined);
 
 }  // namespace crisp

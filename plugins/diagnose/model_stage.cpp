@@ -90,12 +90,10 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
     const RecordingLags lags = lags_of_recordings(start, sample, settings_.refinement);
     sample = with_common_lags(std::move(sample), lags);
   }
+  settings_.interrupted = [&context] { return context.interrupted(); };
   const Diagnosis diagnosis =
-      diagnose(start, sample, terms, settings_, [&](double fraction, const std::string& what) {
-        context.progress(fraction, what);
-        return !context.interrupted();
-      });
-  if (context.interrupted()) return;
+      diagnose(start, sample, terms, settings_,
+               [&context](double fraction, const std::string& what) { context.progress(fraction, what); });
   if (!diagnosis.settled) {
     context.distrust("the extended model still asked for something else after the last round");
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -19,13 +20,14 @@ struct DiagnosisSettings {
   std::size_t closer = 800'000;  ///< that causes are looked at with in the end; not more than `beams`: never
   double faint = 0.008;          ///< [σ] least RMS change of ranges by which a cause is seen then
   int rounds = 8;                ///< most times that the model is extended and looked at again
+  std::function<bool()> interrupted = {};  ///< asked from several threads, whether the work is to end
 };
 
 /// A candidate of which these data tell little.
 struct Limit {
   std::string name;
   double size = 0;          ///< [m] RMS change of ranges that would not be seen; may be infinite
-  std::string combination;  ///< that is known instead: see known_instead()
+  std::string combination;  ///< that is known instead: see known_instead() in beside.hpp
 };
 
 /// A look at a model: all that could be added to it, side by side (score tests).

@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <atomic>
 #include <functional>
 #include <utility>
 
+#include "pipeline/data/interrupted.hpp"
 #include "plugins/diagnose/report.hpp"
 #include "tests/plugins/diagnose/drawn.hpp"
 #include "tests/plugins/diagnose/hidden.hpp"
@@ -172,6 +174,17 @@ TEST(HiddenEffects, AFaintCauseShowsInMoreBeams) {
   EXPECT_EQ(test::names_in(diagnosis), drawn.names);
   expect_within_errors(diagnosis, drawn.recording, drawn.names.at(0), 1);
   EXPECT_TRUE(diagnosis.settled);
+}
+
+TEST(HiddenEffects, AreNoLongerLookedForWhenTheWorkIsToEnd) {
+  const auto recording = test::hidden(24, 2, office(), {});
+  for (const int most : {0, 3, 30}) {  // before anything; in the first refinement; among candidates
+    std::atomic<int> asked = 0;
+    DiagnosisSettings settings;
+    settings.interrupted = [&] { return asked++ >= most; };
+    EXPECT_THROW(test::diagnosed(recording, settings), Interrupted);
+    EXPECT_LT(asked, most + 200) << "each thread ends what it is at, and begins nothing";
+  }
 }
 
 /// Of the same scanner in office and hall.
