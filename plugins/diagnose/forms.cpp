@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "plugins/diagnose/selection.hpp"
+#include "plugins/diagnose/beside.hpp"
 
 namespace crisp {
 namespace {

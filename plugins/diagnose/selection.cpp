@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <functional>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
 
-#include "pipeline/estimate/observability.hpp"
+#include "plugins/diagnose/beside.hpp"
 
 namespace crisp {
 namespace {
@@ -18,16 +17,6 @@ namespace {
 std::vector<std::size_t> without(std::vector<std::size_t> taken, std::size_t one) {
   std::erase(taken, one);
   return taken;
-}
-
-/// The parameters that are estimated beside whatever is looked at: the base's, and those of what was taken.
-std::vector<std::size_t> estimated_with(const std::vector<std::size_t>& taken, const Dictionary& dictionary) {
-  std::vector<std::size_t> parameters(dictionary.base());
-  std::iota(parameters.begin(), parameters.end(), std::size_t{0});
-  for (const std::size_t t : taken) {
-    parameters.insert(parameters.end(), dictionary.of(t).begin(), dictionary.of(t).end());
-  }
-  return parameters;
 }
 
 /// What may befall all lasers alike, since they are of one make: the same cause of each of them, in one form
@@ -67,31 +56,6 @@ struct Together {
   Look look;
 };
 
-/// The equations where the base and what was taken are estimated, too.
-NormalEquations beside_base(const std::vector<std::size_t>& taken, const Dictionary& dictionary,
-                            const NormalEquations& equations) {
-  std::vector<std::size_t> all(dictionary.parameters());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return equations.reduced(all, estimated_with(taken, dictionary));
-}
-
-/// @param left  the equations beside the base and what was taken
-std::vector<std::optional<Look>> looks_in(const NormalEquations& left, const std::vector<std::size_t>& taken,
-                                          const Dictionary& dictionary) {
-  const auto& candidates = dictionary.candidates();
-  std::vector<std::optional<Look>> looks(candidates.size());
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const bool there =
-        std::ranges::any_of(taken, [&](std::size_t t) { return candidates[t].is_form_of(candidates[c]); });
-    if (there) continue;
-    Look look = look_at(left, dictionary.of(c));
-    // A form that was chosen among several is a parameter, too.
-    if (candidates[c].forms > 1) look.bic -= std::log(static_cast<double>(left.beams));
-    looks[c] = std::move(look);
-  }
-  return looks;
-}
-
 /// A set of candidates, and what the data say of each other one beside it.
 class Chooser {
  public:
@@ -108,10 +72,31 @@ class Chooser {
     return looks_beside(taken, dictionary_, equations_);
   }
 
-  bool is_needed(std::size_t candidate, const Look& look) const {
+  /// Whether it has been in the model and the data did not bear it out, or do not now.
+  bool is_refused(std::size_t candidate, const Look& look) const {
     const Candidate& which = dictionary_.candidates()[candidate];
-    return !refused_.contains(which.name) && look.bic > settings_.bic && look.visible > settings_.visible &&
-           (!which.in_model || look.p_value * static_cast<double>(looks_) < settings_.p_value);
+    return refused_.contains(which.name) ||
+           (which.in_model && !(look.p_value * static_cast<double>(looks_) < settings_.p_value));
+  }
+
+  bool is_needed(std::size_t candidate, const Look& look) const {
+    return !is_refused(candidate, look) && look.bic > settings_.bic && look.visible > settings_.visible;
+  }
+
+  /// Whether one that was refused would do as much, and all of it: what beams share by chance, or by what
+  /// nothing describes, looks a little like many a cause, and each further one that is tried is a further
+  /// chance to be taken.
+  ///
+  /// @param looks  beside what was taken
+  bool is_part_of_refused(std::size_t one, const std::vector<std::optional<Look>>& looks,
+                          const std::vector<std::size_t>& taken) const {
+    if (dictionary_.candidates()[one].in_model) return false;
+    return std::ranges::any_of(refused_like(*looks[one], looks), [&](std::size_t other) {
+      std::vector<std::size_t> with = taken;
+      with.push_back(other);
+      const auto left = beside(with)[one];
+      return left && left->bic < settings_.bic;
+    });
   }
 
   /// The best of those that are needed: a cause, unless a mere description says much more. Where a cause is
@@ -133,10 +118,8 @@ class Chooser {
   }
 
   /// The best of the causes that befall all lasers, if one is needed and none of it is taken.
-  ///
-  /// @param left  the equations beside the base and what was taken
-  std::optional<Together> best_of_all(const std::vector<std::size_t>& taken,
-                                      const NormalEquations& left) const {
+  std::optional<Together> best_of_all(const std::vector<std::size_t>& taken) const {
+    const NormalEquations left = beside_base(taken, dictionary_, equations_);
     const auto& candidates = dictionary_.candidates();
     std::optional<Together> best;
     for (const auto& members : of_all_) {
@@ -145,14 +128,7 @@ class Chooser {
                                    [&](std::size_t m) { return candidates[m].is_form_of(candidates[t]); });
       });
       if (is_there) continue;
-      std::vector<std::size_t> parameters;
-      double forms = 0;
-      for (const std::size_t m : members) {
-        parameters.insert(parameters.end(), dictionary_.of(m).begin(), dictionary_.of(m).end());
-        forms += candidates[m].forms > 1 ? 1 : 0;
-      }
-      Together one{.members = members, .look = look_at(left, parameters)};
-      one.look.bic -= forms * std::log(static_cast<double>(equations_.beams));
+      Together one{.members = members, .look = look_together(members, dictionary_, left)};
       const bool is_needed_everywhere =
           std::ranges::all_of(members, [&](std::size_t m) { return is_needed(m, one.look); });
       if (is_needed_everywhere && (!best || one.look.bic > best->look.bic)) best = std::move(one);
@@ -163,10 +139,13 @@ class Chooser {
   /// What to take next: a cause that befalls all lasers only if it says much more than anything of one.
   std::optional<Together> next(const std::vector<std::size_t>& taken, double rough) const {
     constexpr double kMore = 1.5;
-    const NormalEquations left = beside_base(taken, dictionary_, equations_);
-    const auto looks = looks_in(left, taken, dictionary_);
-    const auto one = best(looks, rough);
-    auto all = best_of_all(taken, left);
+    auto looks = beside(taken);
+    auto one = best(looks, rough);
+    while (one && is_part_of_refused(*one, looks, taken)) {
+      looks[*one].reset();
+      one = best(looks, rough);
+    }
+    auto all = best_of_all(taken);
     if (all && (!one || all->look.bic > kMore * looks[*one]->bic)) return all;
     if (!one) return std::nullopt;
     return Together{.members = {*one}, .look = *looks[*one]};
@@ -187,6 +166,28 @@ class Chooser {
       if (!least) return;
       std::erase(taken, *least);
     }
+  }
+
+  /// One that could not be told from what was taken may do without what makes up for the difference: puts it
+  /// in, and leaves out what is needless then, where that says as much with fewer.
+  ///
+  /// @return  whether anything was
+  bool replace_by_fewer(std::vector<std::size_t>& taken) const {
+    if (taken.size() < 2) return false;
+    const double own = bic_of(taken);
+    for (const std::size_t one : taken) {
+      if (!dictionary_.candidates()[one].is_cause()) continue;
+      for (const Alternative& other : described(taken, one).alternatives) {
+        if (other.behind > settings_.odds) break;  // the nearest come first
+        std::vector<std::size_t> instead = taken;
+        std::ranges::replace(instead, one, other.candidate);
+        leave_out_needless(instead);
+        if (instead.empty() || instead.size() >= taken.size() || bic_of(instead) < own) continue;
+        taken = std::move(instead);
+        return true;
+      }
+    }
+    return false;
   }
 
   Choice described(const std::vector<std::size_t>& taken, std::size_t one) const {
@@ -212,6 +213,29 @@ class Chooser {
   }
 
  private:
+  /// Of those that were refused and do no less, the few that do the most; one form of each.
+  std::vector<std::size_t> refused_like(const Look& own,
+                                        const std::vector<std::optional<Look>>& looks) const {
+    constexpr std::size_t kFew = 3;
+    const double least = std::max(settings_.bic, own.bic - settings_.odds);
+    std::map<std::string, std::size_t> best;
+    for (std::size_t c = 0; c < looks.size(); ++c) {
+      if (!looks[c] || looks[c]->bic < least || !is_refused(c, *looks[c])) continue;
+      const auto [known, is_new] = best.try_emplace(dictionary_.candidates()[c].name, c);
+      if (!is_new && looks[c]->bic > looks[known->second]->bic) known->second = c;
+    }
+    std::vector<std::size_t> some;
+    for (const auto& [name, candidate] : best) some.push_back(candidate);
+    std::ranges::sort(some, std::greater{}, [&](std::size_t c) { return looks[c]->bic; });
+    some.resize(std::min(some.size(), kFew));
+    return some;
+  }
+
+  /// Of all of them together, beside the base alone.
+  double bic_of(const std::vector<std::size_t>& taken) const {
+    return look_together(taken, dictionary_, beside_base({}, dictionary_, equations_)).bic;
+  }
+
   const Dictionary& dictionary_;
   const NormalEquations& equations_;
   const SelectionSettings& settings_;
@@ -222,43 +246,6 @@ class Chooser {
 
 }  // namespace
 
-NormalEquations from_neutral(const Dictionary& dictionary, NormalEquations equations) {
-  Eigen::VectorXd back = Eigen::VectorXd::Zero(equations.vector.size());
-  for (std::size_t c = 0; c < dictionary.candidates().size(); ++c) {
-    if (dictionary.candidates()[c].in_model) back(dictionary.of(c)) = -dictionary.sizes_of(c);
-  }
-  equations.chi2 += 2 * equations.vector.dot(back) + back.dot(equations.matrix * back);
-  equations.vector += equations.matrix * back;
-  return equations;
-}
-
-std::vector<std::optional<Look>> looks_beside(const std::vector<std::size_t>& taken,
-                                              const Dictionary& dictionary,
-                                              const NormalEquations& equations) {
-  return looks_in(beside_base(taken, dictionary, equations), taken, dictionary);
-}
-
-std::string known_instead(std::size_t candidate, const std::vector<std::size_t>& taken,
-                          const Dictionary& dictionary, const NormalEquations& equations) {
-  constexpr double kNothing = 1e-3;  // left of the squares of what a parameter does
-  constexpr double kLittle = 0.05;   // left of what planes leave
-  const std::vector<std::size_t> known = estimated_with(taken, dictionary);
-  const Eigen::VectorXd scale =
-      equations.squares.unaryExpr([](double square) { return square > 0 ? 1 / std::sqrt(square) : 0.0; });
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * equations.matrix * scale.asDiagonal();
-  const std::vector<std::size_t>& own = dictionary.of(candidate);
-  const Eigen::MatrixXd left = equations.reduced(own, known).matrix;
-  std::string text;
-  for (std::size_t k = 0; k < own.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(own[k]);
-    const auto at = static_cast<Eigen::Index>(k);
-    if (scaled(i, i) < kNothing || left(at, at) > kLittle * equations.matrix(i, i)) continue;
-    const std::string combination = known_with(own[k], known, scaled, dictionary.names(), scale);
-    text += (text.empty() || combination.empty() ? "" : "; ") + combination;
-  }
-  return text;
-}
-
 std::vector<Choice> choose(const Dictionary& dictionary, const NormalEquations& equations,
                            const SelectionSettings& settings, const std::set<std::string>& refused,
                            std::size_t looks) {
@@ -268,7 +255,10 @@ std::vector<Choice> choose(const Dictionary& dictionary, const NormalEquations& 
   double rough = 0;
   while (taken.size() < settings.most && seen.insert(taken).second) {
     const auto next = chooser.next(taken, rough);
-    if (!next) break;
+    if (!next) {
+      if (rough > 0 || !chooser.replace_by_fewer(taken)) break;
+      continue;
+    }
     for (const std::size_t member : next->members) {
       const Candidate& one = dictionary.candidates()[member];
       if (!one.in_model && one.forms > 1) rough = std::max(rough, next->look.bic);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -32,16 +31,6 @@ struct Choice {
   std::vector<Alternative> alternatives;  ///< the nearest first, one form of each
 };
 
-/// Looks at all candidates, where those in `taken` are there, too: at all but them and other forms of them.
-std::vector<std::optional<Look>> looks_beside(const std::vector<std::size_t>& taken,
-                                              const Dictionary& dictionary, const NormalEquations& equations);
-
-/// Of a candidate that is hardly seen beside the base and those in `taken`: the combinations of its
-/// parameters with theirs that are known instead (see known_with()). Empty where they do not do nearly all
-/// that it could: the surfaces' planes do, or the data are few.
-std::string known_instead(std::size_t candidate, const std::vector<std::size_t>& taken,
-                          const Dictionary& dictionary, const NormalEquations& equations);
-
 /// Which candidates a model needs: forward by BIC, each time followed by leaving out what has become needless
 /// (stepwise selection), on the linearised problem. What befalls all lasers alike hardly shows as long as one
 /// of them alone is mended, so that the same cause of all is tried at once as well. The significance by the
@@ -56,8 +45,5 @@ std::string known_instead(std::size_t candidate, const std::vector<std::size_t>&
 std::vector<Choice> choose(const Dictionary& dictionary, const NormalEquations& equations,
                            const SelectionSettings& settings, const std::set<std::string>& refused = {},
                            std::size_t looks = 0);
-
-/// The equations as they would be seen from a model whose candidates are all neutral.
-NormalEquations from_neutral(const Dictionary& dictionary, NormalEquations equations);
 
 }  // namespace crisp

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pipeline/estimate/wanted_terms.hpp"
+#include "plugins/diagnose/beside.hpp"
 
 namespace crisp {
 namespace {

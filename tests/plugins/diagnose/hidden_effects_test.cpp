@@ -235,10 +235,12 @@ TEST(HiddenEffects, WhatNoCauseExplainsStaysUnnamedWithItsCovariate) {
 
 TEST(HiddenEffects, ANameThatTakesAPartOfWhatNoShapeDescribesIsRefused) {
   // A shock of a fifth of a second: shorter than any shape over the time.
-  constexpr std::uint64_t kSeed = 11742;
+  constexpr std::uint64_t kSeed = 11732;
   constexpr std::size_t kShock = 11;
+  DiagnosisSettings settings;
+  settings.rounds = 2;  // which is enough: what is tried next does no better
   const Diagnosis diagnosis =
-      test::diagnosed(test::Drawer(kSeed).with_something_else(kShock, 0.008).recording);
+      test::diagnosed(test::Drawer(kSeed).with_something_else(kShock, 0.008).recording, settings);
   EXPECT_GE(std::ranges::count_if(diagnosis.departures, &Departure::leaves_more), 1);
   for (const Departure& departure : diagnosis.departures) {
     EXPECT_FALSE(departure.accepted && departure.candidate.is_cause()) << departure.candidate.name;

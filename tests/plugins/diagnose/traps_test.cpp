@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "plugins/diagnose/beside.hpp"
 #include "plugins/diagnose/evidence.hpp"
 #include "plugins/diagnose/held_out.hpp"
 #include "plugins/diagnose/profiles.hpp"
