@@ -52,10 +52,8 @@ Look look_together(const std::vector<std::size_t>& some, const Dictionary& dicti
   return look;
 }
 
-std::vector<std::optional<Look>> looks_beside(const std::vector<std::size_t>& taken,
-                                              const Dictionary& dictionary,
-                                              const NormalEquations& equations) {
-  const NormalEquations left = beside_base(taken, dictionary, equations);
+std::vector<std::optional<Look>> looks_in(const NormalEquations& left, const std::vector<std::size_t>& taken,
+                                          const Dictionary& dictionary) {
   const auto& candidates = dictionary.candidates();
   std::vector<std::optional<Look>> looks(candidates.size());
   for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -64,6 +62,12 @@ std::vector<std::optional<Look>> looks_beside(const std::vector<std::size_t>& ta
     if (!there) looks[c] = look_together({c}, dictionary, left);
   }
   return looks;
+}
+
+std::vector<std::optional<Look>> looks_beside(const std::vector<std::size_t>& taken,
+                                              const Dictionary& dictionary,
+                                              const NormalEquations& equations) {
+  return looks_in(beside_base(taken, dictionary, equations), taken, dictionary);
 }
 
 std::string known_instead(std::size_t candidate, const std::vector<std::size_t>& taken,

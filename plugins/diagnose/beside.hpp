@@ -25,6 +25,10 @@ Look look_together(const std::vector<std::size_t>& some, const Dictionary& dicti
                    const NormalEquations& left);
 
 /// Looks at all candidates, where those in `taken` are there, too: at all but them and other forms of them.
+///
+/// @param left  see beside_base()
+std::vector<std::optional<Look>> looks_in(const NormalEquations& left, const std::vector<std::size_t>& taken,
+                                          const Dictionary& dictionary);
 std::vector<std::optional<Look>> looks_beside(const std::vector<std::size_t>& taken,
                                               const Dictionary& dictionary, const NormalEquations& equations);
 

@@ -118,8 +118,10 @@ class Chooser {
   }
 
   /// The best of the causes that befall all lasers, if one is needed and none of it is taken.
-  std::optional<Together> best_of_all(const std::vector<std::size_t>& taken) const {
-    const NormalEquations left = beside_base(taken, dictionary_, equations_);
+  ///
+  /// @param left  see beside_base()
+  std::optional<Together> best_of_all(const std::vector<std::size_t>& taken,
+                                      const NormalEquations& left) const {
     const auto& candidates = dictionary_.candidates();
     std::optional<Together> best;
     for (const auto& members : of_all_) {
@@ -139,13 +141,14 @@ class Chooser {
   /// What to take next: a cause that befalls all lasers only if it says much more than anything of one.
   std::optional<Together> next(const std::vector<std::size_t>& taken, double rough) const {
     constexpr double kMore = 1.5;
-    auto looks = beside(taken);
+    const NormalEquations left = beside_base(taken, dictionary_, equations_);
+    auto looks = looks_in(left, taken, dictionary_);
     auto one = best(looks, rough);
     while (one && is_part_of_refused(*one, looks, taken)) {
       looks[*one].reset();
       one = best(looks, rough);
     }
-    auto all = best_of_all(taken);
+    auto all = best_of_all(taken, left);
     if (all && (!one || all->look.bic > kMore * looks[*one]->bic)) return all;
     if (!one) return std::nullopt;
     return Together{.members = {*one}, .look = *looks[*one]};

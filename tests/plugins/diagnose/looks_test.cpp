@@ -8,30 +8,24 @@
 #include <numeric>
 #include <random>
 
+#include "tests/plugins/diagnose/least_squares.hpp"
+
 namespace crisp {
 namespace {
 
-/// Least squares of `truth` in n residuals of unit noise with random derivatives; a block for each ten, whose
-/// pulls are those of the noise, as where the model has what is true.
+/// Least squares of `truth` in n residuals with random derivatives.
 NormalEquations random_problem(const Eigen::VectorXd& truth, Eigen::Index n, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   const Eigen::Index m = truth.size();
-  NormalEquations equations(static_cast<std::size_t>(m), {static_cast<std::size_t>(n / 10)});
+  test::LeastSquares problem(m, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     Eigen::VectorXd row(m);
     for (double& value : row) value = normal(random);
     const double noise = normal(random);
-    const double residual = noise - row.dot(truth);
-    equations.matrix += row * row.transpose();
-    equations.vector += row * residual;
-    equations.squares += row.cwiseAbs2();
-    equations.pulls[0].col(i / 10) += row * noise;
-    equations.influence += noise * noise;
+    problem.add(row, noise - row.dot(truth), noise);
   }
-  equations.beams = static_cast<std::size_t>(n);
-  equations.freedom = equations.weight = equations.stiffness = static_cast<double>(n);
-  return equations;
+  return problem.equations();
 }
 
 TEST(Look, FindsWhatIsThereWithItsErrors) {

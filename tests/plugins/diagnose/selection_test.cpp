@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "tests/plugins/diagnose/least_squares.hpp"
 #include "tests/support/built_in_terms.hpp"
 
 namespace crisp {
@@ -22,30 +23,22 @@ std::vector<Candidate> some(const std::vector<std::string>& names) {
   return found;
 }
 
-/// Residuals of unit noise of n beams: what is off, and what a unit of each candidate does, in directions of
-/// which the beams are evenly spread over.
+/// Residuals of unit noise of n beams: what is off, and what a unit of each candidate does, in directions
+/// that the beams are evenly spread over.
 ///
 /// @param off   p
 /// @param does  p × candidates
 NormalEquations equations_of(const Eigen::VectorXd& off, const Eigen::MatrixXd& does, Eigen::Index n) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
-  const Eigen::Index m = does.cols();
-  NormalEquations equations(static_cast<std::size_t>(m), {static_cast<std::size_t>(n / 10)});
+  test::LeastSquares problem(does.cols(), n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::VectorXd direction =
         Eigen::VectorXd::NullaryExpr(off.size(), [&] { return normal(random); });
-    const Eigen::VectorXd row = does.transpose() * direction;
-    const double noise = normal(random);
-    equations.matrix += row * row.transpose();
-    equations.vector -= row * (direction.dot(off) + noise);
-    equations.squares += row.cwiseAbs2();
-    equations.pulls[0].col(i / 10) += row * noise;
-    equations.influence += noise * noise;
+    const double noise = -normal(random);
+    problem.add(does.transpose() * direction, noise - direction.dot(off), noise);
   }
-  equations.beams = static_cast<std::size_t>(n);
-  equations.freedom = equations.weight = equations.stiffness = static_cast<double>(n);
-  return equations;
+  return problem.equations();
 }
 
 std::vector<std::string> chosen(const std::vector<std::string>& names, const NormalEquations& equations,
