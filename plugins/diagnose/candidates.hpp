@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct Candidate {
   bool in_model = false;  ///< whether the calibration has it
 
   bool is_cause() const { return covariate.empty(); }
+
+  /// That alone whose ranges it changes; nothing of what the plate does, which changes all.
+  std::optional<std::size_t> laser() const { return name == term.term ? std::nullopt : std::optional(owner); }
 
   /// Whether the other is the same in another form.
   bool is_form_of(const Candidate& other) const { return name == other.name; }

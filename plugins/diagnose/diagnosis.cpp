@@ -16,6 +16,7 @@
 #include "plugins/diagnose/forms.hpp"
 #include "plugins/diagnose/gate.hpp"
 #include "plugins/diagnose/held_out.hpp"
+#include "plugins/diagnose/unexplained.hpp"
 
 namespace crisp {
 namespace {
@@ -52,7 +53,7 @@ class Diagnoser {
     judge(result);
     tell(0.9, "simulating the scanner again");
     compare(result);
-    refuse_what_leaves_more(result);
+    refuse_what_nothing_describes(result);
     add_form_errors(result);
     return result;
   }
@@ -132,11 +133,10 @@ class Diagnoser {
   /// were not.
   std::vector<std::optional<Eigen::Index>> places_of(const Candidate& candidate,
                                                      const Outcome& outcome) const {
-    const bool of_plate = candidate.owner == start_.lasers.size();
     std::vector<std::optional<Eigen::Index>> places(candidate.term.parameters.size());
     for (std::size_t p = 0; p < places.size(); ++p) {
       const std::string name =
-          (of_plate ? "plate." : "") + candidate.name + "." + candidate.term.parameters[p].name;
+          (candidate.laser() ? "" : "plate.") + candidate.name + "." + candidate.term.parameters[p].name;
       for (std::size_t k = 0; k < outcome.free.size(); ++k) {
         if (outcome.model.names()[outcome.free[k]] == name) places[p] = static_cast<Eigen::Index>(k);
       }
@@ -186,46 +186,17 @@ class Diagnoser {
     result.left_after = result.departures.empty() ? result.left_before : left_by(result.after);
   }
 
-  /// That alone whose ranges it changes; nothing of what the plate does, which changes all.
-  std::optional<std::size_t> laser_of(const Departure& departure) const {
-    const std::size_t owner = departure.candidate.owner;
-    return owner < start_.lasers.size() ? std::optional(owner) : std::nullopt;
-  }
-
-  /// [m²] Over the covariate that shows the most: what departs from the extended model where this departure
-  /// is, and the shapes that do not suffice there.
-  double unexplained_beside(const Departure& one, const Diagnosis& result) const {
-    const auto laser = laser_of(one);
-    auto squares = result.left_after.unexplained(laser);
-    for (const Departure& shape : result.departures) {
-      const bool is_there = !laser || shape.candidate.owner == one.candidate.owner;
-      if (shape.candidate.is_cause() || !shape.accepted || !is_there) continue;
-      const auto left = squares.find(shape.candidate.covariate);
-      if (left != squares.end()) left->second += shape.square(settings_.refinement.surfels.noise);
+  void refuse_what_nothing_describes(Diagnosis& result) const {
+    const double noise = settings_.refinement.surfels.noise;
+    while (refuse_what_leaves_more(result.departures, result.left_after, noise)) {
+      std::vector<Candidate> kept;
+      for (const Departure& departure : result.departures) {
+        if (departure.accepted) kept.push_back(departure.candidate);
+      }
+      const Calibration found = result.after.outcome.model.calibration();
+      result.after = refined(with_terms(found, with_values_of(found, kept)), sample_);
+      result.left_after = left_by(result.after);
     }
-    double most = 0;
-    for (const auto& [covariate, square] : squares) most = std::max(most, square);
-    return most;
-  }
-
-  /// Where much is left that nothing tried describes, the nearest name takes a part of that.
-  void refuse_what_leaves_more(Diagnosis& result) const {
-    std::vector<Candidate> kept;
-    bool refuses = false;
-    for (Departure& departure : result.departures) {
-      if (!departure.accepted) continue;
-      departure.unexplained = departure.candidate.is_cause() ? unexplained_beside(departure, result) : 0;
-      departure.leaves_more = departure.square(settings_.refinement.surfels.noise) < departure.unexplained;
-      refuses = refuses || departure.leaves_more;
-      if (!departure.leaves_more) kept.push_back(departure.candidate);
-    }
-    for (Departure& departure : result.departures) {
-      departure.accepted = departure.accepted && !departure.leaves_more;
-    }
-    if (!refuses) return;
-    const Calibration found = result.after.outcome.model.calibration();
-    result.after = refined(with_terms(found, with_values_of(found, kept)), sample_);
-    result.left_after = left_by(result.after);
   }
 
   const Sample& sample_;

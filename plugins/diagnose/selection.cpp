@@ -31,8 +31,7 @@ std::vector<std::vector<std::size_t>> causes_of_all_lasers(const std::vector<Can
   std::set<std::size_t> lasers;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     const Candidate& candidate = candidates[c];
-    const bool of_plate = candidate.name == candidate.term.term;
-    if (of_plate || !candidate.is_cause()) continue;
+    if (!candidate.laser() || !candidate.is_cause()) continue;
     lasers.insert(candidate.owner);
     OfTerm& term = terms[candidate.term.term];
     (candidate.in_model ? term.in_model : term.in_form[candidate.form])[candidate.owner] = c;
