@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <optional>
 #include <random>
 #include <span>
 
@@ -121,10 +122,12 @@ const std::map<std::string, Draw>& draws() {
   return all;
 }
 
-/// A term of the model, by which ranges change by 8 mm RMS.
-Hidden hidden_term(const std::string& term, std::uint64_t seed) {
+/// A term of the model, by which ranges change by 8 mm RMS; nothing if its bounds do not let it.
+std::optional<Hidden> hidden_term(const std::string& term, std::uint64_t seed) {
   constexpr double kSize = 0.008;  // [m]
+  constexpr double kNearly = 0.9;
   const test::Drawn drawn = test::Drawer(seed, default_rig()).with({term}, kSize);
+  if (drawn.sizes.front() < kNearly * kSize) return std::nullopt;
   const Calibration& truth = drawn.recording.scanner.truth;
   Hidden hidden{.scope = "plate", .scenes = {drawn.scene}};
   const TermParameters* found = find_term(truth.plate_terms, term);
@@ -158,15 +161,30 @@ std::string effects_of(const Hidden& hidden) {
   return fmt::format("effects={{{}{}: {{{}}}{}}}", owner, hidden.cause, parameters, hidden.beside);
 }
 
+/// As it stands in the lists of what cannot be told apart or does not show.
+std::string full_name(const Hidden& hidden) {
+  return (hidden.scope == "plate" ? "" : hidden.scope + ".") + hidden.cause;
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
 struct Row {
-  int captures = 0, named = 0, wrong = 0, parameters = 0, within_three = 0;
+  int captures = 0, named = 0, in_class = 0, unobservable = 0, wrong = 0, parameters = 0, within_three = 0;
 };
 
 class Trial {
  public:
   void run(const std::string& cause, std::uint64_t seed) {
     Drawer drawer(seed);
-    Hidden hidden = draws().contains(cause) ? draws().at(cause)(drawer) : hidden_term(cause, seed);
+    std::optional<Hidden> drawn =
+        draws().contains(cause) ? draws().at(cause)(drawer) : hidden_term(cause, seed);
+    if (!drawn) {
+      fmt::print("{:<22} seed {:<4} cannot be so large within its bounds\n", cause, seed);
+      return;
+    }
+    Hidden& hidden = *drawn;
     hidden.cause = cause;
     const std::string scene = hidden.scenes[drawer.below(hidden.scenes.size())];
     const test::Workshop workshop;
@@ -184,11 +202,11 @@ class Trial {
 
   void print() const {
     fmt::print(
-        "\n| what hides | captures | named | wrong names | parameters within 3 s.e. "
-        "|\n|---|---|---|---|---|\n");
+        "\n| what hides | captures | named | its class | said to be unobservable | wrong names "
+        "| parameters within 3 s.e. |\n|---|---|---|---|---|---|---|\n");
     for (const auto& [cause, row] : rows_) {
-      fmt::print("| {} | {} | {} | {} | {} of {} |\n", cause, row.captures, row.named, row.wrong,
-                 row.within_three, row.parameters);
+      fmt::print("| {} | {} | {} | {} | {} | {} | {} of {} |\n", cause, row.captures, row.named, row.in_class,
+                 row.unobservable, row.wrong, row.within_three, row.parameters);
     }
   }
 
@@ -197,24 +215,32 @@ class Trial {
     Row& row = rows_[hidden.cause];
     ++row.captures;
     bool named = false;
+    bool in_class = false;
     for (const Finding& finding : findings.findings) {
       fmt::print(" {}.{}{}", finding.scope, finding.cause, finding.accepted ? "" : "(refused)");
       if (!finding.accepted) continue;
       const bool right =
           finding.cause == hidden.cause && (finding.scope == hidden.scope || hidden.cause == "scene.moving");
-      row.wrong += right || is_made(hidden, finding) ? 0 : 1;
+      const bool stands_for_it = contains(finding.confounded_with, full_name(hidden));
+      in_class = in_class || stands_for_it;
+      row.wrong += right || stands_for_it || is_made(hidden, finding) ? 0 : 1;
       if (right && !named) count_parameters(hidden, finding, row);
       named = named || right;
     }
     for (const auto& unnamed : findings.unnamed) fmt::print(" unnamed over {}", unnamed.covariate);
+    const bool unobservable = std::ranges::any_of(
+        findings.unobservable, [&](const Unobservable& one) { return one.parameter == full_name(hidden); });
+    if (unobservable) fmt::print(" said to be unobservable");
     row.named += named ? 1 : 0;
+    row.in_class += !named && in_class ? 1 : 0;
+    row.unobservable += !named && !in_class && unobservable ? 1 : 0;
   }
 
   /// Whether it is what the hidden effect makes besides, or cannot be told from that.
   static bool is_made(const Hidden& hidden, const Finding& finding) {
     const std::string full = hidden.scope + "." + hidden.makes;
-    return !hidden.makes.empty() && (finding.scope + "." + finding.cause == full ||
-                                     std::ranges::count(finding.confounded_with, full) > 0);
+    return !hidden.makes.empty() &&
+           (finding.scope + "." + finding.cause == full || contains(finding.confounded_with, full));
   }
 
   static void count_parameters(const Hidden& hidden, const Finding& finding, Row& row) {
