@@ -19,17 +19,19 @@ Vectors place_all(const SensorModel& model, const Measurements& beams, const Pla
 class PlacedBeams {
  public:
   /// @param sample  n beams, all of which the plate's readings cover
-  PlacedBeams(const SensorModel& model, const Sample& sample);
+  /// @param noise   see relative_noise(); or none
+  PlacedBeams(const SensorModel& model, const Sample& sample, std::vector<float> noise = {});
 
   /// Valid while this lives.
   BeamsView view() const {
-    return {.points = points_.view(), .directions = directions_.view(), .views = views_};
+    return {.points = points_.view(), .directions = directions_.view(), .views = views_, .noise = noise_};
   }
 
  private:
   Vectors points_;
   Vectors directions_;
   std::vector<std::uint32_t> views_;  // one for each laser and half of its sweep
+  std::vector<float> noise_;
 };
 
 }  // namespace crisp

@@ -19,12 +19,15 @@
 #include "pipeline/estimate/incidence.hpp"
 #include "pipeline/estimate/observability.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/estimate/relative_noise.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/estimate/steady.hpp"
 #include "pipeline/estimate/surfel_rows.hpp"
 
 namespace crisp {
 namespace {
+
+constexpr double kSmallStep = 0.5;  // [standard errors]
 
 /// Equations at a model, with the start as one more observation.
 class Refiner {
@@ -40,7 +43,7 @@ class Refiner {
 
   /// @return  whether nothing more is to be expected of the next one
   bool step() {
-    const PlacedBeams placed(model_, sample_);
+    const PlacedBeams placed(model_, sample_, noise_);
     found_ = steady_ones(surfaces_->update(placed.view(), last_step_), placed.view());
     if (found_.surfels.empty()) {
       throw Error(
@@ -66,7 +69,8 @@ class Refiner {
     model_ = with(model_, free_, after);
     agreement_ = agreement(found_, placed.view(), model_.lasers(), settings_.surfels.noise);
     last_step_ = (change.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
-    return surfaces_->is_settled() && last_step_ < settings_.tolerance;
+    const bool weighs_anew = tell_noise(placed.view());
+    return surfaces_->is_settled() && last_step_ < settings_.tolerance && !weighs_anew;
   }
 
   /// Keeps at their start those that the data do not tell. Not as long as surfaces are looked for: few may
@@ -85,7 +89,7 @@ class Refiner {
   /// surfaces disagree by.
   void widen_by_shared_errors() {
     if (found_.surfels.empty()) return;
-    const PlacedBeams placed(model_, sample_);
+    const PlacedBeams placed(model_, sample_, noise_);
     const auto equations =
         normal_equations(found_, placed.view(), free_.size(), surfel_rows(model_, sample_, free_),
                          settings_.surfels, shared_errors(sample_.beams, found_, placed.view()));
@@ -107,9 +111,20 @@ class Refiner {
   }
 
  private:
+  /// On the surfaces as they were looked for, and once more on those that count.
+  ///
+  /// @return  whether beams count otherwise from now on
+  bool tell_noise(const BeamsView& placed) {
+    constexpr int kTimes = 2;
+    if (last_step_ > kSmallStep || told_ == kTimes) return false;
+    ++told_;
+    const bool weighed_alike = noise_.empty();
+    noise_ = relative_noise(found_, placed, sample_.beams, settings_.surfels);
+    return !noise_.empty() || !weighed_alike;
+  }
+
   /// Chosen anew while the parameters move, and kept in the end, so that the steps come to one.
   Surfels steady_ones(const Surfels& found, const BeamsView& beams) {
-    constexpr double kSmallStep = 0.5;  // [standard errors]
     if (last_step_ > kSmallStep || steady_.size() != found.surfels.size()) {
       steady_ = steady(found, beams, settings_.surfels.noise);
     }
@@ -139,6 +154,8 @@ class Refiner {
   Sample sample_;
   std::vector<std::size_t> free_;
   std::vector<bool> steady_;  // of the surfels
+  std::vector<float> noise_;  // of the beams, beside one another
+  int told_ = 0;
   Agreement agreement_;
   std::unique_ptr<FlatSurfaces> surfaces_;
   const RefinementSettings& settings_;

@@ -13,14 +13,15 @@
 namespace crisp {
 namespace {
 
+/// @param noise  [m] of the range
 SurfelResidual against(const Surfel& surfel, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
-                       const SurfelSettings& settings) {
+                       double noise, double floor) {
   SurfelResidual r;
   const Eigen::Vector3d offset = point - surfel.middle;
   r.incidence = surfel.normal.dot(direction);
   r.distance = surfel.normal.dot(offset);
-  const double noise = settings.noise * r.incidence;
-  r.spread = std::sqrt(noise * noise + settings.floor * settings.floor);
+  const double across = noise * r.incidence;
+  r.spread = std::sqrt(across * across + floor * floor);
   if (!r.grazes()) {
     r.weight = 1;
     r.range_change = -r.distance / r.incidence;
@@ -59,7 +60,8 @@ std::vector<SurfelResidual> from_own_plane(const Surfel& surfel, std::span<const
       const std::uint32_t i = members[k];
       const Eigen::Vector3d point(beams.points.x[i], beams.points.y[i], beams.points.z[i]);
       const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
-      residuals[k] = against(surfel, point, direction, settings);
+      const double noise = settings.noise * (beams.noise.empty() ? 1.0 : double{beams.noise[i]});
+      residuals[k] = against(surfel, point, direction, noise, settings.floor);
     }
   });
   return residuals;

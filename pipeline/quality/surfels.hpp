@@ -17,6 +17,8 @@ struct BeamsView {
   /// Which view each is of. Beams of one view disagree by little but noise, however wrong the calibration is:
   /// one laser, one half of its sweep. None: all are of one.
   std::span<const std::uint32_t> views;
+  /// By how much each range scatters, in units of SurfelSettings::noise. None: by that.
+  std::span<const float> noise = {};
 };
 
 struct SurfelSettings {

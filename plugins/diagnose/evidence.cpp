@@ -10,8 +10,11 @@
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/incidence.hpp"
+#include "pipeline/estimate/relative_noise.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/estimate/steady.hpp"
+#include "pipeline/quality/blocks.hpp"
+#include "pipeline/quality/surfel_residuals.hpp"
 
 namespace crisp {
 namespace {
@@ -65,6 +68,11 @@ Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings
     all_ = surfaces(moved.view(), settings_);
     sample_.beams.cos_incidence = incidences(all_, moved.view());
     placed_ = PlacedBeams(model, sample_);
+  }
+  if (auto noise = relative_noise(all_, placed_.view(), sample_.beams, settings_); !noise.empty()) {
+    placed_ = PlacedBeams(model, sample_, std::move(noise));
+    for_each_index(all_.surfels.size(),
+                   [&](std::size_t s) { refine(all_.surfels[s], all_, placed_.view(), settings_); });
   }
   surfels_ = thinned(all_, most);
   const auto [first, last] = std::ranges::minmax(sample_.beams.time);

@@ -136,6 +136,8 @@ HeldOut::HeldOut(Halves halves, const SensorModel& chooser, const SurfelSettings
   const Evidence evidence(chooser, halves_.held_out, settings, kBeams);
   surfels_ = evidence.surfels();
   halves_.held_out.beams.cos_incidence = evidence.sample().beams.cos_incidence;
+  const auto told = evidence.beams().noise;
+  told_noise_.assign(told.begin(), told.end());
   double squares = 0;
   double weight = 0;
   for (const Surfel& surfel : surfels_.surfels) {
@@ -148,7 +150,7 @@ HeldOut::HeldOut(Halves halves, const SensorModel& chooser, const SurfelSettings
 }
 
 HeldOut::Score HeldOut::score(const SensorModel& model) const {
-  const PlacedBeams placed(model, halves_.held_out);
+  const PlacedBeams placed(model, halves_.held_out, told_noise_);
   const BeamsView beams = placed.view();
   Score score;
   score.turns.resize(halves_.turn.empty() ? 0 : std::ranges::max(halves_.turn) + std::size_t{1});

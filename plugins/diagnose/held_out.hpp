@@ -53,7 +53,8 @@ class HeldOut {
   Halves halves_;
   SurfelSettings settings_;
   Surfels surfels_;
-  double noise_ = 0;  ///< [σ] of the residuals, by the chooser
+  std::vector<float> told_noise_;  ///< of the beams that are held out, beside one another
+  double noise_ = 0;               ///< [σ] of the residuals, by the chooser
 };
 
 }  // namespace crisp

@@ -14,6 +14,7 @@
 #include "pipeline/data/least_chance.hpp"
 #include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
+#include "plugins/diagnose/mean.hpp"
 #include "plugins/diagnose/residuals.hpp"
 
 namespace crisp {
@@ -158,6 +159,20 @@ std::vector<double> errors_of(const SimulatedMeans& means) {
   return errors;
 }
 
+/// [m] RMS over each laser's ranges.
+///
+/// @param noise  of each laser, in units of what the surfels were told
+std::vector<double> sizes_of(const std::vector<double>& noise, const Residuals& residuals,
+                             const Measurements& beams) {
+  std::vector<Mean> squares(noise.size());
+  for (std::size_t k = 0; k < residuals.size(); ++k)
+    squares[beams.laser[residuals.beam[k]]].add(residuals.told[k] * residuals.told[k], 1);
+  std::vector<double> sizes;
+  for (std::size_t laser = 0; laser < noise.size(); ++laser)
+    sizes.push_back(noise[laser] * std::sqrt(squares[laser].value()));
+  return sizes;
+}
+
 /// How likely noise alone makes a profile as bad as this one: χ² of its bins.
 double chance_of(const std::vector<double>& means, const std::vector<double>& errors) {
   double chi2 = 0;
@@ -183,15 +198,16 @@ SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings
   const Residuals residuals = residuals_in(evidence, settings);
   const Measurements& beams = evidence.sample().beams;
   SideBySide result;
-  result.noise = noise_of(residuals, beams);
+  const std::vector<double> of_laser = noise_of(residuals, beams);
+  result.noise = sizes_of(of_laser, residuals, beams);
   std::vector<double> noise;
-  for (const std::uint32_t beam : residuals.beam) noise.push_back(result.noise[beams.laser[beam]]);
+  for (const std::uint32_t beam : residuals.beam) noise.push_back(of_laser[beams.laser[beam]]);
   const auto all = layouts(evidence, residuals);
 
   std::vector<SimulatedMeans> means(all.size(), SimulatedMeans(kSimulations));
   std::vector<double> squares(kSimulations);
   for_each_index(kSimulations, [&](std::size_t s) {
-    const Weighed made = simulated(residuals, noise, settings.noise, seed + s);
+    const Weighed made = simulated(residuals, noise, seed + s);
     squares[s] = shared_square(residuals, made, beams);
     for (std::size_t p = 0; p < all.size(); ++p) means[p][s] = means_in(all[p], made);
   });

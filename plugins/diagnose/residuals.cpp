@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "pipeline/data/robust.hpp"
@@ -58,6 +57,8 @@ Residuals residuals_in(const Evidence& evidence, const SurfelSettings& settings)
       all.measured.value.push_back(-r.range_change);
       all.measured.weight.push_back(r.weight);
       all.cosine.push_back(std::abs(r.incidence));
+      const BeamsView beams = evidence.beams();
+      all.told.push_back(settings.noise * (beams.noise.empty() ? 1.0 : double{beams.noise[members[k]]}));
       all.end.push_back(settings.outlier * r.spread / std::abs(r.incidence));
     }
     all.planes.push_back(span_of_plane(counting));
@@ -72,11 +73,13 @@ std::vector<double> noise_of(const Residuals& residuals, const Measurements& bea
   std::vector<std::vector<double>> pairs(lasers);
   std::vector<std::vector<double>> alone(lasers);
   for (std::size_t k = 0; k < residuals.size(); ++k) {
-    alone[beams.laser[residuals.beam[k]]].push_back(std::abs(residuals.measured.value[k]));
+    alone[beams.laser[residuals.beam[k]]].push_back(std::abs(residuals.measured.value[k]) /
+                                                    residuals.told[k]);
   }
   for_each_neighbours(residuals, beams, [&](std::size_t k) {
     pairs[beams.laser[residuals.beam[k]]].push_back(
-        std::abs(residuals.measured.value[k] - residuals.measured.value[k - 1]) / std::numbers::sqrt2);
+        std::abs(residuals.measured.value[k] - residuals.measured.value[k - 1]) /
+        std::hypot(residuals.told[k], residuals.told[k - 1]));
   });
   std::vector<double> noise;
   for (std::size_t laser = 0; laser < lasers; ++laser) {
@@ -97,13 +100,12 @@ double shared_square(const Residuals& residuals, const Weighed& values, const Me
   return weights > 0 ? sum / weights : 0;
 }
 
-Weighed simulated(const Residuals& residuals, const std::vector<double>& noise, double usual,
-                  std::uint64_t seed) {
+Weighed simulated(const Residuals& residuals, const std::vector<double>& noise, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   const std::size_t n = residuals.size();
   Weighed made{.value = std::vector<double>(n), .weight = std::vector<double>(n)};
-  for (std::size_t k = 0; k < n; ++k) made.value[k] = noise[k] * normal(random);
+  for (std::size_t k = 0; k < n; ++k) made.value[k] = noise[k] * residuals.told[k] * normal(random);
   for (std::size_t s = 0; s < residuals.planes.size(); ++s) {
     const auto members = static_cast<Eigen::Index>(residuals.first[s + 1] - residuals.first[s]);
     if (members == 0) continue;
@@ -115,7 +117,7 @@ Weighed simulated(const Residuals& residuals, const std::vector<double>& noise, 
     own -= (residuals.planes[s] * (residuals.planes[s].transpose() * weighted)).cwiseQuotient(roots);
   }
   for (std::size_t k = 0; k < n; ++k) {
-    const double end = residuals.end[k] * std::max(1.0, noise[k] / usual);
+    const double end = residuals.end[k] * std::max(1.0, noise[k]);
     made.weight[k] = biweight(made.value[k] / end);
   }
   return made;

@@ -22,6 +22,7 @@ struct Residuals {
   std::vector<std::uint32_t> beam;
   Weighed measured;
   std::vector<double> cosine;            ///< of the incidence, positive
+  std::vector<double> told;              ///< [m] noise that the surfels were told
   std::vector<double> end;               ///< [m] along the beam: from there on Tukey's weight is 0
   std::vector<Eigen::MatrixX3d> planes;  ///< of each surface: what its plane can take, orthonormal
   std::vector<std::size_t> first;        ///< beam of each surface; one more than there are
@@ -31,9 +32,9 @@ struct Residuals {
 
 Residuals residuals_in(const Evidence& evidence, const SurfelSettings& settings);
 
-/// [m] Standard deviation of each laser's ranges, from the median difference of neighbours: beams of one scan
-/// on one surface. Lasers that disagree, and whatever else changes slowly, are not in it. Where there are
-/// hardly any neighbours, from all residuals.
+/// Standard deviation of each laser's ranges, in units of what the surfels were told, from the median
+/// difference of neighbours: beams of one scan on one surface. Lasers that disagree, and whatever else
+/// changes slowly, are not in it. Where there are hardly any neighbours, from all residuals.
 std::vector<double> noise_of(const Residuals& residuals, const Measurements& beams);
 
 /// [m²] Mean product of the residuals of neighbours: what all of one scan that meet one surface are off by
@@ -45,9 +46,7 @@ double shared_square(const Residuals& residuals, const Weighed& values, const Me
 /// What noise leaves of a simulated recording, once planes have been fitted to it: normal noise, weighed as
 /// measured residuals are.
 ///
-/// @param noise  [m] of each residual
-/// @param usual  [m] noise that the surfels were told
-Weighed simulated(const Residuals& residuals, const std::vector<double>& noise, double usual,
-                  std::uint64_t seed);
+/// @param noise  of each residual, in units of what the surfels were told
+Weighed simulated(const Residuals& residuals, const std::vector<double>& noise, std::uint64_t seed);
 
 }  // namespace crisp

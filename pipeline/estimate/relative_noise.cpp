@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/relative_noise.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "pipeline/data/robust.hpp"
+#include "pipeline/quality/blocks.hpp"
+#include "pipeline/quality/surfel_residuals.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::size_t kMostPairs = 400'000;
+constexpr std::size_t kLeastPairs = 1000;  // of a bin: they tell its factor to 4 %
+constexpr std::size_t kMostBins = 12;
+
+/// Two neighbours, the second and the one before it.
+struct Pair {
+  std::uint32_t before = 0;
+  std::uint32_t beam = 0;
+  double size = 0;  // [m] of the difference of their residuals along the beam, by √2
+};
+
+/// What noise may go by, of each beam.
+struct Quantities {
+  const std::vector<float>& incidence;
+  const std::vector<float>& remission;
+  /// [m] To the surface, for those that are on one: by the measured range a beam that noise has made longer
+  /// would weigh less than one that it has made shorter, and surfaces would seem nearer than they are.
+  std::vector<float> range;
+};
+
+/// @param range  is corrected
+std::vector<Pair> pairs_on(const Surfel& surfel, const Surfels& surfels, const BeamsView& placed,
+                           const Measurements& beams, const SurfelSettings& settings,
+                           std::vector<float>& range) {
+  constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
+  std::vector<Pair> pairs;
+  const auto members = surfels.beams_of(surfel);
+  const auto residuals = residuals_of(surfel, surfels, placed, settings);
+  for (std::size_t k = 0; k < members.size(); ++k)
+    range[members[k]] += static_cast<float>(residuals[k].range_change);
+  for (std::size_t k = 1; k < members.size(); ++k) {
+    const std::uint32_t before = members[k - 1];
+    const std::uint32_t beam = members[k];
+    if (residuals[k].weight == 0 || residuals[k - 1].weight == 0) continue;
+    if (beams.laser[before] != beams.laser[beam] || beams.time[beam] - beams.time[before] > kOneScan)
+      continue;
+    const double difference = residuals[k].range_change - residuals[k - 1].range_change;
+    pairs.push_back({.before = before, .beam = beam, .size = std::abs(difference) / std::sqrt(2)});
+  }
+  return pairs;
+}
+
+/// Of all surfaces, evenly thinned, by laser.
+///
+/// @param range  is corrected
+std::vector<std::vector<Pair>> pairs_by_laser(const Surfels& surfels, const BeamsView& placed,
+                                              const Measurements& beams, const SurfelSettings& settings,
+                                              std::vector<float>& range) {
+  std::vector<std::vector<Pair>> of_surfel(surfels.surfels.size());
+  for_each_index(of_surfel.size(), [&](std::size_t s) {
+    of_surfel[s] = pairs_on(surfels.surfels[s], surfels, placed, beams, settings, range);
+  });
+  std::size_t count = 0;
+  for (const auto& pairs : of_surfel) count += pairs.size();
+  const std::size_t stride = count / kMostPairs + 1;
+  std::vector<std::vector<Pair>> by_laser;
+  for (const auto& pairs : of_surfel) {
+    for (std::size_t k = 0; k < pairs.size(); k += stride) {
+      const std::size_t laser = beams.laser[pairs[k].beam];
+      if (by_laser.size() <= laser) by_laser.resize(laser + 1);
+      by_laser[laser].push_back(pairs[k]);
+    }
+  }
+  return by_laser;
+}
+
+/// A factor that goes by one quantity, in steps.
+struct Steps {
+  const std::vector<float>* of = nullptr;  // of each beam
+  std::vector<float> ends;                 // of each step but the last, ascending
+  std::vector<double> factor;              // of each step
+
+  std::size_t step(float value) const {
+    return static_cast<std::size_t>(std::ranges::upper_bound(ends, value) - ends.begin());
+  }
+  double at(std::uint32_t beam) const { return factor[step((*of)[beam])]; }
+  /// Of two that may lie on either side of a border.
+  double at(const Pair& pair) const { return std::sqrt((square(pair.before) + square(pair.beam)) / 2); }
+
+ private:
+  double square(std::uint32_t beam) const { return std::pow(at(beam), 2); }
+};
+
+/// Steps of equally many pairs, with the factor 1.
+Steps even_steps(const std::vector<float>& of, const std::vector<Pair>& pairs) {
+  Steps steps{.of = &of, .ends = {}, .factor = {}};
+  const std::size_t count = std::clamp<std::size_t>(pairs.size() / kLeastPairs, 1, kMostBins);
+  std::vector<float> values;
+  for (const Pair& pair : pairs) values.push_back(of[pair.beam]);
+  std::ranges::sort(values);
+  for (std::size_t b = 1; b < count; ++b) {
+    const float end = values[b * values.size() / count];
+    const float before = steps.ends.empty() ? values.front() : steps.ends.back();
+    if (end > before) steps.ends.push_back(end);
+  }
+  steps.factor.assign(steps.ends.size() + 1, 1.0);
+  return steps;
+}
+
+/// What the noise of one laser goes by.
+class OfLaser {
+ public:
+  OfLaser(const std::vector<Pair>& pairs, const Quantities& by) {
+    if (pairs.size() < kLeastPairs) return;
+    for (const auto* of : {&by.range, &by.incidence, &by.remission}) steps_.push_back(even_steps(*of, pairs));
+    constexpr int kRounds = 3;  // quantities go with one another, so that one's factor changes another's
+    for (int round = 0; round < kRounds; ++round) {
+      for (Steps& steps : steps_) fit(steps, pairs);
+    }
+    std::vector<double> sizes;
+    for (const Pair& pair : pairs) sizes.push_back(pair.size / by_steps(pair));
+    size_ = kSigmaByMedian * middle_of(sizes);
+  }
+
+  /// [m] 0 where there are too few neighbours.
+  double at(std::uint32_t beam) const { return size_ * by_steps(beam); }
+
+ private:
+  template <class Where>
+  double by_steps(const Where& where) const {
+    double product = 1;
+    for (const Steps& steps : steps_) product *= steps.at(where);
+    return product;
+  }
+
+  /// By the median in each step, beside what the other quantities make.
+  void fit(Steps& steps, const std::vector<Pair>& pairs) {
+    std::vector<std::vector<double>> sizes(steps.factor.size());
+    for (const Pair& pair : pairs) {
+      const std::size_t step = steps.step((*steps.of)[pair.beam]);
+      sizes[step].push_back(pair.size / by_steps(pair) * steps.at(pair));
+    }
+    for (std::size_t s = 0; s < sizes.size(); ++s) {
+      const double middle = sizes[s].empty() ? 0 : middle_of(sizes[s]);
+      if (middle > 0) steps.factor[s] = kSigmaByMedian * middle;
+    }
+    double mean = 0;
+    for (const double factor : steps.factor) mean += factor / static_cast<double>(steps.factor.size());
+    for (double& factor : steps.factor) factor /= mean;
+  }
+
+  std::vector<Steps> steps_;
+  double size_ = 0;
+};
+
+}  // namespace
+
+std::vector<float> relative_noise(const Surfels& surfels, const BeamsView& placed, const Measurements& beams,
+                                  const SurfelSettings& settings) {
+  constexpr double kLeastGain = 0.05;
+  constexpr double kMost = 4;  // times more or less: beyond, it is what few beams of a step have by chance
+  Quantities by{.incidence = beams.cos_incidence, .remission = beams.remission, .range = beams.range};
+  std::vector<OfLaser> lasers;
+  for (const auto& pairs : pairs_by_laser(surfels, placed, beams, settings, by.range))
+    lasers.emplace_back(pairs, by);
+
+  std::vector<double> sizes(beams.size(), 0);  // [m] 0 where nothing tells it
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const std::size_t laser = beams.laser[i];
+    if (laser < lasers.size()) sizes[i] = lasers[laser].at(static_cast<std::uint32_t>(i));
+  }
+  double inverse = 0;
+  double squares = 0;
+  double count = 0;
+  for (std::size_t m = 0; m < surfels.members.size(); ++m) {
+    const double size = sizes[surfels.members[m]];
+    if (surfels.weights[m] == 0 || size == 0) continue;
+    inverse += 1 / (size * size);
+    squares += size * size;
+    count += 1;
+  }
+  // By so much less is the variance of a mean if its values are weighted.
+  if (count == 0 || squares * inverse < (1 + kLeastGain) * count * count) return {};
+  const double usual = std::sqrt(count / inverse);
+  std::vector<float> relative(sizes.size(), 1.0F);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    if (sizes[i] > 0) relative[i] = static_cast<float>(std::clamp(sizes[i] / usual, 1 / kMost, kMost));
+  }
+  return relative;
+}
+
+}  // namespace crisp
