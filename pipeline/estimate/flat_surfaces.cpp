@@ -15,8 +15,6 @@ void refine_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& 
                  [&](std::size_t s) { refine(surfels.surfels[s], surfels, beams, settings); });
 }
 
-// Beams that join and leave surfaces at their rims would keep steps from getting any smaller than this.
-constexpr double kSmallStep = 0.5;  // [standard errors]
 // From a degree off, walls that lie apart come together one after the other.
 constexpr int kSearches = 12;
 

@@ -7,6 +7,10 @@
 
 namespace crisp {
 
+/// [standard errors] What is chosen with the parameters is kept from such a step on: beams that join and
+/// leave surfaces at their rims would keep steps from getting any smaller.
+inline constexpr double kSmallStep = 0.5;
+
 /// The flat surfaces against which a refinement measures its beams: looked for while the parameters still
 /// move, and kept in the end, so that the refinement's steps come to one.
 class FlatSurfaces {

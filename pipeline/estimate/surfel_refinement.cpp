@@ -27,8 +27,6 @@
 namespace crisp {
 namespace {
 
-constexpr double kSmallStep = 0.5;  // [standard errors]
-
 /// Equations at a model, with the start as one more observation.
 class Refiner {
  public:

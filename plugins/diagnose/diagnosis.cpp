@@ -131,8 +131,8 @@ class Diagnoser {
 
   /// Where each parameter of a candidate's term is among those that were estimated; nothing for those that
   /// were not.
-  std::vector<std::optional<Eigen::Index>> places_of(const Candidate& candidate,
-                                                     const Outcome& outcome) const {
+  static std::vector<std::optional<Eigen::Index>> places_of(const Candidate& candidate,
+                                                            const Outcome& outcome) {
     std::vector<std::optional<Eigen::Index>> places(candidate.term.parameters.size());
     for (std::size_t p = 0; p < places.size(); ++p) {
       const std::string name =
@@ -145,7 +145,7 @@ class Diagnoser {
   }
 
   /// The refined model knows the curvature at its form alone, not that another may be the right one.
-  void add_form_errors(Diagnosis& result) const {
+  static void add_form_errors(Diagnosis& result) {
     Outcome& outcome = result.after.outcome;
     for (const Departure& departure : result.departures) {
       const auto others = result.other_forms.find(departure.candidate.name);
