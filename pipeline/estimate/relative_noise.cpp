@@ -13,7 +13,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kMostPairs = 400'000;
+constexpr std::size_t kMostPairs = 120'000;
 constexpr std::size_t kLeastPairs = 1000;  // of a bin: they tell its factor to 4 %
 constexpr std::size_t kMostBins = 12;
 
