@@ -44,6 +44,16 @@ TEST(SideBySide, SimulatesEachLaserWithNoiseOfItsOwn) {
   EXPECT_NEAR(left.noise.at(1), 0.005, 0.0002);
 }
 
+TEST(SideBySide, SimulatesEachBeamWithItsShareOfTheNoise) {
+  ScannerSettings scanner = test::scanner_of(5, 4);
+  scanner.laser_effects.resize(3);
+  scanner.laser_effects[1].noise.slope = 0.006;
+  scanner.laser_effects[2].noise.spread = 0.030;
+  const SideBySide left = beside(test::recorded(scanner, office()));
+  EXPECT_GT(left.p_value, 0.01)
+      << "of one size for all, means of noisy bins are off by more than they may be";
+}
+
 TEST(SideBySide, ShowsADepartureOverItsCovariate) {
   test::Recording recording = test::hidden(4, 3, office(), {});
   for (std::size_t i = 0; i < recording.made.beams.size(); ++i) {
