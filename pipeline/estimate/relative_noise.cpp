@@ -37,7 +37,6 @@ struct Quantities {
 std::vector<Pair> pairs_on(const Surfel& surfel, const Surfels& surfels, const BeamsView& placed,
                            const Measurements& beams, const SurfelSettings& settings,
                            std::vector<float>& range) {
-  constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
   std::vector<Pair> pairs;
   const auto members = surfels.beams_of(surfel);
   const auto residuals = residuals_of(surfel, surfels, placed, settings);
@@ -47,8 +46,7 @@ std::vector<Pair> pairs_on(const Surfel& surfel, const Surfels& surfels, const B
     const std::uint32_t before = members[k - 1];
     const std::uint32_t beam = members[k];
     if (residuals[k].weight == 0 || residuals[k - 1].weight == 0) continue;
-    if (beams.laser[before] != beams.laser[beam] || beams.time[beam] - beams.time[before] > kOneScan)
-      continue;
+    if (!are_neighbours(beams, before, beam)) continue;
     const double difference = residuals[k].range_change - residuals[k - 1].range_change;
     pairs.push_back({.before = before, .beam = beam, .size = std::abs(difference) / std::sqrt(2)});
   }

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "pipeline/data/measurements.hpp"
 #include "pipeline/quality/surfels.hpp"
 
 namespace crisp {
+
+/// Whether two beams that are next to one another on a surface are so in a scan, too.
+inline bool are_neighbours(const Measurements& beams, std::uint32_t before, std::uint32_t beam) {
+  constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
+  return beams.laser[before] == beams.laser[beam] && beams.time[beam] - beams.time[before] <= kOneScan;
+}
 
 /// How much each beam's range scatters beside the others', as the data show it: a factor of its laser's, and
 /// one each of the range, of the incidence and of the remission (in steps of equally many beams). They are

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "pipeline/data/robust.hpp"
+#include "pipeline/estimate/relative_noise.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 
 namespace crisp {
@@ -29,13 +30,9 @@ Eigen::MatrixX3d span_of_plane(const std::vector<SurfelResidual>& residuals) {
 /// Calls pair(k): residuals k − 1 and k are of beams of one scan, one after the other on one surface.
 template <class Pair>
 void for_each_neighbours(const Residuals& residuals, const Measurements& beams, Pair pair) {
-  constexpr double kOneScan = 0.005;  // [s] a quarter of a turn of the mirror
   for (std::size_t s = 0; s + 1 < residuals.first.size(); ++s) {
     for (std::size_t k = residuals.first[s] + 1; k < residuals.first[s + 1]; ++k) {
-      const std::uint32_t own = residuals.beam[k];
-      const std::uint32_t before = residuals.beam[k - 1];
-      if (beams.laser[before] == beams.laser[own] && beams.time[own] - beams.time[before] <= kOneScan)
-        pair(k);
+      if (are_neighbours(beams, residuals.beam[k - 1], residuals.beam[k])) pair(k);
     }
   }
 }
