@@ -10,11 +10,6 @@
 namespace crisp {
 namespace {
 
-void refine_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings) {
-  for_each_index(surfels.surfels.size(),
-                 [&](std::size_t s) { refine(surfels.surfels[s], surfels, beams, settings); });
-}
-
 // From a degree off, walls that lie apart come together one after the other.
 constexpr int kSearches = 12;
 

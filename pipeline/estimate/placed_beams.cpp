@@ -2,7 +2,6 @@
 #include "pipeline/estimate/placed_beams.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/data/recordings.hpp"
@@ -39,8 +38,7 @@ Vectors place_all(const SensorModel& model, const Measurements& beams, const Pla
   return points;
 }
 
-PlacedBeams::PlacedBeams(const SensorModel& model, const Sample& sample, std::vector<float> noise)
-    : noise_(std::move(noise)) {
+PlacedBeams::PlacedBeams(const SensorModel& model, const Sample& sample) {
   constexpr std::size_t kBlock = 8192;  // beams
   for_each_index(2, [&](std::size_t i) {
     if (i == 0) points_ = place_all(model, sample.beams, *sample.plate);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "pipeline/estimate/sample.hpp"
@@ -19,19 +20,19 @@ Vectors place_all(const SensorModel& model, const Measurements& beams, const Pla
 class PlacedBeams {
  public:
   /// @param sample  n beams, all of which the plate's readings cover
-  /// @param noise   see relative_noise(); or none
-  PlacedBeams(const SensorModel& model, const Sample& sample, std::vector<float> noise = {});
+  PlacedBeams(const SensorModel& model, const Sample& sample);
 
-  /// Valid while this lives.
-  BeamsView view() const {
-    return {.points = points_.view(), .directions = directions_.view(), .views = views_, .noise = noise_};
+  /// Valid while this and the noise live.
+  ///
+  /// @param noise  see relative_noise(); or none
+  BeamsView view(std::span<const float> noise = {}) const {
+    return {.points = points_.view(), .directions = directions_.view(), .views = views_, .noise = noise};
   }
 
  private:
   Vectors points_;
   Vectors directions_;
   std::vector<std::uint32_t> views_;  // one for each laser and half of its sweep
-  std::vector<float> noise_;
 };
 
 }  // namespace crisp

@@ -2,7 +2,6 @@
 #include "pipeline/estimate/relative_noise.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 

@@ -41,16 +41,16 @@ class Refiner {
 
   /// @return  whether nothing more is to be expected of the next one
   bool step() {
-    const PlacedBeams placed(model_, sample_, noise_);
-    found_ = steady_ones(surfaces_->update(placed.view(), last_step_), placed.view());
+    const PlacedBeams placed(model_, sample_);
+    found_ = steady_ones(surfaces_->update(placed.view(noise_), last_step_), placed.view(noise_));
     if (found_.surfels.empty()) {
       throw Error(
           "no flat surface is seen by these data",
           "leave calibrate.refine out where nothing is flat, or look closer with a smaller `smallest`");
     }
     // For terms that depend on it.
-    sample_.beams.cos_incidence = incidences(found_, placed.view());
-    equations_ = normal_equations(found_, placed.view(), free_.size(), surfel_rows(model_, sample_, free_),
+    sample_.beams.cos_incidence = incidences(found_, placed.view(noise_));
+    equations_ = normal_equations(found_, placed.view(noise_), free_.size(), surfel_rows(model_, sample_, free_),
                                   settings_.surfels);
     information_ = equations_.matrix / equations_.covariance_factor();
     const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
@@ -65,9 +65,9 @@ class Refiner {
     const Eigen::VectorXd after = within_bounds(model_, free_, before - posterior.solve(pull));
     const Eigen::VectorXd change = after - before;
     model_ = with(model_, free_, after);
-    agreement_ = agreement(found_, placed.view(), model_.lasers(), settings_.surfels.noise);
+    agreement_ = agreement(found_, placed.view(noise_), model_.lasers(), settings_.surfels.noise);
     last_step_ = (change.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
-    const bool weighs_anew = tell_noise(placed.view());
+    const bool weighs_anew = tell_noise(placed.view(noise_));
     return surfaces_->is_settled() && last_step_ < settings_.tolerance && !weighs_anew;
   }
 
@@ -87,10 +87,10 @@ class Refiner {
   /// surfaces disagree by.
   void widen_by_shared_errors() {
     if (found_.surfels.empty()) return;
-    const PlacedBeams placed(model_, sample_, noise_);
+    const PlacedBeams placed(model_, sample_);
     const auto equations =
-        normal_equations(found_, placed.view(), free_.size(), surfel_rows(model_, sample_, free_),
-                         settings_.surfels, shared_errors(sample_.beams, found_, placed.view()));
+        normal_equations(found_, placed.view(noise_), free_.size(), surfel_rows(model_, sample_, free_),
+                         settings_.surfels, shared_errors(sample_.beams, found_, placed.view(noise_)));
     covariance_ = widened(covariance_, widening(equations));
   }
 

@@ -60,8 +60,7 @@ std::vector<SurfelResidual> from_own_plane(const Surfel& surfel, std::span<const
       const std::uint32_t i = members[k];
       const Eigen::Vector3d point(beams.points.x[i], beams.points.y[i], beams.points.z[i]);
       const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
-      const double noise = settings.noise * (beams.noise.empty() ? 1.0 : double{beams.noise[i]});
-      residuals[k] = against(surfel, point, direction, noise, settings.floor);
+      residuals[k] = against(surfel, point, direction, settings.noise * beams.noise_of(i), settings.floor);
     }
   });
   return residuals;
@@ -91,6 +90,11 @@ void refine(Surfel& surfel, Surfels& surfels, const BeamsView& beams, const Surf
   surfel.normal = (surfel.normal - plane[1] * surfel.u - plane[2] * surfel.v).normalized();
   surfel.v = surfel.normal.cross(surfel.u).normalized();
   surfel.u = surfel.v.cross(surfel.normal);
+}
+
+void refine_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings) {
+  for_each_index(surfels.surfels.size(),
+                 [&](std::size_t s) { refine(surfels.surfels[s], surfels, beams, settings); });
 }
 
 }  // namespace crisp

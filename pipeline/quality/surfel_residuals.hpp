@@ -38,5 +38,6 @@ std::vector<SurfelResidual> residuals_of(const Surfel& surfel, const Surfels& su
 /// own view contradicts by more than noise does count less or nothing, those that all but run along the plane
 /// nothing.
 void refine(Surfel& surfel, Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings);
+void refine_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings);
 
 }  // namespace crisp

@@ -19,6 +19,8 @@ struct BeamsView {
   std::span<const std::uint32_t> views;
   /// By how much each range scatters, in units of SurfelSettings::noise. None: by that.
   std::span<const float> noise = {};
+
+  double noise_of(std::size_t beam) const { return noise.empty() ? 1.0 : double{noise[beam]}; }
 };
 
 struct SurfelSettings {

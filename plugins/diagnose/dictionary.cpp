@@ -97,8 +97,7 @@ void Dictionary::add_page(const SensorModel& model, const std::vector<std::size_
   Page page{.model = SensorModel(calibration, terms_), .free = {}, .columns = {}};
   for (std::size_t k = 0; k < some.size(); ++k) {
     const Candidate& candidate = candidates_[some[k]];
-    const bool is_plate = candidate.owner == model.lasers();
-    const auto& slots = page.model.chain(is_plate ? 0 : candidate.owner).slots;
+    const auto& slots = page.model.chain(candidate.laser().value_or(0)).slots;
     const std::size_t first = first_slot(calibration, candidate.owner, place[k]);
     const auto own = sizes(terms_.get(candidate.term.term)->info());
     for (std::size_t i = 0; i < own.size(); ++i) {

@@ -13,7 +13,6 @@
 #include "pipeline/estimate/relative_noise.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/estimate/steady.hpp"
-#include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 
 namespace crisp {
@@ -69,11 +68,8 @@ Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings
     sample_.beams.cos_incidence = incidences(all_, moved.view());
     placed_ = PlacedBeams(model, sample_);
   }
-  if (auto noise = relative_noise(all_, placed_.view(), sample_.beams, settings_); !noise.empty()) {
-    placed_ = PlacedBeams(model, sample_, std::move(noise));
-    for_each_index(all_.surfels.size(),
-                   [&](std::size_t s) { refine(all_.surfels[s], all_, placed_.view(), settings_); });
-  }
+  noise_ = relative_noise(all_, placed_.view(), sample_.beams, settings_);
+  if (!noise_.empty()) refine_all(all_, beams(), settings_);
   surfels_ = thinned(all_, most);
   const auto [first, last] = std::ranges::minmax(sample_.beams.time);
   const auto recordings = recordings_of(*sample_.plate);
@@ -81,7 +77,7 @@ Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings
               .last = last,
               .one_begin = recordings.size() < 2,
               .one_zero = recordings.empty() || recordings.front().zero == recordings.back().zero};
-  shared_ = shared_errors(sample_.beams, all_, placed_.view());
+  shared_ = shared_errors(sample_.beams, all_, beams());
 }
 
 NormalEquations Evidence::equations(const Dictionary& dictionary, std::size_t most) const {
@@ -89,7 +85,7 @@ NormalEquations Evidence::equations(const Dictionary& dictionary, std::size_t mo
     if (interrupted_ && interrupted_()) throw Interrupted();
     all(of_surfel...);
   };
-  return normal_equations(thinned(all_, most), placed_.view(), dictionary.parameters(), rows, settings_,
+  return normal_equations(thinned(all_, most), beams(), dictionary.parameters(), rows, settings_,
                           shared_);
 }
 

@@ -23,7 +23,7 @@ class Evidence {
 
   const Sample& sample() const { return sample_; }
   const Surfels& surfels() const { return surfels_; }  ///< with `most` beams
-  BeamsView beams() const { return placed_.view(); }
+  BeamsView beams() const { return placed_.view(noise_); }
   Lasting lasting() const { return lasting_; }
 
   /// Near the model, in the dictionary's parameters; with what errors beams may share.
@@ -35,6 +35,7 @@ class Evidence {
  private:
   Sample sample_;
   PlacedBeams placed_;
+  std::vector<float> noise_;  ///< of the beams, beside one another; none: alike
   SurfelSettings settings_;
   Surfels all_;      ///< with all beams
   Surfels surfels_;  ///< with `most` of them

@@ -150,8 +150,8 @@ HeldOut::HeldOut(Halves halves, const SensorModel& chooser, const SurfelSettings
 }
 
 HeldOut::Score HeldOut::score(const SensorModel& model) const {
-  const PlacedBeams placed(model, halves_.held_out, told_noise_);
-  const BeamsView beams = placed.view();
+  const PlacedBeams placed(model, halves_.held_out);
+  const BeamsView beams = placed.view(told_noise_);
   Score score;
   score.turns.resize(halves_.turn.empty() ? 0 : std::ranges::max(halves_.turn) + std::size_t{1});
   std::vector<Vectors> clouds(score.turns.size());

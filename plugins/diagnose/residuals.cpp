@@ -54,8 +54,7 @@ Residuals residuals_in(const Evidence& evidence, const SurfelSettings& settings)
       all.measured.value.push_back(-r.range_change);
       all.measured.weight.push_back(r.weight);
       all.cosine.push_back(std::abs(r.incidence));
-      const BeamsView beams = evidence.beams();
-      all.told.push_back(settings.noise * (beams.noise.empty() ? 1.0 : double{beams.noise[members[k]]}));
+      all.told.push_back(settings.noise * evidence.beams().noise_of(members[k]));
       all.end.push_back(settings.outlier * r.spread / std::abs(r.incidence));
     }
     all.planes.push_back(span_of_plane(counting));

@@ -125,9 +125,8 @@ const std::map<std::string, Draw>& draws() {
 /// A term of the model, by which ranges change by 8 mm RMS; nothing if its bounds do not let it.
 std::optional<Hidden> hidden_term(const std::string& term, std::uint64_t seed) {
   constexpr double kSize = 0.008;  // [m]
-  constexpr double kNearly = 0.9;
   const test::Drawn drawn = test::Drawer(seed, default_rig()).with({term}, kSize);
-  if (drawn.sizes.front() < kNearly * kSize) return std::nullopt;
+  if (!drawn.reaches(kSize)) return std::nullopt;
   const Calibration& truth = drawn.recording.scanner.truth;
   Hidden hidden{.scope = "plate", .scenes = {drawn.scene}};
   const TermParameters* found = find_term(truth.plate_terms, term);

@@ -159,8 +159,7 @@ class Trial {
  public:
   /// @param clean  of the same seed, with nothing hidden; null if gains are not judged
   void run(const std::string& what, const Drawn& drawn, double size, const Drawn* clean = nullptr) {
-    constexpr double kNearly = 0.9;
-    if (std::ranges::any_of(drawn.sizes, [&](double reached) { return reached < kNearly * size; })) {
+    if (!drawn.reaches(size)) {
       fmt::print("{:<26} seed {:<4} cannot be so large within its bounds: {:.1f} mm\n", what,
                  drawn.recording.scanner.seed, 1e3 * std::ranges::min(drawn.sizes));
       return;

@@ -101,10 +101,10 @@ TEST(RelativeNoise, MakesEstimatesSurer) {
   for (std::size_t i = 0; i < some.size(); ++i) some[i] = static_cast<std::uint32_t>(i % 2000);
   // By how the pulls of some beams each scatter, whatever noise is told.
   const auto errors_with = [&](const std::vector<float>& noise) {
-    const PlacedBeams placed(model, told.sample, noise);
+    const PlacedBeams placed(model, told.sample);
     Surfels surfels = told.surfels;
-    for (Surfel& surfel : surfels.surfels) refine(surfel, surfels, placed.view(), {});
-    const auto equations = normal_equations(surfels, placed.view(), all_free().size(),
+    refine_all(surfels, placed.view(noise), {});
+    const auto equations = normal_equations(surfels, placed.view(noise), all_free().size(),
                                             surfel_rows(model, told.sample, all_free()), {}, {&some, 1});
     const double factor = equations.weight / equations.stiffness;
     return Eigen::VectorXd(factor * (equations.matrix.inverse() * equations.pulls[0]).rowwise().norm());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -24,6 +25,12 @@ struct Drawn {
   std::vector<double> sizes;  ///< [m] RMS by which each changes ranges; less than asked where bounds end it
   std::string covariate;      ///< of what was hidden that no term describes
   Recording recording;
+
+  /// Whether each changes ranges by nearly as much [m] as was asked.
+  bool reaches(double size) const {
+    constexpr double kNearly = 0.9;
+    return std::ranges::all_of(sizes, [&](double reached) { return reached >= kNearly * size; });
+  }
 };
 
 /// The terms of the catalogue that name a cause.
