@@ -50,8 +50,8 @@ class Refiner {
     }
     // For terms that depend on it.
     sample_.beams.cos_incidence = incidences(found_, placed.view(noise_));
-    equations_ = normal_equations(found_, placed.view(noise_), free_.size(), surfel_rows(model_, sample_, free_),
-                                  settings_.surfels);
+    equations_ = normal_equations(found_, placed.view(noise_), free_.size(),
+                                  surfel_rows(model_, sample_, free_), settings_.surfels);
     information_ = equations_.matrix / equations_.covariance_factor();
     const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
     const Eigen::VectorXd from_start = picked(model_, free_) - picked(start_, free_);

@@ -85,8 +85,7 @@ NormalEquations Evidence::equations(const Dictionary& dictionary, std::size_t mo
     if (interrupted_ && interrupted_()) throw Interrupted();
     all(of_surfel...);
   };
-  return normal_equations(thinned(all_, most), beams(), dictionary.parameters(), rows, settings_,
-                          shared_);
+  return normal_equations(thinned(all_, most), beams(), dictionary.parameters(), rows, settings_, shared_);
 }
 
 }  // namespace crisp
