@@ -9,8 +9,8 @@
 namespace crisp::cuda {
 namespace {
 
-constexpr std::size_t kBlock = 4096;  // cells
-constexpr double kReach = 1 << 16;    // cells from the median to where the lattice ends, see spatial_order()
+constexpr std::size_t kCellBlock = 4096;  // cells
+constexpr double kReach = 1 << 16;  // cells from the median to where the lattice ends, see spatial_order()
 constexpr double kSurelyWithin = 0.99 * kReach;
 
 struct Cells {
@@ -62,18 +62,18 @@ double extent(std::span<const double> values) {
 
 }  // namespace
 
-CellPlan plan_cells(const PointsView& points, double radius) {
+CellPlan plan_cells(const PointsView& points, double side) {
   CellPlan plan;
-  plan.order = spatial_order(points, radius);
+  plan.order = spatial_order(points, side);
   plan.near_begin = {0};
   if (points.size() == 0) return plan;
   for (const auto axis : {points.x, points.y, points.z}) {
-    plan.needs_double = plan.needs_double || extent(axis) > kSurelyWithin * radius;
+    plan.needs_double = plan.needs_double || extent(axis) > kSurelyWithin * side;
   }
 
   const Cells cells = occupied_cells(plan.order);
   std::vector<std::vector<SlotRange>> lists(cells.key.size());
-  for_blocks(lists.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+  for_blocks(lists.size(), kCellBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) lists[cell] = near_slots(cells, cell);
   });
   for (std::size_t cell = 0; cell < lists.size(); ++cell) {
@@ -88,22 +88,6 @@ CellPlan plan_cells(const PointsView& points, double radius) {
     plan.near_begin.push_back(plan.near.size());
   }
   return plan;
-}
-
-Slots fill_slots(const CellPlan& plan, const PointsView& points, std::span<const double> weights) {
-  const auto& index = plan.order.index;
-  Slots slots;
-  slots.at.assign(index.size(), 0);
-  slots.weight.resize(index.size());
-  for_blocks(index.size(), 65536, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t slot = begin; slot < end; ++slot) {
-      slots.at.x[slot] = points.x[index[slot]];
-      slots.at.y[slot] = points.y[index[slot]];
-      slots.at.z[slot] = points.z[index[slot]];
-      slots.weight[slot] = weights[index[slot]];
-    }
-  });
-  return slots;
 }
 
 }  // namespace crisp::cuda

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "pipeline/quality/points.hpp"
@@ -13,7 +12,7 @@ namespace crisp::cuda {
 
 /// Which points are summed side by side, and against which. A slot is a place in `order`.
 struct CellPlan {
-  SpatialOrder order;                     ///< by cells of the radius
+  SpatialOrder order;                     ///< by cells
   std::vector<Unit> units;                ///< cell by cell
   std::vector<SlotRange> near;            ///< see PlanView
   std::vector<std::uint64_t> near_begin;  ///< see PlanView
@@ -21,15 +20,8 @@ struct CellPlan {
   bool needs_double = false;  ///< it reaches so far that a cell may hold points that are far from one another
 };
 
-/// @param radius  [m] within which points are neighbours
+/// @param side    [m] of the cells: points that are nearer than that are neighbours
 /// @throws Error  for more points than 32 bits can number
-CellPlan plan_cells(const PointsView& points, double radius);
-
-/// Positions [m] and weights in the order of the slots.
-struct Slots {
-  Vectors at;
-  std::vector<double> weight;
-};
-Slots fill_slots(const CellPlan& plan, const PointsView& points, std::span<const double> weights);
+CellPlan plan_cells(const PointsView& points, double side);
 
 }  // namespace crisp::cuda

@@ -4,6 +4,7 @@
 #include <cuda_runtime_api.h>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,15 +26,19 @@ class DeviceArray {
   explicit DeviceArray(std::size_t n) : size_(n) {
     if (n > 0) check(cudaMalloc(&data_, n * sizeof(T)), "make room for a cloud");
   }
-  explicit DeviceArray(const std::vector<T>& values) : DeviceArray(values.size()) {
-    if (size_ == 0) return;
-    check(cudaMemcpy(data_, values.data(), size_ * sizeof(T), cudaMemcpyHostToDevice), "take a cloud");
-  }
+  explicit DeviceArray(std::span<const T> values) : DeviceArray(values.size()) { upload(values); }
   DeviceArray(const DeviceArray&) = delete;
   DeviceArray& operator=(const DeviceArray&) = delete;
   ~DeviceArray() { cudaFree(data_); }
 
   T* data() const { return data_; }
+
+  /// @param values  n
+  void upload(std::span<const T> values) {
+    if (size_ > 0) {
+      check(cudaMemcpy(data_, values.data(), size_ * sizeof(T), cudaMemcpyHostToDevice), "take a cloud");
+    }
+  }
 
   std::vector<T> download() const {
     std::vector<T> values(size_);

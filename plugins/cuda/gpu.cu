@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <limits>
+#include <memory>
+#include <optional>
 
 #include "plugins/cuda/device_array.hpp"
 #include "plugins/cuda/gpu.hpp"
@@ -28,21 +29,96 @@ __global__ void __launch_bounds__(kLanes) sum_units(PlanView plan, PairKernel ke
   sum_unit<Real>(plan, kernel, blockIdx.x, lanes, shared, results);
 }
 
-void check_room(const CellPlan& plan, const Slots& slots, bool gradient) {
+/// @param bytes  that the cloud needs besides what it has
+void check_room(std::size_t points, std::size_t bytes) {
   std::size_t free = 0;
   std::size_t all = 0;
   check(cudaMemGetInfo(&free, &all), "say how much memory it has");
-  const std::size_t needed = slots.weight.size() * sizeof(double) * (gradient ? 7 : 4) +
-                             plan.units.size() * (sizeof(Unit) + sizeof(double) + sizeof(std::uint64_t)) +
-                             plan.near.size() * sizeof(SlotRange) +
-                             plan.near_begin.size() * sizeof(std::uint64_t);
-  if (needed > free || plan.units.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    throw Error("a cloud of " + std::to_string(slots.weight.size()) + " points needs " +
-                    std::to_string(needed >> 20) + " MiB of the graphics processor's memory, of which " +
-                    std::to_string(free >> 20) + " MiB are free",
-                "thin the cloud, or measure with `measure: rqe` and `search: grid`");
-  }
+  if (bytes <= free) return;
+  throw Error("a cloud of " + std::to_string(points) + " points needs " + std::to_string(bytes >> 20) +
+                  " MiB of the graphics processor's memory, of which " + std::to_string(free >> 20) +
+                  " MiB are free",
+              "thin the cloud, or measure with `measure: rqe` and `search: grid`");
 }
+
+/// Three coordinates of n points.
+struct DeviceVectors {
+  explicit DeviceVectors(std::size_t n) : x(n), y(n), z(n) {}
+
+  DeviceArray<double> x, y, z;
+};
+
+/// A plan, and room for the cloud that it is of.
+class GpuPlan {
+ public:
+  explicit GpuPlan(const CellPlan& plan)
+      : needs_double_(plan.needs_double),
+        blocks_(blocks_with_room(plan)),
+        index_(plan.order.index),
+        units_(plan.units),
+        near_(plan.near),
+        near_begin_(plan.near_begin),
+        at_(plan.order.index.size()),
+        weight_(plan.order.index.size()),
+        kernel_(plan.units.size()),
+        pairs_(plan.units.size()) {}
+
+  UnitSums sum(const PointsView& points, std::span<const double> weights, const PairKernel& kernel,
+               bool gradient) {
+    UnitSums sums;
+    if (blocks_ == 0) return sums;
+    at_.x.upload(points.x);
+    at_.y.upload(points.y);
+    at_.z.upload(points.z);
+    weight_.upload(weights);
+    if (gradient && !pull_) {
+      check_room(points.size(), 3 * sizeof(double) * points.size());
+      pull_.emplace(points.size());
+    }
+    const PlanView view{at_.x.data(),  at_.y.data(),  at_.z.data(), weight_.data(),
+                        index_.data(), units_.data(), near_.data(), near_begin_.data()};
+    Results results{nullptr, nullptr, nullptr, kernel_.data(), pairs_.data()};
+    if (gradient) {
+      results.x = pull_->x.data();
+      results.y = pull_->y.data();
+      results.z = pull_->z.data();
+    }
+    if (needs_double_) {
+      sum_units<double><<<blocks_, kLanes>>>(view, kernel, results);
+    } else {
+      sum_units<float><<<blocks_, kLanes>>>(view, kernel, results);
+    }
+    check(cudaGetLastError(), "begin to sum");
+    check(cudaDeviceSynchronize(), "sum");
+    if (gradient) sums.pull = {pull_->x.download(), pull_->y.download(), pull_->z.download()};
+    sums.kernel = kernel_.download();
+    sums.pairs = pairs_.download();
+    return sums;
+  }
+
+ private:
+  /// How many it takes, once it is sure that there is room.
+  static unsigned blocks_with_room(const CellPlan& plan) {
+    const std::size_t points = plan.order.index.size();
+    check_room(points, points * (4 * sizeof(double) + sizeof(std::uint32_t)) +
+                           plan.units.size() * (sizeof(Unit) + sizeof(double) + sizeof(std::uint64_t)) +
+                           plan.near.size() * sizeof(SlotRange) +
+                           plan.near_begin.size() * sizeof(std::uint64_t));
+    return static_cast<unsigned>(plan.units.size());  // no more than points, which 32 bits can number
+  }
+
+  bool needs_double_;
+  unsigned blocks_;
+  DeviceArray<std::uint32_t> index_;
+  DeviceArray<Unit> units_;
+  DeviceArray<SlotRange> near_;
+  DeviceArray<std::uint64_t> near_begin_;
+  DeviceVectors at_;
+  DeviceArray<double> weight_;
+  std::optional<DeviceVectors> pull_;  // once it is asked for
+  DeviceArray<double> kernel_;
+  DeviceArray<std::uint64_t> pairs_;
+};
 
 }  // namespace
 
@@ -53,39 +129,8 @@ std::string why_no_gpu() {
   return devices == 0 ? "CUDA finds no device" : "";
 }
 
-UnitSums sum_on_gpu(const CellPlan& plan, const Slots& slots, const PairKernel& kernel, bool gradient) {
-  UnitSums sums;
-  if (plan.units.empty()) return sums;
-  check_room(plan, slots, gradient);
-  const DeviceArray x(slots.at.x);
-  const DeviceArray y(slots.at.y);
-  const DeviceArray z(slots.at.z);
-  const DeviceArray weight(slots.weight);
-  const DeviceArray units(plan.units);
-  const DeviceArray near(plan.near);
-  const DeviceArray near_begin(plan.near_begin);
-  const std::size_t pulls = gradient ? slots.weight.size() : 0;
-  const DeviceArray<double> pull_x(pulls);
-  const DeviceArray<double> pull_y(pulls);
-  const DeviceArray<double> pull_z(pulls);
-  const DeviceArray<double> unit_kernel(plan.units.size());
-  const DeviceArray<std::uint64_t> unit_pairs(plan.units.size());
-
-  const PlanView view{x.data(),     y.data(),    z.data(),         weight.data(),
-                      units.data(), near.data(), near_begin.data()};
-  const Results results{pull_x.data(), pull_y.data(), pull_z.data(), unit_kernel.data(), unit_pairs.data()};
-  const auto blocks = static_cast<unsigned>(plan.units.size());
-  if (plan.needs_double) {
-    sum_units<double><<<blocks, kLanes>>>(view, kernel, results);
-  } else {
-    sum_units<float><<<blocks, kLanes>>>(view, kernel, results);
-  }
-  check(cudaGetLastError(), "begin to sum");
-  check(cudaDeviceSynchronize(), "sum");
-  sums.pull = {pull_x.download(), pull_y.download(), pull_z.download()};
-  sums.kernel = unit_kernel.download();
-  sums.pairs = unit_pairs.download();
-  return sums;
+SumUnits take_plan_to_gpu(const CellPlan& plan) {
+  return [gpu = std::make_shared<GpuPlan>(plan)](const auto&... cloud) { return gpu->sum(cloud...); };
 }
 
 }  // namespace crisp::cuda

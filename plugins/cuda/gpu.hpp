@@ -10,8 +10,9 @@ namespace crisp::cuda {
 /// Why no graphics processor can be used, in words; empty if one can.
 std::string why_no_gpu();
 
-/// SumUnits on the current CUDA device.
-/// @throws Error  if there is none, if the cloud does not fit its memory, or if it fails
-UnitSums sum_on_gpu(const CellPlan& plan, const Slots& slots, const PairKernel& kernel, bool gradient);
+/// TakePlan for the current CUDA device, whose memory holds the plan and the cloud from one call to the next.
+/// @throws Error  (as what it returns does) if there is none, if the cloud does not fit its memory, or if it
+/// fails
+SumUnits take_plan_to_gpu(const CellPlan& plan);
 
 }  // namespace crisp::cuda

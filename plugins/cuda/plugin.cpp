@@ -13,7 +13,7 @@ std::unique_ptr<crisp::Search> make_search() {
     throw crisp::Error("there is no graphics processor to measure on: " + reason,
                        "install its driver, or measure with `measure: rqe` and `search: grid`");
   }
-  return std::make_unique<crisp::cuda::UnitSearch>(crisp::cuda::sum_on_gpu);
+  return std::make_unique<crisp::cuda::UnitSearch>(crisp::cuda::take_plan_to_gpu);
 }
 
 void register_cuda(crisp::Registrar& registrar) {

@@ -15,19 +15,24 @@ namespace crisp::cuda {
 
 /// What all units of a plan gave; see Results.
 struct UnitSums {
-  Vectors pull;                ///< of each slot; empty: unwanted
+  Vectors pull;                ///< of each point; empty: unwanted
   std::vector<double> kernel;  ///< of each unit
   std::vector<std::uint64_t> pairs;
 };
 
 /// Calls sum_unit() for all units of a plan, in single precision unless the plan needs double.
-using SumUnits = std::function<UnitSums(const CellPlan&, const Slots&, const PairKernel&, bool gradient)>;
+using SumUnits = std::function<UnitSums(const PointsView& points, std::span<const double> weights,
+                                        const PairKernel& kernel, bool gradient)>;
+
+/// Readies a plan for whatever computes it. The plan must outlive what this returns.
+using TakePlan = std::function<SumUnits(const CellPlan&)>;
 
 /// RQE's sums by units, wherever they are computed. Truncated as "exact" and "flann" are, to a relative error
-/// of some 1e-6 a pair; the same to the last bit each time.
+/// of some 1e-6 a pair; the same to the last bit each time. A plan is kept for points that have moved little
+/// since it was made.
 class UnitSearch final : public Search {
  public:
-  explicit UnitSearch(SumUnits sum_units) : sum_units_(std::move(sum_units)) {}
+  explicit UnitSearch(TakePlan take_plan) : take_plan_(std::move(take_plan)) {}
 
   /// That of "grid": lists of neighbours are made by the processor.
   std::unique_ptr<NeighbourIndex> index(const PointsView& points, double radius) const override;
@@ -35,7 +40,16 @@ class UnitSearch final : public Search {
                     const TruncatedGaussian& kernel, const SumsWanted& wanted) override;
 
  private:
-  SumUnits sum_units_;
+  struct Planned {
+    double radius;  ///< [m] of the kernel
+    Vectors at;     ///< [m] where points were
+    CellPlan cells;
+    SumUnits sum;
+  };
+  const Planned& planned_for(const PointsView& points, double radius);
+
+  TakePlan take_plan_;
+  std::unique_ptr<Planned> planned_;
 };
 
 }  // namespace crisp::cuda

@@ -23,12 +23,14 @@ struct Unit {
   std::uint32_t cell;
 };
 
-/// Points cell by cell, and where the neighbours of a cell's points are. Pointers to either memory.
+/// Points, their order cell by cell, and where the neighbours of a cell's points are. Pointers to either
+/// memory.
 struct PlanView {
-  const double* x;                  ///< [m] of each slot
+  const double* x;                  ///< [m] of each point
   const double* y;                  ///< [m]
   const double* z;                  ///< [m]
-  const double* weight;             ///< of each slot
+  const double* weight;             ///< of each point
+  const std::uint32_t* index;       ///< of the point in each slot
   const Unit* units;                ///< each slot is in one
   const SlotRange* near;            ///< the cell itself and the up to 26 around it, list after list
   const std::uint64_t* near_begin;  ///< of each cell's list; one more than cells
@@ -55,14 +57,15 @@ struct Neighbour {
   Real x, y, z, weight;
 };
 
-/// A slot's point relative to that of the slot `origin`: subtracted in double precision, so that little is
-/// lost in single precision of what is near.
+/// A slot's point relative to the point `origin`: subtracted in double precision, so that little is lost in
+/// single precision of what is near.
 template <class Real>
 constexpr Neighbour<Real> relative(const PlanView& plan, std::uint32_t slot, std::uint32_t origin,
                                    double scale) {
-  return {static_cast<Real>(scale * (plan.x[slot] - plan.x[origin])),
-          static_cast<Real>(scale * (plan.y[slot] - plan.y[origin])),
-          static_cast<Real>(scale * (plan.z[slot] - plan.z[origin])), static_cast<Real>(plan.weight[slot])};
+  const std::uint32_t i = plan.index[slot];
+  return {static_cast<Real>(scale * (plan.x[i] - plan.x[origin])),
+          static_cast<Real>(scale * (plan.y[i] - plan.y[origin])),
+          static_cast<Real>(scale * (plan.z[i] - plan.z[origin])), static_cast<Real>(plan.weight[i])};
 }
 
 /// Adds what a point gets from some neighbours, in their order: summed in Real, then in double precision.
@@ -111,7 +114,7 @@ struct Lane {
 
 /// Where the results of all units go.
 struct Results {
-  double* x;  ///< of each slot: Σⱼ wⱼ G/G(0) · (xᵢ − xⱼ) [kernel units]; null: unwanted
+  double* x;  ///< of each point: wᵢ Σⱼ wⱼ G/G(0) · (xᵢ − xⱼ) [m]; null: unwanted
   double* y;
   double* z;
   double* kernel;        ///< of each unit: Σᵢ Σⱼ wᵢ wⱼ (G/G(0) − floor)
@@ -126,10 +129,11 @@ template <class Real, class Lanes>
 constexpr void sum_unit(const PlanView& plan, const PairKernel& kernel, std::uint32_t number, Lanes& lanes,
                         Shared<Real>& shared, const Results& results) {
   const Unit unit = plan.units[number];
-  const std::uint32_t origin = unit.slots.first;
+  const std::uint32_t first_slot = unit.slots.first;
+  const std::uint32_t origin = plan.index[first_slot];
   const std::uint32_t members = unit.slots.last - unit.slots.first;
   lanes.each([&](std::uint32_t k, Lane<Real>& lane) {
-    if (k < members) lane.own = relative<Real>(plan, origin + k, origin, kernel.scale);
+    if (k < members) lane.own = relative<Real>(plan, first_slot + k, origin, kernel.scale);
   });
   for (std::uint64_t list = plan.near_begin[unit.cell]; list < plan.near_begin[unit.cell + 1]; ++list) {
     const SlotRange range = plan.near[list];
@@ -144,13 +148,16 @@ constexpr void sum_unit(const PlanView& plan, const PairKernel& kernel, std::uin
     }
   }
   lanes.each([&](std::uint32_t k, Lane<Real>& lane) {
-    shared.kernel[k] = k < members ? plan.weight[origin + k] * lane.sums.kernel : 0;
+    shared.kernel[k] = 0;
     shared.pairs[k] = lane.sums.pairs;
-    if (k < members && results.x != nullptr) {
-      results.x[origin + k] = lane.sums.x;
-      results.y[origin + k] = lane.sums.y;
-      results.z[origin + k] = lane.sums.z;
-    }
+    if (k >= members) return;
+    const std::uint32_t i = plan.index[first_slot + k];
+    shared.kernel[k] = plan.weight[i] * lane.sums.kernel;
+    if (results.x == nullptr) return;
+    const double factor = plan.weight[i] / kernel.scale;
+    results.x[i] = factor * lane.sums.x;
+    results.y[i] = factor * lane.sums.y;
+    results.z[i] = factor * lane.sums.z;
   });
   for (std::uint32_t half = kLanes / 2; half > 0; half /= 2) {
     lanes.each([&](std::uint32_t k, Lane<Real>&) {

@@ -24,7 +24,7 @@
 #include "pipeline/quality/search.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "tests/bench/rivals.hpp"
-#include "tests/pipeline/quality/clouds.hpp"
+#include "tests/bench/walls.hpp"
 
 namespace crisp::bench {
 namespace {
@@ -54,12 +54,6 @@ std::unique_ptr<Search> make_search(const std::string& name) {
   return registry.make(name);
 }
 
-/// n points on three walls, about so many of them within the cut-off of 7 σ of a point.
-Vectors walls(std::size_t n, double neighbours, double sigma) {
-  const double area = static_cast<double>(n) * std::numbers::pi * 49 * sigma * sigma / neighbours;
-  return test::room_corner(n, std::sqrt(area / 3), 0.3 * sigma, 1);
-}
-
 /// Each coordinate moved by up to so much [m].
 Vectors shaken(Vectors points, double by) {
   std::mt19937_64 random(2);
@@ -79,7 +73,7 @@ void beside_rivals() {
   constexpr double kSigma = 0.02;
   const TruncatedGaussian kernel(kSigma, 7);
   const RqeSettings settings{.sigma = kSigma, .error_bound = false};
-  const Vectors cloud = walls(kPoints, 100, kSigma);
+  const Vectors cloud = test::walls(kPoints, 100, kSigma);
   auto again = make_search("grid");
   Rqe found;
   const double fresh = least([&] { found = rqe(cloud.view(), {}, settings); }, 10);
@@ -124,7 +118,7 @@ void against_points() {
   fmt::print("\nagainst points, at the same density (100 neighbours)\n");
   double before = 0;
   for (const std::size_t n : {10000U, 100000U, 1000000U, 10000000U}) {
-    const Vectors cloud = walls(n, 100, 0.02);
+    const Vectors cloud = test::walls(n, 100, 0.02);
     const double seconds =
         least([&] { rqe(cloud.view(), {}, {.sigma = 0.02, .error_bound = false}); }, n < 1000000 ? 20 : 2);
     fmt::print("  {:9} points {:10.2f} ms", n, 1e3 * seconds);
@@ -179,7 +173,7 @@ void against_lasers() {
 }
 
 void against_threads() {
-  const Vectors cloud = walls(1000000, 100, 0.02);
+  const Vectors cloud = test::walls(1000000, 100, 0.02);
   double load[1] = {0};
   if (getloadavg(load, 1) < 1) load[0] = std::nan("");
   fmt::print("\nagainst threads, 1000000 points, wall time (load of the machine: {:.1f})\n", load[0]);

@@ -7,19 +7,12 @@
 #include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/rqe.hpp"
 #include "pipeline/quality/search.hpp"
-#include "tests/pipeline/quality/clouds.hpp"
+#include "tests/bench/walls.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr double kSigma = 0.02;
-
-/// n points on three walls, about so many of them within the cut-off of 7 σ of a point.
-Vectors walls(std::int64_t n, std::int64_t neighbours) {
-  const double radius = 7 * kSigma;
-  const double area = static_cast<double>(n) * 3.14159 * radius * radius / static_cast<double>(neighbours);
-  return test::room_corner(static_cast<std::size_t>(n), std::sqrt(area / 3), 0.3 * kSigma, 1);
-}
 
 void count(benchmark::State& state, const Rqe& result, std::size_t n) {
   using benchmark::Counter;
@@ -40,7 +33,8 @@ std::unique_ptr<Search> make_search(const std::string& name) {
 void by_search(benchmark::State& state, const char* name, bool again) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(state.range(2)));
-  const auto cloud = walls(state.range(0), state.range(1));
+  const auto cloud =
+      test::walls(static_cast<std::size_t>(state.range(0)), static_cast<double>(state.range(1)), kSigma);
   auto search = make_search(name);
   Rqe result;
   for (auto _ : state) {

@@ -12,7 +12,7 @@ namespace crisp::cuda {
 /// What computes units in a test.
 struct Runner {
   std::string name;
-  SumUnits sum_units;
+  TakePlan take_plan;
   std::string why_not;  ///< why it cannot be tried here; empty: it can
 };
 

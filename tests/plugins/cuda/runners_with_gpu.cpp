@@ -4,6 +4,6 @@
 
 namespace crisp::cuda {
 
-std::vector<Runner> gpu_runners() { return {{"Gpu", sum_on_gpu, why_no_gpu()}}; }
+std::vector<Runner> gpu_runners() { return {{"Gpu", take_plan_to_gpu, why_no_gpu()}}; }
 
 }  // namespace crisp::cuda

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 
 #include "pipeline/quality/rqe.hpp"
 #include "pipeline/quality/searches.hpp"
@@ -35,22 +36,27 @@ void sum_all(const CellPlan& plan, const PlanView& view, const PairKernel& kerne
   }
 }
 
-UnitSums sum_on_host(const CellPlan& plan, const Slots& slots, const PairKernel& kernel, bool gradient) {
+UnitSums sum_on_host(const CellPlan& plan, const PointsView& points, std::span<const double> weights,
+                     const PairKernel& kernel, bool gradient) {
   UnitSums sums;
   sums.kernel.resize(plan.units.size());
   sums.pairs.resize(plan.units.size());
-  if (gradient) sums.pull.assign(slots.weight.size(), 0);
-  const PlanView view{slots.at.x.data(), slots.at.y.data(), slots.at.z.data(),     slots.weight.data(),
-                      plan.units.data(), plan.near.data(),  plan.near_begin.data()};
+  if (gradient) sums.pull.assign(points.size(), 0);
+  const PlanView view{points.x.data(),         points.y.data(),   points.z.data(),  weights.data(),
+                      plan.order.index.data(), plan.units.data(), plan.near.data(), plan.near_begin.data()};
   const Results results{gradient ? sums.pull.x.data() : nullptr, sums.pull.y.data(), sums.pull.z.data(),
                         sums.kernel.data(), sums.pairs.data()};
   (plan.needs_double ? sum_all<double> : sum_all<float>)(plan, view, kernel, results);
   return sums;
 }
 
+SumUnits take_plan_to_host(const CellPlan& plan) {
+  return [&plan](const auto&... cloud) { return sum_on_host(plan, cloud...); };
+}
+
 std::vector<Runner> all_runners() {
   std::vector<Runner> runners = gpu_runners();
-  runners.push_back({"Host", sum_on_host, ""});
+  runners.push_back({"Host", take_plan_to_host, ""});
   return runners;
 }
 
@@ -60,7 +66,7 @@ class UnitSearchOn : public testing::TestWithParam<Runner> {
   void SetUp() override {
     if (!GetParam().why_not.empty()) GTEST_SKIP() << "no graphics processor: " << GetParam().why_not;
   }
-  static UnitSearch search() { return UnitSearch(GetParam().sum_units); }
+  static UnitSearch search() { return UnitSearch(GetParam().take_plan); }
 };
 
 double largest(const Vectors& gradient) {
@@ -110,6 +116,50 @@ TEST_P(UnitSearchOn, IsTheSameToTheLastBitEachTime) {
   const auto other = rqe(cloud.view(), {}, {.sigma = 0.02}, units);
   EXPECT_EQ(one.value, other.value);
   EXPECT_EQ(one.gradient.x, other.gradient.x);
+}
+
+/// Each point moved by up to so much along each axis [m].
+Vectors moved(Vectors cloud, double most, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> by(-most, most);
+  for (auto* axis : {&cloud.x, &cloud.y, &cloud.z}) {
+    for (double& at : *axis) at += by(random);
+  }
+  return cloud;
+}
+
+TEST_P(UnitSearchOn, HoldsForPointsThatHaveMovedLittleOrFarSinceTheyWerePlanned) {
+  const auto planned = test::random_cube(3000, 0.5, 5);
+  ExactSearch exact;
+  for (const double most : {0.001, 0.0048, 0.05}) {  // [m]; a plan serves to 5 mm, a twentieth of the radius
+    auto units = search();
+    const auto before = rqe(planned.view(), {}, {.sigma = 0.02, .cutoff = 5}, units);
+    const auto cloud = moved(planned, most, 6);
+    const auto weights = test::random_weights(cloud.size(), 7);
+    const auto truth = rqe(cloud.view(), weights, {.sigma = 0.02, .cutoff = 5}, exact);
+    const auto result = rqe(cloud.view(), weights, {.sigma = 0.02, .cutoff = 5}, units);
+    EXPECT_EQ(result.tested == before.tested, most < 0.005) << most;
+    EXPECT_NEAR(result.value, truth.value, 2e-6) << most;
+    EXPECT_EQ(result.pairs, truth.pairs) << most;
+    EXPECT_NEAR(result.error_bound, truth.error_bound, 1e-5 * truth.error_bound) << most;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      EXPECT_NEAR(result.gradient.x[i], truth.gradient.x[i], 2e-6 * largest(truth.gradient)) << most;
+    }
+  }
+}
+
+TEST_P(UnitSearchOn, PlansAnewForAnotherKernelAndAsManyOtherPoints) {
+  const auto cloud = test::random_cube(2000, 0.5, 5);
+  ExactSearch exact;
+  auto units = search();
+  rqe(cloud.view(), {}, {.sigma = 0.01}, units);
+  for (const double sigma : {0.03, 0.005}) {
+    EXPECT_NEAR(rqe(cloud.view(), {}, {.sigma = sigma}, units).value,
+                rqe(cloud.view(), {}, {.sigma = sigma}, exact).value, 2e-6);
+  }
+  const auto other = test::random_cube(2000, 0.3, 8);
+  EXPECT_NEAR(rqe(other.view(), {}, {.sigma = 0.005}, units).value,
+              rqe(other.view(), {}, {.sigma = 0.005}, exact).value, 2e-6);
 }
 
 TEST_P(UnitSearchOn, LeavesTheGradientOutWhenItIsNotWanted) {
