@@ -277,6 +277,14 @@ std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes,
   return facts;
 }
 
+MirrorFacts on_hubs_clock(MirrorFacts facts, const ClockFacts& clock) {
+  if (std::isnan(clock.skew)) return facts;
+  facts.period_std_error = std::hypot(facts.period_std_error, facts.period * clock.skew_std_error);
+  facts.period *= 1 + clock.skew;
+  for (double& period : facts.periods) period *= 1 + clock.skew;
+  return facts;
+}
+
 Gain gain_over_nominal(const MirrorFacts& facts, double nominal, std::uint64_t seed) {
   const auto n = static_cast<Eigen::Index>(facts.periods.size());
   const Eigen::VectorXd excess = Eigen::Map<const Eigen::VectorXd>(facts.periods.data(), n).array() - nominal;

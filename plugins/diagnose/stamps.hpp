@@ -124,6 +124,9 @@ std::optional<std::array<double, 2>> unsure_about(const std::optional<ClockDepar
 std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes,
                                         const std::optional<std::array<double, 2>>& unsure = {});
 
+/// The same on the hub's clock, as far as that tells the device's: quartzes differ by as much as mirrors may.
+MirrorFacts on_hubs_clock(MirrorFacts facts, const ClockFacts& clock);
+
 /// What it brings for every other piece's period to expect that of the others in place of the nominal one
 /// [s].
 Gain gain_over_nominal(const MirrorFacts& facts, double nominal, std::uint64_t seed);

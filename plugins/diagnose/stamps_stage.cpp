@@ -206,7 +206,9 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, Con
     facts.period_std_error = mirror->period_std_error;
     facts.nominal_period = device.nominal_period;
     facts.wander = mirror->wander;
-    if (nominal_mirrors_ && device.nominal_period > 0) add_mirror(device, *mirror, context.seed(), all);
+    if (nominal_mirrors_ && device.nominal_period > 0) {
+      add_mirror(device, on_hubs_clock(*mirror, clock), context.seed(), all);
+    }
   }
   tell_unknown(facts, device.timed, all);
   if (auto doubt = doubt_of(facts); !doubt.empty()) context.distrust(std::move(doubt));

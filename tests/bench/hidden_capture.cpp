@@ -35,8 +35,9 @@ struct Hidden {
   std::string beside;                   ///< further effects in YAML
   std::string makes;                    ///< cause that is there with it
   Scenes scenes = {"office", "hall", "street"};
-  double duration = 10;             ///< [s]
-  std::vector<std::string> motion;  ///< of the plate, as options; else as the configuration has it
+  double duration = 10;                ///< [s]
+  std::vector<std::string> simulated;  ///< further options of grabber.simulate
+  std::vector<std::string> asked;      ///< further settings of the diagnosis
 };
 
 class Drawer {
@@ -137,9 +138,14 @@ std::optional<Hidden> hidden_term(const std::string& term, std::uint64_t seed) {
   }
   for (const Parameter& parameter : found->parameters) hidden.truth[parameter.name] = parameter.value;
   const MotionSettings& motion = drawn.recording.scanner.motion;
-  hidden.motion = {motion.kind == MotionKind::reversal ? "motion=reversal" : "motion=varying",
-                   fmt::format("min_rate={}Hz", motion.min_rate),
-                   fmt::format("max_rate={}Hz", motion.max_rate)};
+  hidden.simulated = {motion.kind == MotionKind::reversal ? "motion=reversal" : "motion=varying",
+                      fmt::format("min_rate={}Hz", motion.min_rate),
+                      fmt::format("max_rate={}Hz", motion.max_rate)};
+  if (term ==
+      "mirror.period") {  // clock stages measure it; that it should be the nominal one they must be told
+    hidden.simulated.emplace_back("mirror_slowest=0");
+    hidden.asked.emplace_back("diagnose.stamps.nominal_mirrors=true");
+  }
   return hidden;
 }
 
@@ -187,11 +193,11 @@ class Trial {
     hidden.cause = cause;
     const std::string scene = hidden.scenes[drawer.below(hidden.scenes.size())];
     const test::Workshop workshop;
-    std::vector<std::string> options = hidden.motion;
+    std::vector<std::string> options = hidden.simulated;
     options.insert(options.end(), {fmt::format("seed={}", seed), "scene=" + scene,
                                    fmt::format("duration={}s", hidden.duration), effects_of(hidden)});
     workshop.simulate("made", options);
-    const auto outcome = workshop.run("diagnose.yaml", workshop / "made/hub.pcap", "out");
+    const auto outcome = workshop.run("diagnose.yaml", workshop / "made/hub.pcap", "out", hidden.asked);
     if (!std::ranges::count(outcome.files, "diagnosis.json")) throw Error(cause + ": " + outcome.told);
     fmt::print("{:<22} seed {:<4} {:<8} {}; found:", cause, seed, scene, effects_of(hidden));
     count(hidden, read_findings(workshop / "out/diagnosis.json"));

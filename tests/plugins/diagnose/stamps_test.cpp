@@ -241,6 +241,24 @@ TEST(Stamps, GiveTheRateOfAMirror) {
   EXPECT_LT(gain_over_nominal(*facts, facts->period, 1).before, 1e-7) << "the stamps' microsecond";
 }
 
+TEST(Stamps, GiveTheRateOfAMirrorByTheHubsClock) {
+  StampTrack passes;
+  for (int k = 0; k < 500; ++k) {  // a mirror at its nominal rate, on a clock that is 150 ppm slow
+    const auto hub_us = 20'000.0 * k;
+    passes.add(static_cast<std::uint16_t>(k), static_cast<std::uint32_t>(hub_us / (1 + 150e-6)),
+               kEpoch_ns + static_cast<std::int64_t>(1000 * hub_us));
+  }
+  const auto own = mirror_facts(passes.stamps());
+  ASSERT_TRUE(own);
+  EXPECT_NEAR(own->period, 0.02 / (1 + 150e-6), 1e-8);
+  const ClockFacts clock{.skew = 150e-6, .skew_std_error = 10e-6};
+  const MirrorFacts facts = on_hubs_clock(*own, clock);
+  EXPECT_NEAR(facts.period, 0.02, 1e-8);
+  EXPECT_NEAR(facts.period_std_error, 10e-6 * 0.02, 1e-9);
+  EXPECT_LT(gain_over_nominal(facts, 0.02, 1).before, 1e-7);
+  EXPECT_EQ(on_hubs_clock(*own, {}).period, own->period) << "nothing is known of its clock";
+}
+
 TEST(Stamps, OfAMirrorAcrossARestartAreNoTurns) {
   StampTrack passes;
   std::int64_t hub_us = 0;
