@@ -15,8 +15,8 @@ struct Tries {
   enum class Spacing {
     kLinear,
     kLogarithmic,
-    kReciprocal,  ///< evenly in 1/x: periods
-    kInstants,    ///< evenly over the recording, `from` and `to` being shares of it
+    kRangePeriods,  ///< evenly in 1/x, none longer than the farthest range: less than one tells no period
+    kInstants,      ///< evenly over the recording, `from` and `to` being shares of it
   };
   Spacing spacing = Spacing::kLinear;
   double from = 0;

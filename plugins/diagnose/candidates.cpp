@@ -10,17 +10,19 @@
 namespace crisp {
 namespace {
 
-double tried(const Tries& tries, double step, const Lasting& lasting) {
+double tried(const Tries& tries, double step, const Coverage& coverage) {
   const double share = tries.count > 1 ? std::clamp(step / (tries.count - 1), 0.0, 1.0) : 0.5;
   switch (tries.spacing) {
     case Tries::Spacing::kLinear:
       return std::lerp(tries.from, tries.to, share);
     case Tries::Spacing::kLogarithmic:
       return tries.from * std::pow(tries.to / tries.from, share);
-    case Tries::Spacing::kReciprocal:
-      return 1 / std::lerp(1 / tries.from, 1 / tries.to, share);
+    case Tries::Spacing::kRangePeriods: {
+      const double longest = std::clamp(coverage.farthest, tries.from, tries.to);
+      return 1 / std::lerp(1 / tries.from, 1 / longest, share);
+    }
     case Tries::Spacing::kInstants:
-      return std::lerp(lasting.first, lasting.last, std::lerp(tries.from, tries.to, share));
+      return std::lerp(coverage.first, coverage.last, std::lerp(tries.from, tries.to, share));
   }
   return 0;
 }
@@ -33,7 +35,7 @@ std::size_t form_of(const TermInfo& info) {
 
 /// Appends a term of one owner: as it is in the calibration, or in all of its forms.
 void append(std::vector<Candidate>& all, Candidate as, const std::vector<TermParameters>& present,
-            const ModelTerm& term, const Lasting& lasting) {
+            const ModelTerm& term, const Coverage& coverage) {
   const TermInfo& info = term.info();
   const std::size_t form = form_of(info);
   const bool has_forms = form < info.parameters.size();
@@ -48,7 +50,7 @@ void append(std::vector<Candidate>& all, Candidate as, const std::vector<TermPar
   as.term = neutral_parameters(info);
   for (std::size_t step = 0; step < as.forms; ++step) {
     as.form = static_cast<double>(step);
-    if (has_forms) as.term.parameters[form].value = tried(info.parameters[form].tries, as.form, lasting);
+    if (has_forms) as.term.parameters[form].value = tried(info.parameters[form].tries, as.form, coverage);
     all.push_back(as);
   }
 }
@@ -68,38 +70,38 @@ const TermParameters* find_term(const std::vector<TermParameters>& terms, const 
 }
 
 std::vector<Candidate> candidates(const TermRegistry& terms, const Calibration& calibration,
-                                  const Lasting& lasting) {
+                                  const Coverage& coverage) {
   std::vector<Candidate> all;
   for (const std::string& name : terms.names()) {
     const auto term = terms.get(name);
-    if (!lasting.shares(term->info().counts_from)) continue;
+    if (!coverage.shares(term->info().counts_from)) continue;
     if (term->info().scope == Scope::kPlate) {
       append(all, {.owner = calibration.lasers.size(), .name = name}, calibration.plate_terms, *term,
-             lasting);
+             coverage);
       continue;
     }
     for (std::size_t laser = 0; laser < calibration.lasers.size(); ++laser) {
       const LaserCalibration& own = calibration.lasers[laser];
-      append(all, {.owner = laser, .name = own.name + "." + name}, own.terms, *term, lasting);
+      append(all, {.owner = laser, .name = own.name + "." + name}, own.terms, *term, coverage);
     }
   }
   return all;
 }
 
-std::vector<std::string> unshared_causes(const TermRegistry& terms, const Lasting& lasting) {
+std::vector<std::string> unshared_causes(const TermRegistry& terms, const Coverage& coverage) {
   std::vector<std::string> causes;
   for (const std::string& name : terms.names()) {
     const TermInfo& info = terms.get(name)->info();
-    if (info.covariate.empty() && !lasting.shares(info.counts_from)) causes.push_back(name);
+    if (info.covariate.empty() && !coverage.shares(info.counts_from)) causes.push_back(name);
   }
   return causes;
 }
 
-Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, const Lasting& lasting) {
+Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, const Coverage& coverage) {
   const auto term = terms.get(candidate.term.term);
   const std::size_t form = form_of(term->info());
   candidate.form = step;
-  candidate.term.parameters.at(form).value = tried(term->info().parameters[form].tries, step, lasting);
+  candidate.term.parameters.at(form).value = tried(term->info().parameters[form].tries, step, coverage);
   return candidate;
 }
 

@@ -39,12 +39,13 @@ struct Candidate {
   bool is_form_of(const Candidate& other) const { return name == other.name; }
 };
 
-/// When the first and last beams were fired [s since the run's epoch], and what recordings have in common.
-struct Lasting {
-  double first = 0;
-  double last = 0;
-  bool one_begin = true;  ///< there is but one recording
-  bool one_zero = true;   ///< all angles of the plate count from one zero of the encoder
+/// What beams cover, and what recordings have in common.
+struct Coverage {
+  double first = 0;         ///< [s since the run's epoch] when beams were fired
+  double last = 0;          ///< [s]
+  double farthest = 1e300;  ///< [m] range that all but a hundredth of them stay below
+  bool one_begin = true;    ///< there is but one recording
+  bool one_zero = true;     ///< all angles of the plate count from one zero of the encoder
 
   /// Whether one set of a term's parameters can hold for all.
   bool shares(CountsFrom from) const {
@@ -56,16 +57,16 @@ struct Lasting {
 /// term; further ones are left at their neutral values), but for those that recordings cannot share. Those
 /// that the calibration has come in the form that they have there, and with their values.
 std::vector<Candidate> candidates(const TermRegistry& terms, const Calibration& calibration,
-                                  const Lasting& lasting);
+                                  const Coverage& coverage);
 
 /// The causes that are left out because recordings cannot share them.
-std::vector<std::string> unshared_causes(const TermRegistry& terms, const Lasting& lasting);
+std::vector<std::string> unshared_causes(const TermRegistry& terms, const Coverage& coverage);
 
 /// The same with another form.
 ///
 /// @param step  on the scale of the forms that are tried: 0 is the first, forms − 1 the last, fractions lie
 ///              between
-Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, const Lasting& lasting);
+Candidate in_form(Candidate candidate, double step, const TermRegistry& terms, const Coverage& coverage);
 
 /// The candidate with the values that a look found.
 Candidate valued(Candidate candidate, const Look& look, const TermRegistry& terms);

@@ -98,7 +98,7 @@ class Diagnoser {
       tell_step(0, "looking at all candidates");
       const Evidence evidence(result.after.outcome.model, inside_, settings_.refinement.surfels,
                               settings_.beams, settings_.interrupted);
-      result.unshared = unshared_causes(terms_, evidence.lasting());
+      result.unshared = unshared_causes(terms_, evidence.coverage());
       const Survey survey(evidence, result.after, terms_, settings_);
       if (!is_close) result.departures = survey.needs(refused);
       is_close = is_close || (names_of(result.departures) == names_of(chosen) &&

@@ -8,6 +8,7 @@
 #include "pipeline/data/error.hpp"
 #include "pipeline/data/interrupted.hpp"
 #include "pipeline/data/recordings.hpp"
+#include "pipeline/data/robust.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/incidence.hpp"
 #include "pipeline/estimate/relative_noise.hpp"
@@ -71,12 +72,15 @@ Evidence::Evidence(const SensorModel& model, Sample sample, const SurfelSettings
   noise_ = relative_noise(all_, placed_.view(), sample_.beams, settings_);
   if (!noise_.empty()) refine_all(all_, beams(), settings_);
   surfels_ = thinned(all_, most);
+  constexpr double kNearlyAll = 0.99;
+  auto ranges = sample_.beams.range;
   const auto [first, last] = std::ranges::minmax(sample_.beams.time);
   const auto recordings = recordings_of(*sample_.plate);
-  lasting_ = {.first = first,
-              .last = last,
-              .one_begin = recordings.size() < 2,
-              .one_zero = recordings.empty() || recordings.front().zero == recordings.back().zero};
+  coverage_ = {.first = first,
+               .last = last,
+               .farthest = quantile_of(ranges, kNearlyAll),
+               .one_begin = recordings.size() < 2,
+               .one_zero = recordings.empty() || recordings.front().zero == recordings.back().zero};
   shared_ = shared_errors(sample_.beams, all_, beams());
 }
 

@@ -24,7 +24,7 @@ class Evidence {
   const Sample& sample() const { return sample_; }
   const Surfels& surfels() const { return surfels_; }  ///< with `most` beams
   BeamsView beams() const { return placed_.view(noise_); }
-  Lasting lasting() const { return lasting_; }
+  Coverage coverage() const { return coverage_; }
 
   /// Near the model, in the dictionary's parameters; with what errors beams may share.
   ///
@@ -39,7 +39,7 @@ class Evidence {
   SurfelSettings settings_;
   Surfels all_;      ///< with all beams
   Surfels surfels_;  ///< with `most` of them
-  Lasting lasting_;
+  Coverage coverage_;
   std::vector<Division> shared_;
   std::function<bool()> interrupted_;
 };

@@ -44,7 +44,7 @@ std::vector<Candidate::OtherForm> other_forms(const Candidate& best, const std::
                                               const TermRegistry& terms) {
   std::vector<Candidate> forms = {best};
   for (std::size_t k = 0; k < best.forms; ++k) {
-    forms.push_back(in_form(best, static_cast<double>(k), terms, evidence.lasting()));
+    forms.push_back(in_form(best, static_cast<double>(k), terms, evidence.coverage()));
   }
   const std::vector<Look> looks = looks_at(forms, others, model, base, evidence, beams, terms);
   const Eigen::VectorXd values = values_of(valued(best, looks.front(), terms));
@@ -72,7 +72,7 @@ std::vector<Candidate> with_sharper_forms(std::vector<Candidate> chosen, const S
       step /= kHalf;
       std::vector<Candidate> forms;
       for (int k = -kHalf; k <= kHalf; ++k) {
-        forms.push_back(in_form(chosen[c], chosen[c].form + k * step, terms, evidence.lasting()));
+        forms.push_back(in_form(chosen[c], chosen[c].form + k * step, terms, evidence.coverage()));
       }
       chosen[c] = forms[best_of(looks_at(forms, others, model, base, evidence, beams, terms))];
     }

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "pipeline/data/likeness.hpp"
@@ -26,6 +28,15 @@ void draw(const std::filesystem::path& folder, const Diagnosis& diagnosis, Conte
   const auto& lasers = context.rig().lasers;
   for (std::size_t laser = 0; laser < lasers.size(); ++laser) draw_one(laser, lasers[laser].name);
   draw_one(kAllLasers, "scanner");
+}
+
+/// What stamps have told already: clock stages place beams by the rate of each mirror as it was measured.
+std::set<std::string> told_by_stamps(const Findings& findings) {
+  std::set<std::string> told;
+  for (const DeviceFacts& facts : findings.devices) {
+    if (facts.period > 0) told.insert(facts.device + ".mirror.period");
+  }
+  return told;
 }
 
 bool extends(const Diagnosis& diagnosis) {
@@ -90,6 +101,7 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
     const RecordingLags lags = lags_of_recordings(start, sample, settings_.refinement);
     sample = with_common_lags(std::move(sample), lags);
   }
+  settings_.excluded = told_by_stamps(all_);
   settings_.interrupted = [&context] { return context.interrupted(); };
   const Diagnosis diagnosis =
       diagnose(start, sample, terms, settings_,

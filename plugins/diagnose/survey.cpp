@@ -55,6 +55,13 @@ std::vector<std::size_t> in_model(const std::vector<Candidate>& candidates) {
   return some;
 }
 
+std::vector<Candidate> possible(const TermRegistry& terms, const SensorModel& model, const Coverage& coverage,
+                                const std::set<std::string>& excluded) {
+  auto all = candidates(terms, model.calibration(), coverage);
+  std::erase_if(all, [&](const Candidate& one) { return excluded.contains(one.name); });
+  return all;
+}
+
 }  // namespace
 
 Survey::Survey(const Evidence& evidence, const Refinement& at, const TermRegistry& terms,
@@ -64,7 +71,7 @@ Survey::Survey(const Evidence& evidence, const Refinement& at, const TermRegistr
       settings_(settings),
       model_(at.outcome.model),
       base_(base_of(at)),
-      all_(view(candidates(terms, model_.calibration(), evidence.lasting()), settings.beams)) {
+      all_(view(possible(terms, model_, evidence.coverage(), settings.excluded), settings.beams)) {
   std::set<std::string> names;
   for (const Candidate& candidate : all_.dictionary.candidates()) names.insert(candidate.name);
   looks_ = names.size();

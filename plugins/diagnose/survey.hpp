@@ -20,6 +20,7 @@ struct DiagnosisSettings {
   std::size_t closer = 800'000;  ///< that causes are looked at with in the end; not more than `beams`: never
   double faint = 0.008;          ///< [σ] least RMS change of ranges by which a cause is seen then
   int rounds = 8;                ///< most times that the model is extended and looked at again
+  std::set<std::string> excluded = {};     ///< names of candidates that other data rule out
   std::function<bool()> interrupted = {};  ///< asked from several threads, whether the work is to end
 };
 

@@ -106,6 +106,7 @@ Shape Shape::fourier(int first, int last) { return {Kind::kFourier, first, last,
 Shape Shape::hats(std::vector<double> knots) { return {Kind::kHats, 0, 0, std::move(knots)}; }
 Shape Shape::splines(int n) { return {Kind::kSplines, 0, n, {}}; }
 Shape Shape::powers() { return {Kind::kPowers, 0, 0, {}}; }
+Shape Shape::curve() { return {Kind::kCurve, 0, 0, {}}; }
 
 std::size_t Shape::coefficients() const {
   switch (kind_) {
@@ -117,13 +118,15 @@ std::size_t Shape::coefficients() const {
       return static_cast<std::size_t>(last_);
     case Kind::kPowers:
       return 3;
+    case Kind::kCurve:
+      return 2;
   }
   return 0;
 }
 
 double Shape::scale() const {
-  constexpr double kOfPowers = 1e-3;  // a plate turns at ten radians a second
-  return kind_ == Kind::kPowers ? kOfPowers : 1;
+  constexpr double kOfPowers = 1e-3;  // a plate turns at ten radians a second, a range is some ten metres
+  return kind_ == Kind::kPowers || kind_ == Kind::kCurve ? kOfPowers : 1;
 }
 
 std::string Shape::name(std::size_t coefficient) const {
@@ -135,6 +138,7 @@ std::string Shape::name(std::size_t coefficient) const {
     case Kind::kSplines:
       return "at" + std::to_string(coefficient);
     case Kind::kPowers:
+    case Kind::kCurve:
       return std::string(1, static_cast<char>('a' + coefficient));
   }
   return {};
@@ -152,6 +156,8 @@ std::string Shape::summary(std::size_t coefficient) const {
                          (static_cast<double>(coefficient) - 1) / (last_ - 3));
     case Kind::kPowers:
       return std::vector<std::string>{"of x²", "of x abs(x)", "of x³"}.at(coefficient);
+    case Kind::kCurve:
+      return std::vector<std::string>{"of x²", "of x³"}.at(coefficient);
   }
   return {};
 }
@@ -159,7 +165,7 @@ std::string Shape::summary(std::size_t coefficient) const {
 EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape) : on_(on), over_(over), shape_(std::move(shape)) {
   const OnName what = describe(on);
   const std::string of = name_of(over);
-  info_ = {.name = "empirical." + underscored(what.name) + "_by_" + underscored(of),
+  info_ = {.name = "empirical." + underscored(what.name) + "_by_" + underscored(of) + shape_.suffix(),
            .summary = what.name + " is off by a function of " + of + " that no cause explains",
            .phase = what.phase,
            .scope = what.scope,
@@ -188,6 +194,7 @@ void register_empirical_terms(TermRegistry& terms) {
   const Shape in_time = Shape::splines(9);
   add(On::kRange, Over::kMirrorAngle, Shape::fourier(1, 4));
   add(On::kRange, Over::kPlateAngle, Shape::fourier(1, 4));
+  add(On::kRange, Over::kRange, Shape::curve());
   add(On::kRange, Over::kRange, Shape::hats({1, 2, 3, 4, 6, 8, 12, 20}));
   add(On::kRange, Over::kIncidence, Shape::hats(evenly(0, 80 * kDegree, 6)));
   add(On::kRange, Over::kRemission, Shape::hats(evenly(std::log(10.0), std::log(250.0), 5)));

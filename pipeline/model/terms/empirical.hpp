@@ -24,11 +24,15 @@ class Shape {
   static Shape splines(int n);
   /// a x² + b x abs(x) + c x³
   static Shape powers();
+  /// a x² + b x³: what bends, for x that is never negative.
+  static Shape curve();
 
   std::size_t coefficients() const;
   double scale() const;  ///< by how much smaller coefficients are than what they make
   std::string name(std::size_t coefficient) const;     ///< "cos2"
   std::string summary(std::size_t coefficient) const;  ///< "of cos 2x"
+  /// What a term of this shape is called beside that of the usual one over the same: "_curve"; or nothing.
+  std::string suffix() const { return kind_ == Kind::kCurve ? "_curve" : ""; }
 
   template <class T>
   T at(const T& x, std::span<const T> coefficients) const {
@@ -41,12 +45,14 @@ class Shape {
         return splines_at(x, coefficients);
       case Kind::kPowers:
         return coefficients[0] * (x * x) + coefficients[1] * (x * abs_of(x)) + coefficients[2] * (x * x * x);
+      case Kind::kCurve:
+        return (coefficients[0] + coefficients[1] * x) * (x * x);
     }
     return T(0);
   }
 
  private:
-  enum class Kind { kFourier, kHats, kSplines, kPowers };
+  enum class Kind { kFourier, kHats, kSplines, kPowers, kCurve };
   Shape(Kind kind, int first, int last, std::vector<double> knots)
       : kind_(kind), first_(first), last_(last), knots_(std::move(knots)) {}
 

@@ -133,7 +133,7 @@ struct RangeCyclic final : DifferentiableTerm<RangeCyclic> {
               .neutral = 1,
               .summary = "period",
               .shape = true,
-              .tries = {.spacing = Tries::Spacing::kReciprocal, .from = 0.5, .to = 16, .count = 32}}},
+              .tries = {.spacing = Tries::Spacing::kRangePeriods, .from = 0.5, .to = 16, .count = 32}}},
         .details =
             "`r + a sin 2πr/P + b cos 2πr/P`, which is `A sin(2πr/P + p)` with `A² = a² + b²` and "
             "`tan p = b/a`, but linear in what is to be found. Typically millimetres: crosstalk and the "

@@ -30,18 +30,18 @@ TEST(Candidates, AreEachTermOfEachOwnerInEachForm) {
 }
 
 TEST(Candidates, ThatRecordingsCannotShareAreLeftOutAndNamed) {
-  const auto left = [](const Lasting& lasting) {
-    return names(candidates(built_in_terms(), nominal_calibration(default_rig()), lasting));
+  const auto left = [](const Coverage& coverage) {
+    return names(candidates(built_in_terms(), nominal_calibration(default_rig()), coverage));
   };
   using testing::Contains;
   using testing::Not;
-  const Lasting apart{.first = 0, .last = 10, .one_begin = false};
+  const Coverage apart{.first = 0, .last = 10, .one_begin = false};
   EXPECT_THAT(left(apart), Not(Contains("laser1.range.warmup")));
   EXPECT_THAT(left(apart), Not(Contains("laser1.empirical.range_by_time")));
   EXPECT_THAT(left(apart), Contains("encoder.eccentricity"));
   EXPECT_THAT(unshared_causes(built_in_terms(), apart),
               testing::UnorderedElementsAre("base.motion", "clock.drift", "range.step", "range.warmup"));
-  const Lasting anew{.first = 0, .last = 10, .one_begin = false, .one_zero = false};
+  const Coverage anew{.first = 0, .last = 10, .one_begin = false, .one_zero = false};
   EXPECT_THAT(left(anew), Not(Contains("encoder.eccentricity")));
   EXPECT_THAT(left(anew), Not(Contains("plate.wobble")));
   EXPECT_THAT(left(anew), Contains("encoder.speed_lag"));

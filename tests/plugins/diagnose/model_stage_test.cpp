@@ -14,13 +14,14 @@ using testing::Contains;
 using testing::HasSubstr;
 
 /// What diagnose.model says of a recording that was calibrated without terms.
-StageReport report_of(const test::Recording& recording) {
+StageReport report_of(const test::Recording& recording, const Findings& before = {}) {
   TermRegistry terms = built_in_terms();
   Registrar registrar;
   registrar.attach(terms);
   auto stage = test::StageDriver::of<DiagnoseModelStage>({{"beams", OptionScalar(std::int64_t{40'000})}});
   stage.run().rig = recording.scanner.rig;
   stage.run().registrar = &registrar;
+  stage.feed(before);
   stage.feed(recording.made.beams, recording.made.plate, nominal_calibration(recording.scanner.rig));
   stage.finish();
   return stage.report();
@@ -39,6 +40,17 @@ TEST(DiagnoseModel, LeavesTheCalibrationAndDoubtsAboutItWhereNothingIsMissing) {
   const StageReport report = report_of(test::hidden(7, 4, office(), {}));
   EXPECT_THAT(report.lines, testing::Not(Contains(HasSubstr("std error"))));
   EXPECT_THAT(report.lifted, testing::IsEmpty());
+}
+
+TEST(DiagnoseModel, DoesNotNameASlowMirrorThatStampsWouldShow) {
+  const auto recording = test::hidden(24, 10, office(), {{"laser1.timing.intra_scan", {2e-6}}});
+  Findings stamps;
+  stamps.devices.push_back(
+      {.device = "laser1", .period = 0.02, .period_std_error = 2e-6, .nominal_period = 0.02});
+  const auto told = testing::PrintToString(report_of(recording, stamps).lines);
+  EXPECT_THAT(told, HasSubstr("laser1.timing.intra_scan"));
+  EXPECT_THAT(told, testing::Not(HasSubstr("mirror.period of laser1")));
+  EXPECT_THAT(told, testing::Not(HasSubstr("laser1.mirror.period")));
 }
 
 }  // namespace

@@ -66,7 +66,9 @@ inline const std::vector<SomethingElse>& something_else() {
       {"mirror angle", On::kRange,
        [](const Beam& b, const Draw& d) { return bump((b.mirror - 0.6 * (d.phase - 3)), 0.15); }},
       // A shock.
-      {"time", On::kRange, [](const Beam& b, const Draw& d) { return bump(b.time - 1.5 * d.phase, 0.5); }}};
+      {"time", On::kRange, [](const Beam& b, const Draw& d) { return bump(b.time - 1.5 * d.phase, 0.5); }},
+      // A detector that is not linear.
+      {"range", On::kRange, [](const Beam& b, const Draw&) { return b.range * b.range; }}};
   return all;
 }
 

@@ -29,7 +29,7 @@ class Looked {
   explicit Looked(const test::Recording& recording)
       : model_(nominal_calibration(default_rig()), built_in_terms()),
         evidence_(model_, covered(recording.sample(), -0.05, 0.05), {}, kBeams),
-        dictionary_(model_, base(), candidates(built_in_terms(), model_.calibration(), evidence_.lasting()),
+        dictionary_(model_, base(), candidates(built_in_terms(), model_.calibration(), evidence_.coverage()),
                     built_in_terms()),
         equations_(evidence_.equations(dictionary_, kBeams)) {}
 
