@@ -30,6 +30,7 @@ void Findings::append(const Findings& other) {
   add(artefacts, other.artefacts);
   add(devices, other.devices);
   add(noise, other.noise);
+  add(gain, other.gain);
   before_p = less_sure(before_p, other.before_p);
   after_p = less_sure(after_p, other.after_p);
 }

@@ -114,6 +114,7 @@ struct Findings {
   std::vector<Artefact> artefacts;
   std::vector<DeviceFacts> devices;
   std::vector<NoiseFacts> noise;
+  std::vector<Gain> gain = {};  ///< of all that became part of the model, together
   double before_p = kUnasked;  ///< that the residuals are those of the simulation: with the model that came …
   double after_p = kUnasked;  ///< … and with what was found
 

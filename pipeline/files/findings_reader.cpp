@@ -92,15 +92,19 @@ class FindingsMap {
   std::vector<Error>& errors_;
 };
 
+Gain gain_in(FindingsMap& map, const std::string&) {
+  return {.metric = map.text("metric"),
+          .unit = map.text("unit"),
+          .before = map.number("before"),
+          .after = map.number("after"),
+          .ci95 = map.numbers<2>("ci95")};
+}
+
 std::vector<Gain> read_gains(FindingsMap& parent, const std::string& what) {
   std::vector<Gain> all;
   parent.each("gain", [&](const YamlNode& node, const std::string& where) {
     FindingsMap map(node, what + ", " + where, parent.errors());
-    all.push_back({.metric = map.text("metric"),
-                   .unit = map.text("unit"),
-                   .before = map.number("before"),
-                   .after = map.number("after"),
-                   .ci95 = map.numbers<2>("ci95")});
+    all.push_back(gain_in(map, where));
     map.map().refuse_others();
   });
   return all;
@@ -222,6 +226,7 @@ Findings parse_findings(const YamlNode& root) {
   read_list(map, "artefacts", artefact_in, all.artefacts);
   read_list(map, "devices", device_in, all.devices);
   read_list(map, "noise", noise_in, all.noise);
+  read_list(map, "gain", gain_in, all.gain, false);
   if (const YamlNode* node = map.map().require("indistinguishable")) {
     FindingsMap alike(*node, "indistinguishable", errors);
     all.before_p = alike.number("before_p");

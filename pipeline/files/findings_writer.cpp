@@ -114,6 +114,7 @@ std::string findings_json(const Findings& findings) {
                     {"artefacts", list_of(findings.artefacts)},
                     {"devices", list_of(findings.devices)},
                     {"noise", list_of(findings.noise)},
+                    {"gain", json_of(findings.gain)},
                     {"indistinguishable", {{"before_p", findings.before_p}, {"after_p", findings.after_p}}}};
   return json_text(all, 2) + "\n";
 }

@@ -25,7 +25,7 @@ struct Departure {
   std::vector<Gain> gains;    ///< on turns of the plate that the model was not fitted to
   bool accepted = true;       ///< whether it is part of the extended model
   double unexplained = 0;     ///< [m²] mean square of what else departs there and has no cause
-  bool leaves_more = false;   ///< whether that is more than it takes, so that it is not, though it paid
+  std::string refused = {};   ///< why it is not part of it, though it paid; empty: it is, or did not pay
 
   /// [m²] Mean square of what it takes of the residuals and the others leave.
   ///

@@ -12,6 +12,7 @@
 #include "pipeline/data/interrupted.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/model/terms_in.hpp"
+#include "plugins/diagnose/borne_out.hpp"
 #include "plugins/diagnose/evidence.hpp"
 #include "plugins/diagnose/forms.hpp"
 #include "plugins/diagnose/gate.hpp"
@@ -49,11 +50,16 @@ class Diagnoser {
     const Refinement plain = refined(with_terms(start_, {}), sample_);
     Diagnosis result{.before = plain, .after = plain};
     extend(result);
-    tell(0.8, "judging by held-out turns");
-    judge(result);
-    tell(0.9, "simulating the scanner again");
-    compare(result);
-    refuse_what_nothing_describes(result);
+    if (!result.departures.empty()) {
+      tell(0.8, "judging by held-out turns");
+      const HeldOut held_out(halves_of(inside_), result.before.outcome.model, settings_.refinement.surfels);
+      judge(held_out, result);
+      compare(result);
+      refuse_what_nothing_describes(result);
+      tell_gain_of_all(held_out, result);
+    } else {
+      compare(result);
+    }
     add_form_errors(result);
     return result;
   }
@@ -129,21 +135,6 @@ class Diagnoser {
     }
   }
 
-  /// Where each parameter of a candidate's term is among those that were estimated; nothing for those that
-  /// were not.
-  static std::vector<std::optional<Eigen::Index>> places_of(const Candidate& candidate,
-                                                            const Outcome& outcome) {
-    std::vector<std::optional<Eigen::Index>> places(candidate.term.parameters.size());
-    for (std::size_t p = 0; p < places.size(); ++p) {
-      const std::string name =
-          (candidate.laser() ? "" : "plate.") + candidate.name + "." + candidate.term.parameters[p].name;
-      for (std::size_t k = 0; k < outcome.free.size(); ++k) {
-        if (outcome.model.names()[outcome.free[k]] == name) places[p] = static_cast<Eigen::Index>(k);
-      }
-    }
-    return places;
-  }
-
   /// The refined model knows the curvature at its form alone, not that another may be the right one.
   static void add_form_errors(Diagnosis& result) {
     Outcome& outcome = result.after.outcome;
@@ -162,18 +153,36 @@ class Diagnoser {
     }
   }
 
-  /// Asks each departure of turns that models are not fitted to.
-  void judge(Diagnosis& result) const {
-    if (result.departures.empty()) return;
-    const HeldOut held_out(halves_of(inside_), result.before.outcome.model, settings_.refinement.surfels);
-    const Calibration found = result.after.outcome.model.calibration();
-    const auto accepted = accepted_by(held_out, result.departures, result.before.outcome.model.calibration(),
-                                      found, [this](const Calibration& start, const Sample& sample) {
-                                        return refined(start, sample).outcome.model;
-                                      });
-    if (accepted.size() < result.departures.size()) {
-      result.after = refined(with_terms(found, accepted), sample_);
+  /// Asks each departure of turns that models are not fitted to, and what comes out of those that pay.
+  void judge(const HeldOut& held_out, Diagnosis& result) const {
+    accept_what_pays(held_out, result.departures, result.before.outcome.model.calibration(),
+                     result.after.outcome.model.calibration(),
+                     [this](const Calibration& start, const Sample& sample) {
+                       return refined(start, sample).outcome.model;
+                     });
+    if (!std::ranges::all_of(result.departures, &Departure::accepted)) refine_with_accepted(result);
+    while (refuse_what_is_not_borne_out(result.departures, result.after.outcome, terms_,
+                                        settings_.selection.p_value)) {
+      refine_with_accepted(result);
     }
+  }
+
+  void refine_with_accepted(Diagnosis& result) const {
+    std::vector<Candidate> kept;
+    for (const Departure& departure : result.departures) {
+      if (departure.accepted) kept.push_back(departure.candidate);
+    }
+    const Calibration found = result.after.outcome.model.calibration();
+    result.after = refined(with_terms(found, with_values_of(found, kept)), sample_);
+  }
+
+  /// Of the extended model over the plain one.
+  void tell_gain_of_all(const HeldOut& held_out, Diagnosis& result) const {
+    if (std::ranges::none_of(result.departures, &Departure::accepted)) return;
+    const auto score_of = [&](const Refinement& refinement) {
+      return held_out.score(refined(refinement.outcome.model.calibration(), held_out.fitted()).outcome.model);
+    };
+    result.gains = HeldOut::gains(score_of(result.before), score_of(result.after));
   }
 
   SideBySide left_by(const Refinement& refinement) const {
@@ -182,6 +191,7 @@ class Diagnoser {
   }
 
   void compare(Diagnosis& result) const {
+    tell(0.9, "simulating the scanner again");
     result.left_before = left_by(result.before);
     result.left_after = result.departures.empty() ? result.left_before : left_by(result.after);
   }
@@ -189,12 +199,7 @@ class Diagnoser {
   void refuse_what_nothing_describes(Diagnosis& result) const {
     const double noise = settings_.refinement.surfels.noise;
     while (refuse_what_leaves_more(result.departures, result.left_after, noise)) {
-      std::vector<Candidate> kept;
-      for (const Departure& departure : result.departures) {
-        if (departure.accepted) kept.push_back(departure.candidate);
-      }
-      const Calibration found = result.after.outcome.model.calibration();
-      result.after = refined(with_terms(found, with_values_of(found, kept)), sample_);
+      refine_with_accepted(result);
       result.left_after = left_by(result.after);
     }
   }

@@ -8,11 +8,16 @@
 namespace crisp {
 namespace {
 
-/// Whether the likelihood of held-out turns rises; by how little for sure is told, but no reason to refuse
-/// what is significant on the others.
+/// Whether the likelihood of held-out turns rises for sure.
 bool pays(const std::vector<Gain>& gains) {
   const auto likelihood = std::ranges::find(gains, HeldOut::kLikelihood, &Gain::metric);
-  return likelihood != gains.end() && likelihood->after > likelihood->before;
+  return likelihood != gains.end() && likelihood->surely_rises();
+}
+
+/// Whether it is more than what scenes make alike in all lasers that are not as flat as they are taken for.
+bool is_more_than_a_scene_makes(const Departure* departure) {
+  constexpr double kOfScenes = 0.05;  // [σ] RMS
+  return departure->look.visible > kOfScenes;
 }
 
 /// What was accepted so far.
@@ -20,8 +25,6 @@ class Gate {
  public:
   Gate(const HeldOut& held_out, const Calibration& plain, const Calibration& found, const RefinedOn& refined)
       : held_out_(held_out), found_(found), refined_(refined), score_(score_of(plain)) {}
-
-  const std::vector<Candidate>& accepted() const { return accepted_; }
 
   /// Whether some departures pay together; if so, they are part of the model from then on.
   bool accepts(const std::vector<Departure*>& some) {
@@ -56,9 +59,8 @@ class Gate {
 
 }  // namespace
 
-std::vector<Candidate> accepted_by(const HeldOut& held_out, std::vector<Departure>& departures,
-                                   const Calibration& plain, const Calibration& found,
-                                   const RefinedOn& refined) {
+void accept_what_pays(const HeldOut& held_out, std::vector<Departure>& departures, const Calibration& plain,
+                      const Calibration& found, const RefinedOn& refined) {
   Gate gate(held_out, plain, found, refined);
   std::vector<Departure*> open;
   for (Departure& departure : departures) open.push_back(&departure);
@@ -68,10 +70,10 @@ std::vector<Candidate> accepted_by(const HeldOut& held_out, std::vector<Departur
       return other->candidate.term.term == open.front()->candidate.term.term;
     });
     std::vector<Departure*> judged = {open.front()};
-    if (!gate.accepts(judged) && alike.size() > 1 && gate.accepts(alike)) judged = alike;
+    const bool may_be_common = alike.size() > 1 && std::ranges::all_of(alike, is_more_than_a_scene_makes);
+    if (!gate.accepts(judged) && may_be_common && gate.accepts(alike)) judged = alike;
     std::erase_if(open, [&](Departure* one) { return std::ranges::find(judged, one) != judged.end(); });
   }
-  return gate.accepted();
 }
 
 }  // namespace crisp

@@ -14,14 +14,13 @@ using RefinedOn = std::function<SensorModel(const Calibration& start, const Samp
 
 /// Judges departures by turns of the plate that models were not fitted to: in their order, models with one
 /// more each are fitted to the other turns. What all lasers have alike and what does not pay for one of them
-/// alone is asked of all of them together: mended in one alone, they disagree.
+/// alone is asked of all of them together: mended in one alone, they disagree. But what all have alike and is
+/// small may be the scene's.
 ///
 /// @param departures  their gains and whether they are accepted are set
 /// @param plain       without any; where the fit starts that the first has to beat
 /// @param found       with all of them; where the other fits start
-/// @return            those that pay, with the values that `found` has
-std::vector<Candidate> accepted_by(const HeldOut& held_out, std::vector<Departure>& departures,
-                                   const Calibration& plain, const Calibration& found,
-                                   const RefinedOn& refined);
+void accept_what_pays(const HeldOut& held_out, std::vector<Departure>& departures, const Calibration& plain,
+                      const Calibration& found, const RefinedOn& refined);
 
 }  // namespace crisp

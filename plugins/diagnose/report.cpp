@@ -4,18 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-
-#include "pipeline/data/likeness.hpp"
+#include <sstream>
 
 namespace crisp {
 namespace {
-
-constexpr const char* kLeavesMore =
-    "it takes less than what departs from the extended model all the same, and may be no more than a part of "
-    "that";
 
 /// The candidate's parameters as they were estimated, or as far as they were.
 std::vector<Parameter> parameters_of(const Departure& departure, const Calibration& calibration) {
@@ -26,10 +20,6 @@ std::vector<Parameter> parameters_of(const Departure& departure, const Calibrati
 
 std::string name_of(std::size_t owner, const Calibration& calibration) {
   return owner < calibration.lasers.size() ? calibration.lasers[owner].name : "plate";
-}
-
-std::string scope_of(const Profile& profile, const Calibration& calibration) {
-  return profile.laser == kAllLasers ? "scanner" : calibration.lasers[profile.laser].name;
 }
 
 /// What a recording needs to tell a candidate, "laser2.mirror.cone", from what resembles it.
@@ -47,8 +37,10 @@ std::vector<std::string> told_apart_by(const Finding& finding, const TermRegistr
   std::vector<std::string> names = finding.confounded_with;
   names.insert(names.begin(), finding.cause);
   for (const std::string& name : names) {
-    const std::string need = told_by(name, terms);
-    if (!need.empty() && std::ranges::find(needs, need) == needs.end()) needs.push_back(need);
+    std::istringstream all(told_by(name, terms));
+    for (std::string need; std::getline(all >> std::ws, need, ';');) {
+      if (std::ranges::find(needs, need) == needs.end()) needs.push_back(need);
+    }
   }
   return needs;
 }
@@ -73,7 +65,7 @@ Finding finding_of(const Departure& departure, const Calibration& calibration, c
                   .told_apart_by = {},
                   .gain = departure.gains,
                   .accepted = departure.accepted,
-                  .refused = departure.leaves_more ? kLeavesMore : ""};
+                  .refused = departure.refused};
   const double behind = departure.rivals.empty() ? departure.look.bic : departure.rivals.front().behind;
   finding.log10_odds = behind / 2 / std::numbers::ln10;
   for (const auto& rival : departure.rivals) {
@@ -102,57 +94,12 @@ UnnamedFinding unnamed_of(const Departure& departure, const Calibration& calibra
           .accepted = departure.accepted};
 }
 
-std::string with_unit(const Parameter& parameter) {
-  const auto shown = [&](double factor, const char* unit) {
-    const std::string error =
-        parameter.std_error > 0 ? fmt::format(" ± {:.2g}", parameter.std_error * factor) : "";
-    return fmt::format("{} = {:.4g}{}{}{}", parameter.name, parameter.value * factor, error, *unit ? " " : "",
-                       unit);
-  };
-  if (parameter.unit == "rad") return shown(180 / std::numbers::pi, "deg");
-  if (parameter.unit == "m") return shown(1e3, "mm");
-  if (parameter.unit == "s" && std::abs(parameter.value) < 1) return shown(1e3, "ms");
-  return shown(1, parameter.unit == "1" ? "" : parameter.unit.c_str());
-}
-
-/// Of what is off; what a model's term moves is told by how much ranges change for it, whatever its unit.
-std::string by_how_much(const UnnamedFinding& finding) {
-  if (finding.unit == "rad")
-    return fmt::format(", by {:.4f} deg", finding.amplitude * 180 / std::numbers::pi);
-  if (finding.unit == "s") return fmt::format(", by {:.4f} ms", finding.amplitude * 1e3);
-  if (finding.unit == "1") return fmt::format(", by {:.3f}", finding.amplitude);
-  const std::array lengths = {"range", "base", "noise"};
-  const bool is_length = std::ranges::find(lengths, finding.quantity) != lengths.end();
-  return fmt::format("{} {:.3f} mm", is_length ? ", by" : "; ranges change by", finding.amplitude * 1e3);
-}
-
-std::string gain_in_words(const std::vector<Gain>& gains) {
-  if (gains.empty()) return "\n  no held-out data say what that brings";
-  std::string words;
-  for (const Gain& gain : gains) {
-    const double factor = gain.unit == "m" ? 1e3 : gain.unit == "s" ? 1e6 : 1;
-    const std::string unit = gain.unit == "m" ? "mm" : gain.unit == "s" ? "us" : gain.unit;
-    words += fmt::format("\n  {:<32}{:>10.4f} -> {:>8.4f} {:<3}  change {:+.4f} to {:+.4f}", gain.metric,
-                         gain.before * factor, gain.after * factor, unit, gain.ci95[0] * factor,
-                         gain.ci95[1] * factor);
-  }
-  return words;
-}
-
 std::string reason_of(const Limit& limit, const std::string& told_by) {
   const std::string needs = told_by.empty() ? "" : "; what tells it: " + told_by;
   if (!std::isfinite(limit.size)) return "the other parameters do all that it could do to these data" + needs;
   return fmt::format(
       "beside the other parameters it would not show if it changed ranges by less than {:.0f} mm (RMS){}",
       1e3 * limit.size, needs);
-}
-
-/// What the odds are against.
-std::string next_in_words(const Finding& finding) {
-  if (finding.alternatives.empty()) return "the next cause";
-  const OtherCause& next = finding.alternatives.front();
-  if (next.log10_odds > finding.log10_odds) return "no named cause";
-  return fmt::format("the next cause, {} of {},", next.cause, next.scope);
 }
 
 /// What the extended model leaves over a covariate, unless something is said of that already.
@@ -196,18 +143,11 @@ std::vector<ResidualDeparture> departures_of(const Diagnosis& diagnosis, const C
   return all;
 }
 
-/// The profiles that depart from the simulation.
-std::string profiles_in_words(const SideBySide& left, const Calibration& calibration) {
-  std::string words;
-  for (const Profile& profile : left.profiles) {
-    if (!profile.departs()) continue;
-    words += fmt::format("  {} against {:<14}{:>8.3f} mm   {}\n", scope_of(profile, calibration),
-                         profile.covariate, profile.rms * 1e3, chance_in_words(profile.p_value));
-  }
-  return words;
-}
-
 }  // namespace
+
+std::string scope_of(const Profile& profile, const Calibration& calibration) {
+  return profile.laser == kAllLasers ? "scanner" : calibration.lasers[profile.laser].name;
+}
 
 Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration, const TermRegistry& terms,
                      const SelectionSettings& settings, double noise) {
@@ -215,6 +155,7 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
                .unnamed = {},
                .departures = departures_of(diagnosis, calibration),
                .unobservable = {},
+               .gain = diagnosis.gains,
                .before_p = diagnosis.left_before.p_value,
                .after_p = diagnosis.left_after.p_value};
   for (const Departure& departure : diagnosis.departures) {
@@ -240,67 +181,6 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
          .combination = {}});
   }
   return all;
-}
-
-std::string headline(const Finding& finding) {
-  std::string words =
-      fmt::format("{} of {}{}: ", finding.cause, finding.scope, finding.accepted ? "" : " (refused)");
-  for (const Parameter& parameter : finding.parameters) words += with_unit(parameter) + ", ";
-  return words + chance_in_words(finding.p_value);
-}
-
-std::string headline(const UnnamedFinding& finding) {
-  const bool has_gain = !finding.gain.empty();
-  return fmt::format("unnamed: {} of {} depends on the {}{}, {}{}", finding.quantity, finding.scope,
-                     finding.covariate, by_how_much(finding), chance_in_words(finding.p_value),
-                     has_gain && !finding.accepted ? " (refused)" : "");
-}
-
-std::string in_words(const Finding& finding) {
-  std::string words = headline(finding);
-  if (finding.explained_fraction > 0) {
-    const bool is_noise = finding.cause.starts_with("noise.");
-    words += fmt::format("\n  explains {:.0f} % of {}", 100 * finding.explained_fraction,
-                         is_noise ? "what all laws of its noise bring" : "the departure");
-  }
-  if (std::isfinite(finding.log10_odds)) {
-    words += fmt::format("\n  odds against {} 10^{:.0f}", next_in_words(finding), finding.log10_odds);
-  }
-  if (!finding.confounded_with.empty()) {
-    words += fmt::format("; these data cannot tell it from {}", fmt::join(finding.confounded_with, ", "));
-  }
-  if (!finding.told_apart_by.empty()) {
-    words += fmt::format("\n  what would: {}", fmt::join(finding.told_apart_by, "; "));
-  }
-  if (!finding.accepted) words += "\n  refused: " + finding.refusal();
-  return words + gain_in_words(finding.gain);
-}
-
-std::string in_words(const UnnamedFinding& finding) {
-  if (finding.gain.empty()) return headline(finding) + "\n  no term of the catalogue takes it";
-  return headline(finding) + gain_in_words(finding.gain);
-}
-
-std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
-  std::string words =
-      fmt::format("what is wrong: residuals against what the scanner simulated again shows\n");
-  const Calibration& calibration = diagnosis.after.outcome.model.calibration();
-  const std::string departing = profiles_in_words(diagnosis.left_before, calibration);
-  words += departing.empty() ? "  nothing departs from the simulation\n" : departing;
-  if (findings.findings.empty() && findings.unnamed.empty()) words += "no cause is found\n";
-  for (const Finding& finding : findings.findings) words += in_words(finding) + "\n";
-  for (const UnnamedFinding& finding : findings.unnamed) words += in_words(finding) + "\n";
-  for (const Artefact& artefact : findings.artefacts) {
-    words += fmt::format("the estimator's own ({}): {}\n", artefact.name, artefact.reason);
-    for (const Parameter& parameter : artefact.parameters) words += "  " + with_unit(parameter) + "\n";
-  }
-  words += likeness_in_words(findings);
-  if (!findings.unobservable.empty()) {
-    std::vector<std::string> names;
-    for (const auto& one : findings.unobservable) names.push_back(one.parameter);
-    words += fmt::format("\nnot to be told by these data: {}", fmt::join(names, ", "));
-  }
-  return words;
 }
 
 }  // namespace crisp

@@ -14,6 +14,9 @@ namespace crisp {
 Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration, const TermRegistry& terms,
                      const SelectionSettings& settings, double noise);
 
+/// Of what a profile is: a laser's name, or "scanner".
+std::string scope_of(const Profile& profile, const Calibration& calibration);
+
 /// And for people: what was found, with its size and p-value, in a line.
 std::string headline(const Finding& finding);
 std::string headline(const UnnamedFinding& finding);

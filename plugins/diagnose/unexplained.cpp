@@ -7,6 +7,10 @@
 namespace crisp {
 namespace {
 
+constexpr const char* kLeavesMore =
+    "it takes less than what departs from the extended model all the same, and may be no more than a part of "
+    "that";
+
 /// [m²] What departs where this one is, over the covariate that shows the most.
 double unexplained_beside(const Departure& one, const std::vector<Departure>& departures,
                           const SideBySide& left, double noise) {
@@ -30,9 +34,10 @@ bool refuse_what_leaves_more(std::vector<Departure>& departures, const SideBySid
   for (Departure& one : departures) {
     if (!one.accepted || !one.candidate.is_cause()) continue;
     one.unexplained = unexplained_beside(one, departures, left, noise);
-    one.leaves_more = one.square(noise) < one.unexplained;
-    one.accepted = !one.leaves_more;
-    refuses = refuses || one.leaves_more;
+    if (one.square(noise) >= one.unexplained) continue;
+    one.accepted = false;
+    one.refused = kLeavesMore;
+    refuses = true;
   }
   return refuses;
 }

@@ -7,6 +7,7 @@
 
 #include "pipeline/plot/write_plot.hpp"
 #include "plugins/scans/bursts.hpp"
+#include "plugins/scans/range_jump.hpp"
 #include "plugins/scans/told_in_sweep.hpp"
 
 namespace crisp {
@@ -121,6 +122,19 @@ void judge_common_lag(const Sweep& sweep, const std::vector<double>& times, cons
   }
 }
 
+/// How large a jump of all ranges would have to be: there is nothing beside a single sweep to tell it by.
+void bound_jump(const ScanSeries& series, const std::string& laser, Findings& findings) {
+  const auto largest = largest_jump(series.scans());
+  if (!largest) return;
+  findings.unobservable.push_back(
+      {laser + ".range.step",
+       fmt::format(
+           "from one scan to the next ranges change together by up to {:.1f} mm: a jump of all that is no "
+           "larger does not show, and one that is may as well be the scene's",
+           1e3 * *largest),
+       ""});
+}
+
 void draw(const std::filesystem::path& folder, const std::string& laser, const Answers& answers,
           Context& context) {
   const auto scaled = [](std::vector<double> values) {
@@ -203,6 +217,7 @@ void DiagnoseSweepStage::diagnose(std::size_t index, Findings& findings, Context
     told_.push_back(std::move(*told));
   }
   judge_common_lag(sweep, stamps, name, context.seed(), findings, context);
+  bound_jump(series, name, findings);
   const Answers answers = sweep.answers(stamps);
   context.say(
       fmt::format("  every other scan put {:.0f} ms later by hand, and the rest earlier: {:.1f} mm; the "

@@ -125,7 +125,7 @@ std::string found_by(const Diagnosis& diagnosis) {
   for (const Departure& departure : diagnosis.departures) {
     words +=
         fmt::format(" {} ({:.2f} mm)", departure.candidate.name, 1e3 * std::sqrt(departure.square(noise)));
-    if (departure.leaves_more) {
+    if (!departure.refused.empty()) {
       words += fmt::format("(refused: {:.2f} mm are unexplained)", 1e3 * std::sqrt(departure.unexplained));
     } else if (!departure.accepted && !departure.gains.empty()) {
       const Gain& gain = *std::ranges::find(departure.gains, "log-likelihood a measurement", &Gain::metric);

@@ -57,7 +57,7 @@ TEST(Report, HasWhatTheModelLeavesAmongTheUnnamed) {
   EXPECT_NEAR(found[0].amplitude, 0.006 / std::sqrt(2), 0.0025) << "less what planes take of it";
   EXPECT_LE(found[0].p_value, 0.01);
   EXPECT_FALSE(found[0].accepted) << "no term was taken";
-  EXPECT_THAT(in_words(found[0]), HasSubstr("no term of the catalogue takes it"));
+  EXPECT_THAT(in_words(found[0]), HasSubstr("no term that was tried takes it"));
 }
 
 TEST(Report, SaysWhatIsOffInItsOwnUnitWithThePValue) {
@@ -106,9 +106,9 @@ TEST(Report, SaysWhyACauseWasRefused) {
   diagnosis.departures = {departure};
   ASSERT_THAT(reported(diagnosis).findings, SizeIs(1));
   EXPECT_THAT(in_words(reported(diagnosis).findings[0]), HasSubstr("refused: it does not pay on data"));
-  diagnosis.departures[0].leaves_more = true;
+  diagnosis.departures[0].refused = "it takes less than what is left";
   EXPECT_THAT(in_words(reported(diagnosis).findings[0]),
-              HasSubstr("refused: it takes less than what departs from the extended model"));
+              HasSubstr("refused: it takes less than what is left"));
 }
 
 TEST(Report, HasNothingUnnamedThatChanceOrAWallsBumpsMayHaveMade) {
