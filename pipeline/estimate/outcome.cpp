@@ -43,6 +43,14 @@ std::string remark(const Parameter& parameter, const std::string& name, const Ca
   return parameter.free ? "" : "kept";
 }
 
+/// As many as show two digits of the error; four where there is none, or it is large.
+int decimals_for(double error) {
+  constexpr int kLeast = 4;
+  constexpr int kMost = 12;
+  if (!(error > 0)) return kLeast;
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), kLeast, kMost);
+}
+
 }  // namespace
 
 Calibration calibration_of(const Outcome& outcome, const Rig& rig) {
@@ -81,9 +89,11 @@ std::string table_of(const Calibration& calibration, const Rig& rig) {
   for_each_parameter(calibration, [&](const std::string& name, const Parameter& p) {
     const Shown as = shown(p.unit);
     const double change = p.value - (nominal.contains(name) ? nominal[name] : 0);
-    const std::string error = p.free ? fmt::format("{:.4f}", p.std_error * as.factor) : "";
-    table += fmt::format("{:<24}{:>12.4f} {:<3} {:>9}  {:>+10.4f}  {}\n", name, p.value * as.factor, as.unit,
-                         error, change * as.factor, remark(p, name, calibration));
+    const int decimals = decimals_for(p.free ? p.std_error * as.factor : 0);
+    const std::string error = p.free ? fmt::format("{:.{}f}", p.std_error * as.factor, decimals) : "";
+    table +=
+        fmt::format("{:<24}{:>12.{}f} {:<3} {:>9}  {:>+10.{}f}  {}\n", name, p.value * as.factor, decimals,
+                    as.unit, error, change * as.factor, decimals, remark(p, name, calibration));
   });
   table.pop_back();
   return table;

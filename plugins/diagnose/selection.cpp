@@ -192,6 +192,30 @@ class Chooser {
     return false;
   }
 
+  /// A cause of whatever form comes near much that has no cause. Puts a mere description of no more
+  /// parameters in the place of such a one where that says more, for sure, and leaves out what is needless
+  /// then.
+  ///
+  /// @return  whether anything was
+  bool replace_by_description(std::vector<std::size_t>& taken) const {
+    const auto& candidates = dictionary_.candidates();
+    for (const std::size_t one : taken) {
+      if (!candidates[one].in_model || !candidates[one].is_cause() || candidates[one].forms < 2) continue;
+      const auto looks = beside(without(taken, one));
+      for (std::size_t c = 0; c < looks.size(); ++c) {
+        if (candidates[c].is_cause() || !looks[c] || !is_needed(c, *looks[c])) continue;
+        const bool is_simpler =
+            looks[c]->value.size() <= looks[one]->value.size() + 1;  // that has a form, too
+        const double ahead = (looks[c]->bic - looks[one]->bic) / looks[one]->sharing();
+        if (!is_simpler || ahead < settings_.odds) continue;
+        std::ranges::replace(taken, one, c);
+        leave_out_needless(taken);
+        return true;
+      }
+    }
+    return false;
+  }
+
   Choice described(const std::vector<std::size_t>& taken, std::size_t one) const {
     const auto looks = beside(without(taken, one));
     const auto& candidates = dictionary_.candidates();
@@ -258,7 +282,7 @@ std::vector<Choice> choose(const Dictionary& dictionary, const NormalEquations& 
   while (taken.size() < settings.most && seen.insert(taken).second) {
     const auto next = chooser.next(taken, rough);
     if (!next) {
-      if (rough > 0 || !chooser.replace_by_fewer(taken)) break;
+      if (rough > 0 || !(chooser.replace_by_fewer(taken) || chooser.replace_by_description(taken))) break;
       continue;
     }
     for (const std::size_t member : next->members) {

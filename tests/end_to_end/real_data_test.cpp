@@ -191,7 +191,7 @@ TEST_F(RealData, VelodynesNoiseGrowsWithTheIncidenceAndComesInStepsOfTwoMillimet
     EXPECT_LT(value, 0.010) << one.scope << ": few surfaces, none of them a plane";
   }
   EXPECT_EQ(in_steps, 14) << "as its packets have them";
-  EXPECT_GE(grow, 3) << "of nine that meet enough surface";
+  EXPECT_GE(grow, 2) << "of nine that meet enough surface";
 }
 
 TEST_F(RealData, ASecondLms1xxHasTwoPeaksAsWell) {

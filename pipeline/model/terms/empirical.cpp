@@ -125,8 +125,9 @@ std::size_t Shape::coefficients() const {
 }
 
 double Shape::scale() const {
-  constexpr double kOfPowers = 1e-3;  // a plate turns at ten radians a second, a range is some ten metres
-  return kind_ == Kind::kPowers || kind_ == Kind::kCurve ? kOfPowers : 1;
+  constexpr double kOfPowers = 1e-3;  // a plate turns at ten radians a second
+  constexpr double kOfCurve = 1e-2;   // a range is some metres
+  return kind_ == Kind::kPowers ? kOfPowers : kind_ == Kind::kCurve ? kOfCurve : 1;
 }
 
 std::string Shape::name(std::size_t coefficient) const {

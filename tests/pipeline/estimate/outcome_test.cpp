@@ -53,5 +53,12 @@ TEST(Outcome, IsTabledInMillimetresDegreesAndMilliseconds) {
   EXPECT_THAT(table, Not(HasSubstr("nan")));
 }
 
+TEST(Outcome, IsTabledWithTwoDigitsOfEvenASmallError) {
+  Outcome sure = example();
+  sure.covariance(0, 0) = 1e-18;
+  EXPECT_THAT(table_of(calibration_of(sure, default_rig()), default_rig()),
+              HasSubstr("laser2.tau               212.5000000 mm  0.0000010  +12.5000000"));
+}
+
 }  // namespace
 }  // namespace crisp
