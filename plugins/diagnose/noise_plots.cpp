@@ -9,27 +9,13 @@
 #include <numbers>
 #include <numeric>
 
+#include "plugins/diagnose/histogram.hpp"
 #include "plugins/diagnose/noise_ways.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr double kBarLength = 2;  // [standard errors]
-
-struct Histogram {
-  double first = 0, width = 1;  // of the bins
-  std::vector<double> count;
-  double all = 0;
-
-  Histogram(double from, double to, std::size_t bins)
-      : first(from), width((to - from) / static_cast<double>(bins)), count(bins) {}
-  void add(double value) {
-    all += 1;
-    const double bin = std::floor((value - first) / width);
-    if (bin >= 0 && bin < static_cast<double>(count.size())) count[static_cast<std::size_t>(bin)] += 1;
-  }
-  double middle(std::size_t bin) const { return first + (static_cast<double>(bin) + 0.5) * width; }
-};
 
 /// The density of a law [1/m], mean over ranges and beams like those that were measured.
 double mean_density(const NoiseLaw& law, const RangeErrors& errors, double value) {
