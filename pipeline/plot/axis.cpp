@@ -77,7 +77,7 @@ std::vector<double> PlotAxis::round_values() const {
 }
 
 std::vector<double> PlotAxis::decades() const {
-  constexpr double kFew = 2;
+  constexpr double kFew = 3;
   std::vector<double> all;
   for (double power = std::floor(least_); power <= most_; ++power) {
     for (const double part : {1.0, 2.0, 5.0}) {
