@@ -5,16 +5,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
+
+#include "pipeline/plot/axis.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr double kWidth = 640, kHeight = 400;  // [pixels] of a plot
 constexpr std::size_t kInARow = 2;
-constexpr double kLeft = 70, kRight = 20, kTop = 36, kBottom = 50;  // [pixels] around the curves
+constexpr double kLeft = 70, kRight = 20, kTitle = 22, kBottom = 50;  // [pixels] around the curves
 constexpr std::array<const char*, 5> kColours = {"#1f5fbf", "#d9731a", "#2a8f3c", "#8a3fa8", "#777777"};
+constexpr const char* kMarkColour = "#c01030";
+constexpr const char* kDashes = " stroke-dasharray=\"5 3\"";
 
 std::string escaped(const std::string& text) {
   std::string safe;
@@ -31,125 +33,168 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-/// From a quantity to pixels, with marks at round values.
-class PlotAxis {
- public:
-  PlotAxis(double least, double most, double first_pixel, double last_pixel)
-      : first_pixel_(first_pixel), last_pixel_(last_pixel) {
-    if (!(most > least)) most = least + 1;
-    constexpr double kRoom = 0.04;
-    least_ = least - kRoom * (most - least);
-    most_ = most + kRoom * (most - least);
-  }
-  double pixel(double value) const {
-    return first_pixel_ + (value - least_) / (most_ - least_) * (last_pixel_ - first_pixel_);
-  }
-  std::vector<double> marks() const {
-    constexpr double kMarks = 6;
-    const double rough = (most_ - least_) / kMarks;
-    const double power = std::pow(10.0, std::floor(std::log10(rough)));
-    double step = 10 * power;
-    for (const double nice : {1.0, 2.0, 5.0}) {
-      if (nice * power >= rough) {
-        step = nice * power;
-        break;
-      }
-    }
-    std::vector<double> all;
-    const auto first = static_cast<long>(std::ceil(least_ / step)),
-               last = static_cast<long>(std::floor(most_ / step));
-    for (long i = first; i <= last; ++i) all.push_back(static_cast<double>(i) * step);
-    return all;
-  }
-
- private:
-  double least_ = 0, most_ = 1;
-  double first_pixel_, last_pixel_;
-};
-
-double error_at(const PlotSeries& series, std::size_t i) {
-  return i < series.error.size() && std::isfinite(series.error[i]) ? series.error[i] : 0;
-}
-
-PlotAxis axis_of(const Plot& plot, bool along_x) {
-  double least = std::numeric_limits<double>::infinity();
-  double most = -least;
-  for (const auto& series : plot.series) {
-    const auto& values = along_x ? series.x : series.y;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!std::isfinite(values[i])) continue;
-      const double around = along_x ? 0 : error_at(series, i);
-      least = std::min(least, values[i] - around);
-      most = std::max(most, values[i] + around);
-    }
-  }
-  if (!std::isfinite(least)) least = 0, most = 1;
-  return along_x ? PlotAxis(least, most, kLeft, kWidth - kRight)
-                 : PlotAxis(least, most, kHeight - kBottom, kTop);
-}
-
 std::string text_at(double x, double y, const char* anchor, const std::string& text, const char* more = "") {
   return fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
                      escaped(text));
 }
 
-std::string frame(const Plot& plot, const PlotAxis& x, const PlotAxis& y) {
-  std::string svg;
-  for (const double mark : x.marks()) {
-    svg += fmt::format("<path d=\"M{0:.1f} {1:.0f}V{2:.0f}\" stroke=\"#ddd\"/>\n", x.pixel(mark), kTop,
-                       kHeight - kBottom);
-    svg += text_at(x.pixel(mark), kHeight - kBottom + 16, "middle", fmt::format("{:.6g}", mark));
+std::string line_along(const std::string& way, const char* colour, double width, const char* more = "") {
+  if (way.empty()) return {};
+  return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{}/>\n", way, colour,
+                     width, more);
+}
+
+std::string dot_at(double x, double y, const char* colour) {
+  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.2\" fill=\"{}\"/>\n", x, y, colour);
+}
+
+/// What a plot draws, and how.
+struct Drawn {
+  std::string name;
+  const char* colour;
+  bool is_line = true;
+  const char* dashes = "";
+};
+
+std::vector<Drawn> all_drawn(const Plot& plot) {
+  std::vector<Drawn> all;
+  for (const PlotSeries& series : plot.series) {
+    const bool is_line = series.joined && plot.kinds.empty();
+    all.push_back(
+        {.name = series.name, .colour = kColours[all.size() % kColours.size()], .is_line = is_line});
   }
-  for (const double mark : y.marks()) {
-    svg += fmt::format("<path d=\"M{0:.0f} {1:.1f}H{2:.0f}\" stroke=\"#ddd\"/>\n", kLeft, y.pixel(mark),
+  for (const PlotMark& mark : plot.marks)
+    all.push_back({.name = mark.name, .colour = kMarkColour, .dashes = kDashes});
+  return all;
+}
+
+/// The names of what is drawn, each behind a piece of it, above the frame.
+class Legend {
+ public:
+  explicit Legend(const Plot& plot) {
+    constexpr double kSample = 20, kLetter = 6.5, kBetween = 14;  // [pixels]
+    double x = kLeft;
+    for (const Drawn& one : all_drawn(plot)) {
+      const double width = kSample + kLetter * static_cast<double>(one.name.size());
+      if (x > kLeft && x + width > kWidth - kRight) {
+        x = kLeft;
+        bottom_ += kRow;
+      }
+      svg_ += sample(one, x, bottom_ - 4) + text_at(x + kSample, bottom_, "start", one.name,
+                                                    fmt::format(" fill=\"{}\"", one.colour).c_str());
+      x += width + kBetween;
+    }
+  }
+  const std::string& svg() const { return svg_; }
+  double bottom() const { return bottom_; }
+
+ private:
+  static std::string sample(const Drawn& one, double x, double y) {
+    constexpr double kLength = 14;
+    if (!one.is_line) return dot_at(x + kLength / 2, y, one.colour);
+    return line_along(fmt::format("M{:.1f} {:.1f}h{}", x, y, kLength), one.colour, 1.6, one.dashes);
+  }
+
+  static constexpr double kRow = 16;
+  std::string svg_;
+  double bottom_ = kTitle + kRow;
+};
+
+/// Where in the picture the points of a plot stand.
+struct Frame {
+  double top;
+  PlotAxis x;
+  PlotAxis y;
+
+  Frame(const Plot& plot, double below)
+      : top(below + 8),
+        x(horizontal_axis(plot, kLeft, kWidth - kRight)),
+        y(vertical_axis(plot, kHeight - kBottom, top)) {}
+};
+
+std::string text_below(double x, const std::string& text) {
+  return text_at(x, kHeight - kBottom + 16, "middle", text);
+}
+
+std::string marks_along_x(const Plot& plot, const Frame& frame) {
+  std::string svg;
+  for (const PlotKind& kind : plot.kinds) svg += text_below(frame.x.pixel(kind.at), kind.name);
+  if (!plot.kinds.empty()) return svg;
+  for (const double mark : frame.x.marks()) {
+    svg += fmt::format("<path d=\"M{0:.1f} {1:.0f}V{2:.0f}\" stroke=\"#ddd\"/>\n", frame.x.pixel(mark),
+                       frame.top, kHeight - kBottom);
+    svg += text_below(frame.x.pixel(mark), fmt::format("{:.6g}", mark));
+  }
+  return svg;
+}
+
+std::string drawn_frame(const Plot& plot, const Frame& frame) {
+  std::string svg = marks_along_x(plot, frame);
+  for (const double mark : frame.y.marks()) {
+    svg += fmt::format("<path d=\"M{0:.0f} {1:.1f}H{2:.0f}\" stroke=\"#ddd\"/>\n", kLeft, frame.y.pixel(mark),
                        kWidth - kRight);
-    svg += text_at(kLeft - 6, y.pixel(mark) + 4, "end", fmt::format("{:.6g}", mark));
+    svg += text_at(kLeft - 6, frame.y.pixel(mark) + 4, "end", fmt::format("{:.6g}", mark));
   }
   svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#333\"/>\n",
-                     kLeft, kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom);
-  svg += text_at(kWidth / 2, 22, "middle", plot.title, " font-size=\"14\"");
+                     kLeft, frame.top, kWidth - kLeft - kRight, kHeight - frame.top - kBottom);
+  svg += text_at(kWidth / 2, kTitle, "middle", plot.title, " font-size=\"14\"");
   svg += text_at(kWidth / 2, kHeight - 12, "middle", plot.x_label);
   svg += text_at(-kHeight / 2, 16, "middle", plot.y_label, " transform=\"rotate(-90)\"");
   return svg;
 }
 
-std::string curve(const PlotSeries& series, const char* colour, const PlotAxis& x, const PlotAxis& y) {
+/// [pixels] By how much the points of a series stand beside their kind.
+double beside_kind(const Plot& plot, std::size_t series) {
+  constexpr double kBeside = 12;
+  if (plot.kinds.empty()) return 0;
+  return kBeside * (static_cast<double>(series) - 0.5 * static_cast<double>(plot.series.size() - 1));
+}
+
+std::string curve(const Plot& plot, std::size_t number, const Drawn& how, const Frame& frame) {
+  const PlotSeries& series = plot.series[number];
+  const std::size_t points = std::min(series.x.size(), series.y.size());
+  const auto has = [&](std::size_t i) { return i < points && is_shown(plot, series.x[i], series.y[i]); };
   std::string path;
   std::string dots;
   std::string bars;
-  for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
-    if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
-    const double px = x.pixel(series.x[i]), py = y.pixel(series.y[i]);
+  for (std::size_t i = 0; i < points; ++i) {
+    if (!has(i)) continue;
+    const double px = frame.x.pixel(series.x[i]) + beside_kind(plot, number);
+    const double py = frame.y.pixel(series.y[i]);
     const double around = error_at(series, i);
     if (around > 0) {
-      bars += fmt::format("M{:.1f} {:.1f}V{:.1f}", px, y.pixel(series.y[i] - around),
-                          y.pixel(series.y[i] + around));
+      bars += fmt::format("M{:.1f} {:.1f}V{:.1f}", px, frame.y.pixel(series.y[i] - around),
+                          frame.y.pixel(series.y[i] + around));
     }
-    if (series.joined)
-      path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", px, py);
+    const bool goes_on = i > 0 && has(i - 1);
+    if (!how.is_line || (!goes_on && !has(i + 1)))
+      dots += dot_at(px, py, how.colour);
     else
-      dots += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.2\" fill=\"{}\"/>\n", px, py, colour);
+      path += fmt::format("{}{:.1f} {:.1f}", goes_on ? "L" : "M", px, py);
   }
-  const auto line = [colour](const std::string& way, double width) {
-    if (way.empty()) return std::string();
-    return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/>\n", way, colour,
-                       width);
-  };
-  return line(path, 1.6) + line(bars, 0.8) + dots;
+  return line_along(path, how.colour, 1.6) + line_along(bars, how.colour, 0.8) + dots;
+}
+
+std::string drawn_mark(const PlotMark& mark, const Frame& frame) {
+  const double first = frame.x.pixel(mark.at - mark.around), last = frame.x.pixel(mark.at + mark.around);
+  const double bottom = kHeight - kBottom;
+  std::string svg;
+  if (mark.around > 0) {
+    svg +=
+        fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}Z\" fill=\"{}\" fill-opacity=\"0.12\"/>\n",
+                    first, frame.top, last, bottom, first, kMarkColour);
+  }
+  return svg + line_along(fmt::format("M{:.1f} {:.1f}V{:.1f}", frame.x.pixel(mark.at), frame.top, bottom),
+                          kMarkColour, 1, kDashes);
 }
 
 std::string drawn(const Plot& plot) {
-  const PlotAxis x = axis_of(plot, true);
-  const PlotAxis y = axis_of(plot, false);
-  std::string svg = frame(plot, x, y);
-  for (std::size_t i = 0; i < plot.series.size(); ++i) {
-    const char* colour = kColours[i % kColours.size()];
-    svg += curve(plot.series[i], colour, x, y);
-    const double line = kTop + 16 + 15 * static_cast<double>(i);
-    const auto style =
-        fmt::format(R"( fill="{}" stroke="white" stroke-width="3" paint-order="stroke")", colour);
-    svg += text_at(kWidth - kRight - 8, line, "end", plot.series[i].name, style.c_str());
-  }
+  const Legend legend(plot);
+  const Frame frame(plot, legend.bottom());
+  const auto all = all_drawn(plot);
+  std::string svg = legend.svg() + drawn_frame(plot, frame);
+  for (std::size_t i = 0; i < plot.series.size(); ++i) svg += curve(plot, i, all[i], frame);
+  for (const PlotMark& mark : plot.marks) svg += drawn_mark(mark, frame);
   return svg;
 }
 

@@ -21,12 +21,13 @@ namespace crisp {
 namespace {
 
 void draw(const std::filesystem::path& folder, const Diagnosis& diagnosis, Context& context) {
+  std::vector<std::string> lasers;
+  for (const auto& laser : context.rig().lasers) lasers.push_back(laser.name);
   const auto draw_one = [&](std::size_t laser, const std::string& name) {
-    const auto plots = residual_plots(laser, name, diagnosis.left_before, diagnosis.left_after);
+    const auto plots = residual_plots(laser, lasers, diagnosis.left_before, diagnosis.left_after);
     if (!plots.empty()) write_plots(folder / (name + "_residuals.svg"), plots, context);
   };
-  const auto& lasers = context.rig().lasers;
-  for (std::size_t laser = 0; laser < lasers.size(); ++laser) draw_one(laser, lasers[laser].name);
+  for (std::size_t laser = 0; laser < lasers.size(); ++laser) draw_one(laser, lasers[laser]);
   draw_one(kAllLasers, "scanner");
 }
 

@@ -6,30 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
+#include "pipeline/data/degree.hpp"
+#include "plugins/diagnose/histogram.hpp"
 #include "plugins/diagnose/noise_ways.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr double kBarLength = 2;  // [standard errors]
-
-struct Histogram {
-  double first = 0, width = 1;  // of the bins
-  std::vector<double> count;
-  double all = 0;
-
-  Histogram(double from, double to, std::size_t bins)
-      : first(from), width((to - from) / static_cast<double>(bins)), count(bins) {}
-  void add(double value) {
-    all += 1;
-    const double bin = std::floor((value - first) / width);
-    if (bin >= 0 && bin < static_cast<double>(count.size())) count[static_cast<std::size_t>(bin)] += 1;
-  }
-  double middle(std::size_t bin) const { return first + (static_cast<double>(bin) + 0.5) * width; }
-};
 
 /// The density of a law [1/m], mean over ranges and beams like those that were measured.
 double mean_density(const NoiseLaw& law, const RangeErrors& errors, double value) {
@@ -44,9 +30,9 @@ double mean_density(const NoiseLaw& law, const RangeErrors& errors, double value
   return sum / count;
 }
 
-/// lg of a density [1/m] a millimetre; nothing where hardly a range would be.
+/// [1/mm] of a density [1/m]; nothing where hardly a range would be.
 double shown_density(double density, double least) {
-  return density >= least ? std::log10(1e-3 * density) : std::numeric_limits<double>::quiet_NaN();
+  return density >= least ? 1e-3 * density : std::numeric_limits<double>::quiet_NaN();
 }
 
 PlotSeries law_over(const std::string& name, const NoiseLaw& law, const RangeErrors& errors,
@@ -74,12 +60,13 @@ Plot distribution(const std::string& name, const RangeErrors& errors, const Nois
   for (std::size_t b = 0; b < kBins; ++b) {
     measured.x.push_back(1e3 * bins.middle(b));
     measured.y.push_back(shown_density(bins.count[b] * one, one));
-    measured.error.push_back(kBarLength / std::numbers::ln10 / std::sqrt(std::max(1.0, bins.count[b])));
+    measured.error.push_back(kBarLength * std::sqrt(bins.count[b]) * 1e-3 * one);
   }
   Plot plot{.title = fmt::format("{}: {} ranges about the mean of their beams", name, errors.size()),
             .x_label = "error [mm]",
-            .y_label = "lg of the share a millimetre",
-            .series = {measured, law_over("normal law", noise.plain, errors, bins, one)}};
+            .y_label = "density [1/mm], logarithmic",
+            .series = {measured, law_over("normal law", noise.plain, errors, bins, one)},
+            .y_scale = PlotScale::logarithmic};
   if (!noise.law.is_normal()) {
     plot.series.push_back(law_over("with what was found", noise.law, errors, bins, one));
   }
@@ -148,6 +135,13 @@ Plot noise_over(const NoiseCovariate& over, const std::string& name, const Range
   return plot;
 }
 
+std::vector<float> incidence_in_degrees(const RangeErrors& errors) {
+  std::vector<float> degrees;
+  for (const float cosine : errors.cosine)
+    degrees.push_back(static_cast<float>(std::acos(std::clamp(double{cosine}, -1.0, 1.0)) / kDegree));
+  return degrees;
+}
+
 }  // namespace
 
 std::vector<Plot> noise_plots(const std::string& name, const RangeErrors& errors,
@@ -156,8 +150,9 @@ std::vector<Plot> noise_plots(const std::string& name, const RangeErrors& errors
   std::vector<Plot> plots = {
       distribution(name, errors, noise),
       noise_over({.name = "range", .label = "range [m]", .values = errors.range}, name, errors, noise)};
+  const std::vector<float> incidence = incidence_in_degrees(errors);
   for (const NoiseCovariate& over :
-       {NoiseCovariate{"incidence", "cosine of the incidence", errors.cosine},
+       {NoiseCovariate{"incidence", "incidence [deg]", incidence},
         NoiseCovariate{"remission", "remission [device's units]", errors.remission}}) {
     if (are_various(over.values)) plots.push_back(noise_over(over, name, errors, noise));
   }

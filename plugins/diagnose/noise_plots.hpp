@@ -13,9 +13,9 @@
 namespace crisp {
 
 /// How one laser's ranges scatter, measured beside the normal law and the one that was found, if it is
-/// another: the distribution of their errors, as the logarithm of its density, and their RMS over the range
-/// and, where they are known and change, over incidence and remission, in bins of equally many ranges. Bars
-/// are two standard errors either way.
+/// another: the distribution of their errors, as its density on a logarithmic axis, and their RMS over the
+/// range and, where they are known and change, over incidence and remission, in bins of equally many ranges.
+/// Bars are two standard errors either way.
 std::vector<Plot> noise_plots(const std::string& name, const RangeErrors& errors,
                               const NoiseDiagnosis& noise);
 

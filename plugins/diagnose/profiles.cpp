@@ -12,15 +12,16 @@
 #include <optional>
 
 #include "pipeline/data/least_chance.hpp"
+#include "pipeline/data/recordings.hpp"
 #include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
+#include "plugins/diagnose/layout.hpp"
 #include "plugins/diagnose/mean.hpp"
 #include "plugins/diagnose/residuals.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr std::size_t kBins = 12;
 constexpr std::size_t kSimulations = 199;
 
 struct Covariate {
@@ -55,38 +56,6 @@ std::vector<Covariate> covariates(const Evidence& evidence, const Residuals& res
   };
 }
 
-/// One profile's bins: which residuals are in each.
-struct Layout {
-  Profile profile;
-  std::vector<std::uint32_t> residual;  // of the laser, in the order of the covariate
-  std::vector<std::size_t> first;       // of each bin; one more than there are
-};
-
-/// Bins of equally many of the laser's residuals, but that what has the same value is in the same bin.
-///
-/// @param members  the laser's residuals
-/// @param values   of these: the covariate
-Layout laid_out(const std::vector<std::uint32_t>& members, const std::vector<double>& values) {
-  std::vector<std::size_t> order(members.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return values[k]; });
-  Layout layout{.profile = {}, .residual = {}, .first = {0}};
-  for (std::size_t b = 0; b < kBins; ++b) {
-    const std::size_t begin = layout.first.back();
-    std::size_t end = (b + 1) * order.size() / kBins;
-    while (end > begin && end < order.size() && values[order[end]] == values[order[end - 1]]) ++end;
-    if (end <= begin) continue;
-    double sum = 0;
-    for (std::size_t k = begin; k < end; ++k) {
-      sum += values[order[k]];
-      layout.residual.push_back(members[order[k]]);
-    }
-    layout.profile.bins.push_back({.at = sum / static_cast<double>(end - begin)});
-    layout.first.push_back(end);
-  }
-  return layout;
-}
-
 /// The mean residual of each laser. What all surfaces of a laser miss others' by is no plane's.
 std::optional<Layout> layout_over_lasers(const Measurements& beams, const Residuals& residuals) {
   std::vector<std::uint32_t> all(residuals.beam.size());
@@ -110,12 +79,15 @@ std::vector<Layout> layouts(const Evidence& evidence, const Residuals& residuals
   std::map<std::size_t, std::vector<std::uint32_t>> of_laser;
   for (std::uint32_t k = 0; k < residuals.beam.size(); ++k)
     of_laser[beams.laser[residuals.beam[k]]].push_back(k);
+  const RecordingNumbers recordings(*evidence.sample().plate);
+  const std::function<std::size_t(double)> recording_of = [&](double time) { return recordings.of(time); };
+  const std::function<std::size_t(double)> alike = [](double) { return std::size_t{0}; };
   std::vector<Layout> all;
   for (const auto& [name, unit, value] : covariates(evidence, residuals)) {
     for (const auto& [laser, members] : of_laser) {
       std::vector<double> values(members.size());
       for (std::size_t k = 0; k < members.size(); ++k) values[k] = value(members[k]);
-      Layout layout = laid_out(members, values);
+      Layout layout = laid_out(members, values, name == "time" ? recording_of : alike);
       if (layout.profile.bins.size() < 2) continue;
       layout.profile.covariate = name;
       layout.profile.unit = unit;
@@ -206,11 +178,14 @@ SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings
 
   std::vector<SimulatedMeans> means(all.size(), SimulatedMeans(kSimulations));
   std::vector<double> squares(kSimulations);
+  std::vector<std::vector<NoiseCounts>> counts(kSimulations);
   for_each_index(kSimulations, [&](std::size_t s) {
     const Weighed made = simulated(residuals, noise, seed + s);
     squares[s] = shared_square(residuals, made, beams);
+    counts[s] = counts_of(made, residuals, noise, beams);
     for (std::size_t p = 0; p < all.size(); ++p) means[p][s] = means_in(all[p], made);
   });
+  result.distributions = distributions(counts_of(residuals.measured, residuals, noise, beams), counts);
   result.excess = shared_square(residuals, residuals.measured, beams) -
                   std::accumulate(squares.begin(), squares.end(), 0.0) / double{kSimulations};
   std::vector<double> least(kSimulations, 1.0);

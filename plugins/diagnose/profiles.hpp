@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "plugins/diagnose/distribution.hpp"
 #include "plugins/diagnose/evidence.hpp"
 
 namespace crisp {
@@ -20,15 +21,16 @@ struct Profile {
   std::string unit;       ///< of the covariate, SI; empty: it has none
   std::size_t laser = 0;  ///< or kAllLasers
   struct Bin {
-    double at = 0;         ///< mean of the covariate, in SI
-    double measured = 0;   ///< [m] mean residual, along the beam
-    double simulated = 0;  ///< [m] of the scanner simulated in the scene that the data show
-    double error = 0;      ///< [m] standard error of the mean
+    double at = 0;              ///< mean of the covariate, in SI
+    double measured = 0;        ///< [m] mean residual, along the beam
+    double simulated = 0;       ///< [m] of the scanner simulated in the scene that the data show
+    double error = 0;           ///< [m] standard error of the mean
+    std::size_t recording = 0;  ///< over time: which of several
   };
-  std::vector<Bin> bins;
-  double share = 0;    ///< of all residuals: those of the laser
-  double rms = 0;      ///< [m] of the measured means, less what noise makes
-  double p_value = 1;  ///< that noise makes as much in any of the profiles that were looked at
+  std::vector<Bin> bins;  ///< over time: none has beams of two recordings
+  double share = 0;       ///< of all residuals: those of the laser
+  double rms = 0;         ///< [m] of the measured means, less what noise makes
+  double p_value = 1;     ///< that noise makes as much in any of the profiles that were looked at
 
   /// Whether this is the simulation's by one chance in a hundred at most.
   bool departs() const { return p_value <= 0.01; }
@@ -37,6 +39,7 @@ struct Profile {
 /// The measured data beside what the model expects of them.
 struct SideBySide {
   std::vector<Profile> profiles;
+  std::vector<Distribution> distributions;  ///< of each laser
   std::vector<double> noise;  ///< [m] standard deviation of each laser's ranges that the residuals show
   double p_value = 1;         ///< that nothing but noise is in the residuals: the least of the profiles'
   double excess = 0;          ///< [m²] mean square of the residuals beyond what noise leaves of them

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/likeness.hpp"
+#include "plugins/diagnose/distribution_plot.hpp"
 
 namespace crisp {
 namespace {
@@ -30,17 +32,36 @@ const Profile* find_profile(const SideBySide& all, std::size_t laser, const std:
   return found == all.profiles.end() ? nullptr : &*found;
 }
 
+/// What the bins of a profile are of, where that is no quantity.
+std::vector<PlotKind> kinds_in(const Profile& profile, const std::vector<std::string>& lasers) {
+  std::vector<PlotKind> kinds;
+  const auto add = [&](const std::string& name) {
+    kinds.push_back({.at = static_cast<double>(kinds.size() + 1), .name = name});
+  };
+  for (const Profile::Bin& bin : profile.bins) {
+    if (profile.covariate == "front/back") add(bin.at == 0 ? "front" : "back");
+    if (profile.covariate == "laser") add(lasers.at(static_cast<std::size_t>(bin.at) - 1));
+  }
+  return kinds;
+}
+
 void add_profile(const Profile& profile, const std::string& when, Plot& plot) {
   constexpr double kBar = 2;  // standard errors
+  constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
   const double factor = shown_unit(profile.unit).factor;
   PlotSeries measured{.name = "measured" + when, .x = {}, .y = {}};
   PlotSeries simulated{.name = "simulated" + when, .x = {}, .y = {}, .joined = false};
-  for (const Profile::Bin& bin : profile.bins) {
-    measured.x.push_back(bin.at * factor);
+  const auto add = [&](double x, const Profile::Bin& bin) {
+    measured.x.push_back(x);
     measured.y.push_back(1e3 * bin.measured);
     measured.error.push_back(1e3 * kBar * bin.error);
-    simulated.x.push_back(bin.at * factor);
+    simulated.x.push_back(x);
     simulated.y.push_back(1e3 * bin.simulated);
+  };
+  for (std::size_t b = 0; b < profile.bins.size(); ++b) {
+    const Profile::Bin& bin = profile.bins[b];
+    if (b > 0 && bin.recording != profile.bins[b - 1].recording) add(kBreak, bin);
+    add(b < plot.kinds.size() ? plot.kinds[b].at : bin.at * factor, bin);
   }
   plot.series.push_back(std::move(measured));
   plot.series.push_back(std::move(simulated));
@@ -56,28 +77,40 @@ bool is_same(const Profile& one, const Profile& other) {
   });
 }
 
+Plot profile_plot(const std::string& name, const Profile& before, const Profile* after,
+                  const std::vector<std::string>& lasers) {
+  const ShownUnit unit = shown_unit(before.unit);
+  Plot plot{
+      .title = fmt::format("{} against {}: {}", name, before.covariate, size_in_words(before)),
+      .x_label = unit.name.empty() ? before.covariate : fmt::format("{} [{}]", before.covariate, unit.name),
+      .y_label = "mean residual [mm]",
+      .kinds = kinds_in(before, lasers)};
+  if (after && !is_same(before, *after)) {
+    plot.title += ", then " + size_in_words(*after);
+    add_profile(before, " before", plot);
+    add_profile(*after, " after", plot);
+  } else {
+    add_profile(before, "", plot);
+  }
+  return plot;
+}
+
+const Distribution* find_distribution(const SideBySide& all, std::size_t laser) {
+  const auto found = std::ranges::find(all.distributions, laser, &Distribution::laser);
+  return found == all.distributions.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
-std::vector<Plot> residual_plots(std::size_t laser, const std::string& name, const SideBySide& before,
-                                 const SideBySide& after) {
+std::vector<Plot> residual_plots(std::size_t laser, const std::vector<std::string>& lasers,
+                                 const SideBySide& before, const SideBySide& after) {
+  const std::string name = laser == kAllLasers ? "scanner" : lasers.at(laser);
   std::vector<Plot> plots;
+  if (const Distribution* own = find_distribution(before, laser))
+    plots.push_back(distribution_plot(name, *own, find_distribution(after, laser)));
   for (const Profile& profile : before.profiles) {
     if (profile.laser != laser) continue;
-    const ShownUnit unit = shown_unit(profile.unit);
-    Plot plot{.title = fmt::format("{} against {}: {}", name, profile.covariate, size_in_words(profile)),
-              .x_label = unit.name.empty() ? profile.covariate
-                                           : fmt::format("{} [{}]", profile.covariate, unit.name),
-              .y_label = "mean residual [mm]",
-              .series = {}};
-    const Profile* extended = find_profile(after, laser, profile.covariate);
-    if (extended && !is_same(profile, *extended)) {
-      plot.title += ", then " + size_in_words(*extended);
-      add_profile(profile, " before", plot);
-      add_profile(*extended, " after", plot);
-    } else {
-      add_profile(profile, "", plot);
-    }
-    plots.push_back(std::move(plot));
+    plots.push_back(profile_plot(name, profile, find_profile(after, laser, profile.covariate), lasers));
   }
   return plots;
 }

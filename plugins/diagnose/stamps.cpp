@@ -262,6 +262,7 @@ std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes,
       const double lasted = to.stamp.device - from.stamp.device;
       const auto turned = static_cast<double>(to.count - from.count);
       facts.periods.push_back(lasted / turned);
+      facts.begin.push_back(receipt_of(from.stamp));
       time += lasted;
       turns += turned;
     }

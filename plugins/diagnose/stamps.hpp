@@ -106,6 +106,7 @@ struct MirrorFacts {
   double period_std_error = 0;
   double wander = 0;            ///< RMS of the period's slow changes, as a share of it
   std::vector<double> periods;  ///< [s] of pieces of eight turns
+  std::vector<double> begin;    ///< [s since the first telegram] of these pieces
 };
 
 /// Passes between which the device's clock went on as the mirror turned: none is across a restart, or across

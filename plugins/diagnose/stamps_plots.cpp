@@ -3,13 +3,16 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <limits>
 
 #include "pipeline/clocks/envelope.hpp"
+#include "pipeline/data/recordings.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr double kMilli = 1e3, kMicro = 1e6;
+constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
 
 /// What a departure does to the envelope, but for its size.
 Eigen::VectorXd shape_of(const ClockDeparture& departure, const Eigen::VectorXd& time) {
@@ -24,6 +27,20 @@ Eigen::VectorXd fitted(const Envelope& envelope, const ClockDeparture& departure
   return design * design.colPivHouseholderQr().solve(envelope.lead);
 }
 
+void add_point(double x, double y, PlotSeries& series) {
+  series.x.push_back(x);
+  series.y.push_back(y);
+}
+
+/// Whether a pause lies between two stamps, the later one at `last`: what is on either side belongs to
+/// recordings of their own.
+bool is_pause_between(std::span<const Stamp> stamps, std::size_t first, std::size_t last) {
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    if (receipt_of(stamps[i]) - receipt_of(stamps[i - 1]) > kPause) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Plot clock_plot(const std::string& device, std::span<const CountedStamp> stamps,
@@ -34,8 +51,7 @@ Plot clock_plot(const std::string& device, std::span<const CountedStamp> stamps,
   const auto delay_ms = [&](const Stamp& s, double lead) { return kMilli * (lead - line.lead(s.device)); };
   PlotSeries telegrams{.name = "telegrams", .x = {}, .y = {}, .joined = false};
   for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / kMostPoints) {
-    telegrams.x.push_back(receipt_of(all[i]));
-    telegrams.y.push_back(delay_ms(all[i], all[i].lead));
+    add_point(receipt_of(all[i]), delay_ms(all[i], all[i].lead), telegrams);
   }
   Plot plot{.title = device + ": receipt less device time, about the clock",
             .x_label = "time since the first telegram [s]",
@@ -48,10 +64,11 @@ Plot clock_plot(const std::string& device, std::span<const CountedStamp> stamps,
   PlotSeries found{.name = "as found", .x = {}, .y = {}};
   for (std::size_t w = 0; w < envelope.stamp.size(); ++w) {
     const Stamp& stamp = all[envelope.stamp[w]];
-    least.x.push_back(receipt_of(stamp));
-    least.y.push_back(delay_ms(stamp, stamp.lead));
-    found.x.push_back(receipt_of(stamp));
-    found.y.push_back(delay_ms(stamp, leads[static_cast<Eigen::Index>(w)]));
+    if (w > 0 && is_pause_between(all, envelope.stamp[w - 1], envelope.stamp[w])) {
+      for (PlotSeries* series : {&least, &found}) add_point(kBreak, kBreak, *series);
+    }
+    add_point(receipt_of(stamp), delay_ms(stamp, stamp.lead), least);
+    add_point(receipt_of(stamp), delay_ms(stamp, leads[static_cast<Eigen::Index>(w)]), found);
   }
   plot.series.push_back(std::move(least));
   if (departure->kind != ClockDeparture::Kind::backlog) plot.series.push_back(std::move(found));
@@ -61,16 +78,13 @@ Plot clock_plot(const std::string& device, std::span<const CountedStamp> stamps,
 Plot mirror_plot(const std::string& device, const MirrorFacts& facts, double nominal) {
   PlotSeries measured{.name = "measured", .x = {}, .y = {}};
   PlotSeries expected{.name = "nominal", .x = {}, .y = {}};
-  double time = 0;
-  for (const double period : facts.periods) {
-    measured.x.push_back(time);
-    expected.x.push_back(time);
-    measured.y.push_back(kMicro * period);
-    expected.y.push_back(kMicro * nominal);
-    time += kTurnsOfPiece * period;
+  for (std::size_t i = 0; i < facts.periods.size(); ++i) {
+    if (i > 0 && facts.begin[i] - facts.begin[i - 1] > kPause) add_point(kBreak, kBreak, measured);
+    add_point(facts.begin[i], kMicro * facts.periods[i], measured);
+    add_point(facts.begin[i], kMicro * nominal, expected);
   }
   Plot plot{.title = device + ": period of the mirror, of eight turns each",
-            .x_label = "time since the first turn [s]",
+            .x_label = "time since the first telegram [s]",
             .y_label = "period [us]",
             .series = {std::move(measured)}};
   plot.series.push_back(std::move(expected));

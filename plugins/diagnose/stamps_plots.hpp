@@ -11,7 +11,7 @@
 namespace crisp {
 
 /// Receipt less device time about the straight line below all telegrams, with the least of each stretch, and
-/// what was found in these.
+/// what was found in these. Lines break in pauses.
 ///
 /// @param departure  with its instant since the first stamp
 Plot clock_plot(const std::string& device, std::span<const CountedStamp> stamps,

@@ -145,11 +145,20 @@ PlateTrajectory mended(const PlateTrajectory& plate, double shift) {
   return {plate.epoch_ns(), {plate.times().begin(), plate.times().end()}, std::move(moved), plate.max_gap()};
 }
 
+/// The shift, with two standard errors either way.
+PlotMark mark_of(const PassShift& found) {
+  return {.at = found.shift / kDegree,
+          .around = std::isfinite(found.std_error) ? 2 * found.std_error / kDegree : 0,
+          .name = fmt::format("{}: {:+.3f} ± {} deg", is_believed(found) ? "found" : "read, not believed",
+                              found.shift / kDegree, shown(found.std_error / kDegree, "{:.3f}"))};
+}
+
 void draw(const std::filesystem::path& folder, const std::string& laser, const PassComparison& comparison,
-          Context& context) {
+          const PassShift& found, Context& context) {
   Plot plot{.title = laser + ": pass down against pass up",
             .x_label = "shift between them [deg]",
-            .y_label = "standard deviation of the differences [mm]"};
+            .y_label = "standard deviation of the differences [mm]",
+            .marks = {mark_of(found)}};
   std::vector<std::size_t> all;
   for (std::size_t b = 0; b < comparison.blocks.size(); ++b) all.push_back(b);
   constexpr std::size_t kQuarters = 4;
@@ -237,7 +246,7 @@ double DiagnosePassesStage::diagnose(Findings& findings, Context& context) const
   findings.unobservable.push_back(
       {name + ".tau",
        "both ways see the same surfaces from the same angles: that says nothing of the mounting", ""});
-  if (folder_) draw(*folder_, name, comparison, context);
+  if (folder_) draw(*folder_, name, comparison, found, context);
   return pays && mend_ ? found.shift : 0;
 }
 

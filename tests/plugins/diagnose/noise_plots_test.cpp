@@ -65,9 +65,10 @@ TEST(NoisePlots, ShowThatTheLawThatWasFoundIsTheMeasuredOneAndTheNormalOneIsNot)
 
 TEST(NoisePlots, HaveDensitiesThatAddUpToOne) {
   const Plot plot = noise_plots("laser1", with_tails(), known_tails()).at(0);
+  EXPECT_EQ(plot.y_scale, PlotScale::logarithmic);
   for (const PlotSeries& series : plot.series) {
     double sum = 0;
-    for (const double lg : series.y) sum += std::isfinite(lg) ? std::pow(10, lg) : 0;
+    for (const double density : series.y) sum += std::isfinite(density) ? density : 0;
     EXPECT_NEAR(sum * (series.x[1] - series.x[0]), 1, 0.01) << series.name;
   }
 }
@@ -97,6 +98,9 @@ TEST(NoisePlots, GoOverIncidenceAndRemissionWhereTheyAreKnownAndChange) {
   const auto plots = noise_plots("laser1", errors, noise);
   ASSERT_EQ(plots.size(), 4U);
   EXPECT_THAT(plots[2].title, testing::HasSubstr("incidence"));
+  EXPECT_EQ(plots[2].x_label, "incidence [deg]");
+  EXPECT_NEAR(plots[2].series[0].x.front(), 8, 4) << "[deg] mean of the least twelfth up to 60 deg";
+  EXPECT_NEAR(plots[2].series[0].x.back(), 58, 2);
   EXPECT_THAT(plots[3].title, testing::HasSubstr("remission"));
   for (const std::size_t k : {2U, 3U}) {
     EXPECT_LT(misfit(plots[k], 2), 2.5) << plots[k].title;  // χ² of 12 bins

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/plugins/diagnose/hidden.hpp"
+#include "tests/support/several_recordings.hpp"
 
 namespace crisp {
 namespace {
@@ -151,6 +152,45 @@ TEST(SideBySide, KnowsOfEachProfileWhatShareOfTheBeamsIsInIt) {
   for (const Profile& profile : left.profiles) shares[profile.covariate] += profile.share;
   ASSERT_TRUE(shares.contains("time") && shares.contains("laser"));
   for (const auto& [covariate, share] : shares) EXPECT_NEAR(share, 1, 1e-9) << covariate;
+}
+
+TEST(SideBySide, HasBinsOverTimeInRecordingsAndNoneAcrossThePauseBetween) {
+  const test::Recording longer = test::hidden(3, 3, office(), {}), shorter = test::hidden(4, 1, office(), {});
+  const test::Several both = test::several({longer.made, shorter.made});
+  const SurfelSettings settings;
+  const Evidence evidence(SensorModel(longer.scanner.truth, built_in_terms()), both.sample(), settings,
+                          60000);
+  const SideBySide left = side_by_side(evidence, settings, 1);
+  EXPECT_GT(left.p_value, 0.01);
+  const auto over_time = std::ranges::find(left.profiles, "time", &Profile::covariate);
+  ASSERT_NE(over_time, left.profiles.end());
+  std::map<std::size_t, std::size_t> bins;
+  for (const Profile::Bin& bin : over_time->bins) {
+    ++bins[bin.recording];
+    const double later = bin.recording == 0 ? 0 : 60;
+    const PlateTrajectory& own = (bin.recording == 0 ? longer : shorter).made.plate;
+    EXPECT_GT(bin.at, own.begin() + later);
+    EXPECT_LT(bin.at, own.end() + later);
+  }
+  EXPECT_THAT(bins,
+              testing::ElementsAre(testing::Pair(0, testing::Ge(8U)), testing::Pair(1, testing::Ge(2U))));
+}
+
+TEST(SideBySide, LaysDistributionsBesideSimulatedOnes) {
+  test::Recording recording = test::hidden(4, 3, office(), {});
+  for (std::size_t i = 0; i < recording.made.beams.size(); ++i) {
+    if (recording.made.beams.laser[i] != 2) continue;
+    recording.made.beams.range[i] += 0.012F * std::sin(6 * recording.made.beams.mirror_angle[i]);
+  }
+  const SideBySide left = beside(recording);
+  ASSERT_EQ(left.distributions.size(), 3U);
+  for (const Distribution& one : left.distributions) {
+    EXPECT_NEAR(one.simulated_rms, 1, 0.02) << "less the few degrees of freedom that planes take";
+  }
+  for (const std::size_t other : {0U, 1U}) {
+    EXPECT_NEAR(left.distributions[other].measured_rms, 1, 0.05) << "what planes were bent by";
+  }
+  EXPECT_GT(left.distributions[2].measured_rms, 1.1) << "up to sqrt(1 + 1 / 2), less what planes take";
 }
 
 TEST(SideBySide, GivesPlainNoiseAnyPValue) {

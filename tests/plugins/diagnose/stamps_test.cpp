@@ -222,6 +222,31 @@ TEST(Stamps, AreDrawnWithWhatWasFoundInThem) {
   EXPECT_EQ(clock_plot("laser1", track.stamps(), {}).series.size(), 1U);
 }
 
+/// How often a curve breaks.
+std::ptrdiff_t breaks_in(const PlotSeries& series) {
+  return std::ranges::count_if(series.y, [](double y) { return std::isnan(y); });
+}
+
+TEST(Stamps, AreNotJoinedAcrossAPause) {
+  StampTrack track;
+  constexpr std::uint32_t kPeriod_us = 20'000, kPause_us = 30'000'000;
+  std::uint32_t at = 0;
+  for (std::uint16_t k = 0; k < 1000; ++k) {
+    track.add(k, at, kEpoch_ns + std::int64_t{at} * 1000 + (k < 700 ? 0 : 2'000'000));
+    at += k == 599 ? kPause_us : kPeriod_us;
+  }
+  const ClockDeparture step{.kind = ClockDeparture::Kind::latency_step, .size = 0.002, .at = 45};
+  const Plot clock = clock_plot("laser1", track.stamps(), step);
+  ASSERT_EQ(clock.series.size(), 3U);
+  EXPECT_EQ(breaks_in(clock.series[1]), 1) << "the least";
+  EXPECT_EQ(breaks_in(clock.series[2]), 1) << "what was found";
+  const auto facts = mirror_facts(track.stamps());
+  ASSERT_TRUE(facts);
+  const Plot mirror = mirror_plot("laser1", *facts, 0.02);
+  EXPECT_EQ(breaks_in(mirror.series[0]), 1);
+  EXPECT_NEAR(mirror.series[0].x.back(), 12 + 30 + 8, 0.4) << "[s] when it was, not how long it turned";
+}
+
 TEST(Stamps, GiveTheRateOfAMirror) {
   StampTrack passes;
   constexpr double kPeriod_us = 20'114.5;

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <fstream>
 #include <functional>
+#include <iterator>
 
 #include "plugins/scans/passes_stage.hpp"
 #include "plugins/scans/rest_stage.hpp"
@@ -208,7 +210,8 @@ std::vector<double> feed_up_and_down(test::StageDriver& stage, const std::functi
 }
 
 TEST(DiagnosePassesStage, NamesPlayTogetherWithALagAndMendsHalfOfItOnEitherWay) {
-  auto stage = driver<DiagnosePassesStage>();
+  const test::TemporaryFolder folder;
+  auto stage = driver<DiagnosePassesStage>({{"folder", folder.path().string()}});
   const std::vector<double> angles = feed_up_and_down(stage, [](int) { return 2; });
   const auto& findings = *stage.given<Findings>().at(0);
   ASSERT_THAT(findings.findings, SizeIs(1)) << stage.report().lines.at(0);
@@ -224,6 +227,10 @@ TEST(DiagnosePassesStage, NamesPlayTogetherWithALagAndMendsHalfOfItOnEitherWay) 
   const auto mended = stage.given<PlateTrajectory>().at(0);
   EXPECT_NEAR(mended->angles()[200] - angles[200], kActuatorStep, 0.2 * kActuatorStep);
   EXPECT_NEAR(mended->angles()[700] - angles[700], -kActuatorStep, 0.2 * kActuatorStep);
+  std::ifstream file(folder / "laser1_passes.svg");
+  const std::string picture(std::istreambuf_iterator<char>(file), {});
+  const std::string shift = fmt::format("found: {:+.3f} ± ", -2 * found.parameters[0].value / kDegree);
+  EXPECT_THAT(picture, testing::HasSubstr(shift)) << "is marked in the picture";
 }
 
 TEST(DiagnosePassesStage, AShiftThatIsNotTheSameEverywhereHasThePThatItSays) {
