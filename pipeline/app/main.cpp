@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <poll.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -148,10 +151,16 @@ int guarded_main(int count, char** words) {
 
 namespace {
 
-/// The program's status, unless what it said did not arrive.
+/// Whether the other end of the standard output was closed, as `head` does when it has read enough.
+bool nobody_reads() {
+  pollfd output{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+  return poll(&output, 1, 0) == 1 && (output.revents & (POLLERR | POLLHUP)) != 0;
+}
+
+/// The program's status, unless what it said did not arrive though somebody waits for it.
 int after_output(int status) {
   std::cout.flush();
-  if (std::cout) return status;
+  if (std::cout || nobody_reads()) return status;
   crisp::print_errors(crisp::Error("cannot write to the standard output", "make room on the disk"));
   return status == 0 ? static_cast<int>(crisp::ExitStatus::failed) : status;
 }

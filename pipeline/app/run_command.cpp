@@ -154,6 +154,8 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
 }  // namespace
 
 ExitStatus run_command(const RunRequest& request, const Registrar& registrar) {
+  // For good: what nobody read is written once more when the program ends.
+  std::signal(SIGPIPE, SIG_IGN);
   RunSettings run;
   run.registrar = &registrar;
   run.threads = request.threads;
