@@ -150,11 +150,13 @@ ExitStatus effects_command(const EffectsRequest& request, const Registrar& regis
 void list_plugins(const PluginLoader& loader) {
   if (loader.tried().empty()) std::cout << "no plugins: give them with --plugin, or in CRISP_PLUGINS\n";
   for (const auto& plugin : loader.tried()) {
-    if (!plugin.is_loaded()) {
-      std::cout << fmt::format("{}\n  refused: {}\n", plugin.file.string(), plugin.refusal);
+    std::cout << plugin.file.string() << "\n";
+    if (!plugin.refusal.empty()) {
+      std::cout << fmt::format("  refused: {}\n", plugin.refusal);
       continue;
     }
-    std::cout << fmt::format("{}\n  {} {}\n", plugin.file.string(), plugin.name, plugin.version);
+    std::cout << fmt::format("  {} {}\n", plugin.name, plugin.version);
+    if (!plugin.skipped.empty()) std::cout << fmt::format("  skipped: it is used from {}\n", plugin.skipped);
     for (const auto& what : plugin.brings) std::cout << fmt::format("  {}\n", what);
   }
 }

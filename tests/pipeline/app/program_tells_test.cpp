@@ -69,6 +69,35 @@ TEST_F(ProgramTest, ListsPluginsAndWhyTheyWereRefused) {
   EXPECT_THAT(run.error, HasSubstr("was refused"));
 }
 
+TEST_F(ProgramTest, OnlyListsWhatIsWrongInAFolderOfPluginsThatItWasNotAskedFor) {
+  fs::create_directories(folder_ / "plugins");
+  fs::copy_file(TOY_PLUGIN, folder_ / "plugins/cut.so");
+  fs::resize_file(folder_ / "plugins/cut.so", 9000);
+  fs::copy_file(TOY_PLUGIN, folder_ / "plugins/old_toy.so");
+  setenv("CRISP_PLUGINS", path("plugins").c_str(), 1);
+  const auto run = crisp({"run", path("sum.yaml"), "-o", path("out")});
+  const auto list = crisp({"plugins"});
+  unsetenv("CRISP_PLUGINS");
+  EXPECT_EQ(run.status, 0) << run.error;
+  EXPECT_EQ(list.status, 0) << list.error;
+  EXPECT_THAT(list.out, HasSubstr(path("plugins/cut.so") + "\n  refused: it is cut short"));
+  EXPECT_THAT(list.out, HasSubstr(path("plugins/old_toy.so") +
+                                  "\n  toy 1.5\n  skipped: it is used from " TOY_PLUGIN "\n"));
+}
+
+TEST_F(ProgramTest, RefusesTwoFilesOfOnePluginThatItWasBothAskedFor) {
+  fs::copy_file(TOY_PLUGIN, folder_ / "copy.so");
+  EXPECT_EQ(crisp({"stages", "--plugin", TOY_PLUGIN}).status, 0);
+  const auto outcome = crisp({"stages", "--plugin", path("copy.so")});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.error,
+              HasSubstr("toy_plugin.so was refused: it is the plugin 'toy' once more, of which "
+                        "there is " +
+                        path("copy.so") + "; load only one of the two"));
+  EXPECT_THAT(crisp({"stages", "--plugin", CLASHING_PLUGIN}).error,
+              HasSubstr("; give one of them another name, or load only one of the two"));
+}
+
 TEST_F(ProgramTest, SaysWhatACalibrationHolds) {
   write_file(folder_ / "c.yaml",
              "crisp: 1\nlasers:\n  a:\n    lambda: {value: 0, unit: rad}\n"
