@@ -65,6 +65,13 @@ TEST_F(WiringTest, SuggestsTheNearestStageAndTag) {
                           "'left'?"));
 }
 
+TEST_F(WiringTest, KnowsAStageByTheLastPartOfItsName) {
+  for (const char* name : {"throw", "throwing"}) {
+    EXPECT_THAT(errors_of({{.stage = name}}),
+                ElementsAre(HasSubstr("; did you mean 'toy.throw'? a plugin's")));
+  }
+}
+
 TEST_F(WiringTest, RemindsOfPluginsWhereNoStageIsNear) {
   EXPECT_THAT(
       errors_of({{.stage = "example.near"}}),
