@@ -67,11 +67,10 @@ void validate_rig(const YamlNode& root, const fs::path& file, const PipelineArgu
 }  // namespace
 
 std::string error_text(const Error& error) {
-  // Errors holds its parts' full texts; an "error: " of its own would come before the first of them.
   const auto* several = dynamic_cast<const Errors*>(&error);
-  if (!several) return error.what();
+  if (!several) return (to_string(error.place()).empty() ? "error: " : "") + std::string(error.what());
   std::string text;
-  for (const auto& one : several->all()) text += (text.empty() ? "" : "\n") + std::string(one.what());
+  for (const auto& one : several->all()) text += (text.empty() ? "" : "\n") + error_text(one);
   if (several->all().size() > 1) text += "\n" + std::to_string(several->all().size()) + " errors";
   return text;
 }

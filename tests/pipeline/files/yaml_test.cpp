@@ -114,11 +114,11 @@ TEST(Yaml, SaysWhyAFileCannotBeRead) {
     }
     return "";
   };
-  EXPECT_EQ(message("/nowhere/x.yaml"), "error: cannot read /nowhere/x.yaml: No such file or directory");
+  EXPECT_EQ(message("/nowhere/x.yaml"), "cannot read /nowhere/x.yaml: No such file or directory");
   const test::TemporaryFolder folder;
   std::ofstream(folder / "empty.yaml") << "# only a comment\n";
   EXPECT_EQ(message(folder / "empty.yaml"), (folder / "empty.yaml").string() + ": error: the file is empty");
-  EXPECT_EQ(message("/tmp"), "error: cannot read /tmp: it is a folder");
+  EXPECT_EQ(message("/tmp"), "cannot read /tmp: it is a folder");
 }
 
 }  // namespace

@@ -141,7 +141,7 @@ TEST_F(RunnerTest, TellsAStageWhatThoseAboveItDoubted) {
 
 TEST_F(RunnerTest, TellsTheStageThatThrewAndNotTheOneThatFedIt) {
   const std::vector<StageSpec> specs = {{.stage = "toy.count"}, {.stage = "toy.throw", .tag = "culprit"}};
-  EXPECT_EQ(message_of(specs), "error: culprit: it saw a three; avoid threes");
+  EXPECT_EQ(message_of(specs), "culprit: it saw a three; avoid threes");
 }
 
 TEST_F(RunnerTest, TellsWhatHadBeenDoneWhenAStageThrew) {
