@@ -128,6 +128,29 @@ TEST_F(ProgramTest, SaysWhatACalibrationHolds) {
   EXPECT_THAT(crisp({"info", path("empty")}).error, HasSubstr("holds no file of a kind that is known"));
 }
 
+TEST_F(ProgramTest, SaysThatACalibrationWasDoubted) {
+  write_file(folder_ / "c.yaml",
+             "crisp: 1\ndoubts: [it is only a toy]\nlasers: {a: {lambda: {value: 0, unit: rad}, "
+             "tau: {value: 0.25, unit: m}, alpha: {value: 0, unit: rad}, eta: {value: 0, unit: s}}}\n");
+  EXPECT_THAT(crisp({"info", path("c.yaml")}).out, HasSubstr("\n  NOT TO BE TRUSTED: it is only a toy\n"));
+  const auto data = nlohmann::json::parse(crisp({"info", path("c.yaml"), "--json"}).out);
+  EXPECT_EQ(data["doubts"], nlohmann::json({"it is only a toy"}));
+}
+
+TEST_F(ProgramTest, PutsTwoCalibrationsSideBySide) {
+  for (const char* name : {"a.yaml", "b.yaml"}) {
+    write_file(folder_ / name,
+               "crisp: 1\nlasers: {a: {lambda: {value: 0, unit: rad}, tau: {value: 0.25, unit: m}, "
+               "alpha: {value: 0, unit: rad}, eta: {value: 0, unit: s}}}\n");
+  }
+  const auto outcome = crisp({"info", path("a.yaml"), path("b.yaml")});
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, testing::StartsWith("first:  " + path("a.yaml") + ": a calibration\nsecond: "));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("a.tau +mm +250.0000 +250.0000 +0.0000"));
+  const auto data = nlohmann::json::parse(crisp({"info", path("a.yaml"), path("b.yaml"), "--json"}).out);
+  EXPECT_EQ(data.size(), 2U);
+}
+
 TEST_F(ProgramTest, SaysWhatTheOthersHoldWhereOneCannotBeRead) {
   write_file(folder_ / "c.yaml",
              "crisp: 1\nlasers: {a: {lambda: {value: 0, unit: rad}, tau: {value: 0.25, unit: m}, "
