@@ -2,6 +2,7 @@
 #include "grabbers/pcd/cloud_stage.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -27,7 +28,8 @@ void GrabCloudStage::describe(StageDescription<GrabCloudStage>& d) {
   d.details(
       "Of any program's PCD files, in all their formats: x, y and z must be there; intensity, laser, beam "
       "and "
-      "time are 0 where they are not. A cloud that write.pcd wrote in several files comes in as many "
+      "time are 0 where they are not; other fields, and the order of an image, are not kept. A cloud that "
+      "write.pcd wrote in several files comes in as many "
       "pieces.\n\n"
       "Coordinates of a cloud are single (float), as PCL's are: exact to a tenth of a millimetre up to 1 km "
       "from the origin. A file with doubles far from it, on a map's grid say, is rounded, and warned of; "
@@ -53,6 +55,8 @@ void GrabCloudStage::process(const Inputs&, Outputs& out, Context& context) {
     auto [cloud, not_finite, change] = about(file, [&] {
       return cloud_of(table, {shift_[0], shift_[1], shift_[2]});
     });
+    if (const auto lost = not_kept(table); !lost.empty())
+      context.warn(fmt::format("{}: not kept are {}", file.string(), fmt::join(lost, "; ")));
     if (rounding == 0 && change > 0) shift = suggested_shift(table);
     rounding = std::max(rounding, change);
     context.reads(file);

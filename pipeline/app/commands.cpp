@@ -67,11 +67,10 @@ void validate_rig(const YamlNode& root, const fs::path& file, const PipelineArgu
 }  // namespace
 
 std::string error_text(const Error& error) {
-  // Errors holds its parts' full texts; an "error: " of its own would come before the first of them.
   const auto* several = dynamic_cast<const Errors*>(&error);
-  if (!several) return error.what();
+  if (!several) return (to_string(error.place()).empty() ? "error: " : "") + std::string(error.what());
   std::string text;
-  for (const auto& one : several->all()) text += (text.empty() ? "" : "\n") + std::string(one.what());
+  for (const auto& one : several->all()) text += (text.empty() ? "" : "\n") + error_text(one);
   if (several->all().size() > 1) text += "\n" + std::to_string(several->all().size()) + " errors";
   return text;
 }
@@ -150,11 +149,13 @@ ExitStatus effects_command(const EffectsRequest& request, const Registrar& regis
 void list_plugins(const PluginLoader& loader) {
   if (loader.tried().empty()) std::cout << "no plugins: give them with --plugin, or in CRISP_PLUGINS\n";
   for (const auto& plugin : loader.tried()) {
-    if (!plugin.is_loaded()) {
-      std::cout << fmt::format("{}\n  refused: {}\n", plugin.file.string(), plugin.refusal);
+    std::cout << plugin.file.string() << "\n";
+    if (!plugin.refusal.empty()) {
+      std::cout << fmt::format("  refused: {}\n", plugin.refusal);
       continue;
     }
-    std::cout << fmt::format("{}\n  {} {}\n", plugin.file.string(), plugin.name, plugin.version);
+    std::cout << fmt::format("  {} {}\n", plugin.name, plugin.version);
+    if (!plugin.skipped.empty()) std::cout << fmt::format("  skipped: it is used from {}\n", plugin.skipped);
     for (const auto& what : plugin.brings) std::cout << fmt::format("  {}\n", what);
   }
 }

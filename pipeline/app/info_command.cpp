@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 /// A file and what it holds, or what is wrong with it.
 struct Entry {
   std::string name;
-  std::string kind;
+  const Inspector* inspector = nullptr;  ///< of its kind
   Inspection inspection;
   std::string error;  ///< as a person is told it; empty: none
 };
@@ -72,7 +72,7 @@ Entry read_entry(const Inspectors& inspectors, const fs::path& file, const Rig& 
   const auto knows = [&](const Inspector& inspector) { return inspector.recognises(head); };
   const auto inspector = std::ranges::find_if(inspectors, knows);
   if (inspector == inspectors.end()) throw none_known(file, inspectors);
-  return {.name = file.string(), .kind = inspector->kind, .inspection = inspector->inspect(file, rig)};
+  return {.name = file.string(), .inspector = &*inspector, .inspection = inspector->inspect(file, rig)};
 }
 
 Entry entry_of(const Inspectors& inspectors, const fs::path& file, const Rig& rig) {
@@ -116,10 +116,22 @@ nlohmann::json json_of(const std::vector<Entry>& entries) {
   return all;
 }
 
+/// Whether these are two of one kind that are told side by side.
+bool are_compared(const std::vector<Entry>& entries) {
+  return entries.size() == 2 && entries[0].inspector && entries[0].inspector == entries[1].inspector &&
+         entries[0].inspector->compare;
+}
+
+void print_compared(const Entry& first, const Entry& second) {
+  std::cout << "first:  " << first.name << ": " << first.inspector->kind << "\nsecond: " << second.name
+            << ": " << second.inspector->kind << "\n"
+            << first.inspector->compare(first.name, second.name) << "\n";
+}
+
 void print(const std::vector<Entry>& entries) {
   for (const auto& entry : entries) {
     const bool failed = !entry.error.empty();
-    std::cout << entry.name << ": " << (failed ? "not read" : entry.kind) << "\n"
+    std::cout << entry.name << ": " << (failed ? "not read" : entry.inspector->kind) << "\n"
               << (failed ? entry.error : entry.inspection.text) << "\n";
   }
 }
@@ -143,6 +155,8 @@ ExitStatus info_command(const InfoRequest& request, const Registrar& registrar) 
     std::cerr << entries[0].error << "\n";
   else if (request.json)
     std::cout << json_text(one ? entries[0].inspection.data : json_of(entries), 2) << "\n";
+  else if (are_compared(entries))
+    print_compared(entries[0], entries[1]);
   else
     print(entries);
   const bool all_read = std::ranges::all_of(entries, &std::string::empty, &Entry::error);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <poll.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -54,9 +57,18 @@ fs::path plugin_folder() {
       .lexically_normal();
 }
 
+/// Why a plugin that was asked for is not in use; empty if it is. Of two files of one
+/// plugin that were both asked for, neither counts more.
+std::string trouble_with(const PluginRecord& plugin) {
+  if (plugin.skipped.empty() || fs::equivalent(plugin.skipped, plugin.file)) return plugin.refusal;
+  return "it is the plugin '" + plugin.name + "' once more, of which there is " + plugin.skipped +
+         "; load only one of the two, or name them differently in CRISP_PLUGIN";
+}
+
 /// The plugins that are installed, those of the environment, then those of the command line, of which a
 /// refused one is an error.
 bool load_plugins(const CommandLine& line, PluginLoader& loader) {
+  for (const auto& path : line.plugins) loader.prefer(path);
   if (fs::is_directory(plugin_folder())) loader.load(plugin_folder());
   if (const char* listed = std::getenv("CRISP_PLUGINS")) {
     std::istringstream paths(listed);
@@ -75,9 +87,10 @@ bool load_plugins(const CommandLine& line, PluginLoader& loader) {
   }
   for (std::size_t i = not_asked_for; i < loader.tried().size(); ++i) {
     const PluginRecord& plugin = loader.tried()[i];
-    if (plugin.is_loaded()) continue;
+    const std::string trouble = trouble_with(plugin);
+    if (trouble.empty()) continue;
     all_loaded = false;
-    print_errors(Error("the plugin " + plugin.file.string() + " was refused: " + plugin.refusal));
+    print_errors(Error("the plugin " + plugin.file.string() + " was refused: " + trouble));
   }
   return all_loaded;
 }
@@ -148,10 +161,16 @@ int guarded_main(int count, char** words) {
 
 namespace {
 
-/// The program's status, unless what it said did not arrive.
+/// Whether the other end of the standard output was closed, as `head` does when it has read enough.
+bool nobody_reads() {
+  pollfd output{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+  return poll(&output, 1, 0) == 1 && (output.revents & (POLLERR | POLLHUP)) != 0;
+}
+
+/// The program's status, unless what it said did not arrive though somebody waits for it.
 int after_output(int status) {
   std::cout.flush();
-  if (std::cout) return status;
+  if (std::cout || nobody_reads()) return status;
   crisp::print_errors(crisp::Error("cannot write to the standard output", "make room on the disk"));
   return status == 0 ? static_cast<int>(crisp::ExitStatus::failed) : status;
 }

@@ -104,7 +104,7 @@ bool keep_record(RunRecord& record, const fs::path& folder) {
       print_errors(error);
       all_kept = false;
       if (!record.failure.empty()) return;
-      record.failure = error.what();
+      record.failure = error_text(error);
       record.exit_status = static_cast<int>(ExitStatus::failed);
     });
   };
@@ -138,7 +138,7 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
   } catch (const Error& error) {
     std::cerr << failure_text(record);
     print_errors(error);
-    return end_early(error.what(), ExitStatus::failed);
+    return end_early(error_text(error), ExitStatus::failed);
   }
   record.seconds = seconds_now() - began;
   // Before the records, for which a disk that became full has no room.
@@ -154,6 +154,8 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
 }  // namespace
 
 ExitStatus run_command(const RunRequest& request, const Registrar& registrar) {
+  // For good: what nobody read is written once more when the program ends.
+  std::signal(SIGPIPE, SIG_IGN);
   RunSettings run;
   run.registrar = &registrar;
   run.threads = request.threads;

@@ -61,6 +61,7 @@ struct Calibration {
   std::vector<double> covariance;             ///< m × m, row by row, products of their units
   std::map<std::string, double> quality;      ///< "rqe_before", "rqe_after", …
   std::vector<Unobservable> unobservable;
+  std::vector<std::string> doubts;  ///< why it cannot be trusted, in words; empty if it can
   std::map<std::string, std::string> provenance;
 
   const LaserCalibration* find(const std::string& laser) const;  ///< nullptr if there is none

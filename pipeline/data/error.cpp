@@ -7,8 +7,9 @@ namespace crisp {
 namespace {
 
 std::string full_text(const std::string& what, const std::string& advice, const Place& place) {
+  // Who catches it without a place says itself that it is an error: "error: " + what().
   std::string text = to_string(place);
-  text += (text.empty() ? "error: " : ": error: ") + what;
+  text += (text.empty() ? "" : ": error: ") + what;
   if (!advice.empty()) text += "; " + advice;
   return text;
 }

@@ -7,33 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/data/each_parameter.hpp"
+
 namespace crisp {
 namespace {
-
-/// Calls `act` with each parameter and its full name.
-template <class Calibrated, class Act>
-void for_each_parameter(Calibrated& calibration, const Act& act) {
-  const auto with_terms = [&](auto& terms, const std::string& owner) {
-    for (auto& term : terms) {
-      for (auto& parameter : term.parameters) act(owner + "." + term.term + "." + parameter.name, parameter);
-    }
-  };
-  for (auto& laser : calibration.lasers) {
-    for (auto* p : {&laser.lambda, &laser.tau, &laser.alpha, &laser.eta}) act(laser.name + "." + p->name, *p);
-    with_terms(laser.terms, laser.name);
-  }
-  with_terms(calibration.plate_terms, "plate");
-}
-
-struct Shown {
-  double factor;  // from SI
-  const char* unit;
-};
-Shown shown(const std::string& unit) {
-  if (unit == "rad") return {.factor = 180 / std::numbers::pi, .unit = "deg"};
-  if (unit == "m" || unit == "s") return {.factor = 1e3, .unit = unit == "m" ? "mm" : "ms"};
-  return {.factor = 1, .unit = ""};
-}
 
 std::string remark(const Parameter& parameter, const std::string& name, const Calibration& calibration) {
   const auto& list = calibration.unobservable;
@@ -87,13 +64,13 @@ std::string table_of(const Calibration& calibration, const Rig& rig) {
   std::string table =
       fmt::format("{:<24}{:>12}     {:>9}  {:>10}\n", "parameter", "value", "std error", "change");
   for_each_parameter(calibration, [&](const std::string& name, const Parameter& p) {
-    const Shown as = shown(p.unit);
+    const ShownUnit as = shown_unit(p.unit);
     const double change = p.value - (nominal.contains(name) ? nominal[name] : 0);
     const int decimals = decimals_for(p.free ? p.std_error * as.factor : 0);
     const std::string error = p.free ? fmt::format("{:.{}f}", p.std_error * as.factor, decimals) : "";
     table +=
         fmt::format("{:<24}{:>12.{}f} {:<3} {:>9}  {:>+10.{}f}  {}\n", name, p.value * as.factor, decimals,
-                    as.unit, error, change * as.factor, decimals, remark(p, name, calibration));
+                    as.name, error, change * as.factor, decimals, remark(p, name, calibration));
   });
   table.pop_back();
   return table;

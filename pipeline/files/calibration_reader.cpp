@@ -20,6 +20,7 @@ class CalibrationReader {
   Calibration read(const YamlNode& root) {
     YamlMap map(root, "calibration", errors_);
     check_schema(map, 1);
+    if (map.find("doubts")) calibration_.doubts = texts(map, "doubts");
     if (const YamlNode* lasers = map.require("lasers")) read_lasers(*lasers);
     if (const YamlNode* plate = map.find("plate")) read_plate(*plate);
     if (const YamlNode* covariance = map.find("covariance")) read_covariance(*covariance);
@@ -114,14 +115,7 @@ class CalibrationReader {
   void read_covariance(const YamlNode& node) {
     YamlMap map(node, "covariance", errors_);
     std::string wrong;
-    if (const YamlNode* order = list(map, "order")) {
-      for (const auto& item : order->items) {
-        if (auto name = read_text(item, wrong))
-          calibration_.covariance_order.push_back(std::move(*name));
-        else
-          map.fail(item.place, "'order': " + wrong);
-      }
-    }
+    calibration_.covariance_order = texts(map, "order");
     if (const YamlNode* values = list(map, "values")) {
       for (const auto& item : values->items) {
         if (const auto number = read_number(item, "", wrong))
@@ -143,6 +137,20 @@ class CalibrationReader {
     if (!node || node->kind == YamlNode::Kind::sequence) return node;
     map.fail(node->place, "'" + key + "': " + describe(*node) + " is not a list");
     return nullptr;
+  }
+
+  static std::vector<std::string> texts(YamlMap& map, const std::string& key) {
+    std::vector<std::string> read;
+    const YamlNode* node = list(map, key);
+    if (!node) return read;
+    for (const auto& item : node->items) {
+      std::string wrong;
+      if (auto text = read_text(item, wrong))
+        read.push_back(std::move(*text));
+      else
+        map.fail(item.place, fmt::format("'{}': {}", key, wrong));
+    }
+    return read;
   }
 
   /// Plain figures, figures with a before and an after, and what could not be observed.

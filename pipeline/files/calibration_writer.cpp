@@ -113,6 +113,12 @@ std::string quality(const Calibration& c) {
   return out;
 }
 
+std::string doubts(const Calibration& c) {
+  std::string out;
+  for (const auto& doubt : c.doubts) out += fmt::format("  - {}\n", text(doubt));
+  return out.empty() ? out : "doubts:\n" + out;
+}
+
 std::string provenance(const Calibration& c) {
   if (c.provenance.empty()) return "provenance: {}\n";
   std::string out = "provenance:\n";
@@ -123,7 +129,7 @@ std::string provenance(const Calibration& c) {
 }  // namespace
 
 std::string to_yaml(const Calibration& c) {
-  std::string out = "crisp: 1\nlasers:\n";
+  std::string out = "crisp: 1\n" + doubts(c) + "lasers:\n";
   for (const auto& l : c.lasers) out += laser(l);
   if (c.plate_terms.empty())
     out += "plate: {}\n";

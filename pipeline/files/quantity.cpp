@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <string>
 
 #include "pipeline/data/degree.hpp"
 
@@ -75,6 +76,12 @@ bool has_leading_zero(std::string_view number) {
   return number.size() > 1 && number[0] == '0' && is_digit(number[1]);
 }
 
+/// The unit with the sign µ of the table where it has the Greek letter μ, which looks the same.
+std::string with_micro_sign(std::string_view unit) {
+  constexpr std::string_view kLetter = "\u03bc";
+  return unit.starts_with(kLetter) ? "\u00b5" + std::string(unit.substr(kLetter.size())) : std::string(unit);
+}
+
 struct NumberAndRest {
   double number;
   std::string_view rest;
@@ -117,13 +124,14 @@ std::variant<double, Complaint> parse_quantity(std::string_view text, std::strin
   if (!std::isfinite(parts->number)) return complain(text, "is not a finite number");
   const std::string_view given = trimmed(parts->rest);
   if (given.empty() || (given == unit && unit != "1")) return parts->number;
+  const std::string spelt = with_micro_sign(given);
   for (const auto& known : kUnits) {
-    if (known.name != given || known.si != unit) continue;
+    if (known.name != spelt || known.si != unit) continue;
     const double value = parts->number * known.factor;
     if (!std::isfinite(value)) return complain(text, "is not a finite number");
     return value;
   }
-  return wrong_unit(text, given, unit);
+  return wrong_unit(text, spelt, unit);
 }
 
 std::variant<std::int64_t, Complaint> parse_integer(std::string_view text) {

@@ -58,6 +58,12 @@ void check_characters(std::string_view text, const std::string& file) {
   throw Error(control_character_in_words(text[at]), "is this a text file?", {file, line, column});
 }
 
+/// What to look for where the parser came upon a mistake, mostly lines after it was made.
+std::string advice_on_syntax(int line) {
+  return std::string(line > 1 ? "the mistake may be on a line before it: " : "") +
+         "look for a bracket or a quotation mark that is not closed, or a missing colon";
+}
+
 /// The first line up to `last` that has a tab before its text.
 std::optional<int> indented_by_tab(std::string_view text, int last) {
   int number = 1;
@@ -245,7 +251,7 @@ YamlNode parse_yaml(std::string_view text, const std::string& file) {
     const auto tab = indented_by_tab(text, place.line);
     builder.errors.push_back(
         tab ? Error("a tab indents this line, which YAML does not allow", "indent by blanks", {file, *tab, 1})
-            : Error("this is not YAML: " + error.msg, {}, place));
+            : Error("this is not YAML: " + error.msg, advice_on_syntax(place.line), place));
   }
   if (!builder.errors.empty()) throw Errors(std::move(builder.errors));
   return std::move(builder.root);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/pcd/cloud_table.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -77,6 +80,21 @@ TableCloud cloud_of(const PcdTable& table, const std::array<double, 3>& shift) {
     result.cloud->push_back(point);
   }
   return result;
+}
+
+std::vector<std::string> not_kept(const PcdTable& table) {
+  constexpr std::array<std::string_view, 7> kKept = {"x", "y", "z", "intensity", "laser", "beam", "time"};
+  constexpr std::string_view kPadding = "_";  // PCL's, between fields
+  std::vector<std::string> lost;
+  std::vector<std::string> fields;
+  for (const auto& field : table.header().fields) {
+    if (field.name != kPadding && std::ranges::find(kKept, field.name) == kKept.end())
+      fields.push_back(field.name);
+  }
+  if (!fields.empty()) lost.push_back(fmt::format("the fields {}", fmt::join(fields, ", ")));
+  if (table.header().rows > 1) lost.push_back(fmt::format("the order in {} rows", table.header().rows));
+  if (table.header().has_pose) lost.emplace_back("the VIEWPOINT");
+  return lost;
 }
 
 std::array<double, 3> suggested_shift(const PcdTable& table) {

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "pipeline/data/cloud.hpp"
 #include "pipeline/pcd/pcd_table.hpp"
@@ -22,6 +24,10 @@ struct TableCloud {
 /// @param shift  [m] subtracted from all coordinates before they become single
 /// @throws Error if they are not, or a laser or beam is beyond 65535
 TableCloud cloud_of(const PcdTable& table, const std::array<double, 3>& shift = {});
+
+/// What the file holds that a cloud does not, and that is lost: "the fields rgb, normal_x", "the VIEWPOINT".
+/// Empty if nothing is.
+std::vector<std::string> not_kept(const PcdTable& table);
 
 /// What to subtract so that the first point comes close to the origin, in whole 100 m [m].
 std::array<double, 3> suggested_shift(const PcdTable& table);

@@ -73,7 +73,8 @@ class HeaderReader {
     const Words words = words_of(line);
     if (words.empty()) return;
     const std::string_view key = words[0];
-    if (key == "VERSION" || key == "VIEWPOINT") return;
+    if (key == "VERSION") return;
+    if (key == "VIEWPOINT") return read_viewpoint(words);
     if (key == "FIELDS" || key == "COLUMNS") return read_fields(words);
     if (key == "WIDTH") return read_once(width_, words);
     if (key == "HEIGHT") return read_once(height_, words);
@@ -118,6 +119,16 @@ class HeaderReader {
     to = number(words[1]);
   }
 
+  void read_viewpoint(const Words& words) {
+    constexpr std::array<double, 7> kOrigin = {0, 0, 0, 1, 0, 0, 0};  // a position and a quaternion
+    header_.has_pose = !std::equal(words.begin() + 1, words.end(), kOrigin.begin(), kOrigin.end(),
+                                   [](std::string_view word, double wanted) {
+                                     double value = std::numeric_limits<double>::quiet_NaN();
+                                     std::from_chars(word.data(), word.data() + word.size(), value);
+                                     return value == wanted;
+                                   });
+  }
+
   void read_data(const Words& words) {
     const auto* format = std::find_if(kFormats.begin(), kFormats.end(), [&](const auto& f) {
       return words.size() == 2 && f.first == words[1];
@@ -144,6 +155,7 @@ class HeaderReader {
       if (!exists) fail(fmt::format("no number of type {} has {} bytes", field.type, field.size));
     }
     const std::size_t height = height_.value_or(1);
+    header_.rows = height;
     if (!width_ && !points_) fail("neither WIDTH nor POINTS is given");
     if (width_ && height != 0 && *width_ > std::numeric_limits<std::size_t>::max() / height) {
       fail("WIDTH times HEIGHT is too large");

@@ -34,6 +34,8 @@ struct PcdField {
 struct PcdHeader {
   std::vector<PcdField> fields;
   std::size_t points = 0;
+  std::size_t rows = 1;   ///< HEIGHT: more than one where points stand in order of an image
+  bool has_pose = false;  ///< whether VIEWPOINT is other than the origin; set by reading
   PcdFormat format = PcdFormat::binary_compressed;
   std::map<std::string, std::string> notes;  ///< of crisp's comment lines: "epoch_ns" → "17…"
   std::size_t data_begin = 0;                ///< [bytes] from the file's beginning; set by reading

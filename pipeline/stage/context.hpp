@@ -86,6 +86,11 @@ class Context {
   void lift_doubts(std::string_view kind, std::string why) {
     report_->lifted.insert_or_assign(std::string(kind), std::move(why));
   }
+  /// What the stages above doubted of what this one got of them, and none of them has answered; complete when
+  /// the stage is to finish.
+  std::vector<std::string> doubts_above() const {
+    return doubts_above_ ? doubts_above_() : std::vector<std::string>();
+  }
   /// Adds the keys of this object to the stage's section of summary.json; keys given before are replaced.
   void report(const nlohmann::json& section) { report_->section.update(section); }
   /// Adds lines to what people read at the end of the run; may hold line breaks (a table).
@@ -118,6 +123,9 @@ class Context {
     abandoned_ = abandoned;
   }
 
+  /// Who knows what the stages above doubted.
+  void ask_for_doubts(std::function<std::vector<std::string>()> above) { doubts_above_ = std::move(above); }
+
  private:
   static bool is_set(const std::atomic<bool>* flag) {
     return flag != nullptr && flag->load(std::memory_order_relaxed);
@@ -128,6 +136,7 @@ class Context {
   const std::atomic<bool>* stop_;
   ProgressSink progress_;
   StatusSink status_;
+  std::function<std::vector<std::string>()> doubts_above_;
   const std::atomic<bool>* abandoned_ = nullptr;
 };
 

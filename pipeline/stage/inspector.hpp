@@ -29,6 +29,10 @@ struct Inspector {
   /// The extensions of such files, ".pcap": one that is named so (see has_extension()) and is none is an
   /// error.
   std::vector<std::string> extensions = {};
+  /// Two files of this kind side by side, as lines for people; none where each is told by itself.
+  /// @throws Error if one cannot be read
+  std::function<std::string(const std::filesystem::path& first, const std::filesystem::path& second)>
+      compare = {};
 };
 
 using Inspectors = std::vector<Inspector>;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <sstream>
+
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
@@ -54,7 +56,7 @@ class Reader {
       return checked(node, std::move(*scalar));
     }
     if (node.kind != YamlNode::Kind::sequence) {  // a single value is a list of one
-      auto scalar = read_element(node);
+      auto scalar = read_element(node, as_list(node));
       if (!scalar) return std::nullopt;
       return checked(node, std::vector<OptionScalar>{std::move(*scalar)});
     }
@@ -87,11 +89,21 @@ class Reader {
     return groups;
   }
 
-  std::optional<OptionScalar> read_element(const YamlNode& node) {
+  std::optional<OptionScalar> read_element(const YamlNode& node, const std::string& hint = {}) {
     std::string wrong;
     auto scalar = read_scalar(option_, node, folder_, wrong);
-    if (!scalar) refuse(node.place, wrong);
+    if (!scalar) refuse(node.place, wrong, hint);
     return scalar;
+  }
+
+  /// What was meant by values with commas between them and no brackets around them; empty if it is none.
+  static std::string as_list(const YamlNode& node) {
+    if (node.kind != YamlNode::Kind::scalar || node.text.find(',') == std::string::npos) return {};
+    std::string list;
+    std::istringstream values(node.text);
+    for (std::string value; std::getline(values >> std::ws, value, ',');)
+      list += (list.empty() ? "" : ", ") + value;
+    return "did you mean [" + list + "]?";
   }
 
   std::optional<OptionValue> checked(const YamlNode& node, OptionValue value) {

@@ -123,8 +123,8 @@ class PlanReader {
 
   void read_stage(const YamlNode& node) {
     if (node.kind == YamlNode::Kind::scalar) {
-      errors_.emplace_back("stage: " + describe(node) + " is not a map", "write `- stage: " + node.text + "`",
-                           node.place);
+      errors_.emplace_back("stage: " + describe(node) + " is not a map",
+                           "write `- stage: " + without_key(node.text) + "`", node.place);
       return;
     }
     YamlMap map(node, "stage", errors_);
@@ -141,6 +141,14 @@ class PlanReader {
     if (const YamlNode* with = map.find("with")) read_options(*with, spec);
     map.refuse_others();
     if (!spec.stage.empty()) plan_.stages.push_back(std::move(spec));
+  }
+
+  /// The stage's name where the colon behind `stage` is missing, or the blank behind that.
+  static std::string without_key(const std::string& text) {
+    constexpr std::string_view kKey = "stage";
+    const std::size_t name = text.find_first_not_of(": ", kKey.size());
+    const bool has_key = text.starts_with(kKey) && name != std::string::npos && name > kKey.size();
+    return has_key ? text.substr(name) : text;
   }
 
   static bool is_tag(const std::string& tag) {

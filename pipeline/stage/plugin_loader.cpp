@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <iterator>
-#include <set>
 #include <system_error>
 
 #include "pipeline/stage/plugin.hpp"
+#include "pipeline/stage/whole_file.hpp"
 
 namespace crisp {
 namespace {
@@ -50,7 +50,7 @@ std::string what_is_wrong_with(Register register_all) {
     register_all();
     return {};
   } catch (const Error& error) {
-    return error.message();
+    return error.advice().empty() ? error.message() : error.message() + "; " + error.advice();
   } catch (const std::exception& error) {
     return std::string("what it registers was refused: ") + error.what();
   } catch (...) {
@@ -58,39 +58,84 @@ std::string what_is_wrong_with(Register register_all) {
   }
 }
 
+/// The file itself, or the *.so of a folder in the order of their names.
+std::vector<fs::path> plugin_files(const fs::path& file_or_folder) {
+  std::error_code failure;
+  std::vector<fs::path> files;
+  if (!fs::is_directory(file_or_folder, failure)) {
+    files.push_back(file_or_folder);
+  } else {
+    for (const auto& entry : fs::directory_iterator(file_or_folder, failure)) {
+      if (entry.path().extension() == ".so") files.push_back(entry.path());
+    }
+    std::ranges::sort(files);
+  }
+  for (auto& file : files) file = fs::absolute(file).lexically_normal();
+  return files;
+}
+
+/// Opens a plugin without calling anything of it.
+/// @return its descriptor; nullptr, and why in `refusal`, if it cannot be used
+const PluginDescriptor* open_plugin(const fs::path& file, std::string& refusal) {
+  refusal = what_is_cut_off(file);
+  if (!refusal.empty()) return nullptr;
+  void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+  if (!handle) {
+    refusal = last_error();
+    return nullptr;
+  }
+  const auto* descriptor = static_cast<const PluginDescriptor*>(dlsym(handle, "crisp_plugin"));
+  refusal = descriptor ? refusal_of(*descriptor) : "it has no symbol crisp_plugin: it is no plugin of crisp";
+  return refusal.empty() ? descriptor : nullptr;
+}
+
+bool is_same_file(const fs::path& one, const fs::path& other) {
+  std::error_code unknown;
+  return fs::equivalent(one, other, unknown);
+}
+
 }  // namespace
 
-void PluginLoader::load(const fs::path& file_or_folder) {
-  std::error_code failure;
-  if (!fs::is_directory(file_or_folder, failure)) return load_file(file_or_folder);
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(file_or_folder, failure)) {
-    if (entry.path().extension() == ".so") files.push_back(entry.path());
+void PluginLoader::prefer(const fs::path& file_or_folder) {
+  for (const auto& file : plugin_files(file_or_folder)) {
+    std::string refusal;
+    if (const auto* descriptor = open_plugin(file, refusal)) preferred_.try_emplace(descriptor->name, file);
   }
-  std::sort(files.begin(), files.end());
-  for (const auto& file : files) load_file(file);
+}
+
+void PluginLoader::load(const fs::path& file_or_folder) {
+  for (const auto& file : plugin_files(file_or_folder)) load_file(file);
 }
 
 void PluginLoader::load_file(const fs::path& file) {
-  PluginRecord& record = tried_.emplace_back();
-  record.file = fs::absolute(file).lexically_normal();
-  void* handle = dlopen(record.file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-  if (!handle) {
-    record.refusal = last_error();
+  PluginRecord record{.file = file};
+  if (const auto* descriptor = open_plugin(file, record.refusal)) {
+    record.name = descriptor->name;
+    record.version = descriptor->version;
+    judge_name(record);
+    if (record.is_loaded()) register_all(record, *descriptor);
+  }
+  tried_.push_back(std::move(record));
+}
+
+/// Whether the plugin is in use from another file, or will be.
+void PluginLoader::judge_name(PluginRecord& record) const {
+  const auto preferred = preferred_.find(record.name);
+  if (preferred != preferred_.end() && !is_same_file(preferred->second, record.file)) {
+    record.skipped = preferred->second.string();
     return;
   }
-  const auto* descriptor = static_cast<const PluginDescriptor*>(dlsym(handle, "crisp_plugin"));
-  record.refusal =
-      descriptor ? refusal_of(*descriptor) : "it has no symbol crisp_plugin: it is no plugin of crisp";
-  if (!record.is_loaded()) return;
-  record.name = descriptor->name;
-  record.version = descriptor->version;
+  const auto is_the_same = [&](const auto& other) { return other.is_loaded() && other.name == record.name; };
+  const auto before = std::ranges::find_if(tried_, is_the_same);
+  if (before != tried_.end()) record.skipped = before->file.string();
+}
 
+void PluginLoader::register_all(PluginRecord& record, const PluginDescriptor& descriptor) {
   const auto before = registrar_.registered();
   const auto take_back = registrar_.snapshot();
   const std::string origin = registrar_.origin();
   registrar_.set_origin("from " + record.file.string());
-  record.refusal = what_is_wrong_with([&] { descriptor->register_all(registrar_); });
+  record.refusal = what_is_wrong_with([&] { descriptor.register_all(registrar_); });
   registrar_.set_origin(origin);
   if (!record.is_loaded()) return take_back();
   std::ranges::set_difference(registrar_.registered(), before, std::back_inserter(record.brings));

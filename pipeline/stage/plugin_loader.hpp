@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,25 +10,32 @@
 
 namespace crisp {
 
+struct PluginDescriptor;
+
 /// One file that was tried as a plugin.
 struct PluginRecord {
   std::filesystem::path file;
   std::string name;                 ///< empty if it was not found out
   std::string version;              ///< the plugin's own
-  std::string refusal;              ///< why it is not in use; empty if it is
+  std::string refusal;              ///< why it cannot be used; empty if it can
+  std::string skipped;              ///< which file is used in its place; empty if none is
   std::vector<std::string> brings;  ///< "stage filter.near", "term range.drift"
 
-  bool is_loaded() const { return refusal.empty(); }
+  bool is_loaded() const { return refusal.empty() && skipped.empty(); }
 };
 
 /// Loads plugins for as long as the program runs: they are never unloaded.
 ///
-/// A file is refused, with the reason in its record, if it is no shared object, has no `crisp_plugin`, was
-/// built with another compiler, C++ library, alignment or version of crisp (told by constants, before any
-/// function of it is called), or if what it registers is refused.
+/// A file is refused, with the reason in its record, if it is no shared object or not all of one, has no
+/// `crisp_plugin`, was built with another compiler, C++ library, alignment or version of crisp (told by
+/// constants, before any function of it is called), or if what it registers is refused. A plugin whose name
+/// came before is the same once more, and skipped.
 class PluginLoader {
  public:
   explicit PluginLoader(Registrar& registrar) : registrar_(registrar) {}
+
+  /// Of plugins of the same name, those of this file or folder count, wherever others are met first.
+  void prefer(const std::filesystem::path& file_or_folder);
 
   /// Loads a file, or the *.so of a folder in the order of their names.
   void load(const std::filesystem::path& file_or_folder);
@@ -37,9 +45,12 @@ class PluginLoader {
 
  private:
   void load_file(const std::filesystem::path& file);
+  void judge_name(PluginRecord& record) const;
+  void register_all(PluginRecord& record, const PluginDescriptor& descriptor);
 
   Registrar& registrar_;
   std::vector<PluginRecord> tried_;
+  std::map<std::string, std::filesystem::path> preferred_;  ///< the file of a plugin's name
 };
 
 }  // namespace crisp

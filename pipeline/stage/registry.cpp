@@ -77,7 +77,8 @@ void StageRegistry::add(StageType type) {
   check_flow(type);
   check_options(type);
   if (const auto* other = find(type.name)) {
-    throw Error("there are two stages " + type.name + ": one " + other->origin + ", one " + type.origin);
+    throw Error("there are two stages " + type.name + ": one " + other->origin + ", one " + type.origin,
+                "give one of them another name, or load only one of the two");
   }
   types_.emplace(type.name, std::move(type));
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <iterator>
 #include <mutex>
 #include <new>
 #include <thread>
@@ -113,13 +114,12 @@ class Runner {
     return list;
   }
 
-  /// Turns the doubts of all whose items of this kind ended in what one stage gave in their place into
-  /// warnings: stages feed such as come behind them only.
-  void lift_doubts(std::size_t by, const std::string& kind, const std::string& why) {
-    std::string answer = "; " + workers_[by].result.tag;
-    answer += ": " + why;
+  /// The stages all of whose items of this kind ended in what one stage gave in their place: stages feed such
+  /// as come behind them only.
+  std::vector<std::size_t> replaced_by(std::size_t by, const std::string& kind) const {
     std::vector<bool> replaced(workers_.size(), false);
     replaced[by] = true;
+    std::vector<std::size_t> list;
     for (std::size_t i = by; i-- > 0;) {
       std::size_t fed = 0;
       bool elsewhere = false;
@@ -129,13 +129,43 @@ class Runner {
         elsewhere = elsewhere || !replaced[edge.to];
       }
       replaced[i] = fed > 0 && !elsewhere;
-      if (!replaced[i]) continue;
+      if (replaced[i]) list.push_back(i);
+    }
+    return list;
+  }
+
+  /// Turns the doubts that one stage answers into warnings.
+  void lift_doubts(std::size_t by, const std::string& kind, const std::string& why) {
+    std::string answer = "; " + workers_[by].result.tag;
+    answer += ": " + why;
+    for (const std::size_t i : replaced_by(by, kind)) {
       StageReport& report = workers_[i].result.report;
       for (std::string& doubt : std::exchange(report.doubts, {})) {
         doubt += answer;
         report.warnings.push_back(std::move(doubt));
       }
     }
+  }
+
+  /// What the stages doubt, of which something ends in this one, and none answers.
+  std::vector<std::string> doubts_above(std::size_t index) const {
+    std::vector<bool> answered(workers_.size(), false);
+    for (std::size_t by = 0; by < workers_.size(); ++by) {
+      for (const auto& [kind, why] : workers_[by].result.report.lifted) {
+        for (const std::size_t i : replaced_by(by, kind)) answered[i] = true;
+      }
+    }
+    std::vector<bool> feeds(workers_.size(), false);
+    feeds[index] = true;
+    for (std::size_t i = index; i-- > 0;) {
+      feeds[i] = std::ranges::any_of(workers_[i].edges, [&](const auto& edge) { return feeds[edge.to]; });
+    }
+    std::vector<std::string> doubts;
+    for (std::size_t i = 0; i < index; ++i) {
+      if (feeds[i] && !answered[i])
+        std::ranges::copy(workers_[i].result.report.doubts, std::back_inserter(doubts));
+    }
+    return doubts;
   }
 
   static void add(std::map<std::string, std::uint64_t>& items, const Kind& kind, std::uint64_t n) {
@@ -154,6 +184,7 @@ class Runner {
     worker.context.emplace(run_, worker.result.report,
                            !ends_gently_ || node.type->endless ? hooks_.stop : nullptr, progress_of(worker));
     worker.context->watch(status_of(worker), &abandoned_);
+    worker.context->ask_for_doubts([this, index] { return doubts_above(index); });
     for (std::size_t i = 0; i < node.type->inputs.size(); ++i) {
       const Kind kind = node.type->inputs[i].kind;
       worker.slots.push_back({kind, nullptr});

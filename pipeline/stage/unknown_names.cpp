@@ -1,16 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/stage/unknown_names.hpp"
 
+#include <string_view>
 #include <vector>
 
 #include "pipeline/files/nearest.hpp"
 
 namespace crisp {
+namespace {
+
+/// The stages of whose names `fits` likes the part behind the dot: 'did you mean' them; empty if there is
+/// none.
+template <class Fits>
+std::string meant_by_last_part(const StageRegistry& stages, Fits fits) {
+  std::string meant;
+  for (const auto& known : stages.names()) {
+    if (!fits(std::string_view(known).substr(known.find('.') + 1))) continue;
+    meant += (meant.empty() ? "did you mean '" : " or '") + known + "'";
+  }
+  return meant.empty() ? meant : meant + "?";
+}
+
+/// The same for a name without a family: "crop" for filter.crop, "voxelgrid" for filter.voxel.
+std::string meant_without_family(std::string_view name, const StageRegistry& stages) {
+  constexpr std::size_t kTelling = 4;  // letters that two names do not share by chance
+  if (name.find('.') != std::string_view::npos) return {};
+  auto meant = meant_by_last_part(stages, [name](std::string_view last) { return last == name; });
+  if (!meant.empty()) return meant;
+  return meant_by_last_part(
+      stages, [name](std::string_view last) { return last.size() >= kTelling && name.starts_with(last); });
+}
+
+}  // namespace
 
 Error no_such_stage(const std::string& name, const StageRegistry& stages) {
-  return Error("there is no stage '" + name + "'",
-               did_you_mean(name, stages.names(), "crisp stages lists them;") +
-                   " a plugin's are known with --plugin FILE");
+  auto meant = meant_without_family(name, stages);
+  if (meant.empty()) meant = did_you_mean(name, stages.names(), "crisp stages lists them;");
+  return Error("there is no stage '" + name + "'", meant + " a plugin's are known with --plugin FILE");
 }
 
 std::string no_such_option(const StageType& type, const std::string& name) {

@@ -46,6 +46,10 @@ void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context
   if (read.lasers.size() > calibration.lasers.size()) {
     context.warn("the calibration has lasers that the rig does not have; they are not used");
   }
+  for (const auto& doubt : read.doubts) {
+    context.distrust(
+        fmt::format("the calibration {} was doubted when it was made: {}", file_.string(), doubt));
+  }
   const auto counts_from = [](CountsFrom from) {
     return [from](const TermInfo& term) { return term.counts_from == from; };
   };

@@ -1,28 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include "pipeline/data/each_parameter.hpp"
 #include "pipeline/files/calibration_file.hpp"
 #include "plugins/write/calibration_stage.hpp"
+#include "plugins/write/calibrations_compared.hpp"
 
 namespace crisp {
 namespace {
-
-/// Calls `visit` with the owner's name and each parameter, in the order of the file.
-template <class Visit>
-void for_each_parameter(const Calibration& calibration, Visit visit) {
-  const auto visit_terms = [&](const std::string& owner, const std::vector<TermParameters>& terms) {
-    for (const auto& term : terms) {
-      for (const auto& p : term.parameters) visit(owner + "." + term.term + "." + p.name, p);
-    }
-  };
-  for (const auto& laser : calibration.lasers) {
-    for (const Parameter* p : {&laser.lambda, &laser.tau, &laser.alpha, &laser.eta}) {
-      visit(laser.name + "." + p->name, *p);
-    }
-    visit_terms(laser.name, laser.terms);
-  }
-  visit_terms("plate", calibration.plate_terms);
-}
 
 Inspection inspect(const std::filesystem::path& file, const Rig&) {
   const Calibration calibration = read_calibration(file);
@@ -35,12 +20,14 @@ Inspection inspect(const std::filesystem::path& file, const Rig&) {
         {"value", p.value}, {"unit", p.unit}, {"std_error", p.std_error}, {"free", p.free}};
   });
   for (const auto& [name, value] : calibration.quality) {
-    inspection.text += fmt::format("\n  {:<36}{:>14.8g}", name, value);
+    inspection.text += fmt::format("\n  {:<36}{:>14.8g}", figure_in_words(name), value);
   }
   for (const auto& u : calibration.unobservable) {
     inspection.text += fmt::format("\n  unobservable: {}: {}", u.parameter, u.reason);
     inspection.data["unobservable"].push_back(u.parameter);
   }
+  for (const auto& doubt : calibration.doubts) inspection.text += "\n  NOT TO BE TRUSTED: " + doubt;
+  inspection.data["doubts"] = calibration.doubts;
   inspection.data["quality"] = calibration.quality;
   inspection.data["provenance"] = calibration.provenance;
   for (const auto& [key, value] : calibration.provenance)
@@ -49,14 +36,21 @@ Inspection inspect(const std::filesystem::path& file, const Rig&) {
 }
 
 /// Both a rig and a calibration begin with the schema and the lasers; only a calibration gives values of
-/// them.
+/// them, or doubts, which stand before.
 bool recognises(std::string_view head) {
-  return head.find("crisp:") != std::string_view::npos && head.find("lasers:") != std::string_view::npos &&
-         head.find("value:") != std::string_view::npos;
+  const auto has = [head](const char* key) { return head.find(key) != std::string_view::npos; };
+  return has("crisp:") && (has("\ndoubts:") || (has("lasers:") && has("value:")));
 }
 
 }  // namespace
 
-Inspector calibration_inspector() { return {"a calibration", recognises, inspect}; }
+Inspector calibration_inspector() {
+  return {.kind = "a calibration",
+          .recognises = recognises,
+          .inspect = inspect,
+          .compare = [](const std::filesystem::path& first, const std::filesystem::path& second) {
+            return side_by_side(read_calibration(first), read_calibration(second));
+          }};
+}
 
 }  // namespace crisp

@@ -7,6 +7,8 @@ namespace crisp {
 
 void WriteCalibrationStage::describe(StageDescription<WriteCalibrationStage>& d) {
   d.name("write.calibration").summary("writes the calibration as YAML");
+  d.details(
+      "What the stages above doubted is in the file, too: calibrate.load then does not trust it, either.");
   d.takes<Calibration>();
   d.option("file", &WriteCalibrationStage::file_, "where to write it").writes().required();
 }
@@ -16,6 +18,7 @@ void WriteCalibrationStage::process(const Inputs& in, Outputs&, Context&) { last
 void WriteCalibrationStage::finish(Outputs&, Context& context) {
   if (!last_) throw Error("no calibration came, so none was written");
   Calibration calibration = *last_;
+  calibration.doubts = context.doubts_above();
   calibration.provenance["crisp"] = CRISP_VERSION;
   write_calibration(file_, calibration);
   context.wrote(file_);

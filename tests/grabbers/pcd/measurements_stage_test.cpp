@@ -207,5 +207,21 @@ TEST_F(GrabMeasurements, ACloudOfDoublesFarFromTheOriginIsWarnedOfUnlessItIsShif
   EXPECT_NEAR(cloud[29].z, 19, 1e-6);
 }
 
+TEST_F(GrabMeasurements, WarnsOfWhatOfAnotherProgramsCloudIsNotKept) {
+  const auto warnings_of = [&](const std::string& more, const std::string& layout) {
+    write_file(folder_ / "other.pcd", "VERSION 0.7\nFIELDS x y z intensity " + more +
+                                          " _\nSIZE 4 4 4 4 4 4 1\nTYPE F F F F F F U\n" + layout +
+                                          "POINTS 2\nDATA ascii\n1 2 3 4 5 6 0\n1 2 3 4 5 6 0\n");
+    auto stage = StageDriver::of<GrabCloudStage>(file("other.pcd"));
+    stage.feed();
+    return stage.report().warnings;
+  };
+  EXPECT_THAT(
+      warnings_of("rgb curvature", "WIDTH 1\nHEIGHT 2\nVIEWPOINT 0 0 1 1 0 0 0\n"),
+      testing::ElementsAre((folder_ / "other.pcd").string() +
+                           ": not kept are the fields rgb, curvature; the order in 2 rows; the VIEWPOINT"));
+  EXPECT_THAT(warnings_of("beam time", "WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0.0 0 0\n"), testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace crisp

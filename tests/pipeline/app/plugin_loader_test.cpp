@@ -11,6 +11,7 @@ namespace crisp {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -48,7 +49,8 @@ TEST(PluginLoader, TakesNothingFromAPluginOfWhichAStageIsRefused) {
   PluginLoader loader(registrar);
   loader.load(CLASHING_PLUGIN);
   EXPECT_THAT(loader.tried().at(0).refusal,
-              HasSubstr("there are two stages toy.count: one built in, one from "));
+              AllOf(HasSubstr("there are two stages toy.count: one built in, one from "),
+                    HasSubstr("; give one of them another name, or load only one of the two")));
   EXPECT_THAT(registrar.stages().names(), ElementsAre("toy.count"));
 }
 
@@ -92,6 +94,56 @@ TEST(PluginLoader, SaysWhyAFileIsNoPlugin) {
   EXPECT_THAT(loader.tried()[1].refusal, HasSubstr("file too short"));
   EXPECT_FALSE(loader.tried()[2].is_loaded());  // looked for here, and not in the system's folders
   fs::remove(text);
+}
+
+/// A copy of the toy plugin, or of its first bytes, in a folder of its own.
+fs::path copy_of_toy(const std::string& name, std::uintmax_t bytes = fs::file_size(TOY_PLUGIN)) {
+  const fs::path copy = fs::path(testing::TempDir()) / name;
+  fs::copy_file(TOY_PLUGIN, copy, fs::copy_options::overwrite_existing);
+  fs::resize_file(copy, bytes);
+  return copy;
+}
+
+TEST(PluginLoader, RefusesAPluginThatWasCutShortWhereverThatIs) {
+  const auto whole = fs::file_size(TOY_PLUGIN);
+  for (const auto bytes : {std::uintmax_t{80}, std::uintmax_t{9000}, whole / 2, whole - 1}) {
+    const fs::path cut = copy_of_toy("crisp_cut.so", bytes);
+    Registrar registrar;
+    PluginLoader loader(registrar);
+    loader.load(cut);
+    EXPECT_THAT(loader.tried().at(0).refusal, HasSubstr("it is cut short: its "));
+    EXPECT_THAT(loader.tried().at(0).refusal,
+                HasSubstr("reach beyond its " + std::to_string(bytes) + " bytes; copy or build it anew"));
+    fs::remove(cut);
+  }
+}
+
+TEST(PluginLoader, SkipsAPluginThatIsMetAgain) {
+  const fs::path copy = copy_of_toy("crisp_again.so");
+  Registrar registrar;
+  PluginLoader loader(registrar);
+  for (const auto& file : {fs::path(TOY_PLUGIN), copy, fs::path(TOY_PLUGIN)}) loader.load(file);
+  EXPECT_TRUE(loader.tried().at(0).is_loaded());
+  for (const std::size_t again : {1, 2}) {
+    EXPECT_FALSE(loader.tried().at(again).is_loaded());
+    EXPECT_EQ(loader.tried().at(again).refusal, "");
+    EXPECT_EQ(loader.tried().at(again).skipped, loader.tried()[0].file);
+  }
+  fs::remove(copy);
+}
+
+TEST(PluginLoader, LetsThePreferredPluginOfANameCount) {
+  const fs::path copy = copy_of_toy("crisp_preferred.so");
+  Registrar registrar;
+  PluginLoader loader(registrar);
+  loader.prefer(copy);
+  EXPECT_THAT(registrar.stages().names(), IsEmpty());
+  loader.load(TOY_PLUGIN);
+  loader.load(copy);
+  EXPECT_EQ(loader.tried().at(0).skipped, copy);
+  EXPECT_TRUE(loader.tried().at(1).is_loaded());
+  EXPECT_EQ(registrar.stages().find("toy.write")->origin, "from " + copy.string());
+  fs::remove(copy);
 }
 
 TEST(PluginLoader, TriesEverySharedObjectOfAFolder) {

@@ -69,6 +69,35 @@ TEST_F(ProgramTest, ListsPluginsAndWhyTheyWereRefused) {
   EXPECT_THAT(run.error, HasSubstr("was refused"));
 }
 
+TEST_F(ProgramTest, OnlyListsWhatIsWrongInAFolderOfPluginsThatItWasNotAskedFor) {
+  fs::create_directories(folder_ / "plugins");
+  fs::copy_file(TOY_PLUGIN, folder_ / "plugins/cut.so");
+  fs::resize_file(folder_ / "plugins/cut.so", 9000);
+  fs::copy_file(TOY_PLUGIN, folder_ / "plugins/old_toy.so");
+  setenv("CRISP_PLUGINS", path("plugins").c_str(), 1);
+  const auto run = crisp({"run", path("sum.yaml"), "-o", path("out")});
+  const auto list = crisp({"plugins"});
+  unsetenv("CRISP_PLUGINS");
+  EXPECT_EQ(run.status, 0) << run.error;
+  EXPECT_EQ(list.status, 0) << list.error;
+  EXPECT_THAT(list.out, HasSubstr(path("plugins/cut.so") + "\n  refused: it is cut short"));
+  EXPECT_THAT(list.out, HasSubstr(path("plugins/old_toy.so") +
+                                  "\n  toy 1.5\n  skipped: it is used from " TOY_PLUGIN "\n"));
+}
+
+TEST_F(ProgramTest, RefusesTwoFilesOfOnePluginThatItWasBothAskedFor) {
+  fs::copy_file(TOY_PLUGIN, folder_ / "copy.so");
+  EXPECT_EQ(crisp({"stages", "--plugin", TOY_PLUGIN}).status, 0);
+  const auto outcome = crisp({"stages", "--plugin", path("copy.so")});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.error,
+              HasSubstr("toy_plugin.so was refused: it is the plugin 'toy' once more, of which "
+                        "there is " +
+                        path("copy.so") + "; load only one of the two"));
+  EXPECT_THAT(crisp({"stages", "--plugin", CLASHING_PLUGIN}).error,
+              HasSubstr("; give one of them another name, or load only one of the two"));
+}
+
 TEST_F(ProgramTest, SaysWhatACalibrationHolds) {
   write_file(folder_ / "c.yaml",
              "crisp: 1\nlasers:\n  a:\n    lambda: {value: 0, unit: rad}\n"
@@ -97,6 +126,29 @@ TEST_F(ProgramTest, SaysWhatACalibrationHolds) {
   EXPECT_EQ(folder[path("c.yaml")], data);
   fs::create_directory(folder_ / "empty");
   EXPECT_THAT(crisp({"info", path("empty")}).error, HasSubstr("holds no file of a kind that is known"));
+}
+
+TEST_F(ProgramTest, SaysThatACalibrationWasDoubted) {
+  write_file(folder_ / "c.yaml",
+             "crisp: 1\ndoubts: [it is only a toy]\nlasers: {a: {lambda: {value: 0, unit: rad}, "
+             "tau: {value: 0.25, unit: m}, alpha: {value: 0, unit: rad}, eta: {value: 0, unit: s}}}\n");
+  EXPECT_THAT(crisp({"info", path("c.yaml")}).out, HasSubstr("\n  NOT TO BE TRUSTED: it is only a toy\n"));
+  const auto data = nlohmann::json::parse(crisp({"info", path("c.yaml"), "--json"}).out);
+  EXPECT_EQ(data["doubts"], nlohmann::json({"it is only a toy"}));
+}
+
+TEST_F(ProgramTest, PutsTwoCalibrationsSideBySide) {
+  for (const char* name : {"a.yaml", "b.yaml"}) {
+    write_file(folder_ / name,
+               "crisp: 1\nlasers: {a: {lambda: {value: 0, unit: rad}, tau: {value: 0.25, unit: m}, "
+               "alpha: {value: 0, unit: rad}, eta: {value: 0, unit: s}}}\n");
+  }
+  const auto outcome = crisp({"info", path("a.yaml"), path("b.yaml")});
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, testing::StartsWith("first:  " + path("a.yaml") + ": a calibration\nsecond: "));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("a.tau +mm +250.0000 +250.0000 +0.0000"));
+  const auto data = nlohmann::json::parse(crisp({"info", path("a.yaml"), path("b.yaml"), "--json"}).out);
+  EXPECT_EQ(data.size(), 2U);
 }
 
 TEST_F(ProgramTest, SaysWhatTheOthersHoldWhereOneCannotBeRead) {

@@ -191,6 +191,22 @@ TEST_F(ProgramTest, SaysWhenItsOutputDoesNotArrive) {
   }
 }
 
+TEST_F(ProgramTest, RunsToItsEndThoughNobodyReadsWhatItSaysAnyMore) {
+  for (const auto& [doubt, status] : {std::pair{"false", 0}, std::pair{"true", 3}}) {
+    const std::string line = CRISP_PROGRAM " run " + path("sum.yaml") + " -o " + path("out") +
+                             " --plugin " TOY_PLUGIN " --set toy.write.doubt=" + doubt;
+    // The reader is gone before the first word.
+    const std::string piped =
+        "bash -c '(sleep 0.2; " + line + " 2>&1; echo $? >" + path("status") + ") | true'";
+    EXPECT_EQ(std::system(piped.c_str()), 0);
+    EXPECT_EQ(content("status"), std::to_string(status) + "\n");
+    EXPECT_EQ(content("out/sum.txt"), "10\n");
+    EXPECT_EQ(json("out/sum.txt.provenance.json")["trusted"], status == 0);
+    EXPECT_EQ(json("out/summary.json")["exit_status"], status);
+    fs::remove_all(folder_ / "out");
+  }
+}
+
 TEST_F(ProgramTest, RefusesWhatCannotBeRun) {
   EXPECT_THAT(crisp({"run", path("sum.yaml")}).error, HasSubstr("${output} has no value; give it with -o"));
   EXPECT_THAT(crisp({"run", path("sum.yaml"), "-o", path("sum.yaml")}).error,

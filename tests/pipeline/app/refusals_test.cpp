@@ -156,6 +156,16 @@ TEST_F(ProgramTest, SaysHowAStageIsWritten) {
       path("plain.yaml") + ":3:5: error: stage: 'toy.count' is not a map; write `- stage: toy.count`\n");
 }
 
+TEST_F(ProgramTest, TellsAStageFromTheKeyBeforeItAndAListFromItsBrackets) {
+  for (const char* item : {"stage toy.count", "stage:toy.count"}) {
+    write_file(folder_ / "plain.yaml", "crisp: 1\npipeline:\n  - " + std::string(item) + "\n");
+    EXPECT_THAT(crisp({"validate", path("plain.yaml")}).error, HasSubstr("; write `- stage: toy.count`\n"));
+  }
+  const auto outcome =
+      crisp({"validate", source_dir() + "/configs/calibrate.yaml", "--set", "calibrate.rqe.sigma=50cm,1cm"});
+  EXPECT_THAT(outcome.error, HasSubstr("; did you mean [50cm, 1cm]? expected is a list"));
+}
+
 TEST_F(ProgramTest, ValidatesEveryStageThoughAnotherIsWrong) {
   const auto errors_of = [&](const std::string& rig) {
     write_file(folder_ / "wrong.yaml",

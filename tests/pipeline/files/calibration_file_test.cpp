@@ -96,6 +96,17 @@ TEST(CalibrationFile, WritesWhatItReads) {
   EXPECT_THAT(written, HasSubstr("  rqe: {before: 2.5, after: 1.25}\n"));
 }
 
+TEST(CalibrationFile, KeepsWhyItWasDoubted) {
+  EXPECT_THAT(parse(kExample).doubts, testing::IsEmpty());
+  Calibration c = parse(kExample);
+  c.doubts = {"laser1.tau: at its bound", "a \"second\" one"};
+  const std::string written = to_yaml(c);
+  EXPECT_THAT(written, testing::StartsWith("crisp: 1\ndoubts:\n  - \"laser1.tau: at its bound\"\n"));
+  EXPECT_EQ(parse(written).doubts, c.doubts);
+  EXPECT_THAT(errors_of_calibration(example_with("lasers:", "doubts: many\nlasers:")),
+              ElementsAre(HasSubstr("c.yaml:2:9: error: calibration: 'doubts': 'many' is not a list")));
+}
+
 TEST(CalibrationFile, KeepsEveryBitOfADouble) {
   std::mt19937_64 random(1);
   Calibration c;

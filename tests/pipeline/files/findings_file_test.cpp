@@ -50,6 +50,7 @@ Findings some_findings() {
                                 .reason = "an entropy's optimum shifts"});
   findings.devices.push_back({.device = "laser1", .stamps = 172, .skew = 7e-6});
   findings.noise.push_back({.laser = "laser1", .ranges = 31'000, .sigma = 4.6e-3});
+  findings.gain = findings.findings[0].gain;
   return findings;
 }
 
@@ -63,7 +64,7 @@ TEST(FindingsFile, HoldsWhatProgramsAreToldToExpect) {
   const auto json = nlohmann::json::parse(findings_json(some_findings()));
   EXPECT_THAT(keys_of(json),
               testing::UnorderedElementsAre("crisp", "findings", "unnamed", "departures", "unobservable",
-                                            "artefacts", "devices", "noise", "indistinguishable"));
+                                            "artefacts", "devices", "noise", "gain", "indistinguishable"));
   const auto& finding = json["findings"][0];
   EXPECT_THAT(keys_of(finding),
               testing::UnorderedElementsAre("cause", "scope", "parameters", "explained_fraction",
@@ -92,7 +93,7 @@ TEST(FindingsFile, HoldsWhatSeveralDiagnosesSay) {
   all.append({.before_p = 0.5, .after_p = 0.1});
   const auto json = nlohmann::json::parse(findings_json(all));
   for (const char* list :
-       {"findings", "unnamed", "departures", "unobservable", "artefacts", "devices", "noise"}) {
+       {"findings", "unnamed", "departures", "unobservable", "artefacts", "devices", "noise", "gain"}) {
     EXPECT_EQ(json[list].size(), 2U) << list;
   }
   // The less of two: 1 - (1 - 0.005)^2 = 0.009975, then 1 - (1 - 0.009975)^2.

@@ -30,7 +30,8 @@ TEST(Quantity, ConvertsUnitsToSi) {
   EXPECT_DOUBLE_EQ(value("180deg", "rad"), 3.14159265358979323846);
   EXPECT_DOUBLE_EQ(value("90°", "rad"), 1.57079632679489661923);
   EXPECT_DOUBLE_EQ(value("20ms", "s"), 0.02);
-  EXPECT_DOUBLE_EQ(value("7µs", "s"), 7e-6);
+  EXPECT_DOUBLE_EQ(value("7\u00b5s", "s"), 7e-6);
+  EXPECT_DOUBLE_EQ(value("7\u03bcs", "s"), 7e-6) << "the Greek letter in place of the sign";
   EXPECT_DOUBLE_EQ(value("2kHz", "Hz"), 2000);
   EXPECT_DOUBLE_EQ(value("60rpm", "rad/s"), 6.28318530717958647692);
   EXPECT_DOUBLE_EQ(value("250ppm", "1"), 2.5e-4);

@@ -12,7 +12,9 @@
 namespace crisp {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -71,7 +73,10 @@ TEST(Yaml, RefusesWhatCouldReferToSomethingElse) {
 
 TEST(Yaml, SaysWhereATextIsNotYaml) {
   EXPECT_THAT(errors_of_yaml("a: [1, 2\nb: 3\n"),
-              ElementsAre(StartsWith("f.yaml:2:2: error: this is not YAML")));
+              ElementsAre(AllOf(StartsWith("f.yaml:2:2: error: this is not YAML"),
+                                EndsWith("; the mistake may be on a line before it: look for a bracket or a "
+                                         "quotation mark that is not closed, or a missing colon"))));
+  EXPECT_THAT(errors_of_yaml("[1, 2"), ElementsAre(HasSubstr("; look for a bracket or a quotation mark")));
   EXPECT_THAT(errors_of_yaml("a: \"open\n"), ElementsAre(StartsWith("f.yaml:")));
   EXPECT_THAT(errors_of_yaml(std::string("a: b\n\0c", 7)),
               ElementsAre("f.yaml:2:1: error: there is a control character (0x00); is this a text file?"));
@@ -109,11 +114,11 @@ TEST(Yaml, SaysWhyAFileCannotBeRead) {
     }
     return "";
   };
-  EXPECT_EQ(message("/nowhere/x.yaml"), "error: cannot read /nowhere/x.yaml: No such file or directory");
+  EXPECT_EQ(message("/nowhere/x.yaml"), "cannot read /nowhere/x.yaml: No such file or directory");
   const test::TemporaryFolder folder;
   std::ofstream(folder / "empty.yaml") << "# only a comment\n";
   EXPECT_EQ(message(folder / "empty.yaml"), (folder / "empty.yaml").string() + ": error: the file is empty");
-  EXPECT_EQ(message("/tmp"), "error: cannot read /tmp: it is a folder");
+  EXPECT_EQ(message("/tmp"), "cannot read /tmp: it is a folder");
 }
 
 }  // namespace

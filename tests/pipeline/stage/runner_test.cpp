@@ -124,9 +124,24 @@ TEST_F(RunnerTest, KeepsDoubtsAboutWhatGoesElsewhereToo) {
   EXPECT_THAT(results[1].report.warnings, testing::IsEmpty());
 }
 
+TEST_F(RunnerTest, TellsAStageWhatThoseAboveItDoubted) {
+  const auto heard = [&](const std::vector<StageSpec>& specs) {
+    return run(specs).back().report.section.at("doubts").get<std::vector<std::string>>();
+  };
+  const StageSpec doubt = {.stage = "toy.doubt"};
+  StageSpec lifts = doubt;
+  lifts.with = {{"lift", yes()}};
+  EXPECT_THAT(heard({{.stage = "toy.count"}, doubt, {.stage = "toy.sum"}, {.stage = "toy.hear"}}),
+              ElementsAre("are these numbers?"));
+  EXPECT_THAT(heard({{.stage = "toy.count"}, doubt, lifts, {.stage = "toy.sum"}, {.stage = "toy.hear"}}),
+              testing::IsEmpty());
+  const StageSpec aside = {.stage = "toy.sum", .inputs = {{{"toy.count", {}}}}};
+  EXPECT_THAT(heard({{.stage = "toy.count"}, doubt, aside, {.stage = "toy.hear"}}), testing::IsEmpty());
+}
+
 TEST_F(RunnerTest, TellsTheStageThatThrewAndNotTheOneThatFedIt) {
   const std::vector<StageSpec> specs = {{.stage = "toy.count"}, {.stage = "toy.throw", .tag = "culprit"}};
-  EXPECT_EQ(message_of(specs), "error: culprit: it saw a three; avoid threes");
+  EXPECT_EQ(message_of(specs), "culprit: it saw a three; avoid threes");
 }
 
 TEST_F(RunnerTest, TellsWhatHadBeenDoneWhenAStageThrew) {

@@ -197,6 +197,16 @@ class DoubtStage final : public Stage {
   bool lift_ = false;
 };
 
+/// Reports what the stages above it doubted.
+class HearStage final : public Stage {
+ public:
+  static void describe(StageDescription<HearStage>& d) {
+    d.name("toy.hear").summary("hears doubts").takes<Sum>();
+  }
+  void process(const Inputs&, Outputs&, Context&) override {}
+  void finish(Outputs&, Context& context) override { context.report({{"doubts", context.doubts_above()}}); }
+};
+
 inline void register_toys(Registrar& registrar) {
   registrar.stage<CountStage>();
   registrar.stage<EndlessStage>();
@@ -207,6 +217,7 @@ inline void register_toys(Registrar& registrar) {
   registrar.stage<LogStage>();
   registrar.stage<ThrowStage>();
   registrar.stage<DoubtStage>();
+  registrar.stage<HearStage>();
 }
 
 }  // namespace crisp::toy

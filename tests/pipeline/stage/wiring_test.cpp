@@ -42,7 +42,7 @@ TEST_F(WiringTest, FeedsAnInputFromTheNearestStageAboveThatGivesItsKind) {
 
 TEST_F(WiringTest, NamesTheStagesThatGiveWhatIsMissing) {
   EXPECT_THAT(errors_of({{.stage = "toy.sum"}}),
-              ElementsAre("error: toy.sum: nothing above it gives the Number that it takes; put one of these "
+              ElementsAre("toy.sum: nothing above it gives the Number that it takes; put one of these "
                           "above it: toy.count, toy.doubt, toy.endless, toy.share, "
                           "toy.throw"));
 }
@@ -57,7 +57,7 @@ TEST_F(WiringTest, PointsAtAStageAboveThatInputsLeavesOut) {
 
 TEST_F(WiringTest, SuggestsTheNearestStageAndTag) {
   EXPECT_THAT(errors_of({{.stage = "toy.cuont"}}),
-              ElementsAre("error: there is no stage 'toy.cuont'; did you mean 'toy.count'? a plugin's are "
+              ElementsAre("there is no stage 'toy.cuont'; did you mean 'toy.count'? a plugin's are "
                           "known with --plugin FILE"));
   EXPECT_THAT(errors_of({{.stage = "toy.count", .tag = "left"},
                          {.stage = "toy.sum", .inputs = {{{"lfet", {"p.yaml", 3, 9}}}}}}),
@@ -65,11 +65,17 @@ TEST_F(WiringTest, SuggestsTheNearestStageAndTag) {
                           "'left'?"));
 }
 
+TEST_F(WiringTest, KnowsAStageByTheLastPartOfItsName) {
+  for (const char* name : {"throw", "throwing"}) {
+    EXPECT_THAT(errors_of({{.stage = name}}),
+                ElementsAre(HasSubstr("; did you mean 'toy.throw'? a plugin's")));
+  }
+}
+
 TEST_F(WiringTest, RemindsOfPluginsWhereNoStageIsNear) {
-  EXPECT_THAT(
-      errors_of({{.stage = "example.near"}}),
-      ElementsAre("error: there is no stage 'example.near'; crisp stages lists them; a plugin's are known "
-                  "with --plugin FILE"));
+  EXPECT_THAT(errors_of({{.stage = "example.near"}}),
+              ElementsAre("there is no stage 'example.near'; crisp stages lists them; a plugin's are known "
+                          "with --plugin FILE"));
 }
 
 TEST_F(WiringTest, RefusesInputsFromBelowAndInputsOfNoUse) {
@@ -78,7 +84,7 @@ TEST_F(WiringTest, RefusesInputsFromBelowAndInputsOfNoUse) {
   EXPECT_THAT(errors_of({{.stage = "toy.count"},
                          {.stage = "toy.say"},
                          {.stage = "toy.sum", .inputs = {{{"toy.count", {}}, {"toy.say", {}}}}}}),
-              ElementsAre("error: toy.sum: 'toy.say' gives nothing that toy.sum takes; it gives Word, and "
+              ElementsAre("toy.sum: 'toy.say' gives nothing that toy.sum takes; it gives Word, and "
                           "toy.sum takes Number"));
 }
 

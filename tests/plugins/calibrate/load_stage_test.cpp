@@ -58,5 +58,21 @@ TEST(LoadCalibration, SaysWhichTermsHoldForOneRecordingAlone) {
   EXPECT_THAT(stage.report().lines, ElementsAre(HasSubstr("encoder.eccentricity: what goes by the plate's")));
 }
 
+TEST(LoadCalibration, DoesNotTrustWhatWasDoubtedWhenItWasMade) {
+  const test::TemporaryFolder folder;
+  TermRegistry terms;
+  Registrar registrar;
+  registrar.attach(terms);
+  Calibration calibration = nominal_calibration(default_rig());
+  calibration.doubts = {"the plate stood still"};
+  const std::string file = (folder / "calibration.yaml").string();
+  write_calibration(file, calibration);
+  auto stage = test::StageDriver::of<LoadCalibrationStage>({{"file", OptionScalar(file)}});
+  stage.run().registrar = &registrar;
+  stage.feed();
+  EXPECT_THAT(stage.report().doubts, ElementsAre("the calibration " + file +
+                                                 " was doubted when it was made: the plate stood still"));
+}
+
 }  // namespace
 }  // namespace crisp

@@ -54,6 +54,15 @@ TEST_F(WriteCalibrationTest, WritesTheLastCalibrationWhenTheRunIsOver) {
   EXPECT_THAT(report_.written, ElementsAre(file_));
 }
 
+TEST_F(WriteCalibrationTest, WritesWhatTheStagesAboveDoubted) {
+  context_.ask_for_doubts([] { return std::vector<std::string>{"the plate stood still"}; });
+  const auto stage = make();
+  const std::vector<Item> items = {Item::of(std::make_shared<const Calibration>(with_tau(0.2)))};
+  stage->process(Inputs(items), nowhere_, context_);
+  stage->finish(nowhere_, context_);
+  EXPECT_THAT(read_calibration(file_).doubts, ElementsAre("the plate stood still"));
+}
+
 TEST_F(WriteCalibrationTest, SaysThatNoCalibrationCame) {
   EXPECT_THROW(make()->finish(nowhere_, context_), Error);
   EXPECT_FALSE(fs::exists(file_));

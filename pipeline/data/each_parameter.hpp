@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "pipeline/data/calibration.hpp"
+#include "pipeline/data/degree.hpp"
+
+namespace crisp {
+
+/// Calls `act` with each parameter's full name ("laser1.tau", "plate.encoder.eccentricity.a") and itself, in
+/// the order of the file.
+template <class Calibrated, class Act>
+void for_each_parameter(Calibrated& calibration, const Act& act) {
+  const auto with_terms = [&](auto& terms, const std::string& owner) {
+    for (auto& term : terms) {
+      for (auto& parameter : term.parameters) act(owner + "." + term.term + "." + parameter.name, parameter);
+    }
+  };
+  for (auto& laser : calibration.lasers) {
+    for (auto* p : {&laser.lambda, &laser.tau, &laser.alpha, &laser.eta}) act(laser.name + "." + p->name, *p);
+    with_terms(laser.terms, laser.name);
+  }
+  with_terms(calibration.plate_terms, "plate");
+}
+
+/// In which unit people read a parameter.
+struct ShownUnit {
+  double factor = 1;  ///< from SI
+  std::string name;   ///< empty for a plain number
+};
+
+/// Degrees, millimetres, milliseconds.
+inline ShownUnit shown_unit(const std::string& unit) {
+  if (unit == "rad") return {.factor = 1 / kDegree, .name = "deg"};
+  if (unit == "m" || unit == "s") return {.factor = 1e3, .name = "m" + unit};
+  return {.factor = 1, .name = unit == "1" ? "" : unit};
+}
+
+}  // namespace crisp

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/write/calibrations_compared.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <vector>
+
+#include "pipeline/data/each_parameter.hpp"
+
+namespace crisp {
+namespace {
+
+/// One parameter of two calibrations, of which one may lack it.
+struct Row {
+  std::string name;
+  const Parameter* first = nullptr;
+  const Parameter* second = nullptr;
+};
+
+/// In the order of the first, then what only the second has.
+std::vector<Row> rows_of(const Calibration& first, const Calibration& second) {
+  std::vector<Row> rows;
+  for_each_parameter(first, [&](const std::string& name, const Parameter& p) {
+    rows.push_back({.name = name, .first = &p});
+  });
+  for_each_parameter(second, [&](const std::string& name, const Parameter& p) {
+    const auto same = std::ranges::find(rows, name, &Row::name);
+    if (same == rows.end())
+      rows.push_back({.name = name, .second = &p});
+    else
+      same->second = &p;
+  });
+  return rows;
+}
+
+/// With so many digits behind the point that an error of this size has two that count.
+std::string figure(double value, double error) {
+  constexpr int kUnknown = 4;
+  constexpr int kMost = 9;
+  const int digits = error > 0 ? 1 - static_cast<int>(std::floor(std::log10(error))) : kUnknown;
+  return fmt::format("{:.{}f}", value, std::clamp(digits, 0, kMost));
+}
+
+std::string line_of(const Row& row) {
+  const Parameter& known = row.first ? *row.first : *row.second;
+  const ShownUnit unit = shown_unit(known.unit);
+  // As of independent recordings: of one and the same, the difference is less than this says.
+  const double error =
+      unit.factor * std::hypot(row.first ? row.first->std_error : 0, row.second ? row.second->std_error : 0);
+  const auto shown = [&](const Parameter* p) { return p ? figure(unit.factor * p->value, error) : "-"; };
+  std::string difference = "-";
+  std::string in_errors;
+  if (row.first && row.second) {
+    double by = row.second->value - row.first->value;
+    if (known.unit == "rad") by = std::remainder(by, 2 * std::numbers::pi);
+    difference = figure(unit.factor * by, error);
+    if (error > 0) in_errors = fmt::format("{:>12.1f}", unit.factor * by / error);
+  }
+  return fmt::format("\n  {:<36}{:<5}{:>14}{:>14}{:>14}{}", row.name, unit.name, shown(row.first),
+                     shown(row.second), difference, in_errors);
+}
+
+std::string quality_line(const std::string& name, const Calibration& first, const Calibration& second) {
+  const auto shown = [&](const Calibration& calibration) {
+    const auto found = calibration.quality.find(name);
+    return found == calibration.quality.end() ? "-" : fmt::format("{:.5g}", found->second);
+  };
+  return fmt::format("\n  {:<36}{:<5}{:>14}{:>14}", figure_in_words(name), "", shown(first), shown(second));
+}
+
+std::string doubts_of(const char* which, const Calibration& calibration) {
+  std::string text;
+  for (const auto& doubt : calibration.doubts)
+    text += fmt::format("\n  the {} is NOT TO BE TRUSTED: {}", which, doubt);
+  return text;
+}
+
+}  // namespace
+
+std::string side_by_side(const Calibration& first, const Calibration& second) {
+  std::string text = fmt::format("  {:<36}{:<5}{:>14}{:>14}{:>14}{:>12}", "parameter", "unit", "first",
+                                 "second", "difference", "std errors");
+  for (const Row& row : rows_of(first, second)) text += line_of(row);
+  std::set<std::string> figures;
+  for (const auto* calibration : {&first, &second}) {
+    for (const auto& [name, value] : calibration->quality) figures.insert(name);
+  }
+  for (const auto& name : figures) text += quality_line(name, first, second);
+  return text + doubts_of("first", first) + doubts_of("second", second);
+}
+
+std::string figure_in_words(const std::string& name) { return name == "chi2" ? "chi2 (misfit)" : name; }
+
+}  // namespace crisp
