@@ -23,7 +23,7 @@ TermFault unknown(const TermParameters& given, const TermRegistry& terms) {
   try {
     terms.get(given.term);
   } catch (const Error& error) {
-    return {"", error.message(), error.advice()};
+    return {"", error.message(), error.advice() + "; a plugin's are known with --plugin FILE"};
   }
   return {};
 }
