@@ -101,7 +101,8 @@ std::vector<Layout> layouts(const Evidence& evidence, const Residuals& residuals
 }
 
 /// [m] Mean of the residuals in each bin of a profile: a step of Tukey's M-estimate, whose weights have been
-/// found about what each view sees.
+/// found about what each view sees. Of one laser less their mean: what it is off by everywhere goes by none
+/// of the covariates, and shows from laser to laser.
 std::vector<double> means_in(const Layout& layout, const Weighed& residuals) {
   std::vector<double> means;
   for (std::size_t b = 0; b + 1 < layout.first.size(); ++b) {
@@ -114,6 +115,9 @@ std::vector<double> means_in(const Layout& layout, const Weighed& residuals) {
     }
     means.push_back(slope > 0 ? sum / slope : 0);
   }
+  if (layout.profile.laser == kAllLasers) return means;
+  const double mean = std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(means.size());
+  for (double& one : means) one -= mean;
   return means;
 }
 
@@ -145,13 +149,16 @@ std::vector<double> sizes_of(const std::vector<double>& noise, const Residuals& 
   return sizes;
 }
 
-/// How likely noise alone makes a profile as bad as this one: χ² of its bins.
-double chance_of(const std::vector<double>& means, const std::vector<double>& errors) {
+/// How likely noise alone makes a profile as bad as this one: χ² of its bins, of which one is given by the
+/// others where their mean was taken out.
+double chance_of(const Layout& layout, const std::vector<double>& means, const std::vector<double>& errors) {
   double chi2 = 0;
   for (std::size_t b = 0; b < means.size(); ++b) {
     if (errors[b] > 0) chi2 += std::pow(means[b] / errors[b], 2);
   }
-  return cdf(complement(boost::math::chi_squared(static_cast<double>(means.size())), chi2));
+  const auto bins = static_cast<double>(means.size());
+  const double free = layout.profile.laser == kAllLasers ? bins : bins - 1;
+  return cdf(complement(boost::math::chi_squared(free), chi2 * free / bins));
 }
 
 }  // namespace
@@ -189,10 +196,10 @@ SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings
   result.excess = shared_square(residuals, residuals.measured, beams) -
                   std::accumulate(squares.begin(), squares.end(), 0.0) / double{kSimulations};
   std::vector<double> least(kSimulations, 1.0);
-  for (const SimulatedMeans& of_profile : means) {
-    const auto errors = errors_of(of_profile);
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    const auto errors = errors_of(means[p]);
     for (std::size_t s = 0; s < kSimulations; ++s)
-      least[s] = std::min(least[s], chance_of(of_profile[s], errors));
+      least[s] = std::min(least[s], chance_of(all[p], means[p][s], errors));
   }
   const double looks = independent_looks(least);
   for (std::size_t p = 0; p < all.size(); ++p) {
@@ -207,7 +214,7 @@ SideBySide side_by_side(const Evidence& evidence, const SurfelSettings& settings
       square += own[b] * own[b] - errors[b] * errors[b];
     }
     profile.rms = std::sqrt(std::max(0.0, square / static_cast<double>(own.size())));
-    profile.p_value = least_of(looks, chance_of(own, errors));
+    profile.p_value = least_of(looks, chance_of(all[p], own, errors));
     result.p_value = std::min(result.p_value, profile.p_value);
     result.profiles.push_back(std::move(profile));
   }
