@@ -2,11 +2,18 @@
 #include "plugins/diagnose/borne_out.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <map>
+#include <string>
 
 namespace crisp {
 namespace {
 
+constexpr const char* kMayBeTheScenes =
+    "several lasers have it alike, and it is small: surfaces that are not as flat as they are taken for make "
+    "as "
+    "much";
 constexpr const char* kIsNothing =
     "with the others that are accepted it comes out as nothing, within its standard errors";
 
@@ -44,6 +51,23 @@ std::vector<std::optional<Eigen::Index>> places_of(const Candidate& candidate, c
     }
   }
   return places;
+}
+
+void refuse_what_may_be_the_scenes(std::vector<Departure>& departures) {
+  constexpr double kOfScenes = 0.05;  // [σ] RMS
+  std::map<std::string, std::vector<Departure*>> alike;
+  for (Departure& one : departures) {
+    if (one.accepted && one.candidate.laser()) alike[one.candidate.term.term].push_back(&one);
+  }
+  for (const auto& [term, some] : alike) {
+    const bool is_large =
+        std::ranges::any_of(some, [](const Departure* one) { return one->look.visible > kOfScenes; });
+    if (some.size() < 2 || is_large) continue;
+    for (Departure* one : some) {
+      one->accepted = false;
+      one->refused = kMayBeTheScenes;
+    }
+  }
 }
 
 bool refuse_what_is_not_borne_out(std::vector<Departure>& departures, const Outcome& outcome,

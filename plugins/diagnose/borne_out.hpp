@@ -13,6 +13,10 @@ namespace crisp {
 /// not.
 std::vector<std::optional<Eigen::Index>> places_of(const Candidate& candidate, const Outcome& outcome);
 
+/// Refuses causes that several lasers have alike where none of them is large: surfaces that are not as flat
+/// as they are taken for make as much in all lasers, and many a cause takes a part of that.
+void refuse_what_may_be_the_scenes(std::vector<Departure>& departures);
+
 /// Refuses the accepted whose values, as they were estimated with all that are accepted, may as well be
 /// neutral (Wald's test, of all parameters of a term but its form): what was needed beside others that were
 /// then refused.

@@ -155,6 +155,7 @@ class Diagnoser {
 
   /// Asks each departure of turns that models are not fitted to, and what comes out of those that pay.
   void judge(const HeldOut& held_out, Diagnosis& result) const {
+    refuse_what_may_be_the_scenes(result.departures);
     accept_what_pays(held_out, result.departures, result.before.outcome.model.calibration(),
                      result.after.outcome.model.calibration(),
                      [this](const Calibration& start, const Sample& sample) {

@@ -8,16 +8,11 @@
 namespace crisp {
 namespace {
 
-/// Whether the likelihood of held-out turns rises for sure.
+/// Whether the likelihood of held-out turns rises; by how little for sure is told, but no reason to refuse
+/// what is significant on the others.
 bool pays(const std::vector<Gain>& gains) {
   const auto likelihood = std::ranges::find(gains, HeldOut::kLikelihood, &Gain::metric);
-  return likelihood != gains.end() && likelihood->surely_rises();
-}
-
-/// Whether it is more than what scenes make alike in all lasers that are not as flat as they are taken for.
-bool is_more_than_a_scene_makes(const Departure* departure) {
-  constexpr double kOfScenes = 0.05;  // [σ] RMS
-  return departure->look.visible > kOfScenes;
+  return likelihood != gains.end() && likelihood->after > likelihood->before;
 }
 
 /// What was accepted so far.
@@ -63,15 +58,16 @@ void accept_what_pays(const HeldOut& held_out, std::vector<Departure>& departure
                       const Calibration& found, const RefinedOn& refined) {
   Gate gate(held_out, plain, found, refined);
   std::vector<Departure*> open;
-  for (Departure& departure : departures) open.push_back(&departure);
+  for (Departure& departure : departures) {
+    if (departure.accepted) open.push_back(&departure);
+  }
   while (!open.empty()) {
     std::vector<Departure*> alike;
     std::ranges::copy_if(open, std::back_inserter(alike), [&](const Departure* other) {
       return other->candidate.term.term == open.front()->candidate.term.term;
     });
     std::vector<Departure*> judged = {open.front()};
-    const bool may_be_common = alike.size() > 1 && std::ranges::all_of(alike, is_more_than_a_scene_makes);
-    if (!gate.accepts(judged) && may_be_common && gate.accepts(alike)) judged = alike;
+    if (!gate.accepts(judged) && alike.size() > 1 && gate.accepts(alike)) judged = alike;
     std::erase_if(open, [&](Departure* one) { return std::ranges::find(judged, one) != judged.end(); });
   }
 }

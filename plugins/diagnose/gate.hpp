@@ -14,10 +14,10 @@ using RefinedOn = std::function<SensorModel(const Calibration& start, const Samp
 
 /// Judges departures by turns of the plate that models were not fitted to: in their order, models with one
 /// more each are fitted to the other turns. What all lasers have alike and what does not pay for one of them
-/// alone is asked of all of them together: mended in one alone, they disagree. But what all have alike and is
-/// small may be the scene's.
+/// alone is asked of all of them together: mended in one alone, they disagree.
 ///
-/// @param departures  their gains and whether they are accepted are set
+/// @param departures  their gains and whether they are accepted are set, but for those that are refused
+/// already
 /// @param plain       without any; where the fit starts that the first has to beat
 /// @param found       with all of them; where the other fits start
 void accept_what_pays(const HeldOut& held_out, std::vector<Departure>& departures, const Calibration& plain,

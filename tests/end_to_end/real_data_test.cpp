@@ -53,7 +53,8 @@ TEST_F(RealData, OverbotsBeamsAreInterleavedAndItsScansComeInBursts) {
   EXPECT_LT(bursts["p_value"], 0.01);
   EXPECT_LT(bursts["gain"][0]["ci95"][1], 0);
   EXPECT_LT(bursts["gain"][0]["after"], 0.02) << "as an independent look found: 1.5 cm instead of 6.1 cm";
-  EXPECT_THAT(unobservable_in(diagnosis_), testing::ElementsAre("lms.eta", "lms.tau", "lms.alpha"));
+  EXPECT_THAT(unobservable_in(diagnosis_),
+              testing::ElementsAre("lms.eta", "lms.tau", "lms.alpha", "lms.range.step"));
 
   EXPECT_LT(told_before(diagnosis_), 0.01);
   const auto timed = departure_over(diagnosis_, "receipt less stamp");
@@ -116,9 +117,9 @@ TEST_F(RealData, HrlsSingleSweepTellsNeitherItsAnglesNorItsMounting) {
   EXPECT_THAT(diagnosis_["unnamed"], testing::IsEmpty());
   EXPECT_THAT(unobservable_in(diagnosis_),
               testing::ElementsAre("shift between passes (utm)", "utm.eta", "utm.tau", "utm.alpha",
-                                   "utm: offset from the axis along the middle beam",
+                                   "utm.range.step", "utm: offset from the axis along the middle beam",
                                    "utm: offset from the axis along the fan's normal"));
-  EXPECT_THAT(std::string(diagnosis_["unobservable"][4]["reason"]),
+  EXPECT_THAT(std::string(diagnosis_["unobservable"][5]["reason"]),
               testing::AllOf(testing::StartsWith("its standard error of "),
                              testing::Not(testing::HasSubstr("windows"))));
   EXPECT_GT(told_before(diagnosis_), 0.01) << "ranges are foretold as those of a simulated sweep are";

@@ -48,6 +48,25 @@ TEST(BorneOut, WhatComesOutAsNothingIsRefused) {
   EXPECT_TRUE(found[1].accepted);
 }
 
+TEST(BorneOut, WhatSeveralLasersHaveAlikeAndIsSmallMayBeTheScenes) {
+  const auto seen = [](const std::string& term, std::size_t laser, double visible) {
+    Departure one = of_first_laser(term);
+    one.candidate.owner = laser;
+    one.candidate.name = "laser" + std::to_string(laser + 1) + "." + term;
+    one.look.visible = visible;
+    return one;
+  };
+  std::vector<Departure> found = {seen("range.intensity", 0, 0.03), seen("range.intensity", 2, 0.04),
+                                  seen("range.offset", 0, 0.03), seen("range.offset", 1, 0.06),
+                                  seen("range.scale", 1, 0.01)};
+  refuse_what_may_be_the_scenes(found);
+  const auto accepted = [&](std::size_t k) { return found.at(k).accepted; };
+  EXPECT_FALSE(accepted(0) || accepted(1));
+  EXPECT_NE(found[0].refused, "");
+  EXPECT_TRUE(accepted(2) && accepted(3)) << "one of them is large";
+  EXPECT_TRUE(accepted(4)) << "of one laser alone";
+}
+
 TEST(BorneOut, ParametersOfATermAreAskedTogether) {
   std::vector<Departure> alike = {of_first_laser("range.intensity")};
   EXPECT_TRUE(refuse_what_is_not_borne_out(alike, outcome(0, 0.003, 0.003), built_in_terms(), 1e-3));
