@@ -119,6 +119,10 @@ void RqeStage::finish(Outputs& out, Context& context) {
                          {"rqe_sigma", sigma}};
   calibration.provenance["calibration"] = "calibrate.rqe";
   tell(calibration, {}, context);
+  context.say(
+      "standard errors count how beams scatter; by how much the crispest cloud is not the true one comes on "
+      "top, some "
+      "millimetres (calibrate.refine)");
   out.give(std::move(calibration));
 }
 

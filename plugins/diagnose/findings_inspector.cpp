@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 
@@ -21,15 +22,20 @@ Inspection inspect_findings(const std::filesystem::path& file, const Rig&) {
                      {"unobservable", all.unobservable.size()},
                      {"artefacts", all.artefacts.size()},
                      {"devices", all.devices.size()}};
-  inspection.text =
-      fmt::format("  causes: {}; unnamed departures: {}; causes that these data could not show: {}",
-                  all.findings.size(), all.unnamed.size(), all.unobservable.size());
+  const auto accepted = std::ranges::count_if(all.findings, &Finding::accepted);
+  inspection.text = fmt::format(
+      "  causes: {}, and {} refused; unnamed departures: {}; causes that these data could not show: {}",
+      accepted, std::ranges::ssize(all.findings) - accepted, all.unnamed.size(), all.unobservable.size());
   for (const Finding& finding : all.findings) {
     inspection.text += "\n  " + headline(finding);
     inspection.data["findings"].push_back(
         {{"cause", finding.cause}, {"scope", finding.scope}, {"accepted", finding.accepted}});
   }
   for (const UnnamedFinding& finding : all.unnamed) inspection.text += "\n  " + headline(finding);
+  for (const Unobservable& one : all.unobservable) {
+    inspection.text += fmt::format("\n  not told: {}: {}", one.parameter, one.reason);
+    if (!one.combination.empty()) inspection.text += "; what is known is " + one.combination;
+  }
   for (const Artefact& artefact : all.artefacts) {
     inspection.text += fmt::format("\n  the estimator's own: {}", artefact.name);
   }

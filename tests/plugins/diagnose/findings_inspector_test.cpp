@@ -20,6 +20,7 @@ Findings some_findings() {
                    .p_value = 1e-9,
                    .accepted = true}};
   all.unnamed = {{.covariate = "time", .quantity = "lag", .scope = "laser1", .amplitude = 4e-4, .unit = "m"}};
+  all.unobservable = {{.parameter = "encoder.backlash", .reason = "no reversal"}};
   all.noise = {{.laser = "laser1", .ranges = 1000, .sigma = 0.0113}};
   all.before_p = 0.005;
   all.after_p = 0.6;
@@ -31,8 +32,9 @@ TEST(FindingsInspector, SaysInAFewLinesWhatADiagnosisHolds) {
   test::put_bytes(folder / "diagnosis.json", findings_json(some_findings()));
   const Inspection inspection = findings_inspector().inspect(folder / "diagnosis.json", {});
   for (const char* part :
-       {"causes: 1; unnamed departures: 1;", "mirror.cone of laser2: kappa = 0.2865", "p = 1e-09",
-        "lag of laser1", "noise 11.30 mm", "p = 0.005 before, p = 0.6 after"}) {
+       {"causes: 1, and 0 refused; unnamed departures: 1;", "not told: encoder.backlash: no reversal",
+        "mirror.cone of laser2: kappa = 0.2865", "p = 1e-09", "lag of laser1", "noise 11.30 mm",
+        "p = 0.005 before, p = 0.6 after"}) {
     EXPECT_THAT(inspection.text, HasSubstr(part));
   }
   EXPECT_EQ(inspection.data["findings"][0]["cause"], "mirror.cone");
