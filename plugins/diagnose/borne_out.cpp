@@ -54,7 +54,7 @@ std::vector<std::optional<Eigen::Index>> places_of(const Candidate& candidate, c
 }
 
 void refuse_what_may_be_the_scenes(std::vector<Departure>& departures) {
-  constexpr double kOfScenes = 0.05;  // [σ] RMS
+  constexpr double kOfScenes = 0.1;  // [σ] RMS
   std::map<std::string, std::vector<Departure*>> alike;
   for (Departure& one : departures) {
     if (one.accepted && one.candidate.laser()) alike[one.candidate.term.term].push_back(&one);

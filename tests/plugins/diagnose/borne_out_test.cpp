@@ -57,7 +57,7 @@ TEST(BorneOut, WhatSeveralLasersHaveAlikeAndIsSmallMayBeTheScenes) {
     return one;
   };
   std::vector<Departure> found = {seen("range.intensity", 0, 0.03), seen("range.intensity", 2, 0.04),
-                                  seen("range.offset", 0, 0.03), seen("range.offset", 1, 0.06),
+                                  seen("range.offset", 0, 0.03), seen("range.offset", 1, 0.11),
                                   seen("range.scale", 1, 0.01)};
   refuse_what_may_be_the_scenes(found);
   const auto accepted = [&](std::size_t k) { return found.at(k).accepted; };
