@@ -106,7 +106,8 @@ TEST(DiagnoseSweepStage, NamesBurstsAndCallsACommonLagUnobservable) {
   EXPECT_GT(findings.after_p, 0.01);
   EXPECT_THAT(findings.unobservable, ElementsAre(Field(&Unobservable::parameter, "laser1.eta"),
                                                  Field(&Unobservable::parameter, "laser1.tau"),
-                                                 Field(&Unobservable::parameter, "laser1.alpha")));
+                                                 Field(&Unobservable::parameter, "laser1.alpha"),
+                                                 Field(&Unobservable::parameter, "laser1.range.step")));
 }
 
 TEST(DiagnoseSweepStage, NamesBurstsWithoutASweepToo) {
