@@ -47,8 +47,8 @@ Calibration TruthChoice::load(Context& context, std::uint64_t seed) const {
   Calibration truth = read_calibration(calibration_file, judge_by(known_terms(context.run())));
   context.reads(calibration_file);
   check_lasers(truth, context.rig(), calibration_file);
-  truth.doubts
-      .clear();  // whatever it is of the scanner it was made for, of the simulated one it is the truth
+  // Whatever it is of the scanner that it was made for, of the simulated one it is the truth.
+  truth.doubts.clear();
   return truth;
 }
 

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "pipeline/data/calibration.hpp"
-#include "pipeline/data/degree.hpp"
 
 namespace crisp {
 
@@ -22,19 +21,6 @@ void for_each_parameter(Calibrated& calibration, const Act& act) {
     with_terms(laser.terms, laser.name);
   }
   with_terms(calibration.plate_terms, "plate");
-}
-
-/// In which unit people read a parameter.
-struct ShownUnit {
-  double factor = 1;  ///< from SI
-  std::string name;   ///< empty for a plain number
-};
-
-/// Degrees, millimetres, milliseconds.
-inline ShownUnit shown_unit(const std::string& unit) {
-  if (unit == "rad") return {.factor = 1 / kDegree, .name = "deg"};
-  if (unit == "m" || unit == "s") return {.factor = 1e3, .name = "m" + unit};
-  return {.factor = 1, .name = unit == "1" ? "" : unit};
 }
 
 }  // namespace crisp

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "pipeline/data/each_parameter.hpp"
+#include "pipeline/data/shown_unit.hpp"
 
 namespace crisp {
 namespace {
@@ -25,7 +26,7 @@ int decimals_for(double error) {
   constexpr int kLeast = 4;
   constexpr int kMost = 12;
   if (!(error > 0)) return kLeast;
-  return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), kLeast, kMost);
+  return std::clamp(decimals_that_show(error), kLeast, kMost);
 }
 
 }  // namespace

@@ -121,8 +121,7 @@ void RqeStage::finish(Outputs& out, Context& context) {
   tell(calibration, {}, context);
   context.say(
       "standard errors count how beams scatter; by how much the crispest cloud is not the true one comes on "
-      "top, some "
-      "millimetres (calibrate.refine)");
+      "top, some millimetres (calibrate.refine)");
   out.give(std::move(calibration));
 }
 

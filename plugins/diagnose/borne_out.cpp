@@ -12,8 +12,7 @@ namespace {
 
 constexpr const char* kMayBeTheScenes =
     "several lasers have it alike, and it is small: surfaces that are not as flat as they are taken for make "
-    "as "
-    "much";
+    "as much";
 constexpr const char* kIsNothing =
     "with the others that are accepted it comes out as nothing, within its standard errors";
 
@@ -63,10 +62,7 @@ void refuse_what_may_be_the_scenes(std::vector<Departure>& departures) {
     const bool is_large =
         std::ranges::any_of(some, [](const Departure* one) { return one->look.visible > kOfScenes; });
     if (some.size() < 2 || is_large) continue;
-    for (Departure* one : some) {
-      one->accepted = false;
-      one->refused = kMayBeTheScenes;
-    }
+    for (Departure* one : some) one->refuse(kMayBeTheScenes);
   }
 }
 
@@ -77,8 +73,7 @@ bool refuse_what_is_not_borne_out(std::vector<Departure>& departures, const Outc
     if (!one.accepted) continue;
     const TermInfo& info = terms.get(one.candidate.term.term)->info();
     if (chance_of_neutral(one.candidate, outcome, info) < p_value) continue;
-    one.accepted = false;
-    one.refused = kIsNothing;
+    one.refuse(kIsNothing);
     refuses = true;
   }
   return refuses;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/data/findings.hpp"
@@ -25,7 +26,13 @@ struct Departure {
   std::vector<Gain> gains;    ///< on turns of the plate that the model was not fitted to
   bool accepted = true;       ///< whether it is part of the extended model
   double unexplained = 0;     ///< [m²] mean square of what else departs there and has no cause
-  std::string refused = {};   ///< why it is not part of it, though it paid; empty: it is, or did not pay
+  std::string refused = {};   ///< why it is not part of it; empty: it is, or did not pay
+
+  /// Leaves it out, though it paid or was not asked to.
+  void refuse(std::string why) {
+    accepted = false;
+    refused = std::move(why);
+  }
 
   /// [m²] Mean square of what it takes of the residuals and the others leave.
   ///

@@ -53,10 +53,12 @@ class Diagnoser {
     if (!result.departures.empty()) {
       tell(0.8, "judging by held-out turns");
       const HeldOut held_out(halves_of(inside_), result.before.outcome.model, settings_.refinement.surfels);
-      judge(held_out, result);
+      const HeldOut::Score plain_score = score_on(held_out, result.before);
+      judge(held_out, plain_score, result);
       compare(result);
       refuse_what_nothing_describes(result);
-      tell_gain_of_all(held_out, result);
+      if (std::ranges::any_of(result.departures, &Departure::accepted))
+        result.gains = HeldOut::gains(plain_score, score_on(held_out, result.after));
     } else {
       compare(result);
     }
@@ -154,10 +156,9 @@ class Diagnoser {
   }
 
   /// Asks each departure of turns that models are not fitted to, and what comes out of those that pay.
-  void judge(const HeldOut& held_out, Diagnosis& result) const {
+  void judge(const HeldOut& held_out, const HeldOut::Score& plain, Diagnosis& result) const {
     refuse_what_may_be_the_scenes(result.departures);
-    accept_what_pays(held_out, result.departures, result.before.outcome.model.calibration(),
-                     result.after.outcome.model.calibration(),
+    accept_what_pays(held_out, result.departures, plain, result.after.outcome.model.calibration(),
                      [this](const Calibration& start, const Sample& sample) {
                        return refined(start, sample).outcome.model;
                      });
@@ -177,13 +178,9 @@ class Diagnoser {
     result.after = refined(with_terms(found, with_values_of(found, kept)), sample_);
   }
 
-  /// Of the extended model over the plain one.
-  void tell_gain_of_all(const HeldOut& held_out, Diagnosis& result) const {
-    if (std::ranges::none_of(result.departures, &Departure::accepted)) return;
-    const auto score_of = [&](const Refinement& refinement) {
-      return held_out.score(refined(refinement.outcome.model.calibration(), held_out.fitted()).outcome.model);
-    };
-    result.gains = HeldOut::gains(score_of(result.before), score_of(result.after));
+  /// Of the same terms, fitted to the other turns alone.
+  HeldOut::Score score_on(const HeldOut& held_out, const Refinement& all) const {
+    return held_out.score(refined(all.outcome.model.calibration(), held_out.fitted()).outcome.model);
   }
 
   SideBySide left_by(const Refinement& refinement) const {

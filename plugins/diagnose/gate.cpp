@@ -18,15 +18,15 @@ bool pays(const std::vector<Gain>& gains) {
 /// What was accepted so far.
 class Gate {
  public:
-  Gate(const HeldOut& held_out, const Calibration& plain, const Calibration& found, const RefinedOn& refined)
-      : held_out_(held_out), found_(found), refined_(refined), score_(score_of(plain)) {}
+  Gate(const HeldOut& held_out, HeldOut::Score plain, const Calibration& found, const RefinedOn& refined)
+      : held_out_(held_out), found_(found), refined_(refined), score_(std::move(plain)) {}
 
   /// Whether some departures pay together; if so, they are part of the model from then on.
   bool accepts(const std::vector<Departure*>& some) {
     auto tried = accepted_;
     for (const Departure* departure : some) tried.push_back(departure->candidate);
     tried = with_values_of(found_, tried);
-    auto score = score_of(with_terms(found_, tried));
+    auto score = held_out_.score(refined_(with_terms(found_, tried), held_out_.fitted()));
     const auto gains = HeldOut::gains(score_, score);
     const bool is_paid = pays(gains);
     for (Departure* departure : some) {
@@ -41,10 +41,6 @@ class Gate {
   }
 
  private:
-  HeldOut::Score score_of(const Calibration& start) const {
-    return held_out_.score(refined_(start, held_out_.fitted()));
-  }
-
   const HeldOut& held_out_;
   const Calibration& found_;
   const RefinedOn& refined_;
@@ -54,8 +50,8 @@ class Gate {
 
 }  // namespace
 
-void accept_what_pays(const HeldOut& held_out, std::vector<Departure>& departures, const Calibration& plain,
-                      const Calibration& found, const RefinedOn& refined) {
+void accept_what_pays(const HeldOut& held_out, std::vector<Departure>& departures,
+                      const HeldOut::Score& plain, const Calibration& found, const RefinedOn& refined) {
   Gate gate(held_out, plain, found, refined);
   std::vector<Departure*> open;
   for (Departure& departure : departures) {

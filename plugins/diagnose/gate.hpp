@@ -18,9 +18,9 @@ using RefinedOn = std::function<SensorModel(const Calibration& start, const Samp
 ///
 /// @param departures  their gains and whether they are accepted are set, but for those that are refused
 /// already
-/// @param plain       without any; where the fit starts that the first has to beat
+/// @param plain       of the model without any, which the first has to beat
 /// @param found       with all of them; where the other fits start
-void accept_what_pays(const HeldOut& held_out, std::vector<Departure>& departures, const Calibration& plain,
-                      const Calibration& found, const RefinedOn& refined);
+void accept_what_pays(const HeldOut& held_out, std::vector<Departure>& departures,
+                      const HeldOut::Score& plain, const Calibration& found, const RefinedOn& refined);
 
 }  // namespace crisp

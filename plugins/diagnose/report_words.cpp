@@ -10,22 +10,19 @@
 #include <utility>
 
 #include "pipeline/data/likeness.hpp"
+#include "pipeline/data/shown_unit.hpp"
 #include "plugins/diagnose/report.hpp"
 
 namespace crisp {
 namespace {
 
 std::string with_unit(const Parameter& parameter) {
-  const auto shown = [&](double factor, const char* unit) {
-    const std::string error =
-        parameter.std_error > 0 ? fmt::format(" ± {:.2g}", parameter.std_error * factor) : "";
-    return fmt::format("{} = {:.4g}{}{}{}", parameter.name, parameter.value * factor, error, *unit ? " " : "",
-                       unit);
-  };
-  if (parameter.unit == "rad") return shown(180 / std::numbers::pi, "deg");
-  if (parameter.unit == "m") return shown(1e3, "mm");
-  if (parameter.unit == "s" && std::abs(parameter.value) < 1) return shown(1e3, "ms");
-  return shown(1, parameter.unit == "1" ? "" : parameter.unit.c_str());
+  const bool is_long = parameter.unit == "s" && !(std::abs(parameter.value) < 1);
+  const ShownUnit as = is_long ? ShownUnit{.name = "s"} : shown_unit(parameter.unit);
+  const std::string error =
+      parameter.std_error > 0 ? fmt::format(" ± {:.2g}", parameter.std_error * as.factor) : "";
+  return fmt::format("{} = {:.4g}{}{}{}", parameter.name, parameter.value * as.factor, error,
+                     as.name.empty() ? "" : " ", as.name);
 }
 
 /// Of what is off; what a model's term moves is told by how much ranges change for it, whatever its unit.

@@ -8,20 +8,16 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/likeness.hpp"
+#include "pipeline/data/shown_unit.hpp"
 #include "plugins/diagnose/distribution_plot.hpp"
 
 namespace crisp {
 namespace {
 
-/// A unit as people read it.
-struct ShownUnit {
-  std::string name;
-  double factor = 1;
-};
-
-ShownUnit shown_unit(const std::string& unit) {
-  if (unit == "rad") return {.name = "deg", .factor = 1 / kDegree};
-  if (unit == "rad/s") return {.name = "deg/s", .factor = 1 / kDegree};
+/// A covariate's: ranges stay metres.
+ShownUnit unit_of_axis(const std::string& unit) {
+  if (unit == "rad") return {.factor = 1 / kDegree, .name = "deg"};
+  if (unit == "rad/s") return {.factor = 1 / kDegree, .name = "deg/s"};
   return {.name = unit};
 }
 
@@ -48,7 +44,7 @@ std::vector<PlotKind> kinds_in(const Profile& profile, const std::vector<std::st
 void add_profile(const Profile& profile, const std::string& when, Plot& plot) {
   constexpr double kBar = 2;  // standard errors
   constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
-  const double factor = shown_unit(profile.unit).factor;
+  const double factor = unit_of_axis(profile.unit).factor;
   PlotSeries measured{.name = "measured" + when, .x = {}, .y = {}};
   PlotSeries simulated{.name = "simulated" + when, .x = {}, .y = {}, .joined = false};
   const auto add = [&](double x, const Profile::Bin& bin) {
@@ -79,7 +75,7 @@ bool is_same(const Profile& one, const Profile& other) {
 
 Plot profile_plot(const std::string& name, const Profile& before, const Profile* after,
                   const std::vector<std::string>& lasers) {
-  const ShownUnit unit = shown_unit(before.unit);
+  const ShownUnit unit = unit_of_axis(before.unit);
   Plot plot{
       .title = fmt::format("{} against {}: {}", name, before.covariate, size_in_words(before)),
       .x_label = unit.name.empty() ? before.covariate : fmt::format("{} [{}]", before.covariate, unit.name),

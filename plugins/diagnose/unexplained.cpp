@@ -35,8 +35,7 @@ bool refuse_what_leaves_more(std::vector<Departure>& departures, const SideBySid
     if (!one.accepted || !one.candidate.is_cause()) continue;
     one.unexplained = unexplained_beside(one, departures, left, noise);
     if (one.square(noise) >= one.unexplained) continue;
-    one.accepted = false;
-    one.refused = kLeavesMore;
+    one.refuse(kLeavesMore);
     refuses = true;
   }
   return refuses;

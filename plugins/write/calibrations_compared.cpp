@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipeline/data/each_parameter.hpp"
+#include "pipeline/data/shown_unit.hpp"
 
 namespace crisp {
 namespace {
@@ -41,7 +42,7 @@ std::vector<Row> rows_of(const Calibration& first, const Calibration& second) {
 std::string figure(double value, double error) {
   constexpr int kUnknown = 4;
   constexpr int kMost = 9;
-  const int digits = error > 0 ? 1 - static_cast<int>(std::floor(std::log10(error))) : kUnknown;
+  const int digits = error > 0 ? decimals_that_show(error) : kUnknown;
   return fmt::format("{:.{}f}", value, std::clamp(digits, 0, kMost));
 }
 
