@@ -85,10 +85,10 @@ struct DeviceFacts {
   double skew_std_error = 0;  ///< of it
   double delay_median = 0;    ///< [s] of receipts beyond the shortest delay
   double delay_95 = 0;        ///< [s] 95 of 100 are not later
-  double period = 0;          ///< [s] mean, of a laser's mirror; 0 for the plate
-  double period_std_error = 0;
-  double nominal_period = 0;  ///< [s]
-  double wander = 0;          ///< RMS of slow changes of the mirror's period, as a share of it
+  double period = kUnasked;   ///< [s] mean, of a laser's mirror
+  double period_std_error = kUnasked;
+  double nominal_period = kUnasked;  ///< [s]
+  double wander = kUnasked;          ///< RMS of slow changes of the mirror's period, as a share of it
 };
 
 /// How the ranges of one laser scatter, apart from what its findings `noise.*` say.

@@ -2,8 +2,10 @@
 #include "pipeline/model/term.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/names.hpp"
 #include "pipeline/files/nearest.hpp"
 
 namespace crisp {
@@ -14,9 +16,29 @@ auto find(const std::vector<std::shared_ptr<const ModelTerm>>& terms, const std:
                       [&](const auto& term) { return term->info().name == name; });
 }
 
+void check(const TermInfo& info) {
+  if (!is_name_in_family(info.name)) {
+    throw Error("'" + info.name + "' is not a model term's name", "write family.name, of a-z, 0-9 and _");
+  }
+  std::set<std::string> seen;
+  for (const EffectParameter& parameter : info.parameters) {
+    const auto fail = [&](const std::string& what) {
+      throw Error("the model term " + info.name + " declares its parameter '" + parameter.name +
+                  "' wrongly: " + what);
+    };
+    if (!is_symbol(parameter.name)) fail("names are of letters, digits and _");
+    if (!seen.insert(parameter.name).second) fail("it is declared twice");
+    if (parameter.unit.empty()) fail("it has no unit; that of a plain number is 1");
+    if (!(parameter.lower <= parameter.neutral && parameter.neutral <= parameter.upper)) {
+      fail("its neutral value is not within its bounds");
+    }
+  }
+}
+
 }  // namespace
 
 void TermRegistry::add(std::shared_ptr<const ModelTerm> term) {
+  check(term->info());
   const std::string& name = term->info().name;
   if (knows(name)) throw Error("the model term " + name + " is registered twice", "rename one of the two");
   terms_.push_back(std::move(term));

@@ -65,7 +65,7 @@ class DifferentiableTerm : public ModelTerm {
 /// The terms that are known by name: the built-in ones and those of plugins.
 class TermRegistry {
  public:
-  /// @throws Error if the name is taken
+  /// @throws Error if the name is taken, or what the term says of itself cannot be
   void add(std::shared_ptr<const ModelTerm> term);
   /// @throws Error naming the nearest known term
   std::shared_ptr<const ModelTerm> get(const std::string& name) const;

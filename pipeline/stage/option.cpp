@@ -97,7 +97,9 @@ std::string scalar_text(const Option& option, const OptionScalar& scalar) {
   return std::visit(Printer{option.unit}, scalar);
 }
 
-std::optional<std::string> scalar_complaint(const Option& option, const OptionScalar& scalar) {
+}  // namespace
+
+std::optional<std::string> complaint_of_one(const Option& option, const OptionScalar& scalar) {
   if (!has_type(option, scalar)) return "is of the wrong type";
   double number = 0;
   if (const auto* integer = std::get_if<std::int64_t>(&scalar)) number = static_cast<double>(*integer);
@@ -116,8 +118,6 @@ std::optional<std::string> scalar_complaint(const Option& option, const OptionSc
   return std::nullopt;
 }
 
-}  // namespace
-
 std::optional<std::string> complaint(const Option& option, const OptionValue& value) {
   if (std::holds_alternative<std::monostate>(value)) {
     if (option.may_be_auto) return std::nullopt;
@@ -128,12 +128,12 @@ std::optional<std::string> complaint(const Option& option, const OptionValue& va
   if (groups) return std::nullopt;
   const auto* list = std::get_if<std::vector<OptionScalar>>(&value);
   if (option.list != (list != nullptr)) return option.list ? "is not a list" : "is a list";
-  if (!list) return scalar_complaint(option, std::get<OptionScalar>(value));
+  if (!list) return complaint_of_one(option, std::get<OptionScalar>(value));
   if (list->size() < option.min_count || list->size() > option.max_count) {
     return fmt::format("has {} elements", list->size());
   }
   for (const auto& scalar : *list) {
-    if (auto wrong = scalar_complaint(option, scalar)) return wrong;
+    if (auto wrong = complaint_of_one(option, scalar)) return wrong;
   }
   return std::nullopt;
 }

@@ -63,6 +63,9 @@ struct Option {
 /// What is wrong with `value` for this option, in words, or nothing if it is right.
 std::optional<std::string> complaint(const Option& option, const OptionValue& value);
 
+/// Likewise with one value, of a list that the option is, or the option's own.
+std::optional<std::string> complaint_of_one(const Option& option, const OptionScalar& scalar);
+
 /// "a length in m, 0.0001 to 10": what the option expects, for messages and documentation.
 std::string expectation(const Option& option);
 

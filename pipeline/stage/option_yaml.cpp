@@ -53,7 +53,7 @@ class Reader {
     if (!option_.list) {
       auto scalar = read_element(node);
       if (!scalar) return std::nullopt;
-      return checked(node, std::move(*scalar));
+      return std::move(*scalar);
     }
     if (node.kind != YamlNode::Kind::sequence) {  // a single value is a list of one
       auto scalar = read_element(node, as_list(node));
@@ -92,7 +92,14 @@ class Reader {
   std::optional<OptionScalar> read_element(const YamlNode& node, const std::string& hint = {}) {
     std::string wrong;
     auto scalar = read_scalar(option_, node, folder_, wrong);
-    if (!scalar) refuse(node.place, wrong, hint);
+    if (!scalar) {
+      refuse(node.place, wrong, hint);
+      return std::nullopt;
+    }
+    if (const auto wrong_value = complaint_of_one(option_, *scalar)) {
+      refuse(node.place, *wrong_value, did_you_mean(node.text, option_.choices, {}));
+      return std::nullopt;
+    }
     return scalar;
   }
 
@@ -108,7 +115,7 @@ class Reader {
 
   std::optional<OptionValue> checked(const YamlNode& node, OptionValue value) {
     if (const auto wrong = complaint(option_, value)) {
-      refuse(node.place, *wrong, did_you_mean(node.text, option_.choices, {}));
+      refuse(node.place, *wrong);
       return std::nullopt;
     }
     return value;

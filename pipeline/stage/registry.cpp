@@ -8,18 +8,10 @@
 #include <memory>
 #include <set>
 
+#include "pipeline/data/names.hpp"
+
 namespace crisp {
 namespace {
-
-bool well_formed(const std::string& name) {
-  const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
-  return !name.empty() && std::all_of(name.begin(), name.end(), allowed);
-}
-
-bool is_stage_name(const std::string& name) {
-  const auto dot = name.find('.');
-  return dot != std::string::npos && well_formed(name.substr(0, dot)) && well_formed(name.substr(dot + 1));
-}
 
 void check_options(const StageType& type) {
   std::set<std::string> seen;
@@ -28,7 +20,7 @@ void check_options(const StageType& type) {
     const auto fail = [&](const std::string& what) {
       throw Error("stage " + type.name + " declares its option '" + option.name + "' wrongly: " + what);
     };
-    if (!well_formed(option.name)) fail("names are of a-z, 0-9 and _");
+    if (!is_plain_name(option.name)) fail("names are of a-z, 0-9 and _");
     if (!seen.insert(option.name).second) fail("it is declared twice");
     if (option.help.empty()) fail("it has no help");
     if (option.type == OptionType::choice && option.choices.empty()) fail("an enumeration needs choices()");
@@ -70,7 +62,7 @@ bool StageType::gives(const Kind& kind) const {
 }
 
 void StageRegistry::add(StageType type) {
-  if (!is_stage_name(type.name)) {
+  if (!is_name_in_family(type.name)) {
     throw Error("'" + type.name + "' is not a stage's name", "write family.name, of a-z, 0-9 and _");
   }
   if (type.summary.empty()) throw Error("stage " + type.name + " has no summary");

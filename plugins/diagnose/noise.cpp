@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "plugins/diagnose/likelihood_gain.hpp"
+#include "plugins/diagnose/noise_doubts.hpp"
 #include "plugins/diagnose/noise_errors.hpp"
 #include "plugins/diagnose/noise_ways.hpp"
 
@@ -169,13 +170,6 @@ UnnamedFinding unnamed_of(const Finding& finding, const NoiseLaw& law, const Ran
           .accepted = finding.accepted};
 }
 
-/// Whether what it is told by, its first parameter, is two of its standard errors from nothing.
-bool is_borne_out(const Finding& finding) {
-  constexpr double kErrors = 2;
-  const Parameter& first = finding.parameters.front();
-  return !(first.value < kErrors * first.std_error);
-}
-
 /// @param named  the law where the last cause joined: what has no name is not simulated, so that the causes
 ///               describe the ranges as well as they can without what was found behind them
 void report(std::vector<Found> found, const NoiseLaw& named, const RangeErrors& errors, NoiseDiagnosis& to) {
@@ -189,9 +183,9 @@ void report(std::vector<Found> found, const NoiseLaw& named, const RangeErrors& 
     }
     one.finding.parameters = one.finding.accepted ? parameters_of(one.way, fits)
                                                   : parameters_of(one.way, in_parts(one.law, errors));
-    if (one.finding.accepted && !is_borne_out(one.finding)) {
+    if (one.finding.accepted) one.finding.refused = refusal_of(one.finding, one.way, named, errors);
+    if (!one.finding.refused.empty()) {
       one.finding.accepted = false;
-      one.finding.refused = "parts of the recording do not agree that it is there at all";
       one.way.take_away(to.law);
       to.law = fitted(to.law, errors);
     }

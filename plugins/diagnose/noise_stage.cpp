@@ -96,7 +96,7 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const AtRest& scans,
   }
   if (const auto* nothing = std::get_if<NothingSaid>(&judged)) {
     context.say(fmt::format("nothing is said of the noise of {}: {}", name, nothing->why));
-    all.unobservable.push_back({"noise.normal of " + name, nothing->why, ""});
+    all.unobservable.push_back({name + ".noise.normal", nothing->why, ""});
     return;
   }
   RangeErrors* errors = &std::get<RangeErrors>(judged);

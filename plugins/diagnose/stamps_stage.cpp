@@ -83,12 +83,12 @@ std::string facts_in_words(const std::vector<DeviceFacts>& devices) {
 }
 
 /// What too few stamps leave unknown of a device, or such that are its count times the nominal period.
-void tell_unknown(const DeviceFacts& facts, bool timed, Findings& all) {
+void tell_unknown(const DeviceFacts& facts, bool has_mirror, bool timed, Findings& all) {
   const auto why = fmt::format("{} stamps say nothing of it", facts.stamps);
-  if (std::isnan(facts.skew)) all.unobservable.push_back({"clock.drift of " + facts.device, why, ""});
-  if (std::isnan(facts.period)) {
+  if (std::isnan(facts.skew)) all.unobservable.push_back({facts.device + ".clock.drift", why, ""});
+  if (has_mirror && std::isnan(facts.period)) {
     all.unobservable.push_back(
-        {"mirror.period of " + facts.device,
+        {facts.device + ".mirror.period",
          timed ? why
                : "no clock of its own timed its scans: their times are the nominal period's, or the receipts",
          ""});
@@ -197,20 +197,16 @@ void DiagnoseStampsStage::add_clock(const Device& device, std::size_t looks, Con
                     .delay_median = clock.delay_median,
                     .delay_95 = clock.delay_95};
   const auto mirror = mirror_facts(device.passes.stamps(), unsure_about(departure));
-  if (!mirror && (!device.timed || !device.passes.stamps().empty())) {
-    facts.period = facts.period_std_error = facts.wander = kUnasked;
-    facts.nominal_period = device.nominal_period;
-  }
+  if (device.has_mirror()) facts.nominal_period = device.nominal_period;
   if (mirror) {
     facts.period = mirror->period;
     facts.period_std_error = mirror->period_std_error;
-    facts.nominal_period = device.nominal_period;
     facts.wander = mirror->wander;
     if (nominal_mirrors_ && device.nominal_period > 0) {
       add_mirror(device, on_hubs_clock(*mirror, clock), context.seed(), all);
     }
   }
-  tell_unknown(facts, device.timed, all);
+  tell_unknown(facts, device.has_mirror(), device.timed, all);
   if (auto doubt = doubt_of(facts); !doubt.empty()) context.distrust(std::move(doubt));
   all.devices.push_back(facts);
   if (folder_ && stamps.size() > 1) {

@@ -28,6 +28,8 @@ class DiagnoseStampsStage final : public Stage {
     StampTrack passes;          // of the mirror's index
     double nominal_period = 0;  // [s]
     bool timed = true;          // by its clock: else nobody measured its mirror
+
+    bool has_mirror() const { return !timed || !passes.stamps().empty(); }
   };
   Device& device(std::size_t index, const Rig& rig);
   void arrive(std::int64_t receipt_ns);

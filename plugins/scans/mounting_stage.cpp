@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "pipeline/data/degree.hpp"
 
@@ -161,15 +162,16 @@ void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const
     return nothing("too few windows of the sweep are flat to tell where the optical centre lies");
   context.say(laser.name + ": the optical centre off the axis" + lines);
   context.report({{laser.name, report}});
-  for (const auto& [parameter, name] :
-       {std::pair(kAlongBeam, "along the middle beam"), std::pair(kAlongNormal, "along the fan's normal")}) {
+  for (const auto& [parameter, name, cause] :
+       {std::tuple(kAlongBeam, "along the middle beam", ".tau"),
+        std::tuple(kAlongNormal, "along the fan's normal", ".mount.tangential_offset")}) {
     const Agreed all = agreed(tries, parameter);
     const std::string range = fmt::format("{:+.0f} to {:+.0f} mm with errors up to {:.0f} mm", 1e3 * all.low,
                                           1e3 * all.high, 1e3 * all.error);
     context.say(fmt::format("  {}: {}, {}", name, all.determined() ? "determined" : "not determined", range));
     if (all.determined()) continue;
     findings.unobservable.push_back(
-        {fmt::format("{}: offset from the axis {}", laser.name, name), all.why_not() + ": " + range, ""});
+        {laser.name + cause, fmt::format("offset from the axis {}: {}: {}", name, all.why_not(), range), ""});
   }
 }
 

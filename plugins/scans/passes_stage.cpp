@@ -95,11 +95,12 @@ bool stands_out(const PassShift& found) { return std::abs(found.shift) >= kStand
 /// A shift between the passes has no name of its own: what it may be called.
 void add_findings(const std::string& laser, const PassShift& found, Findings& findings) {
   if (!is_believed(found)) {
-    findings.unobservable.push_back(
-        {"shift between passes (" + laser + ")",
-         fmt::format("shifts put in by hand do not come back; {} deg was read, with an error of {} deg",
-                     shown(found.shift / kDegree, "{:+.3f}"), shown(found.std_error / kDegree, "{:.3f}")),
-         ""});
+    findings.unobservable.push_back({"encoder.backlash",
+                                     fmt::format("{}: shifts between passes that are put in by hand do not "
+                                                 "come back; {} deg was read, with an error of {} deg",
+                                                 laser, shown(found.shift / kDegree, "{:+.3f}"),
+                                                 shown(found.std_error / kDegree, "{:.3f}")),
+                                     ""});
     return;
   }
   if (!stands_out(found)) return;
@@ -217,7 +218,7 @@ double DiagnosePassesStage::diagnose(Findings& findings, Context& context) const
   const std::string& name = context.rig().lasers.front().name;
   const auto actuator = series_.actuator(context.rig().plate.counts_per_revolution);
   const auto say_nothing = [&](const std::string& why) {
-    findings.unobservable.push_back({"shift between passes (" + name + ")", why, ""});
+    findings.unobservable.push_back({"encoder.backlash", fmt::format("{}, by passes: {}", name, why), ""});
     context.say(name + ": its angles cannot be checked by passes: " + why);
     return 0.0;
   };

@@ -161,7 +161,7 @@ void DiagnoseRestStage::diagnose(std::size_t index, Findings& findings, Context&
   const auto still = laser.series.at_rest(context.rig().plate.counts_per_revolution);
   if (still.size() < kFewestAtRest) {
     findings.unobservable.push_back(
-        {"mirror.interleave (" + name + ")",
+        {name + ".mirror.interleave",
          fmt::format("{} scans were taken at rest; {} are needed", still.size(), kFewestAtRest), ""});
     return;
   }

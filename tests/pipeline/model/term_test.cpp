@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/model/term.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 
@@ -10,6 +10,8 @@
 
 namespace crisp {
 namespace {
+
+using testing::HasSubstr;
 
 /// Nine coefficients of a polynomial in θ that is added to the range: more than one Jet holds.
 struct Polynomial final : DifferentiableTerm<Polynomial> {
@@ -47,6 +49,17 @@ struct Cone final : DifferentiableTerm<Cone> {
     beam.direction *= cos(p[0]);
     beam.direction.z() += sin(p[0]);
   }
+};
+
+/// What says something of itself, and does nothing.
+struct Declared final : DifferentiableTerm<Declared> {
+  explicit Declared(TermInfo info) : info_(std::move(info)) {}
+  const TermInfo& info() const override { return info_; }
+  template <class T>
+  void change(Beam<T>&, std::span<const T>) const {}
+
+ private:
+  TermInfo info_;
 };
 
 TermRegistry registry() {
@@ -113,6 +126,28 @@ TEST(ModelTerm, ThatIsUnknownMisplacedOrHasOtherParametersIsRefused) {
   calibration = one_laser(0, 0.2, 0);
   calibration.plate_terms.push_back({"test.cone", {{"kappa", "rad", 0.01}}});
   EXPECT_THROW(SensorModel(calibration, registry()), Error);
+}
+
+TEST(TermRegistry, RefusesATermThatDeclaresItselfWrongly) {
+  const auto complaint = [](TermInfo info) -> std::string {
+    try {
+      TermRegistry().add(std::make_shared<Declared>(std::move(info)));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const EffectParameter a{.name = "a", .unit = "m", .lower = -1, .upper = 1};
+  EffectParameter beyond = a;
+  beyond.neutral = 2;
+  EXPECT_EQ(complaint({.name = "mine.ripple", .parameters = {a}}), "");
+  EXPECT_THAT(complaint({.name = "Ripple"}), HasSubstr("'Ripple' is not a model term's name"));
+  EXPECT_THAT(complaint({.name = "mine.ripple", .parameters = {a, a}}),
+              HasSubstr("'a' wrongly: it is declared twice"));
+  EXPECT_THAT(complaint({.name = "mine.ripple", .parameters = {{.name = "A b", .unit = "m"}}}),
+              HasSubstr("'A b'"));
+  EXPECT_THAT(complaint({.name = "mine.ripple", .parameters = {{.name = "a"}}}), HasSubstr("no unit"));
+  EXPECT_THAT(complaint({.name = "mine.ripple", .parameters = {beyond}}), HasSubstr("not within its bounds"));
 }
 
 TEST(TermRegistry, RefusesANameTwice) {

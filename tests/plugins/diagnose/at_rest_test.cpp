@@ -147,7 +147,7 @@ TEST(NoiseStage, SaysNothingOfOneScan) {
   EXPECT_THAT(found.noise, IsEmpty());
   EXPECT_THAT(found.unnamed, IsEmpty());
   ASSERT_THAT(found.unobservable, SizeIs(1));
-  EXPECT_EQ(found.unobservable[0].parameter, "noise.normal of a");
+  EXPECT_EQ(found.unobservable[0].parameter, "a.noise.normal");
 }
 
 }  // namespace

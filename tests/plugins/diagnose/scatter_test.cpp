@@ -40,7 +40,11 @@ double error_in(const Finding& finding, const std::string& name) {
 class Followed {
  public:
   Followed(const std::string& scene, const NoiseEffects& noise, double sigma = 0.012, std::uint64_t seed = 3)
-      : recording_(record(scene, noise, sigma, seed)), evidence_(evidence_of(recording_, sigma)) {
+      : Followed(record(scene, noise, sigma, seed), {}, sigma) {}
+  /// @param by  that beams are followed by; without lasers: the truth
+  Followed(test::Recording recording, Calibration by, double sigma = 0.012)
+      : recording_(std::move(recording)),
+        evidence_(evidence_of(recording_, by.lasers.empty() ? recording_.made.truth : by, sigma)) {
     met_ = met_by(evidence_.surfels(), evidence_.beams(), beams().range);
     blocks_ = recording_blocks(beams());
   }
@@ -76,8 +80,8 @@ class Followed {
     scanner.laser_effects.assign(scanner.rig.lasers.size(), {.noise = noise});
     return test::recorded(scanner, built_in_scene(scene));
   }
-  static Evidence evidence_of(const test::Recording& recording, double sigma) {
-    const SensorModel model(recording.made.truth, built_in_terms());
+  static Evidence evidence_of(const test::Recording& recording, const Calibration& by, double sigma) {
+    const SensorModel model(by, built_in_terms());
     const LagRange lag = lag_range(model, 0);
     SurfelSettings settings;
     settings.noise = sigma;
@@ -240,6 +244,19 @@ TEST(Scatter, OfIncidenceAndWeakEchoesAtOnceIsNamedAsBoth) {
   for (const Finding& finding : found) causes.push_back(finding.cause);
   EXPECT_THAT(causes,
               testing::UnorderedElementsAre("noise.incidence_dependent", "noise.remission_dependent"));
+}
+
+TEST(Scatter, OfWhatTheModelLacksIsNoNoise) {
+  for (const char* scene : {"office", "hall", "street"}) {
+    auto turned = test::hidden(3, 10, built_in_scene(scene), {{"encoder.eccentricity", {0.004}}});
+    Calibration without = turned.made.truth;
+    without.plate_terms.clear();
+    const NoiseDiagnosis noise = Followed(std::move(turned), without).noise();
+    for (const Finding& finding : noise.findings) {
+      EXPECT_FALSE(finding.accepted) << scene << ": " << finding.cause;
+      EXPECT_THAT(finding.refused, testing::HasSubstr("side by side")) << scene << ": " << finding.cause;
+    }
+  }
 }
 
 TEST(Scatter, WithTwoPeaksIsNamedAndMeasured) {

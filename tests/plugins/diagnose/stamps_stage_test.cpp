@@ -53,8 +53,8 @@ TEST(StampsStage, FewStampsAreNoFacts) {
     EXPECT_TRUE(std::isnan(facts.skew) && std::isnan(facts.skew_std_error) && std::isnan(facts.delay_95));
     EXPECT_TRUE(std::isnan(facts.period) && std::isnan(facts.wander));
     ASSERT_EQ(told.findings.unobservable.size(), 2U);
-    EXPECT_EQ(told.findings.unobservable[0].parameter, "clock.drift of a");
-    EXPECT_EQ(told.findings.unobservable[1].parameter, "mirror.period of a");
+    EXPECT_EQ(told.findings.unobservable[0].parameter, "a.clock.drift");
+    EXPECT_EQ(told.findings.unobservable[1].parameter, "a.mirror.period");
     for (const auto& line : told.report.lines) EXPECT_THAT(line, Not(HasSubstr("nan")));
   }
 }
@@ -68,7 +68,7 @@ TEST(StampsStage, SaysNothingOfAMirrorWhoseScansWereTimedByTheirNumber) {
   EXPECT_TRUE(std::isfinite(facts.skew)) << "of its count";
   EXPECT_TRUE(std::isnan(facts.period) && std::isnan(facts.period_std_error) && std::isnan(facts.wander));
   ASSERT_EQ(told.findings.unobservable.size(), 1U);
-  EXPECT_EQ(told.findings.unobservable[0].parameter, "mirror.period of a");
+  EXPECT_EQ(told.findings.unobservable[0].parameter, "a.mirror.period");
   EXPECT_THAT(told.findings.unobservable[0].reason, HasSubstr("nominal"));
   EXPECT_THAT(told.report.lines, testing::Each(Not(testing::EndsWith("%"))));
 }
