@@ -41,12 +41,26 @@ double alike(const Eigen::VectorXd& values) {
 /// taken, makes large multiples of it likelier than χ² has them.
 ///
 /// @param steps  p, not none; so many blocks count as are alike along them
-double p_value_of(const Eigen::MatrixXd& pulls, const Eigen::VectorXd& steps, const Eigen::VectorXd& solved) {
+double by_hotelling(const Eigen::MatrixXd& pulls, const Eigen::VectorXd& steps,
+                    const Eigen::VectorXd& solved) {
   const auto p = static_cast<double>(steps.size());
   const double n = std::min(alike(pulls.transpose() * solved), static_cast<double>(pulls.cols()));
   const double left = n - 2 * p + 1;
   if (!(left > 0)) return 1;
   return cdf(complement(boost::math::fisher_f(p, left), steps.dot(solved) * left / (n * p)));
+}
+
+/// Rao and Scott's: noise of its own for each beam would scatter alike in all directions of the steps; by how
+/// much blocks scatter more is told along the steps alone, for which few of them suffice. Where blocks do not
+/// scatter alike in all directions it is the less likely to be sure.
+double by_rao_and_scott(const Eigen::MatrixXd& pulls, const Eigen::VectorXd& steps) {
+  const auto p = static_cast<double>(steps.size());
+  const Eigen::VectorXd along = pulls.transpose() * steps.normalized();
+  const double n = std::min(alike(along), static_cast<double>(pulls.cols()));
+  const double left = n - p;
+  if (!(left > 0 && along.squaredNorm() > 0)) return 1;
+  const double ratio = steps.squaredNorm() / along.squaredNorm();
+  return cdf(complement(boost::math::fisher_f(p, left), ratio * left / (n * p)));
 }
 
 /// By the division into blocks by which the steps are the most ordinary.
@@ -58,7 +72,8 @@ StepSpread widest(const NormalEquations& equations, const std::vector<std::size_
     const Eigen::MatrixXd pulls = equations.pulls_along(division, of, directions);
     const Eigen::MatrixXd covariance = pulls * pulls.transpose();
     const Eigen::VectorXd solved = covariance.completeOrthogonalDecomposition().solve(steps);
-    widest.p_value = std::max(widest.p_value, p_value_of(pulls, steps, solved));
+    widest.p_value = std::max(widest.p_value,
+                              std::min(by_hotelling(pulls, steps, solved), by_rao_and_scott(pulls, steps)));
     if (steps.dot(solved) > widest.wald) continue;
     widest.wald = steps.dot(solved);
     widest.covariance = covariance;
