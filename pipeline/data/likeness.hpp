@@ -37,6 +37,13 @@ struct ToldApart {
 /// Says of all scopes together whether they can be told from the simulated ones, and which do by what.
 void add_likeness(const std::vector<ToldApart>& scopes, Findings& to);
 
+/// What neither causes nor the unnamed departures that were found explain, beyond 0.002: each is unnamed,
+/// too.
+///
+/// @param left   beside the law with all that was found
+/// @param looks  so many scopes are looked at
+void add_left_over(const std::string& scope, const Likeness& left, std::size_t looks, Findings& to);
+
 /// A p-value, "p = 0.012".
 std::string chance_in_words(double p_value);
 

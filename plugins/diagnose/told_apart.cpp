@@ -296,22 +296,4 @@ ToldApart told_apart(const std::string& laser, const RangeErrors& errors, const 
   return result;
 }
 
-void add_left_over(const std::string& laser, const Likeness& left, std::size_t looks, Findings& to) {
-  constexpr double kByChance = 0.002;
-  for (const LikenessLook& look : left.looks) {
-    const double p_value = least_of(static_cast<double>(looks), look.p_value);
-    const bool is_known = std::ranges::any_of(to.unnamed, [&](const UnnamedFinding& known) {
-      return known.scope == laser && known.covariate == look.covariate && known.quantity == look.quantity;
-    });
-    if (is_known || !(p_value < kByChance) || !(look.amplitude > 0)) continue;
-    to.unnamed.push_back({.covariate = look.covariate,
-                          .quantity = look.quantity,
-                          .scope = laser,
-                          .amplitude = look.amplitude,
-                          .unit = look.unit,
-                          .p_value = p_value,
-                          .gain = {}});
-  }
-}
-
 }  // namespace crisp

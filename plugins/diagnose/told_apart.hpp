@@ -37,11 +37,4 @@ Likeness beside_law(const RangeErrors& all, const NoiseLaw& like, const Eigen::V
 ToldApart told_apart(const std::string& laser, const RangeErrors& errors, const NoiseLaw& named,
                      const Eigen::VectorXd& curve, BeamsOf beams, std::uint64_t seed);
 
-/// What neither causes nor the unnamed departures that were found explain, beyond 0.002: each is unnamed,
-/// too.
-///
-/// @param left   beside the law with all that was found
-/// @param looks  so many lasers are looked at
-void add_left_over(const std::string& laser, const Likeness& left, std::size_t looks, Findings& to);
-
 }  // namespace crisp

@@ -149,6 +149,8 @@ void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const
           .side = side, .with_offset = with_offset, .fit = fit_mounting(windows, {}, free, context.seed())};
       for (const auto parameter : free) each.answers.push_back(answer_of(windows, parameter, each.fit, free));
       lines += "\n" + line_of(each);
+      const bool is_worse = with_offset && each.fit.rms > tries.back().fit.rms;
+      if (is_worse) lines += "; no fit: it ran away to where it is worse than without the offset";
       report.push_back({{"side", side},
                         {"with_offset", with_offset},
                         {"windows", each.fit.windows},
@@ -171,7 +173,7 @@ void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const
     context.say(fmt::format("  {}: {}, {}", name, all.determined() ? "determined" : "not determined", range));
     if (all.determined()) continue;
     findings.unobservable.push_back(
-        {laser.name + cause, fmt::format("offset from the axis {}: {}: {}", name, all.why_not(), range), ""});
+        {laser.name + cause, fmt::format("{}: {} {}", all.why_not(), name, range), ""});
   }
 }
 
