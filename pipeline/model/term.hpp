@@ -30,6 +30,7 @@ struct TermInfo {
   /// Of a term that describes a departure by its shape instead of naming a cause: over what the shape is told
   /// ("mirror angle"). Empty for the others.
   std::string covariate = {};
+  bool is_fine = false;  ///< of such: it has many parameters, and is looked for only over what others leave
 };
 
 /// One departure of a real scanner from equation (2): parameters, and how they change a beam. Immutable.

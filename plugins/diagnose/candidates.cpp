@@ -40,6 +40,7 @@ void append(std::vector<Candidate>& all, Candidate as, const std::vector<TermPar
   const std::size_t form = form_of(info);
   const bool has_forms = form < info.parameters.size();
   as.covariate = info.covariate;
+  as.is_fine = info.is_fine;
   as.forms = has_forms ? static_cast<std::size_t>(info.parameters[form].tries.count) : 1;
   if (const TermParameters* here = find_term(present, info.name)) {
     as.term = *here;

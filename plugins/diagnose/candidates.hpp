@@ -28,6 +28,8 @@ struct Candidate {
   std::string name;                    ///< "laser2.mirror.cone", "encoder.eccentricity"
   std::string covariate;               ///< see TermInfo: empty for a term that names a cause
 
+  bool is_fine = false;  ///< see TermInfo
+
   bool in_model = false;  ///< whether the calibration has it
 
   bool is_cause() const { return covariate.empty(); }

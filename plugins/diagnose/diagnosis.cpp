@@ -87,10 +87,10 @@ class Diagnoser {
 
   /// Whether fainter causes may be told: not beside what is off and has no cause, of which each would take a
   /// part.
-  bool asks_for_a_closer_look(const std::vector<Departure>& found, const Evidence& evidence) const {
+  bool asks_for_a_closer_look(const std::vector<Departure>& found, const SideBySide& left) const {
     return settings_.closer > settings_.beams &&
            std::ranges::all_of(found, [](const Departure& one) { return one.candidate.is_cause(); }) &&
-           side_by_side(evidence, settings_.refinement.surfels, 1).p_value > settings_.selection.p_value;
+           left.p_value > settings_.selection.p_value;
   }
 
   /// Adds what is needed, until nothing is missing.
@@ -107,19 +107,28 @@ class Diagnoser {
       const Evidence evidence(result.after.outcome.model, inside_, settings_.refinement.surfels,
                               settings_.beams, settings_.interrupted);
       result.unshared = unshared_causes(terms_, evidence.coverage());
-      const Survey survey(evidence, result.after, terms_, settings_);
-      if (!is_close) result.departures = survey.needs(refused);
-      is_close = is_close || (names_of(result.departures) == names_of(chosen) &&
-                              asks_for_a_closer_look(result.departures, evidence));
+      const auto left = [&] { return side_by_side(evidence, settings_.refinement.surfels, 1); };
+      std::optional<Survey> survey;
+      const auto look = [&](const SideBySide& at) {
+        survey.emplace(evidence, result.after, terms_, settings_, at);
+        if (!is_close) result.departures = survey->needs(refused);
+      };
+      // What was refused may be a part of what is too fine for all that was looked for.
+      look(refused.empty() || is_close ? SideBySide{} : left());
+      if (!is_close && names_of(result.departures) == names_of(chosen)) {
+        const SideBySide now = left();
+        is_close = asks_for_a_closer_look(result.departures, now);
+        if (!is_close && refused.empty()) look(now);
+      }
       if (is_close) {
         tell_step(0.4, "looking closer");
-        result.departures = survey.closer_needs(refused);
+        result.departures = survey->closer_needs(refused);
       }
       result.settled = names_of(result.departures) == names_of(chosen);
       // What is asked for in the end would not be looked at any more with the model that has it.
       if (round == settings_.rounds) std::erase_if(result.departures, is_new);
-      result.unobservable = survey.unobservable(result.departures);
-      result.looks = survey.looks();
+      result.unobservable = survey->unobservable(result.departures);
+      result.looks = survey->looks();
       std::vector<Candidate> next;
       for (const Departure& departure : result.departures) next.push_back(departure.candidate);
       // What was found needless once the model had it would be taken again for ever.
@@ -128,7 +137,7 @@ class Diagnoser {
       }
       if (names_of(next) == names_of(chosen)) return;
       tell_step(0.7, "refining with what was found");
-      chosen = with_sharper_forms(next, result.after.outcome.model, survey.base(), evidence,
+      chosen = with_sharper_forms(next, result.after.outcome.model, survey->base(), evidence,
                                   is_close ? settings_.closer : settings_.beams, terms_);
       for (const Candidate& candidate : chosen) {
         if (!candidate.other_forms.empty()) result.other_forms[candidate.name] = candidate.other_forms;

@@ -54,13 +54,24 @@ double explained_by(const Departure& departure, const Diagnosis& diagnosis, doub
   return whole > 0 ? departure.square(noise) / whole : 0;
 }
 
+/// That noise makes as much, corrected for the number of looks. Blocks say nothing of a fine shape; the
+/// profile over its covariate does, of the model that came.
+double p_value_of(const Departure& departure, const Diagnosis& diagnosis) {
+  if (!departure.candidate.is_fine)
+    return std::min(1.0, departure.look.p_value * static_cast<double>(diagnosis.looks));
+  const auto profile = std::ranges::find_if(diagnosis.left_before.profiles, [&](const Profile& one) {
+    return one.laser == departure.candidate.owner && one.covariate == departure.candidate.covariate;
+  });
+  return profile != diagnosis.left_before.profiles.end() ? profile->p_value : 1;
+}
+
 Finding finding_of(const Departure& departure, const Calibration& calibration, const Diagnosis& diagnosis,
                    const TermRegistry& terms, double odds, double noise) {
   Finding finding{.cause = departure.candidate.term.term,
                   .scope = name_of(departure.candidate.owner, calibration),
                   .parameters = parameters_of(departure, calibration),
                   .explained_fraction = explained_by(departure, diagnosis, noise),
-                  .p_value = std::min(1.0, departure.look.p_value * static_cast<double>(diagnosis.looks)),
+                  .p_value = p_value_of(departure, diagnosis),
                   .confounded_with = {},
                   .told_apart_by = {},
                   .gain = departure.gains,
@@ -89,7 +100,7 @@ UnnamedFinding unnamed_of(const Departure& departure, const Calibration& calibra
           .scope = name_of(departure.candidate.owner, calibration),
           .amplitude = departure.look.visible * noise,
           .unit = "m",
-          .p_value = std::min(1.0, departure.look.p_value * static_cast<double>(diagnosis.looks)),
+          .p_value = p_value_of(departure, diagnosis),
           .gain = departure.gains,
           .accepted = departure.accepted};
 }

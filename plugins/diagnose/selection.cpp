@@ -71,11 +71,13 @@ class Chooser {
     return looks_beside(taken, dictionary_, equations_);
   }
 
-  /// Whether it has been in the model and the data did not bear it out, or do not now.
+  /// Whether it has been in the model and the data did not bear it out, or do not now. Blocks say nothing of
+  /// a fine shape, which has about as many parameters as there are blocks: held-out turns judge it.
   bool is_refused(std::size_t candidate, const Look& look) const {
     const Candidate& which = dictionary_.candidates()[candidate];
+    const bool is_asked = which.in_model && !which.is_fine;
     return refused_.contains(which.name) ||
-           (which.in_model && !(look.p_value * static_cast<double>(looks_) < settings_.p_value));
+           (is_asked && !(look.p_value * static_cast<double>(looks_) < settings_.p_value));
   }
 
   bool is_needed(std::size_t candidate, const Look& look) const {

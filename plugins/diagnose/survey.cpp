@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "pipeline/estimate/wanted_terms.hpp"
@@ -55,23 +56,38 @@ std::vector<std::size_t> in_model(const std::vector<Candidate>& candidates) {
   return some;
 }
 
+/// Whether the laser departs over a covariate, and over no other by more.
+bool departs_most_over(const std::string& covariate, std::optional<std::size_t> laser,
+                       const SideBySide& left) {
+  const Profile* most = nullptr;
+  for (const Profile& profile : left.profiles) {
+    if (profile.laser != laser || !profile.departs()) continue;
+    if (most == nullptr || profile.rms > most->rms) most = &profile;
+  }
+  return most != nullptr && most->covariate == covariate;
+}
+
 std::vector<Candidate> possible(const TermRegistry& terms, const SensorModel& model, const Coverage& coverage,
-                                const std::set<std::string>& excluded) {
+                                const std::set<std::string>& excluded, const SideBySide& left) {
   auto all = candidates(terms, model.calibration(), coverage);
-  std::erase_if(all, [&](const Candidate& one) { return excluded.contains(one.name); });
+  std::erase_if(all, [&](const Candidate& one) {
+    const bool is_too_fine =
+        one.is_fine && !one.in_model && !departs_most_over(one.covariate, one.laser(), left);
+    return is_too_fine || excluded.contains(one.name);
+  });
   return all;
 }
 
 }  // namespace
 
 Survey::Survey(const Evidence& evidence, const Refinement& at, const TermRegistry& terms,
-               const DiagnosisSettings& settings)
+               const DiagnosisSettings& settings, const SideBySide& left)
     : evidence_(evidence),
       terms_(terms),
       settings_(settings),
       model_(at.outcome.model),
       base_(base_of(at)),
-      all_(view(possible(terms, model_, evidence.coverage(), settings.excluded), settings.beams)) {
+      all_(view(possible(terms, model_, evidence.coverage(), settings.excluded, left), settings.beams)) {
   std::set<std::string> names;
   for (const Candidate& candidate : all_.dictionary.candidates()) names.insert(candidate.name);
   looks_ = names.size();

@@ -9,6 +9,7 @@
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "plugins/diagnose/departure.hpp"
 #include "plugins/diagnose/evidence.hpp"
+#include "plugins/diagnose/profiles.hpp"
 #include "plugins/diagnose/selection.hpp"
 
 namespace crisp {
@@ -37,8 +38,9 @@ class Survey {
   /// @param evidence  at the model. This refers to it, to the terms and to the settings, which must outlive
   /// it
   /// @param at        the model, and what of it is estimated
+  /// @param left      what departs from it; fine shapes are looked for over what departs the most in a laser
   Survey(const Evidence& evidence, const Refinement& at, const TermRegistry& terms,
-         const DiagnosisSettings& settings);
+         const DiagnosisSettings& settings, const SideBySide& left = {});
 
   const std::vector<std::size_t>& base() const { return base_; }
   std::size_t looks() const { return looks_; }  ///< different things that are looked for

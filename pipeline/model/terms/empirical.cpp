@@ -100,6 +100,13 @@ std::vector<double> evenly(double from, double to, int count) {
   return knots;
 }
 
+/// [m] Evenly at first, then ever farther apart.
+std::vector<double> finer_ranges() {
+  std::vector<double> knots = evenly(0.5, 6, 12);
+  while (knots.back() < 40) knots.push_back(1.2 * knots.back());
+  return knots;
+}
+
 }  // namespace
 
 Shape Shape::fourier(int first, int last) { return {Kind::kFourier, first, last, {}}; }
@@ -185,7 +192,8 @@ EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape) : on_(on), over_(ove
                           : over == Over::kPlateAngle ? CountsFrom::kEncodersZero
                                                       : CountsFrom::kNothing,
            .needs_incidence = over == Over::kIncidence,
-           .covariate = of};
+           .covariate = of,
+           .is_fine = shape_.is_fine()};
 }
 
 void register_empirical_terms(TermRegistry& terms) {
@@ -201,6 +209,12 @@ void register_empirical_terms(TermRegistry& terms) {
   add(On::kRange, Over::kRemission, Shape::hats(evenly(std::log(10.0), std::log(250.0), 5)));
   add(On::kRange, Over::kTime, in_time);
   add(On::kRange, Over::kPlateRate, Shape::powers());
+  add(On::kRange, Over::kMirrorAngle, Shape::hats(evenly(-180 * kDegree, 180 * kDegree, 49)).finely());
+  add(On::kRange, Over::kRange, Shape::hats(finer_ranges()).finely());
+  add(On::kRange, Over::kIncidence, Shape::hats(evenly(0, 80 * kDegree, 17)).finely());
+  add(On::kRange, Over::kRemission, Shape::hats(evenly(std::log(10.0), std::log(250.0), 17)).finely());
+  add(On::kRange, Over::kTime, Shape::splines(35).finely());
+  add(On::kRange, Over::kPlateRate, Shape::hats(evenly(-13, 13, 27)).finely());
   add(On::kMirrorAngle, Over::kMirrorAngle, Shape::fourier(1, 4));
   add(On::kElevation, Over::kMirrorAngle, Shape::fourier(1, 4));
   add(On::kLag, Over::kTime, in_time);

@@ -31,8 +31,15 @@ class Shape {
   double scale() const;  ///< by how much smaller coefficients are than what they make
   std::string name(std::size_t coefficient) const;     ///< "cos2"
   std::string summary(std::size_t coefficient) const;  ///< "of cos 2x"
+  /// The same as the finer of two over one covariate.
+  Shape finely() const {
+    Shape fine = *this;
+    fine.is_fine_ = true;
+    return fine;
+  }
+  bool is_fine() const { return is_fine_; }
   /// What a term of this shape is called beside that of the usual one over the same: "_curve"; or nothing.
-  std::string suffix() const { return kind_ == Kind::kCurve ? "_curve" : ""; }
+  std::string suffix() const { return kind_ == Kind::kCurve ? "_curve" : is_fine_ ? "_finely" : ""; }
 
   template <class T>
   T at(const T& x, std::span<const T> coefficients) const {
@@ -98,6 +105,7 @@ class Shape {
   int first_;  // order
   int last_;   // order, or how many B-splines
   std::vector<double> knots_;
+  bool is_fine_ = false;
 };
 
 /// Describes a departure that no cause of the catalogue explains: what is off, over what, and in which shape.
