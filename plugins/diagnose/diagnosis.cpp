@@ -93,56 +93,69 @@ class Diagnoser {
            left.p_value > settings_.selection.p_value;
   }
 
+  /// How far the search has come.
+  struct Search {
+    std::vector<Candidate> chosen = {};  ///< that the model has
+    std::set<std::string> refused = {};  ///< names of those that it had and did not need
+    bool is_close = false;               ///< whether causes alone are looked for, with more beams
+    std::function<void(double, const char*)> tell = {};
+  };
+
+  /// Finds what the model needs as it is. Where something was refused, or where nothing more is asked for, it
+  /// may be that all that was looked for is too coarse for what departs.
+  Survey look(const Evidence& evidence, Search& search, Diagnosis& result) const {
+    const auto left = [&] { return side_by_side(evidence, settings_.refinement.surfels, 1); };
+    const bool may_be_fine = !search.refused.empty() && !search.is_close;
+    Survey survey(evidence, result.after, terms_, settings_, may_be_fine ? left() : SideBySide{});
+    if (!search.is_close) {
+      result.departures = survey.needs(search.refused);
+      if (names_of(result.departures) != names_of(search.chosen)) return survey;
+      const SideBySide now = left();
+      search.is_close = asks_for_a_closer_look(result.departures, now);
+      if (!search.is_close) {
+        if (may_be_fine) return survey;
+        Survey finer(evidence, result.after, terms_, settings_, now);
+        result.departures = finer.needs(search.refused);
+        return finer;
+      }
+    }
+    search.tell(0.4, "looking closer");
+    result.departures = survey.closer_needs(search.refused);
+    return survey;
+  }
+
   /// Adds what is needed, until nothing is missing.
   void extend(Diagnosis& result) const {
-    std::vector<Candidate> chosen;
-    std::set<std::string> refused;
-    bool is_close = false;
+    Search search;
     for (int round = 0; round <= settings_.rounds; ++round) {
-      const auto tell_step = [this, round](double of_round, const char* what) {
+      search.tell = [this, round](double of_round, const char* what) {
         const double fraction = 0.8 * (round + 0.25 + of_round) / (round + 2.25);
         tell(fraction, fmt::format("round {}: {}", round + 1, what));
       };
-      tell_step(0, "looking at all candidates");
+      search.tell(0, "looking at all candidates");
       const Evidence evidence(result.after.outcome.model, inside_, settings_.refinement.surfels,
                               settings_.beams, settings_.interrupted);
       result.unshared = unshared_causes(terms_, evidence.coverage());
-      const auto left = [&] { return side_by_side(evidence, settings_.refinement.surfels, 1); };
-      std::optional<Survey> survey;
-      const auto look = [&](const SideBySide& at) {
-        survey.emplace(evidence, result.after, terms_, settings_, at);
-        if (!is_close) result.departures = survey->needs(refused);
-      };
-      // What was refused may be a part of what is too fine for all that was looked for.
-      look(refused.empty() || is_close ? SideBySide{} : left());
-      if (!is_close && names_of(result.departures) == names_of(chosen)) {
-        const SideBySide now = left();
-        is_close = asks_for_a_closer_look(result.departures, now);
-        if (!is_close && refused.empty()) look(now);
-      }
-      if (is_close) {
-        tell_step(0.4, "looking closer");
-        result.departures = survey->closer_needs(refused);
-      }
-      result.settled = names_of(result.departures) == names_of(chosen);
+      const Survey survey = look(evidence, search, result);
+      result.settled = names_of(result.departures) == names_of(search.chosen);
       // What is asked for in the end would not be looked at any more with the model that has it.
       if (round == settings_.rounds) std::erase_if(result.departures, is_new);
-      result.unobservable = survey->unobservable(result.departures);
-      result.looks = survey->looks();
+      result.unobservable = survey.unobservable(result.departures);
+      result.looks = survey.looks();
       std::vector<Candidate> next;
       for (const Departure& departure : result.departures) next.push_back(departure.candidate);
       // What was found needless once the model had it would be taken again for ever.
-      for (const std::string& name : names_of(chosen)) {
-        if (!names_of(next).contains(name)) refused.insert(name);
+      for (const std::string& name : names_of(search.chosen)) {
+        if (!names_of(next).contains(name)) search.refused.insert(name);
       }
-      if (names_of(next) == names_of(chosen)) return;
-      tell_step(0.7, "refining with what was found");
-      chosen = with_sharper_forms(next, result.after.outcome.model, survey->base(), evidence,
-                                  is_close ? settings_.closer : settings_.beams, terms_);
-      for (const Candidate& candidate : chosen) {
+      if (names_of(next) == names_of(search.chosen)) return;
+      search.tell(0.7, "refining with what was found");
+      search.chosen = with_sharper_forms(next, result.after.outcome.model, survey.base(), evidence,
+                                         search.is_close ? settings_.closer : settings_.beams, terms_);
+      for (const Candidate& candidate : search.chosen) {
         if (!candidate.other_forms.empty()) result.other_forms[candidate.name] = candidate.other_forms;
       }
-      result.after = refined(with_terms(result.after.outcome.model.calibration(), chosen), sample_);
+      result.after = refined(with_terms(result.after.outcome.model.calibration(), search.chosen), sample_);
     }
   }
 
