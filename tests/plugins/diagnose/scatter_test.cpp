@@ -42,7 +42,7 @@ class Followed {
   Followed(const std::string& scene, const NoiseEffects& noise, double sigma = 0.012, std::uint64_t seed = 3)
       : Followed(record(scene, noise, sigma, seed), {}, sigma) {}
   /// @param by  that beams are followed by; without lasers: the truth
-  Followed(test::Recording recording, Calibration by, double sigma = 0.012)
+  Followed(test::Recording recording, const Calibration& by, double sigma = 0.012)
       : recording_(std::move(recording)),
         evidence_(evidence_of(recording_, by.lasers.empty() ? recording_.made.truth : by, sigma)) {
     met_ = met_by(evidence_.surfels(), evidence_.beams(), beams().range);

@@ -6,7 +6,7 @@
 namespace crisp {
 namespace {
 
-constexpr double kNoise = 0.010;  // [m]
+constexpr double kRangeNoise = 0.010;  // [m]
 
 /// Takes so much [m] of the residuals.
 Departure of_laser(std::size_t laser, double takes, const std::string& over = "") {
@@ -15,7 +15,7 @@ Departure of_laser(std::size_t laser, double takes, const std::string& over = ""
   one.candidate.term.term = over.empty() ? "range.scale" : "empirical.range_by_" + over;
   one.candidate.name = "laser" + std::to_string(laser + 1) + "." + one.candidate.term.term;
   one.candidate.covariate = over;
-  one.look.visible = takes / kNoise;
+  one.look.visible = takes / kRangeNoise;
   return one;
 }
 
@@ -23,7 +23,7 @@ Departure of_plate(double takes) {
   Departure one;
   one.candidate.owner = 2;
   one.candidate.term.term = one.candidate.name = "plate.wobble";
-  one.look.visible = takes / kNoise;
+  one.look.visible = takes / kRangeNoise;
   return one;
 }
 
@@ -43,7 +43,7 @@ TEST(Unexplained, ACauseThatTakesLessThanWhatIsLeftInItsLaserIsRefused) {
   left.profiles = {over("range", 0, 0.004), over("time", 0, 0.001)};  // 2.8 mm over all beams
   std::vector<Departure> found = {of_laser(0, 0.0027), of_laser(0, 0.0029), of_laser(1, 0.001),
                                   of_plate(0.0027), of_plate(0.0029)};
-  EXPECT_TRUE(refuse_what_leaves_more(found, left, kNoise));
+  EXPECT_TRUE(refuse_what_leaves_more(found, left, kRangeNoise));
   EXPECT_FALSE(found[0].accepted);
   EXPECT_NE(found[0].refused, "");
   EXPECT_NEAR(found[0].unexplained, 8e-6, 1e-12) << "over the covariate that shows the most";
@@ -57,12 +57,12 @@ TEST(Unexplained, WhatAShapeTookThatDoesNotSufficeCountsWithIt) {
   SideBySide left;
   left.profiles = {over("range", 0, 0.002)};
   std::vector<Departure> found = {of_laser(0, 0.003), of_laser(0, 0.004, "range")};
-  EXPECT_TRUE(refuse_what_leaves_more(found, left, kNoise));
+  EXPECT_TRUE(refuse_what_leaves_more(found, left, kRangeNoise));
   EXPECT_FALSE(found[0].accepted);
   EXPECT_NEAR(found[0].unexplained, 18e-6, 1e-12);
   EXPECT_TRUE(found[1].accepted) << "a shape claims no more than to describe";
   found = {of_laser(0, 0.003), of_laser(0, 0.004, "time")};
-  EXPECT_FALSE(refuse_what_leaves_more(found, left, kNoise)) << "over time nothing is left";
+  EXPECT_FALSE(refuse_what_leaves_more(found, left, kRangeNoise)) << "over time nothing is left";
 }
 
 TEST(Unexplained, WhatARefusedOneTookIsHeldAgainstTheOthers) {
@@ -70,14 +70,14 @@ TEST(Unexplained, WhatARefusedOneTookIsHeldAgainstTheOthers) {
   left.profiles = {over("range", 0, 0.002)};
   std::vector<Departure> found = {of_laser(0, 0.001), of_laser(0, 0.002)};
   found[1].candidate.name = "laser1.range.intensity";
-  EXPECT_TRUE(refuse_what_leaves_more(found, left, kNoise));
+  EXPECT_TRUE(refuse_what_leaves_more(found, left, kRangeNoise));
   EXPECT_FALSE(found[0].accepted);
   EXPECT_TRUE(found[1].accepted);
-  EXPECT_FALSE(refuse_what_leaves_more(found, left, kNoise)) << "settled, if no more is left without it";
+  EXPECT_FALSE(refuse_what_leaves_more(found, left, kRangeNoise)) << "settled, if no more is left without it";
   left.profiles = {over("range", 0, 0.005)};
-  EXPECT_TRUE(refuse_what_leaves_more(found, left, kNoise));
+  EXPECT_TRUE(refuse_what_leaves_more(found, left, kRangeNoise));
   EXPECT_FALSE(found[1].accepted);
-  EXPECT_FALSE(refuse_what_leaves_more(found, left, kNoise)) << "none is left";
+  EXPECT_FALSE(refuse_what_leaves_more(found, left, kRangeNoise)) << "none is left";
 }
 
 }  // namespace
