@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "pipeline/estimate/wanted_terms.hpp"
@@ -56,24 +55,25 @@ std::vector<std::size_t> in_model(const std::vector<Candidate>& candidates) {
   return some;
 }
 
-/// Whether the laser departs over a covariate, and over no other by more.
-bool departs_most_over(const std::string& covariate, std::optional<std::size_t> laser,
-                       const SideBySide& left) {
-  const Profile* most = nullptr;
-  for (const Profile& profile : left.profiles) {
-    if (profile.laser != laser || !profile.departs()) continue;
-    if (most == nullptr || profile.rms > most->rms) most = &profile;
-  }
-  return most != nullptr && most->covariate == covariate;
+/// [m RMS] By how much the candidate's laser departs over its covariate; 0: not for sure.
+double departs_over(const Candidate& one, const SideBySide& left) {
+  const auto profile = std::ranges::find_if(left.profiles, [&](const Profile& other) {
+    return other.laser == one.laser() && other.covariate == one.covariate && other.departs();
+  });
+  return profile != left.profiles.end() ? profile->rms : 0;
 }
 
 std::vector<Candidate> possible(const TermRegistry& terms, const SensorModel& model, const Coverage& coverage,
                                 const std::set<std::string>& excluded, const SideBySide& left) {
   auto all = candidates(terms, model.calibration(), coverage);
+  std::map<std::size_t, double> most;  // by owner, over what a fine shape could describe
+  for (const Candidate& one : all) {
+    if (one.is_fine) most[one.owner] = std::max(most[one.owner], departs_over(one, left));
+  }
   std::erase_if(all, [&](const Candidate& one) {
-    const bool is_too_fine =
-        one.is_fine && !one.in_model && !departs_most_over(one.covariate, one.laser(), left);
-    return is_too_fine || excluded.contains(one.name);
+    const double departs = departs_over(one, left);
+    const bool is_asked_for = departs > 0 && departs == most[one.owner];
+    return excluded.contains(one.name) || (one.is_fine && !one.in_model && !is_asked_for);
   });
   return all;
 }

@@ -66,6 +66,8 @@ TEST(Findings, OfOneScannerAreThoseOfTheOneThatIsSimulatedWithThem) {
   EXPECT_NEAR(sigma_of(again, "laser2"), 5e-3, 0.04 * 5e-3);
   ASSERT_EQ(again.devices.size(), first.devices.size());
   for (std::size_t k = 0; k < first.devices.size(); ++k) {
+    EXPECT_EQ(std::isnan(first.devices[k].period), first.devices[k].device == "plate") << "it has no mirror";
+    if (std::isnan(first.devices[k].period)) continue;
     // Stamps of 1 us over 4 s; without wander the mean period of any time is that of all.
     EXPECT_NEAR(again.devices[k].period, first.devices[k].period, 1e-6) << first.devices[k].device;
   }
