@@ -214,7 +214,7 @@ void register_empirical_terms(TermRegistry& terms) {
   add(On::kRange, Over::kIncidence, Shape::hats(evenly(0, 80 * kDegree, 17)).finely());
   add(On::kRange, Over::kRemission, Shape::hats(evenly(std::log(10.0), std::log(250.0), 17)).finely());
   add(On::kRange, Over::kTime, Shape::splines(35).finely());
-  add(On::kRange, Over::kPlateRate, Shape::hats(evenly(-13, 13, 27)).finely());
+  add(On::kRange, Over::kPlateRate, Shape::hats(evenly(-12.5, 12.5, 26)).finely());
   add(On::kMirrorAngle, Over::kMirrorAngle, Shape::fourier(1, 4));
   add(On::kElevation, Over::kMirrorAngle, Shape::fourier(1, 4));
   add(On::kLag, Over::kTime, in_time);
