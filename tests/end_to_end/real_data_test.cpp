@@ -116,9 +116,8 @@ TEST_F(RealData, HrlsSingleSweepTellsNeitherItsAnglesNorItsMounting) {
   EXPECT_THAT(diagnosis_["findings"], testing::IsEmpty());
   EXPECT_THAT(diagnosis_["unnamed"], testing::IsEmpty());
   EXPECT_THAT(unobservable_in(diagnosis_),
-              testing::ElementsAre("encoder.backlash", "utm.eta", "utm.tau", "utm.alpha",
-                                   "utm.range.step", "utm.tau",
-                                   "utm.mount.tangential_offset"));
+              testing::ElementsAre("encoder.backlash", "utm.eta", "utm.tau", "utm.alpha", "utm.range.step",
+                                   "utm.tau", "utm.mount.tangential_offset"));
   EXPECT_THAT(std::string(diagnosis_["unobservable"][5]["reason"]),
               testing::AllOf(testing::StartsWith("its standard error of "),
                              testing::Not(testing::HasSubstr("windows"))));

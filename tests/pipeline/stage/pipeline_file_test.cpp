@@ -146,7 +146,8 @@ TEST_F(PipelineFileTest, RefusesEachWrongValueAtItsPlaceAndSaysWhatWasExpected) 
           "p.yaml:11:15: error: all: option 'search': 'gird' is not one of its names; did you mean 'grid'? "
           "expected "
           "is one of flann, grid, exact",
-          "p.yaml:12:21: error: all: option 'sigma': 20m is out of range; expected is a list, each a number in "
+          "p.yaml:12:21: error: all: option 'sigma': 20m is out of range; expected is a list, each a number "
+          "in "
           "m, 0.0001 to 10, 1 or more of them, 9 at most",
           "p.yaml:12:26: error: all: option 'sigma': 'x' is not a number; expected is a list, each a number "
           "in m, "
