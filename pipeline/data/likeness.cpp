@@ -82,6 +82,10 @@ void add_left_over(const std::string& scope, const Likeness& left, std::size_t l
   }
 }
 
+void add_left_over(const std::vector<ToldApart>& scopes, Findings& to) {
+  for (const ToldApart& one : scopes) add_left_over(one.scope, one.after, scopes.size(), to);
+}
+
 std::string chance_in_words(double p_value) {
   return p_value > 0 ? fmt::format("p = {:.2g}", p_value) : "p < 1e-300";
 }

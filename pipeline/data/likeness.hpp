@@ -44,6 +44,9 @@ void add_likeness(const std::vector<ToldApart>& scopes, Findings& to);
 /// @param looks  so many scopes are looked at
 void add_left_over(const std::string& scope, const Likeness& left, std::size_t looks, Findings& to);
 
+/// The same of all scopes, with what was found.
+void add_left_over(const std::vector<ToldApart>& scopes, Findings& to);
+
 /// A p-value, "p = 0.012".
 std::string chance_in_words(double p_value);
 

@@ -104,17 +104,18 @@ class Diagnoser {
   /// Finds what the model needs as it is. Where something was refused, or where nothing more is asked for, it
   /// may be that all that was looked for is too coarse for what departs.
   Survey look(const Evidence& evidence, Search& search, Diagnosis& result) const {
-    const auto left = [&] { return side_by_side(evidence, settings_.refinement.surfels, 1); };
     const bool may_be_fine = !search.refused.empty() && !search.is_close;
-    Survey survey(evidence, result.after, terms_, settings_, may_be_fine ? left() : SideBySide{});
+    SideBySide left;
+    if (may_be_fine) left = side_by_side(evidence, settings_.refinement.surfels, 1);
+    Survey survey(evidence, result.after, terms_, settings_, left);
     if (!search.is_close) {
       result.departures = survey.needs(search.refused);
       if (names_of(result.departures) != names_of(search.chosen)) return survey;
-      const SideBySide now = left();
-      search.is_close = asks_for_a_closer_look(result.departures, now);
+      if (!may_be_fine) left = side_by_side(evidence, settings_.refinement.surfels, 1);
+      search.is_close = asks_for_a_closer_look(result.departures, left);
       if (!search.is_close) {
         if (may_be_fine) return survey;
-        Survey finer(evidence, result.after, terms_, settings_, now);
+        Survey finer(evidence, result.after, terms_, settings_, left);
         result.departures = finer.needs(search.refused);
         return finer;
       }

@@ -235,9 +235,7 @@ void DiagnoseSweepStage::finish(Outputs& out, Context& context) {
     if (context.interrupted()) return;
   }
   add_likeness(told_, own);
-  for (const ToldApart& told : told_) {
-    add_left_over(told.scope, told.after, told_.size(), own);
-  }
+  add_left_over(told_, own);
   if (!told_.empty()) context.say(likeness_in_words(own));
   findings_.append(own);
   out.give(std::move(findings_));
