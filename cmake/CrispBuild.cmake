@@ -13,7 +13,7 @@ if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
   find_program(CRISP_CCACHE ccache)
   if(CRISP_CCACHE)  # what it holds serves any checkout
     set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1
-                                    "${CRISP_CCACHE}")
+                                    CCACHE_SLOPPINESS=pch_defines,time_macros "${CRISP_CCACHE}")
     add_compile_options("-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=")
   endif()
 endif()
@@ -27,13 +27,18 @@ target_compile_options(crisp_settings INTERFACE
   -Wno-missing-field-initializers  # designated initialisers leave the rest to the defaults
   # Optimising, GCC 12 sees overlaps and overruns in std::string and std::vector where there are none (its bugs
   # 105651 and 107852); the sanitizers see those that are.
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow>
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>
   $<$<CXX_COMPILER_ID:Clang>:-Wno-gnu-anonymous-struct -Wno-nested-anon-types>  # PCL's macro for x, y, z
   # Where many sources are compiled as one, to be fast, they see each other's names. The preset dev
   # compiles each alone.
   $<$<BOOL:${CMAKE_UNITY_BUILD}>:-Wno-shadow>
   $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
   $<$<BOOL:${CRISP_WARNINGS_AS_ERRORS}>:-Werror>)
+# Tests are compiled for a short build, not for speed: what they measure is in the libraries.
+add_library(crisp_test_settings INTERFACE)
+target_link_libraries(crisp_test_settings INTERFACE crisp_settings)
+target_compile_options(crisp_test_settings INTERFACE $<$<CONFIG:Release>:-O1>)
+
 if(CRISP_SANITIZE)
   add_compile_options(-fsanitize=${CRISP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${CRISP_SANITIZE})
@@ -79,6 +84,7 @@ function(crisp_library name)
   target_link_libraries(${target} ${public} ${arg_PUBLIC})
   if(NOT arg_INTERFACE)
     target_link_libraries(${target} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:crisp_settings>)
+    crisp_precompile(${target} library)
     add_dependencies(crisp_installed ${target})
   endif()
 
@@ -88,50 +94,50 @@ function(crisp_library name)
           FILES_MATCHING PATTERN "*.hpp")
 endfunction()
 
-# crisp_test(<name> [THREADS] [OPTIMISED] [SLOW <filter>] [LONG <filter>] SOURCES ... LIBRARIES ...) makes one
-# GoogleTest program of a folder's tests. Sanitizers run all but those that a filter of GoogleTest's calls slow,
-# which `check` has the release build run (label slow), or long, which `check all` runs (label long). With THREADS
-# they are also what the thread sanitizer runs (target threaded_tests, label threads); with OPTIMISED `check` has the
-# release build run them, too (label optimised): they depend on what the optimiser makes of the code.
+# crisp_test(<name> [THREADS] [OPTIMISED] [SLOW <filter>] [SMOKE <filter>] [LONG <filter>] SOURCES ... LIBRARIES ...)
+# makes one GoogleTest program of a folder's tests. Filters are GoogleTest's. Its quick tests are one test of CTest's,
+# by the program's name; those that a filter calls slow, smoke (slow, but run by `./check`: one of each kind) or long
+# are one each, with that label. Only the release build runs those. With THREADS the thread sanitizer runs the quick
+# tests, too (target threaded_tests, label threads).
 function(crisp_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS;OPTIMISED" "SLOW;LONG" "SOURCES;LIBRARIES")
-  if(arg_SLOW STREQUAL "*" AND CRISP_SANITIZE)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS" "SLOW;SMOKE;LONG" "SOURCES;LIBRARIES")
+  set(only_slow FALSE)
+  if(arg_SLOW STREQUAL "*")
+    set(only_slow TRUE)
+  endif()
+  if(only_slow AND CRISP_SANITIZE)
     return()
   endif()
   add_executable(${name}_test ${arg_SOURCES})
   target_link_libraries(${name}_test PRIVATE ${arg_LIBRARIES} crisp_source_dir GTest::gmock GTest::gtest_main
-                                             crisp_settings)
+                                             crisp_test_settings)
+  crisp_precompile(${name}_test test)
   set_target_properties(${name}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
-  set(labels)
+  add_dependencies(all_tests ${name}_test)
+  if(NOT only_slow)
+    add_test(NAME ${name} COMMAND ${name}_test "--gtest_filter=-${arg_SLOW}:${arg_LONG}")
+    set_tests_properties(${name} PROPERTIES TIMEOUT 900)
+  endif()
   if(arg_THREADS)
-    list(APPEND labels threads)
     add_dependencies(threaded_tests ${name}_test)
+    set_tests_properties(${name} PROPERTIES LABELS threads)
   endif()
-  if(arg_OPTIMISED)
-    list(APPEND labels optimised)
+  if(arg_SMOKE)
+    crisp_discover(${name}_test "${arg_SMOKE}" smoke)
   endif()
-  if(arg_OPTIMISED OR arg_SLOW)
-    add_dependencies(release_tests ${name}_test)
-  endif()
-  crisp_discover(${name}_test "-${arg_SLOW}:${arg_LONG}" "${labels}")
   if(arg_SLOW)
-    crisp_discover(${name}_test "${arg_SLOW}-${arg_LONG}" "${labels};slow")
+    crisp_discover(${name}_test "${arg_SLOW}-${arg_SMOKE}:${arg_LONG}" slow)
   endif()
   if(arg_LONG)
-    crisp_discover(${name}_test "${arg_LONG}" "${labels};long")
+    crisp_discover(${name}_test "${arg_LONG}" long)
   endif()
 endfunction()
 
-# crisp_discover(<target> <filter> <labels>) makes tests of those of a program that a filter of GoogleTest's lets
+# crisp_discover(<target> <filter> <label>) makes one test of each of a program's that a filter of GoogleTest's lets
 # through.
-function(crisp_discover target filter labels)
-  set(properties TIMEOUT 600)
-  list(REMOVE_ITEM labels "")
-  if(labels)
-    list(JOIN labels "+" label)  # as one, since lists do not pass what follows; presets ask for a part of it
-    list(APPEND properties LABELS "${label}")
-  endif()
-  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "${filter}" PROPERTIES ${properties})
+function(crisp_discover target filter label)
+  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "${filter}"
+                       PROPERTIES LABELS ${label} TIMEOUT 600)
 endfunction()
 
 # crisp_fuzz(<name> SOURCES ... LIBRARIES ...) makes one fuzz target, <name>_fuzz, of sources that define
@@ -147,6 +153,7 @@ function(crisp_fuzz name)
   add_executable(${name}_fuzz ${arg_SOURCES})
   target_link_libraries(${name}_fuzz PRIVATE ${arg_LIBRARIES} crisp_settings)
   set_target_properties(${name}_fuzz PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+  add_dependencies(all_tests ${name}_fuzz)
   if(CRISP_BUILD_FUZZERS)
     target_link_options(${name}_fuzz PRIVATE -fsanitize=fuzzer)
     foreach(library ${name}_fuzz ${arg_LIBRARIES})  # what reports its coverage

@@ -2,6 +2,17 @@
 # The packages crisp stands on. A package that only some folders need is still looked for here, so that
 # configuring fails at once. An installed crisp looks for the same ones, for whatever is built on it.
 
+# crisp_require_header(<header> <Debian package>) ends the configuration where a library without a package file of
+# CMake's or pkg-config's that serves is missing.
+function(crisp_require_header header package)
+  string(MAKE_C_IDENTIFIER "CRISP_${header}" found)
+  find_path(${found} "${header}")
+  mark_as_advanced(${found})
+  if(NOT ${found})
+    message(FATAL_ERROR "${header} is missing: install ${package}")
+  endif()
+endfunction()
+
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
@@ -22,6 +33,11 @@ pkg_check_modules(PCAP REQUIRED IMPORTED_TARGET libpcap)
 pkg_check_modules(TINS REQUIRED IMPORTED_TARGET libtins)
 pkg_check_modules(JEMALLOC IMPORTED_TARGET jemalloc)  # for speed alone
 
+crisp_require_header(ceres/jet.h libceres-dev)
+crisp_require_header(boost/asio/io_context.hpp libboost-dev)
+crisp_require_header(boost/math/distributions/chi_squared.hpp libboost-dev)
+crisp_require_header(lz4.h liblz4-dev)
+
 add_library(crisp_flann INTERFACE IMPORTED GLOBAL)
 target_link_libraries(crisp_flann INTERFACE flann::flann_cpp lz4)
 if(NOT TARGET yaml-cpp::yaml-cpp)  # yaml-cpp 0.7
@@ -35,5 +51,6 @@ if(CRISP_BUILD_TESTS)
 endif()
 if(CRISP_BUILD_BENCHMARKS)
   find_package(benchmark REQUIRED)
-  pkg_check_modules(PCL_KDTREE REQUIRED IMPORTED_TARGET pcl_kdtree)  # a rival
+  find_package(nanoflann REQUIRED)  # a competitor, as the next
+  pkg_check_modules(PCL_KDTREE REQUIRED IMPORTED_TARGET pcl_kdtree)
 endif()

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/clocks/series.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 
@@ -21,10 +23,10 @@ SeriesFit best_in_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& col
   fit.product = products.cwiseAbs().maxCoeff(&fit.column);
   Eigen::MatrixXd both(base.rows(), base.cols() + 1);
   both << base, columns.col(fit.column);
-  fit.values = both.colPivHouseholderQr().solve(values);
+  fit.values = least_squares(both, values);
   const double squares = (values - both * fit.values).squaredNorm();
   const double variance = squares / static_cast<double>(std::max<Eigen::Index>(1, both.rows() - both.cols()));
-  fit.errors = (variance * (both.transpose() * both).inverse().diagonal()).cwiseSqrt();
+  fit.errors = (variance * inverse(both.transpose() * both).diagonal()).cwiseSqrt();
   fit.rms = std::sqrt(squares / static_cast<double>(std::max<Eigen::Index>(1, values.size())));
   return fit;
 }

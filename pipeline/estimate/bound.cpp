@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/estimate/bound.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "pipeline/estimate/plate_moments.hpp"
 #include "pipeline/estimate/surfel_rows.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
+#include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 namespace {
@@ -73,14 +73,13 @@ Eigen::VectorXd least_std_errors(const Eigen::MatrixXd& information) {
   // To unit diagonal first: parameters come in metres, radians and seconds.
   const Eigen::VectorXd scale =
       information.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * information *
-                                                             scale.asDiagonal());
+  const SymmetricEigen eigen = eigendecomposition(scale.asDiagonal() * information * scale.asDiagonal());
   constexpr double kNothing = 1e-10;  // of what a parameter alone would be known by
   Eigen::VectorXd variance = Eigen::VectorXd::Zero(scale.size());
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
-    const double known = eigen.eigenvalues()[k];
+    const double known = eigen.values[k];
     for (Eigen::Index i = 0; i < scale.size(); ++i) {
-      const double share = std::pow(eigen.eigenvectors()(i, k), 2);
+      const double share = std::pow(eigen.vectors(i, k), 2);
       if (known > kNothing) {
         variance[i] += share / known;
       } else if (share > kNothing) {

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 namespace {
@@ -44,7 +44,7 @@ std::string known_with(std::size_t held, const std::vector<std::size_t>& known, 
   if (known.empty()) return {};
   const auto h = static_cast<Eigen::Index>(held);
   const Eigen::VectorXd made_up =
-      Eigen::MatrixXd(scaled(known, known)).ldlt().solve(scaled(known, held).eval());
+      solve_positive_definite(scaled(known, known), Eigen::VectorXd(scaled(known, held)));
   const double largest = made_up.cwiseAbs().maxCoeff();
   std::string text;
   if (largest < kTakesPart) return text;
@@ -65,10 +65,10 @@ Observability observability(const Eigen::MatrixXd& information, const std::vecto
   std::iota(active.begin(), active.end(), std::size_t{0});
   std::vector<std::size_t> held;
   while (!active.empty()) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled(active, active));
-    if (!(solver.eigenvalues()[0] < 1)) break;
-    const auto next = active.begin() +
-                      static_cast<std::ptrdiff_t>(to_hold(solver.eigenvectors().col(0), active, free, names));
+    const SymmetricEigen eigen = eigendecomposition(scaled(active, active));
+    if (!(eigen.values[0] < 1)) break;
+    const auto next =
+        active.begin() + static_cast<std::ptrdiff_t>(to_hold(eigen.vectors.col(0), active, free, names));
     held.push_back(*next);
     active.erase(next);
   }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/estimate/shared_errors.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <map>
 #include <numeric>
+
+#include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 namespace {
@@ -97,7 +98,8 @@ Eigen::VectorXd widening(const NormalEquations& equations) {
   const Eigen::Index m = equations.matrix.cols();
   std::vector<std::size_t> all(static_cast<std::size_t>(m));
   std::iota(all.begin(), all.end(), std::size_t{0});
-  const Eigen::MatrixXd inverse = equations.matrix.ldlt().solve(Eigen::MatrixXd::Identity(m, m));
+  const Eigen::MatrixXd inverse =
+      solve_positive_definite(equations.matrix, Eigen::MatrixXd(Eigen::MatrixXd::Identity(m, m)));
   const Eigen::ArrayXd alone = inverse.diagonal() * equations.covariance_factor();
   Eigen::ArrayXd wider = Eigen::ArrayXd::Ones(m);
   for (std::size_t division = 0; division < equations.pulls.size(); ++division) {

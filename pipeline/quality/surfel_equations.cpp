@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/quality/surfel_equations.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +9,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "pipeline/quality/surfel_sums.hpp"
+#include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 namespace {
@@ -19,11 +20,11 @@ constexpr std::size_t kBatch = 16384;  // beams of surfels that are summed in a 
 Eigen::MatrixXd solve_semidefinite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   if (a.rows() == 0) return b;
   constexpr double kNothing = 1e-10;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a);
-  const double least = kNothing * eigen.eigenvalues().cwiseAbs().maxCoeff();
+  const SymmetricEigen eigen = eigendecomposition(a);
+  const double least = kNothing * eigen.values.cwiseAbs().maxCoeff();
   const Eigen::VectorXd inverse =
-      eigen.eigenvalues().unaryExpr([&](double value) { return value > least ? 1 / value : 0.0; });
-  return eigen.eigenvectors() * (inverse.asDiagonal() * (eigen.eigenvectors().transpose() * b));
+      eigen.values.unaryExpr([&](double value) { return value > least ? 1 / value : 0.0; });
+  return eigen.vectors * (inverse.asDiagonal() * (eigen.vectors.transpose() * b));
 }
 
 /// The same for parameters in metres, radians and seconds: brought to unit diagonal first.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/crispest.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "pipeline/estimate/displacement.hpp"
+#include "pipeline/statistics/dense_solvers.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 
 namespace crisp {
@@ -18,10 +18,9 @@ Eigen::MatrixXd whitening(const Eigen::MatrixXd& displacement, const Eigen::Vect
       displacement.diagonal().cwiseMax(0).cwiseSqrt().cwiseMax(1e-3 * step * range.cwiseInverse());
   const Eigen::MatrixXd scaled =
       size.cwiseInverse().asDiagonal() * displacement * size.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
-  const Eigen::VectorXd length = solver.eigenvalues().cwiseMax(kUnseen).cwiseSqrt();
-  return step *
-         (size.cwiseInverse().asDiagonal() * solver.eigenvectors() * length.cwiseInverse().asDiagonal());
+  const SymmetricEigen eigen = eigendecomposition(scaled);
+  const Eigen::VectorXd length = eigen.values.cwiseMax(kUnseen).cwiseSqrt();
+  return step * (size.cwiseInverse().asDiagonal() * eigen.vectors * length.cwiseInverse().asDiagonal());
 }
 
 /// From step to step η may move on by its range, but not to where the plate's readings no longer cover the

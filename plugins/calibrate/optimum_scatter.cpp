@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/optimum_scatter.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <random>
 
+#include "pipeline/statistics/dense_solvers.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 
 namespace crisp {
@@ -71,12 +71,11 @@ Eigen::MatrixXd optimum_scatter(const SensorModel& model, const Sample& sample,
   const auto m = static_cast<Eigen::Index>(free.size());
   const Eigen::MatrixXd basis = search_basis(model, sample, free, settings.range, settings.scale);
   Gradient gradient(model, free, measure, settings.scale, basis);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> curvature(hessian(gradient, m, sample));
+  const SymmetricEigen curvature = eigendecomposition(hessian(gradient, m, sample));
   // Where the measure is flat, or not at a minimum, nothing is known: an error far beyond the range.
-  const double flat = 1e-9 * std::max(1e-300, curvature.eigenvalues().cwiseAbs().maxCoeff());
-  const Eigen::VectorXd inverse = curvature.eigenvalues().cwiseMax(flat).cwiseInverse();
-  const Eigen::MatrixXd pull =
-      curvature.eigenvectors() * inverse.asDiagonal() * curvature.eigenvectors().transpose();
+  const double flat = 1e-9 * std::max(1e-300, curvature.values.cwiseAbs().maxCoeff());
+  const Eigen::VectorXd inverse = curvature.values.cwiseMax(flat).cwiseInverse();
+  const Eigen::MatrixXd pull = curvature.vectors * inverse.asDiagonal() * curvature.vectors.transpose();
   const Eigen::MatrixXd spread = gradient_covariance(gradient, m, sample, settings);
   const Eigen::MatrixXd scatter = basis * pull * spread * pull * basis.transpose();
   const Eigen::VectorXd least = 1e-12 * ranges_of(settings.range, model, free).cwiseAbs2();

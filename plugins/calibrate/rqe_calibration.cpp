@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <map>
 
@@ -11,6 +10,7 @@
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/can_be_told.hpp"
 #include "pipeline/estimate/observability.hpp"
+#include "pipeline/statistics/dense_solvers.hpp"
 #include "plugins/calibrate/deepest_valley.hpp"
 #include "plugins/calibrate/optimum_scatter.hpp"
 
@@ -82,7 +82,7 @@ class RqeCalibration {
     refuse_a_lag_without_end();
     tell(0.8, "standard errors");
     Eigen::MatrixXd covariance = scatter(used);
-    const auto known = observability(covariance.inverse(), parameters_.free, model_.names(),
+    const auto known = observability(inverse(covariance), parameters_.free, model_.names(),
                                      ranges_of(settings_.in_plane.range, model_, parameters_.free));
     if (known.known.size() < parameters_.free.size()) {
       parameters_.free = known.known;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/borne_out.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <map>
 #include <string>
+
+#include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 namespace {
@@ -32,8 +33,9 @@ double chance_of_neutral(const Candidate& candidate, const Outcome& outcome, con
   }
   if (at.empty()) return 0;
   const Eigen::MatrixXd covariance = outcome.covariance(at, at);
-  const Eigen::Map<const Eigen::VectorXd> change(off.data(), static_cast<Eigen::Index>(off.size()));
-  const double square = change.dot(covariance.ldlt().solve(change));
+  const Eigen::VectorXd change =
+      Eigen::Map<const Eigen::VectorXd>(off.data(), static_cast<Eigen::Index>(off.size()));
+  const double square = change.dot(solve_positive_definite(covariance, change));
   if (!(square > 0)) return 1;
   return cdf(complement(boost::math::chi_squared(static_cast<double>(off.size())), square));
 }

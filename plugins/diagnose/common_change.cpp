@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/common_change.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/fisher_f.hpp>
@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "pipeline/clocks/series.hpp"
+#include "pipeline/statistics/dense_solvers.hpp"
 #include "plugins/diagnose/series.hpp"
 
 namespace crisp {
@@ -149,7 +150,7 @@ CommonWander wander_of(const Eigen::MatrixXd& cosines, const Eigen::MatrixXd& re
                        const Eigen::VectorXd& values, double looks, std::uint64_t seed) {
   Eigen::MatrixXd design(values.size(), cosines.cols() + rest.cols());
   design << cosines, rest;
-  const Eigen::VectorXd fit = design.colPivHouseholderQr().solve(values);
+  const Eigen::VectorXd fit = least_squares(design, values);
   const Eigen::ArrayXd wander = cosines * fit.head(cosines.cols());
   return {.rms = std::sqrt((wander - wander.mean()).square().mean()),
           .p_value = std::min(1.0, looks * p_of_wander(rest, cosines, values)),

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/looks.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <limits>
+
+#include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 namespace {
@@ -15,12 +16,11 @@ Eigen::MatrixXd seen_directions(const Eigen::MatrixXd& matrix, const Eigen::Vect
   constexpr double kNothing = 1e-3;  // share of a parameter's own effect
   const Eigen::VectorXd scale =
       squares.unaryExpr([](double square) { return square > 0 ? 1 / std::sqrt(square) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * matrix *
-                                                              scale.asDiagonal());
-  const auto hidden = (solver.eigenvalues().array() <= kNothing).count();
+  const SymmetricEigen eigen = eigendecomposition(scale.asDiagonal() * matrix * scale.asDiagonal());
+  const auto hidden = (eigen.values.array() <= kNothing).count();
   const Eigen::Index seen = matrix.cols() - hidden;
-  return scale.asDiagonal() * solver.eigenvectors().rightCols(seen) *
-         solver.eigenvalues().tail(seen).cwiseSqrt().cwiseInverse().asDiagonal();
+  return scale.asDiagonal() * eigen.vectors.rightCols(seen) *
+         eigen.values.tail(seen).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
 /// By how much steps along some directions scatter, and how far they are beyond that.
@@ -71,7 +71,7 @@ StepSpread widest(const NormalEquations& equations, const std::vector<std::size_
   for (std::size_t division = 0; division < equations.pulls.size(); ++division) {
     const Eigen::MatrixXd pulls = equations.pulls_along(division, of, directions);
     const Eigen::MatrixXd covariance = pulls * pulls.transpose();
-    const Eigen::VectorXd solved = covariance.completeOrthogonalDecomposition().solve(steps);
+    const Eigen::VectorXd solved = minimum_norm_least_squares(covariance, steps);
     widest.p_value = std::max(widest.p_value,
                               std::min(by_hotelling(pulls, steps, solved), by_rao_and_scott(pulls, steps)));
     if (steps.dot(solved) > widest.wald) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/series.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +10,7 @@
 
 #include "pipeline/clocks/series.hpp"
 #include "pipeline/quality/resampling.hpp"
+#include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 namespace {
@@ -29,7 +30,7 @@ std::vector<double> left_of_others(const Eigen::MatrixXd& design, const Eigen::V
   Eigen::VectorXd left = values(rest);
   if (design.cols() > 0) {
     const Eigen::MatrixXd some = design(fitted, Eigen::all);
-    left -= design(rest, Eigen::all) * some.colPivHouseholderQr().solve(Eigen::VectorXd(values(fitted)));
+    left -= design(rest, Eigen::all) * least_squares(some, values(fitted));
   }
   return {left.begin(), left.end()};
 }

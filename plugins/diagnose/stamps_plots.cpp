@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/stamps_plots.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <limits>
 
 #include "pipeline/clocks/envelope.hpp"
 #include "pipeline/data/recordings.hpp"
+#include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 namespace {
@@ -24,7 +24,7 @@ Eigen::VectorXd shape_of(const ClockDeparture& departure, const Eigen::VectorXd&
 Eigen::VectorXd fitted(const Envelope& envelope, const ClockDeparture& departure) {
   Eigen::MatrixXd design(envelope.time.size(), 3);
   design << envelope.straight(), shape_of(departure, envelope.time);
-  return design * design.colPivHouseholderQr().solve(envelope.lead);
+  return design * least_squares(design, envelope.lead);
 }
 
 void add_point(double x, double y, PlotSeries& series) {
