@@ -5,8 +5,8 @@
 
 namespace crisp {
 
-// Eigen's decompositions of dynamic matrices, compiled once. Each is some seconds of compile time wherever it is
-// instantiated.
+// Eigen's decompositions of dynamic matrices, compiled once. Each is some seconds of compile time wherever it
+// is instantiated.
 
 /// Eigenvalues in ascending order, and the orthonormal eigenvectors as columns.
 struct SymmetricEigen {
