@@ -165,15 +165,29 @@ Sample thin_for(double sigma, const Sample& sample) {
   });
 }
 
+namespace {
+
+double usual_interval(const PlateTrajectory& piece) {
+  if (piece.size() < 2) return 0;
+  return (piece.end() - piece.begin()) / static_cast<double>(piece.size() - 1);
+}
+
+}  // namespace
+
 PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>& pieces) {
+  constexpr double kSame =
+      0.5;  // of the usual interval: what is nearer is the same reading, or as good as it
   if (pieces.empty()) return {};
   std::vector<double> times;
   std::vector<double> angles;
   std::vector<double> new_zeros;
   for (const auto& piece : pieces) {
+    const double same = kSame * usual_interval(*piece);
     new_zeros.insert(new_zeros.end(), piece->new_zeros().begin(), piece->new_zeros().end());
+    bool goes_on = times.empty();
     for (std::size_t i = 0; i < piece->size(); ++i) {
-      if (!times.empty() && piece->times()[i] <= times.back()) continue;
+      if (!goes_on && piece->times()[i] <= times.back() + same) continue;
+      goes_on = true;
       times.push_back(piece->times()[i]);
       angles.push_back(piece->angles()[i]);
     }

@@ -56,7 +56,10 @@ std::size_t beams_for(double sigma, std::size_t most);
 /// beams: a random choice would leave a wide kernel with valleys of its own.
 Sample thin_for(double sigma, const Sample& sample);
 
-/// Joins pieces of a trajectory that overlap or follow one another.
+/// Joins pieces of a trajectory that overlap or follow one another. The same reading has times in two pieces
+/// that differ by microseconds, since a clock's line is another in each: the earlier piece's counts, and the
+/// later one goes on at the first reading behind it. (Both, a nanosecond apart, would be a plate of 10⁷
+/// rad/s.)
 PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>& pieces);
 
 }  // namespace crisp

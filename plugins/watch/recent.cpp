@@ -8,12 +8,6 @@
 namespace crisp {
 namespace {
 
-/// [s] Half of the usual time between two readings: what is nearer is the same reading.
-double half_interval(const PlateTrajectory& piece) {
-  if (piece.size() < 2) return 0;
-  return 0.5 * (piece.end() - piece.begin()) / static_cast<double>(piece.size() - 1);
-}
-
 /// The same share of each batch, but not the same beams: what is not taken is never copied.
 void append_share(const Measurements& beams, double share, std::uint64_t lots, Measurements& to) {
   const auto count = static_cast<std::size_t>(std::lround(share * static_cast<double>(beams.size())));
@@ -40,21 +34,14 @@ Sample sample_of(const std::vector<Recent::Batch>& batches, std::size_t most, Pl
   for (const auto& batch : batches) beams_in_all += batch.beams->size();
   const double share = static_cast<double>(most) / static_cast<double>(beams_in_all);
   std::uint64_t lots = 0;
-  std::vector<double> times;
-  std::vector<double> angles;
+  std::vector<std::shared_ptr<const PlateTrajectory>> pieces;
   Sample sample{.plate = &plate};
   for (const auto& [beams, piece] : batches) {
-    const double apart = half_interval(*piece);
-    for (std::size_t i = 0; i < piece->size(); ++i) {
-      if (!times.empty() && piece->times()[i] <= times.back() + apart) continue;
-      times.push_back(piece->times()[i]);
-      angles.push_back(piece->angles()[i]);
-    }
+    if (pieces.empty() || pieces.back() != piece) pieces.push_back(piece);
     sample.beams.epoch_ns = beams->epoch_ns;
     append_share(*beams, share, ++lots, sample.beams);
   }
-  plate = PlateTrajectory(sample.beams.epoch_ns, std::move(times), std::move(angles),
-                          batches.front().plate->max_gap());
+  plate = joined(pieces);
   return sample;
 }
 

@@ -65,5 +65,21 @@ TEST(Sample, JoinedTrajectoriesAreOne) {
   EXPECT_NEAR(whole.at(1.005)->angle, 3.015, 1e-9);
 }
 
+TEST(Sample, TheSeamOfTwoPiecesHasTheRateOfThePlateWhateverTheirClocksDifferBy) {
+  for (const double off : {1e-12, 1e-9, 1e-6, -1e-9, 2e-5}) {
+    const auto piece = [](double from, double clock) {
+      std::vector<double> times, angles;
+      for (int k = 0; k < 500; ++k) {
+        times.push_back(from + 0.002 * k + clock);
+        angles.push_back(6 * (from + 0.002 * k));
+      }
+      return std::make_shared<const PlateTrajectory>(0, times, angles, 0.05);
+    };
+    const auto whole = joined({piece(0, 0), piece(0.5, off), piece(1, 2 * off)});
+    EXPECT_EQ(whole.size(), 1000U) << off;
+    for (const double rate : whole.rates()) EXPECT_NEAR(rate, 6, 0.1) << off;
+  }
+}
+
 }  // namespace
 }  // namespace crisp
