@@ -44,7 +44,11 @@ nlohmann::json to_json(const DeviceStatistics& device) {
                            {"skew_ppm", device.skew ? nlohmann::json(1e6 * *device.skew) : nlohmann::json()},
                            {"longest_silence", device.longest_silence},
                            {"longest_silence_begin", seconds(device.silence_ns)}};
-  if (!laser) return object;
+  if (!laser) {
+    object["counted_up"] = device.counted_up;
+    object["counted_down"] = device.counted_down;
+    return object;
+  }
   object["serial_numbers"] = device.serial_numbers;
   object["handover_median"] = to_json(device.median_handover);
   object["period_median"] = to_json(device.period);
@@ -78,6 +82,9 @@ std::string details(const DeviceStatistics& device) {
   for (const auto number : device.serial_numbers) text += fmt::format(", serial number {}", number);
   if (device.skew)
     text += fmt::format("\n  clock: {:+.1f} ppm against the hub's, at a first look", 1e6 * *device.skew);
+  if (device.counted_up + device.counted_down > 0) {
+    text += fmt::format("\n  encoder: counted {} up and {} down", device.counted_up, device.counted_down);
+  }
   if (device.period) {
     text += fmt::format("\n  mirror: {:.3f} ms a turn ({:.2f} Hz, {:.2f} Hz claimed)", 1e3 * *device.period,
                         1 / *device.period, device.nominal_frequency);

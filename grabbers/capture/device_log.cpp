@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace crisp {
 
@@ -130,6 +131,8 @@ void DeviceLog::note_scan(const Scan& scan) {
   const bool known = std::find(s.serial_numbers.begin(), s.serial_numbers.end(), scan.serial_number) !=
                      s.serial_numbers.end();
   if (!known && s.serial_numbers.size() < kMostSerialNumbers) s.serial_numbers.push_back(scan.serial_number);
+  if (scan.serial_number != last_serial_number_.value_or(scan.serial_number)) ++s.serial_changes;
+  last_serial_number_ = scan.serial_number;
   if (scan.device_status != 0) note("scans whose device reported an error or pollution");
   handover_.add(1e-6 * static_cast<std::uint32_t>(scan.transmission_time_us - scan.scan_time_us));
   if (last_scan_) {
@@ -148,6 +151,9 @@ std::optional<PlateReading> DeviceLog::take(const PlateReading& reading) {
   count_telegram("PPLT");
   if (!is_new(reading.sequence, reading.device_us, reading.receipt_ns)) return {};
   note_time(reading.receipt_ns);
+  const auto steps = static_cast<std::int32_t>(reading.count - last_count_.value_or(reading.count));
+  (steps > 0 ? statistics_.counted_up : statistics_.counted_down) += std::abs(std::int64_t{steps});
+  last_count_ = reading.count;
   return reading;
 }
 

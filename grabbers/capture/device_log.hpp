@@ -57,6 +57,8 @@ class DeviceLog {
   RoughClock clock_;
   RunningMedian handover_, period_;
   std::optional<std::pair<std::uint16_t, std::uint32_t>> last_scan_;  ///< its counter and time
+  std::optional<std::uint32_t> last_serial_number_;
+  std::optional<std::uint32_t> last_count_;  ///< of a plate's encoder
 };
 
 }  // namespace crisp

@@ -2,6 +2,7 @@
 #include "grabbers/capture/loss_warnings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "grabbers/capture/capture_report.hpp"
 #include "grabbers/capture/packet.hpp"
@@ -42,6 +43,20 @@ std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, cons
                     100 * share(lost, sent), title(device), lost, sent, laser ? "scans" : "readings"));
   }
   return warnings;
+}
+
+std::vector<std::string> address_conflicts(const CaptureStatistics& statistics) {
+  std::vector<std::string> caveats;
+  for (const auto& device : statistics.devices) {
+    if (device.name.empty() || device.serial_changes < 2) continue;
+    caveats.push_back(
+        fmt::format("{}: {} units (serial numbers {}) send in turn from {}, so its scans are of several "
+                    "lasers. Give each unit an "
+                    "address of its own",
+                    device.name, device.serial_numbers.size(), fmt::join(device.serial_numbers, ", "),
+                    device.address.ip));
+  }
+  return caveats;
 }
 
 }  // namespace crisp

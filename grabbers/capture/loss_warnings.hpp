@@ -13,4 +13,8 @@ namespace crisp {
 /// @param source  what the warnings call it: the file's name; empty for devices that are live
 std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, const std::string& source = "");
 
+/// Caveats on lasers of the rig whose scans come from several units in turn, by their serial numbers: two
+/// units have one address, and their scans are no sequence. (A unit that was replaced once is none.)
+std::vector<std::string> address_conflicts(const CaptureStatistics& statistics);
+
 }  // namespace crisp

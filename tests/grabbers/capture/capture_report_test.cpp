@@ -21,6 +21,7 @@ TEST(CaptureReport, TellsPeopleWhatACaptureHolds) {
   EXPECT_THAT(text, AllOf(HasSubstr("541 beams from -45 by 0.5 deg"), HasSubstr("serial number 1001"),
                           HasSubstr("20.000 ms a turn"), HasSubstr("17.00 ms after its stamp")));
   EXPECT_THAT(text, AllOf(HasSubstr("20 sSN LMDscandata"), HasSubstr("200 PPLT")));
+  EXPECT_THAT(text, HasSubstr("encoder: counted 3184 up and 0 down"));  // 199 times 16
   EXPECT_THAT(text, testing::Not(HasSubstr("lost:")));
 }
 

@@ -142,6 +142,15 @@ TEST_F(CaptureStageTest, DoubtsWhatComesWhereALaserSpeaksFromAnotherAddress) {
                                    HasSubstr("nothing came of laser3")));
 }
 
+TEST_F(CaptureStageTest, DoubtsTwoLasersThatHaveOneAddress) {
+  scenario_.same_address = true;
+  write_file(folder_ / "hub.pcap", pcap_file(scenario_.frames()));
+  const auto result = run(file());
+  EXPECT_THAT(
+      result.report.doubts,
+      Contains(HasSubstr("laser1: 2 units (serial numbers 1000, 1001) send in turn from 192.168.0.1")));
+}
+
 TEST_F(CaptureStageTest, SaysWhatIsLeftOfACaptureThatIsShorterThanBegin) {
   EXPECT_THAT(complaint(file() + ", begin: 100s"),
               testing::AllOf(HasSubstr("begin and duration leave nothing of " +

@@ -35,7 +35,10 @@ std::vector<Frame> Scenario::frames() const {
   std::vector<Frame> all;
   FrameSorter sorter(into(all), 1'000'000'000);
   const FrameSink sink = [&](std::int64_t t, ByteView b) { sorter.push(t, b); };
-  std::vector<TcpConversation> lasers{{kLaser1, kHub, sink, tcp}, {kLaser2, kHub, sink, tcp}};
+  const Address other_port{kHub.ip, static_cast<std::uint16_t>(kHub.port + 1)};
+  std::vector<TcpConversation> lasers{
+      {kLaser1, kHub, sink, tcp},
+      {same_address ? kLaser1 : kLaser2, same_address ? other_port : kHub, sink, tcp}};
   DatagramSender plate(kPlate, kHubPlate, sink);
   for (std::size_t laser = 0; handshake && laser < 2; ++laser) {
     lasers[laser].open(kStart - 500 * kMillisecond);
@@ -46,7 +49,9 @@ std::vector<Frame> Scenario::frames() const {
   }
   for (std::size_t k = 0; k < scans; ++k) {
     for (std::size_t laser = 0; laser < 2; ++laser) {
-      lasers[laser].send(TcpSide::Server, encode_scan_data(scan_of(laser, k, beams), language),
+      ScanData scan = scan_of(laser, k, beams);
+      if (same_address && laser == 1) scan.telegram_counter += 1000;
+      lasers[laser].send(TcpSide::Server, encode_scan_data(scan, language),
                          scan_time(laser, k));
     }
     for (std::size_t j = 10 * k; j < 10 * k + 10; ++j) {

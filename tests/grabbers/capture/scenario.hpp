@@ -14,6 +14,7 @@ struct Scenario {
   ColaLanguage language = ColaLanguage::B;
   TcpSettings tcp;
   bool handshake = true;
+  bool same_address = false;  ///< the second laser has the first one's
 
   std::vector<Frame> frames() const;   ///< what tcpdump would have captured
   std::vector<HubItem> items() const;  ///< what a reader is to find, in order
