@@ -2,10 +2,10 @@
 #include "grabbers/simulate/measurements.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "grabbers/simulate/sweep.hpp"
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/mirror_angle.hpp"
 
 namespace crisp {
 namespace {
@@ -15,7 +15,7 @@ constexpr std::int64_t kEpoch = 1'767'225'600'000'000'000;  // 2026-01-01 00:00 
 
 PlateTrajectory read_encoder(const ScannerSettings& settings, const Motion& motion) {
   if (!(settings.plate_frequency > 0)) throw Error("the plate must report more than 0 readings a second");
-  const double step = 2 * std::numbers::pi / settings.rig.plate.counts_per_revolution;
+  const double step = settings.rig.plate.angle_per_count();
   const auto readings =
       static_cast<std::size_t>(std::ceil((settings.duration + 2 * kMargin) * settings.plate_frequency)) + 1;
   std::vector<double> times;
@@ -38,8 +38,8 @@ void append(SimulatedMeasurements& result, const Sweep& sweep, const ScannerSett
       continue;
     }
     to.range.push_back(sweep.ranges[i]);
-    to.mirror_angle.push_back(
-        static_cast<float>(settings.field.first + sweep.beams[i] * settings.field.step - mount));
+    to.mirror_angle.push_back(static_cast<float>(
+        wrapped_mirror_angle(settings.field.first + sweep.beams[i] * settings.field.step - mount)));
     to.time.push_back(sweep.times[i] - eta);
     to.laser.push_back(sweep.laser);
     to.remission.push_back(sweep.remissions[i]);

@@ -2,7 +2,6 @@
 #include "grabbers/simulate/plate_unit.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "pipeline/data/error.hpp"
 
@@ -37,7 +36,7 @@ std::optional<PlateReading> PlateUnit::send() {
     restarts_ = restarts;
     sequence_ = 0;
   }
-  const double step = 2 * std::numbers::pi / settings_.scanner.rig.plate.counts_per_revolution;
+  const double step = settings_.scanner.rig.plate.angle_per_count();
   PlateReading reading;
   reading.sequence = sequence_++;
   reading.device_us = truth_.clock.microseconds(read);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/mirror_angle.hpp"
 
 namespace crisp {
 namespace {
@@ -46,7 +47,7 @@ std::int64_t TableItems::time_of(const TableRow& row, std::int64_t turn) const {
 double TableItems::seconds(std::int64_t ns) const { return static_cast<double>(ns - epoch_ns_) / kNano; }
 
 double TableItems::unwrapped(double angle) const {
-  const double step = kTurn / rig_.plate.counts_per_revolution;
+  const double step = std::abs(rig_.plate.angle_per_count());
   const double rounded = std::round(angle / step) * step;
   if (!last_angle_) return rounded;
   return rounded + kTurn * std::round((*last_angle_ - rounded) / kTurn);
@@ -90,7 +91,7 @@ void TableItems::add_beams(const TableRow& row, double time) {
     if (!(row.ranges[k] > 0)) continue;
     const auto n = static_cast<double>(k);
     beams.range.push_back(row.ranges[k]);
-    beams.mirror_angle.push_back(static_cast<float>(first + n * settings_.angle_step));
+    beams.mirror_angle.push_back(static_cast<float>(wrapped_mirror_angle(first + n * settings_.angle_step)));
     beams.time.push_back(time + n * settings_.beam_interval);
     beams.laser.push_back(row.laser);
     beams.remission.push_back(row.remissions.empty() ? 0.0F : row.remissions[k]);
@@ -135,7 +136,7 @@ std::optional<TableScan> TableItems::add(const TableRow& row) {
 TableScan TableItems::add(const TableRow& row, std::int64_t time_ns) {
   if (rows_ == 0) epoch_ns_ = time_ns - time_ns % kSecond;
   const double time = seconds(time_ns);
-  const double angle = unwrapped(row.angle);
+  const double angle = unwrapped(std::copysign(1.0, rig_.plate.angle_per_count()) * row.angle);
   last_angle_ = angle;
   const bool stands = settings_.actuator == ActuatorMotion::stands;
   const double lasts = static_cast<double>(row.ranges.size()) * settings_.beam_interval;
@@ -147,7 +148,7 @@ TableScan TableItems::add(const TableRow& row, std::int64_t time_ns) {
   TableScan item;
   if (format_.angle_column && (!last_reading_us_ || time_ns / kMicrosecond > *last_reading_us_)) {
     last_reading_us_ = time_ns / kMicrosecond;
-    const double counts = std::round(angle / kTurn * rig_.plate.counts_per_revolution);
+    const double counts = std::round(angle / rig_.plate.angle_per_count());
     item.reading = PlateReading{.sequence = readings_++,
                                 .device_us = wrapped_us((time_ns - epoch_ns_) / kMicrosecond),
                                 .count = static_cast<std::uint32_t>(static_cast<std::int64_t>(counts)),

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/data/count_direction.hpp"
+
 namespace crisp {
 
 /// One parameter of the sensor model, in SI units and radians.
@@ -57,9 +59,10 @@ struct Unobservable {
 struct Calibration {
   std::vector<LaserCalibration> lasers;  ///< in the order of the rig
   std::vector<TermParameters> plate_terms;
-  std::vector<std::string> covariance_order;  ///< "laser1.tau", … the m free parameters
-  std::vector<double> covariance;             ///< m × m, row by row, products of their units
-  std::map<std::string, double> quality;      ///< "rqe_before", "rqe_after", …
+  CountDirection direction = CountDirection::counter_clockwise;  ///< of the encoder that they were found with
+  std::vector<std::string> covariance_order;                     ///< "laser1.tau", … the m free parameters
+  std::vector<double> covariance;         ///< m × m, row by row, products of their units
+  std::map<std::string, double> quality;  ///< "rqe_before", "rqe_after", …
   std::vector<Unobservable> unobservable;
   std::vector<std::string> doubts;  ///< why it cannot be trusted, in words; empty if it can
   std::map<std::string, std::string> provenance;

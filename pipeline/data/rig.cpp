@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/data/rig.hpp"
 
+#include <numbers>
+
 #include "pipeline/data/degree.hpp"
 
 namespace crisp {
+
+double RigPlate::angle_per_count() const {
+  const double step = 2 * std::numbers::pi / counts_per_revolution;
+  return direction == CountDirection::clockwise ? -step : step;
+}
 
 Calibration nominal_calibration(const Rig& rig) {
   Calibration calibration;
@@ -11,6 +18,7 @@ Calibration nominal_calibration(const Rig& rig) {
     calibration.lasers.push_back(laser.nominal);
     calibration.lasers.back().name = laser.name;
   }
+  if (rig.plate.direction == CountDirection::clockwise) calibration.direction = CountDirection::clockwise;
   return calibration;
 }
 

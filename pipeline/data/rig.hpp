@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/data/calibration.hpp"
+#include "pipeline/data/count_direction.hpp"
 
 namespace crisp {
 
@@ -23,7 +24,7 @@ struct RigLaser {
   double mount = 0;          ///< [rad] θ = reported angle − mount
   double time_offset = 0;    ///< [s] from the scan's stamp to its first possible beam
   int period_offset = 0;     ///< whole mirror periods between them (−1: the stamp is one period late)
-  LaserCalibration nominal;  ///< the values to start from
+  LaserCalibration nominal;  ///< the values to start from; a std_error of 0: the rig gives none
 };
 
 /// The plate and its encoder.
@@ -31,6 +32,10 @@ struct RigPlate {
   std::string name = "plate";
   Address address;
   double counts_per_revolution = 16384;
+  CountDirection direction = CountDirection::counter_clockwise;
+
+  /// [rad] By how much one count turns the plate; negative where it counts clockwise.
+  double angle_per_count() const;
 };
 
 /// The scanner: what is screwed to what, and under which address it speaks.

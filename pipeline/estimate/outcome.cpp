@@ -49,12 +49,16 @@ Calibration calibration_of(const Outcome& outcome, const Rig& rig) {
     const auto at = found - order.begin();
     parameter.std_error = parameter.free ? std::sqrt(outcome.covariance(at, at)) : 0;
   });
+  calibration.unobservable = outcome.unobservable;
+  return with_lambdas_near(std::move(calibration), rig);
+}
+
+Calibration with_lambdas_near(Calibration calibration, const Rig& rig) {
   for (std::size_t i = 0; i < std::min(calibration.lasers.size(), rig.lasers.size()); ++i) {
     double& lambda = calibration.lasers[i].lambda.value;
     const double nominal = rig.lasers[i].nominal.lambda.value;
     lambda = nominal + std::remainder(lambda - nominal, 2 * std::numbers::pi);
   }
-  calibration.unobservable = outcome.unobservable;
   return calibration;
 }
 

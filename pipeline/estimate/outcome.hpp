@@ -23,6 +23,9 @@ struct Outcome {
 /// given within half a turn of the rig's.
 Calibration calibration_of(const Outcome& outcome, const Rig& rig);
 
+/// The calibration with each λ within half a turn of the rig's.
+Calibration with_lambdas_near(Calibration calibration, const Rig& rig);
+
 /// A table for people: each parameter in mm, degrees and ms, its standard error and its change from the
 /// rig's nominal value.
 std::string table_of(const Calibration& calibration, const Rig& rig);

@@ -155,38 +155,60 @@ class OfLaser {
   double size_ = 0;
 };
 
+/// [m] By how much each beam's range scatters; 0 where nothing tells it.
+std::vector<double> noise_by_neighbours(const Surfels& surfels, const BeamsView& placed,
+                                        const Measurements& beams, const SurfelSettings& settings) {
+  Quantities by{.incidence = beams.cos_incidence, .remission = beams.remission, .range = beams.range};
+  std::vector<OfLaser> lasers;
+  for (const auto& pairs : pairs_by_laser(surfels, placed, beams, settings, by.range))
+    lasers.emplace_back(pairs, by);
+  std::vector<double> sizes(beams.size(), 0);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const std::size_t laser = beams.laser[i];
+    if (laser < lasers.size()) sizes[i] = lasers[laser].at(static_cast<std::uint32_t>(i));
+  }
+  return sizes;
+}
+
+/// Sums over beams that count and whose noise is known.
+struct NoiseSums {
+  double count = 0;
+  double squares = 0;  // [m²]
+  double inverse = 0;  // [1/m²]
+
+  double usual() const { return count > 0 ? std::sqrt(count / inverse) : 0; }
+};
+
+NoiseSums sums_of(const Surfels& surfels, const std::vector<double>& sizes) {
+  NoiseSums sums;
+  for (std::size_t m = 0; m < surfels.members.size(); ++m) {
+    const double size = sizes[surfels.members[m]];
+    if (surfels.weights[m] == 0 || size == 0) continue;
+    sums.inverse += 1 / (size * size);
+    sums.squares += size * size;
+    sums.count += 1;
+  }
+  return sums;
+}
+
 }  // namespace
+
+double neighbour_noise(const Surfels& surfels, const BeamsView& placed, const Measurements& beams,
+                       const SurfelSettings& settings) {
+  return sums_of(surfels, noise_by_neighbours(surfels, placed, beams, settings)).usual();
+}
 
 std::vector<float> relative_noise(const Surfels& surfels, const BeamsView& placed, const Measurements& beams,
                                   const SurfelSettings& settings) {
   constexpr double kLeastGain = 0.05;
   constexpr double kMost = 4;  // times more or less: beyond, it is what few beams of a step have by chance
-  Quantities by{.incidence = beams.cos_incidence, .remission = beams.remission, .range = beams.range};
-  std::vector<OfLaser> lasers;
-  for (const auto& pairs : pairs_by_laser(surfels, placed, beams, settings, by.range))
-    lasers.emplace_back(pairs, by);
-
-  std::vector<double> sizes(beams.size(), 0);  // [m] 0 where nothing tells it
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const std::size_t laser = beams.laser[i];
-    if (laser < lasers.size()) sizes[i] = lasers[laser].at(static_cast<std::uint32_t>(i));
-  }
-  double inverse = 0;
-  double squares = 0;
-  double count = 0;
-  for (std::size_t m = 0; m < surfels.members.size(); ++m) {
-    const double size = sizes[surfels.members[m]];
-    if (surfels.weights[m] == 0 || size == 0) continue;
-    inverse += 1 / (size * size);
-    squares += size * size;
-    count += 1;
-  }
+  const std::vector<double> sizes = noise_by_neighbours(surfels, placed, beams, settings);
+  const NoiseSums sums = sums_of(surfels, sizes);
   // By so much less is the variance of a mean if its values are weighted.
-  if (count == 0 || squares * inverse < (1 + kLeastGain) * count * count) return {};
-  const double usual = std::sqrt(count / inverse);
+  if (sums.count == 0 || sums.squares * sums.inverse < (1 + kLeastGain) * sums.count * sums.count) return {};
   std::vector<float> relative(sizes.size(), 1.0F);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    if (sizes[i] > 0) relative[i] = static_cast<float>(std::clamp(sizes[i] / usual, 1 / kMost, kMost));
+    if (sizes[i] > 0) relative[i] = static_cast<float>(std::clamp(sizes[i] / sums.usual(), 1 / kMost, kMost));
   }
   return relative;
 }

@@ -15,6 +15,12 @@ inline bool are_neighbours(const Measurements& beams, std::uint32_t before, std:
   return beams.laser[before] == beams.laser[beam] && beams.time[beam] - beams.time[before] <= kOneScan;
 }
 
+/// [m] By how much ranges scatter from neighbour to neighbour on flat surfaces: the root of the harmonic mean
+/// of the beams' variances, as relative_noise() determines them. However wrong a calibration is, neighbours
+/// share its error. 0 where too few are there.
+double neighbour_noise(const Surfels& surfels, const BeamsView& placed, const Measurements& beams,
+                       const SurfelSettings& settings);
+
 /// How much each beam's range scatters beside the others', as the data show it: a factor of its laser's, and
 /// one each of the range, of the incidence and of the remission (in steps of equally many beams). They are
 /// told from neighbours, beams of one scan on one surface: how the median of their differences goes with each

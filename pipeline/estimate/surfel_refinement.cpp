@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 
+#include "pipeline/data/each_parameter.hpp"
 #include "pipeline/data/error.hpp"
-#include "pipeline/estimate/agreement.hpp"
+#include "pipeline/data/shown_unit.hpp"
 #include "pipeline/estimate/base_slots.hpp"
 #include "pipeline/estimate/can_be_told.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
@@ -23,6 +25,7 @@
 #include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/estimate/steady.hpp"
 #include "pipeline/estimate/surfel_rows.hpp"
+#include "pipeline/estimate/view_consistency.hpp"
 
 namespace crisp {
 namespace {
@@ -42,7 +45,8 @@ class Refiner {
   /// @return  whether nothing more is to be expected of the next one
   bool step() {
     const PlacedBeams placed(model_, sample_);
-    found_ = steady_ones(surfaces_->update(placed.view(noise_), last_step_), placed.view(noise_));
+    all_ = surfaces_->update(placed.view(noise_), last_step_);
+    found_ = steady_ones(all_, placed.view(noise_));
     if (found_.surfels.empty()) {
       throw Error(
           "no flat surface is seen by these data",
@@ -65,7 +69,6 @@ class Refiner {
     const Eigen::VectorXd after = within_bounds(model_, free_, before - posterior.solve(pull));
     const Eigen::VectorXd change = after - before;
     model_ = with(model_, free_, after);
-    agreement_ = agreement(found_, placed.view(noise_), model_.lasers(), settings_.surfels.noise);
     last_step_ = (change.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
     const bool weighs_anew = tell_noise(placed.view(noise_));
     return surfaces_->is_settled() && last_step_ < settings_.tolerance && !weighs_anew;
@@ -98,14 +101,23 @@ class Refiner {
   const std::vector<std::size_t>& free() const { return free_; }
 
   Refinement result() const {
-    return {.outcome = {.model = model_,
-                        .free = free_,
-                        .covariance = covariance_,
-                        .unobservable = {},
-                        .doubts = doubts()},
-            .surfels = found_.surfels.size(),
-            .beams = equations_.beams,
-            .chi2 = equations_.chi2 / std::max(1.0, equations_.freedom)};
+    Refinement result{.outcome = {.model = model_,
+                                  .free = free_,
+                                  .covariance = covariance_,
+                                  .unobservable = {},
+                                  .doubts = {}},
+                      .surfels = found_.surfels.size(),
+                      .beams = equations_.beams,
+                      .chi2 = equations_.chi2 / std::max(1.0, equations_.freedom)};
+    if (found_.surfels.empty()) return result;
+    const PlacedBeams placed(model_, sample_);
+    result.scatter = neighbour_noise(found_, placed.view(noise_), sample_.beams, settings_.surfels);
+    for (const ViewPartition& partition : view_partitions(sample_, lasers())) {
+      const auto pairs = view_consistency(all_, placed.view(noise_), partition, settings_.surfels.noise);
+      if (const auto caveat = inconsistency(partition, pairs)) result.outcome.doubts.push_back(*caveat);
+      result.views.insert(result.views.end(), pairs.begin(), pairs.end());
+    }
+    return result;
   }
 
  private:
@@ -129,22 +141,13 @@ class Refiner {
     return kept(found, steady_);
   }
 
-  std::vector<std::string> doubts() const {
-    std::vector<std::string> lasers;
+  std::vector<std::string> lasers() const {
+    std::vector<std::string> names;
     for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
       const std::string& lambda = model_.names()[slot(model_, laser, kLambda)];
-      lasers.push_back(lambda.substr(0, lambda.rfind('.')));
+      names.push_back(lambda.substr(0, lambda.rfind('.')));
     }
-    std::vector<std::string> found = disagreements(agreement_, lasers);
-    const Eigen::VectorXd priors = ranges_of(settings_.prior, model_, free_);
-    const Eigen::VectorXd moved = (picked(model_, free_) - picked(start_, free_)).cwiseQuotient(priors);
-    for (std::size_t k = 0; k < free_.size(); ++k) {
-      constexpr double kFar = 2;  // of what the start was trusted to
-      if (std::abs(moved[static_cast<Eigen::Index>(k)]) < kFar) continue;
-      found.push_back(fmt::format("{} was refined to far from where it started: one of both is wrong",
-                                  model_.names()[free_[k]]));
-    }
-    return found;
+    return names;
   }
 
   SensorModel start_;
@@ -154,15 +157,41 @@ class Refiner {
   std::vector<bool> steady_;  // of the surfels
   std::vector<float> noise_;  // of the beams, beside one another
   int told_ = 0;
-  Agreement agreement_;
   std::unique_ptr<FlatSurfaces> surfaces_;
   const RefinementSettings& settings_;
-  Surfels found_;  // that count, in the last round
+  Surfels all_;    // in the last round
+  Surfels found_;  // of them those that count
   NormalEquations equations_;
   Eigen::MatrixXd information_;
   Eigen::MatrixXd covariance_;
   double last_step_ = std::numeric_limits<double>::infinity();
 };
+
+/// Refuses standard errors that the noise of so many beams does not allow: a fault of this program, as where
+/// one beam was taken to move infinitely fast.
+void check_errors(const Refinement& result, const Measurements& beams, const SurfelSettings& settings) {
+  constexpr double kFastest = 2 * std::numbers::pi * 100;  // [rad/s] of a plate
+  const double farthest = beams.range.empty() ? 0 : *std::ranges::max_element(beams.range);
+  const double across =
+      settings.floor / std::sqrt(static_cast<double>(std::max<std::size_t>(1, beams.size())));
+  const std::map<std::string, double> most = {// [m] by which one unit of each moves a point
+                                              {".lambda", 1 + farthest},
+                                              {".tau", 1},
+                                              {".alpha", farthest},
+                                              {".eta", kFastest * (1 + farthest)}};
+  for (std::size_t k = 0; k < result.outcome.free.size(); ++k) {
+    const std::string& name = result.outcome.model.names()[result.outcome.free[k]];
+    const auto kind = most.find(name.substr(name.find('.')));
+    const auto i = static_cast<Eigen::Index>(k);
+    if (kind == most.end() || result.outcome.covariance(i, i) >= std::pow(across / kind->second, 2)) continue;
+    throw Error(
+        fmt::format(
+            "{} came out with a standard error of {:.2g}, less than the beams' noise allows: a fault of "
+            "this program",
+            name, std::sqrt(result.outcome.covariance(i, i))),
+        "please report it with the capture");
+  }
+}
 
 /// One laser that has not come round to see surfaces from its other side, too, has only their flatness to go
 /// by, and takes what is not flat for an error of its own.
@@ -176,10 +205,8 @@ std::optional<std::string> doubt_of_half_a_turn(const SensorModel& model, const 
       way * 180 / std::numbers::pi);
 }
 
-}  // namespace
-
-Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
-                             const RefinementSettings& settings, const RoundReporter& report) {
+Refinement refine_once(const SensorModel& start, const Sample& sample, const RefinementSettings& settings,
+                       const RoundReporter& report) {
   const LagRange lag = lag_range(start, settings.prior.eta);
   Sample inside = covered(sample, lag.earliest, lag.latest);
   const auto doubt = doubt_of_half_a_turn(start, inside);
@@ -202,6 +229,7 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
   if (refiner.free().empty()) throw Error("these data determine none of the parameters");
   refiner.widen_by_shared_errors();
   Refinement result = refiner.result();
+  if (round > 0) check_errors(result, sample.beams, settings.surfels);
   result.outcome.unobservable = std::move(parameters.unobservable);
   if (doubt) result.outcome.doubts.push_back(*doubt);
   result.rounds = round;
@@ -209,6 +237,51 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
   if (!converged && round == settings.max_rounds) {
     result.outcome.doubts.push_back(
         fmt::format("the refinement still moved after {} rounds: its standard errors are too small", round));
+  }
+  return result;
+}
+
+/// The free parameters that a refinement moved by more than twice what its start was trusted to, in words.
+std::vector<std::string> far_moves(const SensorModel& start, const Outcome& found, const SearchRange& prior) {
+  constexpr double kFar = 2;
+  std::map<std::string, ShownUnit> units;
+  const Calibration calibration = found.model.calibration();
+  for_each_parameter(calibration, [&](const std::string& name, const Parameter& parameter) {
+    units[name] = shown_unit(parameter.unit);
+  });
+  const Eigen::VectorXd trusted = kFar * ranges_of(prior, start, found.free);
+  const Eigen::VectorXd from = picked(start, found.free);
+  const Eigen::VectorXd to = picked(found.model, found.free);
+  std::vector<std::string> moves;
+  for (Eigen::Index k = 0; k < from.size(); ++k) {
+    if (std::abs(to[k] - from[k]) <= trusted[k]) continue;
+    const std::string& name = start.names()[found.free[static_cast<std::size_t>(k)]];
+    const ShownUnit& unit = units.at(name);
+    moves.push_back(fmt::format("{} moved from {:.4g} to {:.4g} {}, by more than {:.3g} {}", name,
+                                from[k] * unit.factor, to[k] * unit.factor, unit.name,
+                                trusted[k] * unit.factor, unit.name));
+  }
+  return moves;
+}
+
+}  // namespace
+
+Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
+                             const RefinementSettings& settings, const RoundReporter& report) {
+  constexpr int kRestarts = 3;
+  Refinement result = refine_once(start, sample, settings, report);
+  SensorModel from = start;
+  // The start counts as an observation: a start that was far off would draw the result towards itself.
+  for (int restart = 0; restart < kRestarts; ++restart) {
+    if (far_moves(from, result.outcome, settings.prior).empty()) return result;
+    from = result.outcome.model;
+    result = refine_once(from, sample, settings, report);
+  }
+  for (const std::string& move : far_moves(from, result.outcome, settings.prior)) {
+    result.outcome.doubts.push_back(fmt::format(
+        "the refinement did not settle: {} in its last of {} restarts. Check the rig's mount and nominal "
+        "values, or start from a better calibration (calibrate.load)",
+        move, kRestarts));
   }
   return result;
 }

@@ -8,6 +8,7 @@
 #include "pipeline/estimate/outcome.hpp"
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/estimate/search_range.hpp"
+#include "pipeline/estimate/view_consistency.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
 
 namespace crisp {
@@ -27,6 +28,9 @@ struct Refinement {
   std::size_t surfels = 0;  ///< flat surfaces found at last
   std::size_t beams = 0;    ///< beams on them that count
   double chi2 = 0;          ///< weighted squares of the distances to them, in units of the noise, per freedom
+  double scatter =
+      0;  ///< [m] of ranges from neighbour to neighbour on a surface, see neighbour_noise(); 0: unknown
+  std::vector<ViewConsistency> views;  ///< how consistent the beams' views of the surfaces are
   int rounds = 0;
   bool converged = false;
 };

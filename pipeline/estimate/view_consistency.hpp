@@ -1,28 +1,54 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/surfels.hpp"
 
 namespace crisp {
 
-/// Whether lasers meet the same surfaces at the same places: what tells a calibration from one that ended
-/// elsewhere, where each laser has crisp surfaces of its own.
-struct Agreement {
-  /// For each laser (or, if there is but one, its front and its back) the share of its beams on surfaces that
-  /// lie on such as another one meets within 3 σ of the ranges' noise. Negative for one without beams there.
-  std::vector<double> shares;
-  bool by_halves = false;  ///< whether `shares` are of the one laser's front and back
+/// A division of beams into views of the same scene that a right calibration makes consistent.
+struct ViewPartition {
+  std::vector<std::string> views;      ///< in words: "laser1", "the fronts", "the first quarter"
+  std::vector<std::uint32_t> of_beam;  ///< index into `views` of each beam
+  std::string advice;                  ///< what it means that they are inconsistent, and what to do
 };
 
-/// @param beams   whose view is 2 · laser, and one more for the back half of its sweep
-/// @param lasers  how many
-/// @param noise   [m] standard deviation of a range
-Agreement agreement(const Surfels& surfels, const BeamsView& beams, std::size_t lasers, double noise);
+/// The partitions that show a wrong calibration: by laser (if there are several), which a wrong λ, τ or α
+/// parts; by half of the sweep, which a wrong mount, mirror or eccentric encoder parts; and by quarter of
+/// each recording, which an encoder that slips or drifts parts.
+///
+/// @param names  of the lasers, in the order of their numbers
+std::vector<ViewPartition> view_partitions(const Sample& sample, const std::vector<std::string>& names);
 
-/// For each laser with less than half of its beams in agreement a sentence that says so.
-std::vector<std::string> disagreements(const Agreement& agreement, const std::vector<std::string>& lasers);
+/// Errors about the spin axis show on upright surfaces alone.
+enum class Orientation : std::uint8_t { upright, level };
+
+/// How far one view sees flat surfaces where another one does.
+struct ViewConsistency {
+  std::string view;
+  std::string other;
+  Orientation orientation = Orientation::upright;  ///< of the surfaces
+  double beams = 0;  ///< of `view` on them, in directions in which `other` measures as well
+  double share = 0;  ///< of these, on surfaces that `other` meets within 3 standard deviations of a range
+};
+
+/// All ordered pairs of a partition's views that have beams on such surfaces in the same directions, in the
+/// order of the views. Pairs with few such beams are left out.
+///
+/// @param noise  [m] standard deviation of a range
+std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const BeamsView& beams,
+                                              const ViewPartition& partition, double noise);
+
+/// "walls" or "floors and ceilings".
+const char* in_words(Orientation orientation);
+
+/// The least consistent pair of a partition's views, as a caveat, if less than half of its beams agree.
+std::optional<std::string> inconsistency(const ViewPartition& partition,
+                                         const std::vector<ViewConsistency>& pairs);
 
 }  // namespace crisp

@@ -64,6 +64,13 @@ class CalibrationReader {
 
   void read_plate(const YamlNode& node) {
     YamlMap map(node, "plate", errors_);
+    const std::string direction = map.text("direction", "counter_clockwise");
+    if (direction == "clockwise") {
+      calibration_.direction = CountDirection::clockwise;
+    } else if (direction != "counter_clockwise") {
+      map.fail(map.find("direction")->place, "'direction': '" + direction + "' is no sense of rotation",
+               "a calibration holds for counter_clockwise or clockwise");
+    }
     if (const YamlNode* terms = map.find("terms")) {
       calibration_.plate_terms = read_terms(*terms, "plate", TermOwner::plate);
     }

@@ -119,6 +119,13 @@ std::string doubts(const Calibration& c) {
   return out.empty() ? out : "doubts:\n" + out;
 }
 
+std::string plate(const Calibration& c) {
+  const bool clockwise = c.direction == CountDirection::clockwise;
+  if (!clockwise && c.plate_terms.empty()) return "plate: {}\n";
+  return fmt::format("plate:\n{}{}", clockwise ? "    direction: clockwise\n" : "",
+                     terms(c.plate_terms, "plate"));
+}
+
 std::string provenance(const Calibration& c) {
   if (c.provenance.empty()) return "provenance: {}\n";
   std::string out = "provenance:\n";
@@ -131,11 +138,7 @@ std::string provenance(const Calibration& c) {
 std::string to_yaml(const Calibration& c) {
   std::string out = "crisp: 1\n" + doubts(c) + "lasers:\n";
   for (const auto& l : c.lasers) out += laser(l);
-  if (c.plate_terms.empty())
-    out += "plate: {}\n";
-  else
-    out += "plate:\n" + terms(c.plate_terms, "plate");
-  return out + covariance(c) + quality(c) + provenance(c);
+  return out + plate(c) + covariance(c) + quality(c) + provenance(c);
 }
 
 void write_calibration(const std::filesystem::path& file, const Calibration& calibration) {

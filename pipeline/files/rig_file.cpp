@@ -101,8 +101,22 @@ class RigReader {
     constexpr std::int64_t kMostSteps = std::int64_t{1} << 31;
     rig_.plate.counts_per_revolution =
         static_cast<double>(map.integer("counts_per_revolution", 16384, 2, kMostSteps));
+    rig_.plate.direction = direction(map);
     map.refuse_others();
     devices_.push_back({rig_.plate.name, rig_.plate.address, node.place});
+  }
+
+  static CountDirection direction(YamlMap& map) {
+    const std::string name = map.text("direction", "counter_clockwise");
+    if (name == "clockwise") return CountDirection::clockwise;
+    if (name == "auto") return CountDirection::automatic;
+    if (name != "counter_clockwise") {
+      map.fail(
+          map.find("direction")->place, "'direction': '" + name + "' is no sense of rotation",
+          "write how the plate turns, seen from +z, while the count grows: counter_clockwise, clockwise, or "
+          "auto where that is not known");
+    }
+    return CountDirection::counter_clockwise;
   }
 
   /// None where it is written wrongly: what is not known is nobody else's.

@@ -36,8 +36,9 @@ void DeskewStage::describe(StageDescription<DeskewStage>& d) {
 
 void DeskewStage::process(const Inputs& in, Outputs& out, Context& context) {
   const auto& beams = in.get<Measurements>();
-  Deskewed deskewed = deskew(beams, in.get<PlateTrajectory>(), model(in.share<Calibration>(), context.run()),
-                             mirrors_, clouds_.get());
+  const SensorModel& placing = model(in.share<Calibration>(), context.run());
+  const auto plate = oriented_(in.share<PlateTrajectory>(), calibration_.get(), context.rig());
+  Deskewed deskewed = deskew(beams, *plate, placing, mirrors_, clouds_.get());
   if (beams.cos_incidence.empty()) blind_ = with_incidence_;
   beams_ += beams.size();
   outside_ += deskewed.outside;

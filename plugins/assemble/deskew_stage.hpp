@@ -9,6 +9,7 @@
 
 #include "pipeline/data/calibration.hpp"
 #include "pipeline/data/cloud.hpp"
+#include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/data/pool.hpp"
 #include "pipeline/model/known_mirrors.hpp"
 #include "pipeline/model/sensor_model.hpp"
@@ -32,6 +33,7 @@ class DeskewStage final : public Stage {
   std::optional<SensorModel> model_;
   std::vector<std::string> with_incidence_;  ///< terms of it that ask how beams met their surfaces
   std::vector<std::string> blind_;           ///< those that asked in vain
+  OrientedPlate oriented_;
   KnownMirrors mirrors_;
   Pool<Cloud> clouds_;
   std::uint64_t beams_ = 0;

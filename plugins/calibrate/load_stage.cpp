@@ -27,6 +27,23 @@ Calibration ordered_as(const Rig& rig, Calibration calibration) {
   return calibration;
 }
 
+namespace {
+
+void check_direction(const Calibration& calibration, const Rig& rig, const std::filesystem::path& file) {
+  const auto of_rig = rig.plate.direction;
+  if (of_rig == CountDirection::automatic || of_rig == calibration.direction) return;
+  const bool clockwise = calibration.direction == CountDirection::clockwise;
+  throw Error(
+      fmt::format(
+          "the calibration {} is for an encoder that counts {}, but the rig says {}: the cloud would be "
+          "the mirror image of the scene",
+          file.string(), clockwise ? "clockwise" : "counter-clockwise",
+          clockwise ? "counter-clockwise" : "clockwise"),
+      "correct plate.direction in the rig, or calibrate anew");
+}
+
+}  // namespace
+
 void LoadCalibrationStage::describe(StageDescription<LoadCalibrationStage>& d) {
   d.name("calibrate.load").summary("gives a calibration that was made before");
   d.gives<Calibration>();
@@ -42,6 +59,7 @@ void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context
   const auto& terms = context.run().registrar->get<TermRegistry>();
   const Calibration read = read_calibration(file_, judge_by(terms));
   context.reads(file_);
+  check_direction(read, context.rig(), file_);
   Calibration calibration = ordered_as(context.rig(), read);
   if (read.lasers.size() > calibration.lasers.size()) {
     context.warn("the calibration has lasers that the rig does not have; they are not used");

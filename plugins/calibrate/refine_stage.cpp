@@ -15,8 +15,9 @@
 namespace crisp {
 namespace {
 
-/// Squares per freedom from which the model of the sensor does not describe what was measured.
-constexpr double kPoorFit = 2;
+/// How far beams may miss their surfaces, in units of the noise. The surfaces' own roughness makes up to 1.4:
+/// see SurfelSettings::max_excess.
+constexpr double kPoorFit = 1.5;
 
 }  // namespace
 
@@ -69,9 +70,10 @@ void RefineStage::check(const RunSettings& run) const {
             }));
 }
 
-void RefineStage::process(const Inputs& in, Outputs&, Context&) {
+void RefineStage::process(const Inputs& in, Outputs&, Context& context) {
   start_ = in.share<Calibration>();
-  collected_.add(in.share<Measurements>(), in.share<PlateTrajectory>());
+  collected_.add(in.share<Measurements>(),
+                 oriented_(in.share<PlateTrajectory>(), start_.get(), context.rig()));
 }
 
 void RefineStage::finish(Outputs& out, Context& context) {
@@ -121,13 +123,17 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
                   {"converged", refined.converged}});
   context.say(fmt::format("{} flat surfaces with {} beams; chi2 {:.3f} per degree of freedom after {} rounds",
                           refined.surfels, refined.beams, refined.chi2, refined.rounds));
+  tell(refined.views, context);
   for (const auto& doubt : refined.outcome.doubts) context.distrust(doubt);
-  if (refined.chi2 > kPoorFit) {
-    context.warn(
-        fmt::format("beams miss their surfaces by {:.1f} times the noise of {:g} mm: the noise is larger, or "
-                    "the model of "
-                    "the sensor lacks something",
-                    std::sqrt(refined.chi2), settings_.surfels.noise * 1e3));
+  const double misfit = std::sqrt(refined.chi2) * settings_.surfels.noise;
+  const double scatter = refined.scatter > 0 ? refined.scatter : settings_.surfels.noise;
+  context.report({{"misfit", misfit}, {"neighbour_noise", refined.scatter}});
+  if (misfit > kPoorFit * scatter) {
+    context.distrust(fmt::format(
+        "beams miss their surfaces by {:.1f} mm (RMS), {:.1f} times what ranges scatter from neighbour to "
+        "neighbour ({:.1f} mm): the rig is wrong by a little, or the sensor model lacks an effect. Check the "
+        "rig's mount and counts_per_revolution; configs/diagnose.yaml looks for the effect",
+        misfit * 1e3, misfit / scatter, scatter * 1e3));
   }
 }
 

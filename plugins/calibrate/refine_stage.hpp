@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/collected.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "pipeline/stage/context.hpp"
@@ -25,6 +26,7 @@ class RefineStage final : public Stage {
 
   RefinementSettings settings_;
   double sigma_ = 0.02;  // [m] near the ranges' noise, where RQE itself is hardly biased
+  OrientedPlate oriented_;
   Collected collected_;
   std::shared_ptr<const Calibration> start_;
 };

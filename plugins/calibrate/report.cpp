@@ -28,7 +28,7 @@ std::string in_words(const Unobservable& u) {
 
 /// RQE stays the judge, whatever has found the parameters.
 void judge(const std::map<std::string, double>& quality, Context& context) {
-  constexpr double kLess = 0.01;  // [nat] that chance and the entropy's own bias do not explain
+  constexpr double kLess = 0.05;  // [nat] that chance and the bias of an optimum of RQE do not explain
   if (!quality.contains("rqe_before") || !quality.contains("rqe_after")) return;
   const double after = quality.at("rqe_after");
   const auto start = quality.find("rqe_unrefined");
@@ -75,6 +75,23 @@ void tell(const Calibration& calibration, const Calibration& start, Context& con
   }
   context.report({{"lasers", lasers}, {"quality", calibration.quality}, {"unobservable", unobservable}});
   judge(calibration.quality, context);
+}
+
+void tell(const std::vector<ViewConsistency>& views, Context& context) {
+  auto section = nlohmann::json::array();
+  for (const auto& pair : views) {
+    section.push_back({{"view", pair.view},
+                       {"other", pair.other},
+                       {"on", in_words(pair.orientation)},
+                       {"beams", pair.beams},
+                       {"share", pair.share}});
+  }
+  context.report({{"views", section}});
+  const auto least = std::ranges::min_element(views, {}, &ViewConsistency::share);
+  if (least == views.end()) return;
+  context.say(fmt::format(
+      "views agree on {:.0f} % or more of the flat surfaces that they share; least: {} and {}, on {}",
+      100 * least->share, least->view, least->other, in_words(least->orientation)));
 }
 
 void tell(const RecordingLags& lags, const PlateTrajectory& plate, Context& context) {

@@ -4,6 +4,7 @@
 #include "pipeline/estimate/outcome.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/estimate/sample.hpp"
+#include "pipeline/estimate/view_consistency.hpp"
 #include "pipeline/quality/measure.hpp"
 #include "pipeline/stage/context.hpp"
 
@@ -34,5 +35,8 @@ void tell(const Calibration& calibration, const Calibration& start, Context& con
 
 /// The recordings, and each one's lags, for people and for programs.
 void tell(const RecordingLags& lags, const PlateTrajectory& plate, Context& context);
+
+/// How consistent the views are: all pairs for programs, the least consistent one for people.
+void tell(const std::vector<ViewConsistency>& views, Context& context);
 
 }  // namespace crisp

@@ -6,6 +6,7 @@
 #include "pipeline/stage/registry.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/report.hpp"
+#include "plugins/calibrate/rig_check.hpp"
 
 namespace crisp {
 
@@ -86,9 +87,30 @@ void RqeStage::check(const RunSettings& run) const {
             of_option("measure", [&] { make_measure(run); }));
 }
 
-void RqeStage::process(const Inputs& in, Outputs&, Context&) {
+void RqeStage::process(const Inputs& in, Outputs&, Context& context) {
   if (!start_) start_ = in.share<Calibration>();
-  collected_.add(in.share<Measurements>(), in.share<PlateTrajectory>());
+  collected_.add(in.share<Measurements>(),
+                 oriented_(in.share<PlateTrajectory>(), start_.get(), context.rig()));
+}
+
+Calibration RqeStage::compared_with_rig(Calibration calibration, Context& context) const {
+  const RigCheck check = check_with_rig(calibration, context.rig(), range_);
+  const bool asks_direction = context.rig().plate.direction == CountDirection::automatic && !start_;
+  if (asks_direction && check.is_mirrored) {
+    context.warn(
+        "the encoder counts clockwise, by the signs of tau and alpha and the order of the lasers; the "
+        "calibration "
+        "takes it so. Set plate.direction: clockwise in the rig");
+    return with_lambdas_near(mirrored(calibration), context.rig());
+  }
+  if (asks_direction && !check.knows_direction) {
+    context.distrust(
+        "nothing shows which way the encoder counts, as the mirror image agrees with the rig's nominal "
+        "values as well: "
+        "the cloud may be the mirror image of the scene. Set plate.direction in the rig");
+  }
+  for (const auto& caveat : check.caveats) context.distrust(caveat);
+  return calibration;
 }
 
 void RqeStage::finish(Outputs& out, Context& context) {
@@ -118,6 +140,7 @@ void RqeStage::finish(Outputs& out, Context& context) {
                          {"rqe_after", crispness.of(outcome.model)},
                          {"rqe_sigma", sigma}};
   calibration.provenance["calibration"] = "calibrate.rqe";
+  calibration = compared_with_rig(std::move(calibration), context);
   tell(calibration, {}, context);
   context.say(
       "standard errors count how beams scatter; by how much the crispest cloud is not the true one comes on "

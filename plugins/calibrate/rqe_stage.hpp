@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/collected.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
@@ -21,6 +22,9 @@ class RqeStage final : public Stage {
 
  private:
   std::unique_ptr<Measure> make_measure(const RunSettings& run) const;
+  /// Reports what contradicts the rig. Under `direction: auto` a calibration of the mirror image is
+  /// corrected.
+  Calibration compared_with_rig(Calibration calibration, Context& context) const;
 
   RqeCalibrationSettings settings_;
   SearchRange range_;
@@ -28,6 +32,7 @@ class RqeStage final : public Stage {
   std::vector<double> in_plane_sigma_{0.5, 0.1};
   std::string measure_ = "rqe";
   MeasureSettings measure_settings_{.search = "grid", .cutoff = 5};
+  OrientedPlate oriented_;
   Collected collected_;
   std::shared_ptr<const Calibration> start_;
 };

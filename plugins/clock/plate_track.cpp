@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "pipeline/clocks/clock_line.hpp"
@@ -24,7 +23,10 @@ std::int32_t counted(std::uint32_t from, std::uint32_t to) { return static_cast<
 }  // namespace
 
 PlateTrack::PlateTrack(const RigPlate& plate, DeviceStamps stamps, TimeSource source)
-    : counts_per_revolution_(plate.counts_per_revolution), stamps_(std::move(stamps)), source_(source) {
+    : counts_per_revolution_(plate.counts_per_revolution),
+      angle_per_count_(plate.angle_per_count()),
+      stamps_(std::move(stamps)),
+      source_(source) {
   if (!(plate.counts_per_revolution > 0)) {
     throw Error("the encoder of " + plate.name + " must have more than 0 counts a revolution",
                 "correct counts_per_revolution in the rig");
@@ -140,7 +142,6 @@ PlateTrajectory PlateTrack::piece(double begin, double end, std::int64_t epoch_n
   auto last = std::partition_point(first, readings_.end(), is_before(end));
   first -= std::min(kForSlopes, first - readings_.begin());
   last += std::min(kForSlopes, readings_.end() - last);
-  const double step = 2 * std::numbers::pi / counts_per_revolution_;
   std::vector<double> times;
   std::vector<double> angles;
   times.reserve(static_cast<std::size_t>(last - first));
@@ -149,9 +150,9 @@ PlateTrajectory PlateTrack::piece(double begin, double end, std::int64_t epoch_n
     const double t = time(*reading);
     if (!times.empty() && t <= times.back()) continue;  // just after a reset, by the lines' errors
     times.push_back(t);
-    angles.push_back(static_cast<double>(reading->count) * step);
+    angles.push_back(static_cast<double>(reading->count) * angle_per_count_);
   }
-  angles = between_steps(times, angles, step, settings.smoothing);
+  angles = between_steps(times, angles, std::abs(angle_per_count_), settings.smoothing);
   std::vector<double> new_zeros;
   if (std::exchange(zero_is_new_, false) && !times.empty()) new_zeros.push_back(times.front());
   return {epoch_ns, std::move(times), std::move(angles), settings.max_gap, std::move(new_zeros)};

@@ -75,6 +75,7 @@ class PlateTrack {
   static bool goes_on(const Latest& from, const PlateReading& reading);
 
   double counts_per_revolution_;
+  double angle_per_count_;  // [rad] negative where counts grow clockwise
   DeviceStamps stamps_;
   TimeSource source_;
   std::deque<Reading> readings_;

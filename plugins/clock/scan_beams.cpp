@@ -6,6 +6,8 @@
 #include <numbers>
 #include <span>
 
+#include "pipeline/data/mirror_angle.hpp"
+
 namespace crisp {
 namespace {
 
@@ -74,8 +76,9 @@ void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64
     std::copy_n(&ranges[k], count, &out.range[n]);
     if (has_remissions) std::copy_n(&remissions[k], count, &out.remission[n]);
     for_each_of(count, &out.beam[n], [=](std::int32_t i) { return first + i; });
-    for_each_of(count, &out.mirror_angle[n],
-                [=, step = scan.angle_step](std::int32_t i) { return first_angle + (first + i) * step; });
+    for_each_of(count, &out.mirror_angle[n], [=, step = scan.angle_step](std::int32_t i) {
+      return wrapped_mirror_angle(first_angle + (first + i) * step);
+    });
     for_each_of(count, &out.time[n], [=](std::int32_t i) { return first_time + (first + i) * time_step; });
     n += end - k;
     k = end;

@@ -84,11 +84,12 @@ void DiagnoseModelStage::describe(StageDescription<DiagnoseModelStage>& d) {
       .writes_into({"*_residuals.svg"});
 }
 
-void DiagnoseModelStage::process(const Inputs& in, Outputs&, Context&) {
+void DiagnoseModelStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const Findings* before = in.find<Findings>()) all_.append(*before);
   if (!in.find<Measurements>()) return;
   start_ = in.share<Calibration>();
-  collected_.add(in.share<Measurements>(), in.share<PlateTrajectory>());
+  collected_.add(in.share<Measurements>(),
+                 oriented_(in.share<PlateTrajectory>(), start_.get(), context.rig()));
 }
 
 void DiagnoseModelStage::finish(Outputs& out, Context& context) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "pipeline/data/findings.hpp"
+#include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/collected.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
@@ -24,6 +25,7 @@ class DiagnoseModelStage final : public Stage {
   DiagnosisSettings settings_;
   std::optional<std::filesystem::path> folder_;
   double noise_ = SurfelSettings{}.noise;
+  OrientedPlate oriented_;
   Collected collected_;
   std::shared_ptr<const Calibration> start_;
   Findings all_;  // what other diagnoses said before

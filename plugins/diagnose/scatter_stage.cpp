@@ -66,11 +66,12 @@ void DiagnoseScatterStage::describe(StageDescription<DiagnoseScatterStage>& d) {
       .writes_into({"*_noise.svg", "scene_moving.svg"});
 }
 
-void DiagnoseScatterStage::process(const Inputs& in, Outputs&, Context&) {
+void DiagnoseScatterStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const Findings* before = in.find<Findings>()) all_.append(*before);
   if (!in.find<Measurements>()) return;
   calibration_ = in.share<Calibration>();
-  collected_.add(in.share<Measurements>(), in.share<PlateTrajectory>());
+  collected_.add(in.share<Measurements>(),
+                 oriented_(in.share<PlateTrajectory>(), calibration_.get(), context.rig()));
 }
 
 void DiagnoseScatterStage::finish(Outputs& out, Context& context) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipeline/data/findings.hpp"
+#include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/collected.hpp"
 #include "pipeline/plot/plot.hpp"
 #include "pipeline/quality/surfels.hpp"
@@ -56,6 +57,7 @@ class DiagnoseScatterStage final : public Stage {
   double noise_ = SurfelSettings{}.noise;
   double least_gain_ = 0.001;
   std::optional<std::filesystem::path> folder_;
+  OrientedPlate oriented_;
   Collected collected_;
   std::shared_ptr<const Calibration> calibration_;
   std::vector<ToldApart> told_;

@@ -124,8 +124,7 @@ void DiagnoseMountingStage::process(const Inputs& in, Outputs&, Context&) {
 
 void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const {
   const auto& laser = context.rig().lasers.front();
-  const auto passes =
-      find_passes(series_, series_.actuator(context.rig().plate.counts_per_revolution), kShortestSweep);
+  const auto passes = find_passes(series_, series_.actuator(context.rig().plate), kShortestSweep);
   const Pass* sweep = longest(passes);
   const auto nothing = [&](const std::string& why) {
     findings.unobservable.push_back({laser.name + ".tau", why, ""});

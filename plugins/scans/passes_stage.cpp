@@ -216,7 +216,7 @@ void DiagnosePassesStage::process(const Inputs& in, Outputs&, Context&) {
 
 double DiagnosePassesStage::diagnose(Findings& findings, Context& context) const {
   const std::string& name = context.rig().lasers.front().name;
-  const auto actuator = series_.actuator(context.rig().plate.counts_per_revolution);
+  const auto actuator = series_.actuator(context.rig().plate);
   const auto say_nothing = [&](const std::string& why) {
     findings.unobservable.push_back({"encoder.backlash", fmt::format("{}, by passes: {}", name, why), ""});
     context.say(name + ": its angles cannot be checked by passes: " + why);

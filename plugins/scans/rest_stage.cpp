@@ -26,7 +26,7 @@ bool is_shift(const KindDeparture& departure) {
 
 Gain gain_in_sweep(const ScanSeries& series, const std::vector<double>& shifts, std::size_t period,
                    const Rig& rig, std::uint64_t seed) {
-  const auto plate = series.actuator(rig.plate.counts_per_revolution);
+  const auto plate = series.actuator(rig.plate);
   std::vector<double> times, said, found;
   for (const auto& scan : series.scans()) {
     times.push_back(scan.receipt);
@@ -158,7 +158,7 @@ void DiagnoseRestStage::draw(const std::string& name, const std::vector<KindDepa
 void DiagnoseRestStage::diagnose(std::size_t index, Findings& findings, Context& context) {
   Laser& laser = lasers_[index];
   const std::string& name = context.rig().lasers[index].name;
-  const auto still = laser.series.at_rest(context.rig().plate.counts_per_revolution);
+  const auto still = laser.series.at_rest(context.rig().plate);
   if (still.size() < kFewestAtRest) {
     findings.unobservable.push_back(
         {name + ".mirror.interleave",

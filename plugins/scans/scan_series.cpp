@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "pipeline/data/error.hpp"
 
@@ -38,19 +37,19 @@ void ScanSeries::add(const PlateReading& reading) {
   counts_.push_back(last + on);
 }
 
-PlateTrajectory ScanSeries::actuator(double counts_per_revolution) const {
+PlateTrajectory ScanSeries::actuator(const RigPlate& plate) const {
   if (times_.size() < 2) throw Error("there are fewer than two readings of the actuator at different times");
   std::vector<double> angles;
   angles.reserve(counts_.size());
-  const double step = 2 * std::numbers::pi / counts_per_revolution;
+  const double step = plate.angle_per_count();
   for (const auto count : counts_) angles.push_back(static_cast<double>(count) * step);
   return {first_ns_.value_or(0), times_, std::move(angles), std::numeric_limits<double>::max()};
 }
 
-std::vector<SeriesScan> ScanSeries::at_rest(double counts_per_revolution) const {
+std::vector<SeriesScan> ScanSeries::at_rest(const RigPlate& plate) const {
   constexpr double kAround = 0.25;  // [s]
   constexpr double kOfABeam = 0.02, kLeastSteps = 2;
-  const double step = 2 * std::numbers::pi / counts_per_revolution;
+  const double step = std::abs(plate.angle_per_count());
   std::vector<SeriesScan> still;
   for (const auto& scan : scans_) {
     const auto begin = std::lower_bound(times_.begin(), times_.end(), scan.receipt - kAround);

@@ -8,6 +8,7 @@
 
 #include "pipeline/data/clock_map.hpp"
 #include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/data/rig.hpp"
 #include "pipeline/data/scan.hpp"
 
 namespace crisp {
@@ -32,12 +33,12 @@ class ScanSeries {
   /// φ [rad] over receipt times [s], from the readings as they came; of several at one instant the first
   /// counts.
   /// @throws Error if there are fewer than two readings at different times
-  PlateTrajectory actuator(double counts_per_revolution) const;
+  PlateTrajectory actuator(const RigPlate& plate) const;
 
   /// The scans that were taken while the actuator stood still: for a quarter of a second before and after it
   /// read the same within a fiftieth of the step from beam to beam (or two steps of its encoder). Heads creep
   /// a little when they hold.
-  std::vector<SeriesScan> at_rest(double counts_per_revolution) const;
+  std::vector<SeriesScan> at_rest(const RigPlate& plate) const;
 
   /// When the scans were stamped on the hub's clock [s], as `map` has it, put below all times of receipt:
   /// what is late by the same for all scans cannot be told from stamps.

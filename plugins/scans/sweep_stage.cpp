@@ -192,7 +192,7 @@ void DiagnoseSweepStage::diagnose(std::size_t index, Findings& findings, Context
   const auto clock = clocks_.find(name);
   if (clock == clocks_.end() || clock->second.pieces.empty()) return;
   const ScanSeries& series = lasers_[index];
-  const Sweep sweep(series, series.actuator(context.rig().plate.counts_per_revolution));
+  const Sweep sweep(series, series.actuator(context.rig().plate));
   const auto stamps = series.stamped(clock->second);
   const auto bursts = find_bursts(sweep.receipts(), stamps, context.seed());
   const auto by_receipt = sweep.errors(sweep.receipts());

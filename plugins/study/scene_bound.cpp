@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/bound.hpp"
@@ -84,7 +84,7 @@ SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const
                                    {.range = scanner.range.sigma, .encoder_step = encoder_step});
   };
   const Eigen::MatrixXd information = information_with(0);
-  const double step = 2 * std::numbers::pi / scanner.rig.plate.counts_per_revolution;
+  const double step = std::abs(scanner.rig.plate.angle_per_count());
   const Observability told =
       observability(information, free, truth.names(), ranges_of(RefinementSettings{}.prior, truth, free));
 

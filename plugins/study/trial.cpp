@@ -93,7 +93,7 @@ Estimate refine(const SensorModel& start, const SensorModel& truth, const Sample
 
 /// The plate's motion as the clock stages make it of its readings.
 PlateTrajectory as_aligned(const PlateTrajectory& read, const RigPlate& plate) {
-  const double step = 2 * std::numbers::pi / plate.counts_per_revolution;
+  const double step = std::abs(plate.angle_per_count());
   auto angles = between_steps(read.times(), read.angles(), step, kEncoderSmoothing);
   return {read.epoch_ns(), {read.times().begin(), read.times().end()}, std::move(angles), read.max_gap()};
 }

@@ -95,7 +95,8 @@ void WatchStage::process(const Inputs& in, Outputs& out, Context& context) {
     recent_.emplace(seconds_);
     due_ = 0;
   }
-  recent_->add({in.share<Measurements>(), in.share<PlateTrajectory>()});
+  recent_->add(
+      {in.share<Measurements>(), oriented_(in.share<PlateTrajectory>(), calibration_.get(), context.rig())});
   if (running_.valid()) {
     if (running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) end_check(out, context);
   } else if (is_due()) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/watch/calibration_check.hpp"
@@ -45,6 +46,7 @@ class WatchStage final : public Stage {
   Recalibrate recalibrate_ = Recalibrate::Never;
   std::filesystem::path request_;
 
+  OrientedPlate oriented_;
   std::optional<Recent> recent_;
   std::shared_ptr<const Calibration> calibration_;  ///< that is in use
   std::shared_ptr<const Calibration> given_;        ///< from above

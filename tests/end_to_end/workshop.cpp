@@ -87,10 +87,11 @@ Outcome Workshop::run(const std::string& config, const fs::path& input, const st
   return outcome;
 }
 
-void Workshop::simulate(const std::string& output, const std::vector<std::string>& options) const {
+void Workshop::simulate(const std::string& output, const std::vector<std::string>& options,
+                        const fs::path& rig) const {
   std::vector<std::string> set;
   for (const auto& option : options) set.push_back("grabber.simulate." + option);
-  const Outcome outcome = run("simulate.yaml", {}, output, set);
+  const Outcome outcome = run("simulate.yaml", {}, output, set, rig);
   if (outcome.status != ExitStatus::done) throw std::runtime_error("no simulation: " + outcome.told);
 }
 

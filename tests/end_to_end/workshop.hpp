@@ -40,7 +40,8 @@ class Workshop {
 
   /// configs/simulate.yaml into the folder `output`; options of grabber.simulate as "duration=1s".
   /// @throws std::runtime_error if that fails: no test is about it
-  void simulate(const std::string& output, const std::vector<std::string>& options) const;
+  void simulate(const std::string& output, const std::vector<std::string>& options,
+                const std::filesystem::path& rig = {}) const;
 
   /// configs/assemble.yaml with a simulation's capture and true calibration, or with another capture.
   Outcome assemble(const std::string& simulation, const std::string& output,

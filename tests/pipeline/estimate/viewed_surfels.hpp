@@ -16,6 +16,7 @@ struct ViewedSurfels {
     int beams;
   };
 
+  /// Beams a millimetre apart.
   void add(const std::vector<Part>& parts) {
     Surfel surfel{.middle = {0, 0, 0}, .normal = {0, 0, 1}, .u = {1, 0, 0}, .v = {0, 1, 0}};
     surfel.begin = static_cast<std::uint32_t>(surfels.members.size());
@@ -24,7 +25,7 @@ struct ViewedSurfels {
         surfels.members.push_back(static_cast<std::uint32_t>(views.size()));
         surfels.weights.push_back(1);
         views.push_back(part.view);
-        points.x.push_back(k);
+        points.x.push_back(1e-3 * k);
         points.y.push_back(0);
         points.z.push_back(part.height);
       }

@@ -36,6 +36,20 @@ TEST(RigFile, ReadsTheDefaultRigOfTheConfigs) {
   EXPECT_EQ(rig.plate.counts_per_revolution, 16384);
 }
 
+TEST(RigFile, ReadsTheDirectionInWhichTheEncoderCounts) {
+  const auto direction_of = [](const std::string& direction) {
+    const std::string text = "crisp: 1\nlasers: {a: {nominal: {lambda: 0, tau: 0}}}\nplate: {direction: ";
+    return parse_rig(parse_yaml(text + direction + "}", "rig.yaml")).plate;
+  };
+  EXPECT_EQ(direction_of("counter_clockwise").direction, CountDirection::counter_clockwise);
+  EXPECT_EQ(direction_of("auto").direction, CountDirection::automatic);
+  EXPECT_EQ(direction_of("clockwise").direction, CountDirection::clockwise);
+  EXPECT_DOUBLE_EQ(direction_of("clockwise").angle_per_count(), -360 * kDegree / 16384);
+  EXPECT_THAT(
+      errors_of_rig("crisp: 1\nlasers: {a: {nominal: {lambda: 0, tau: 0}}}\nplate: {direction: left}"),
+      ElementsAre(HasSubstr("rig.yaml:3:20: error: plate: 'direction': 'left' is no sense of rotation")));
+}
+
 TEST(RigFile, ReadsOneLaserWithEveryKey) {
   const Rig rig = parse_rig(parse_yaml(R"(
 crisp: 1
@@ -59,6 +73,7 @@ lasers:
   EXPECT_EQ(rig.plate.name, "table");
   EXPECT_EQ(rig.plate.address, (Address{"10.0.0.9", 5000}));
   EXPECT_EQ(rig.plate.counts_per_revolution, 8192);
+  EXPECT_DOUBLE_EQ(rig.plate.angle_per_count(), 360 * kDegree / 8192);
 }
 
 TEST(RigFile, ReportsEveryMistakeWithItsPlace) {

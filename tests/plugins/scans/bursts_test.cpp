@@ -69,7 +69,8 @@ struct EvenSweep {
     }
   }
   double median(const std::vector<double>& when) const {
-    return neighbour_errors(series.scans(), when, angles, series.actuator(360000)).median();
+    return neighbour_errors(series.scans(), when, angles, series.actuator({.counts_per_revolution = 360000}))
+        .median();
   }
   ScanSeries series;
   std::vector<double> times, angles;

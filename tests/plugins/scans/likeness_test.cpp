@@ -101,7 +101,8 @@ struct TimedSweep {
   }
   double p_value(const std::vector<double>& times, const std::vector<double>& delays) const {
     const std::vector<double> angles(times.size(), 20 * kDegree);
-    const auto pulls = scan_pulls(series.scans(), times, angles, series.actuator(360000));
+    const auto pulls =
+        scan_pulls(series.scans(), times, angles, series.actuator({.counts_per_revolution = 360000}));
     return told_in_sweep(series.scans(), pulls, delays, 1).value().p_value;
   }
   ScanSeries series;
@@ -173,7 +174,7 @@ PassShift shift_of(const Ways& ways, std::uint64_t seed) {
     series.add(test::reading_at(read, 0.1 * i));
     series.add(scene.scan(tilt, 20 * kDegree, 140, static_cast<std::uint16_t>(i), 0.1 * i));
   }
-  const auto passes = find_passes(series, series.actuator(360000), 5 * kDegree);
+  const auto passes = find_passes(series, series.actuator({.counts_per_revolution = 360000}), 5 * kDegree);
   return find_shift(passes.at(0), passes.at(1), seed);
 }
 

@@ -32,7 +32,7 @@ std::vector<Pass> up_and_down(double behind, double more = 0, double offset = 0)
     for (float& r : scan->echoes[0].ranges) r += up ? 0.0F : static_cast<float>(offset);
     series.add(std::move(scan));
   }
-  return find_passes(series, series.actuator(360000), 5 * kDegree);
+  return find_passes(series, series.actuator({.counts_per_revolution = 360000}), 5 * kDegree);
 }
 
 TEST(Passes, AreCutWhereTheActuatorTurnsBack) {

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/data/rig.hpp"
+
+namespace crisp {
+
+/// The same readings of an encoder that counts the other way: φ → −φ.
+PlateTrajectory reversed(const PlateTrajectory& plate);
+
+/// Turns trajectories as a calibration has them. Where the rig leaves the encoder's direction to the
+/// calibration
+/// (`direction: auto`), clock stages read counts as counter-clockwise, and a calibration for the other
+/// direction takes them reversed. Everywhere else trajectories pass as they are.
+class OrientedPlate {
+ public:
+  /// @param calibration  null: the rig's nominal values
+  std::shared_ptr<const PlateTrajectory> operator()(std::shared_ptr<const PlateTrajectory> plate,
+                                                    const Calibration* calibration, const Rig& rig);
+
+ private:
+  std::shared_ptr<const PlateTrajectory> given_;  ///< of which `reversed_` was made
+  std::shared_ptr<const PlateTrajectory> reversed_;
+};
+
+}  // namespace crisp

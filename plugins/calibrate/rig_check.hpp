@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/data/rig.hpp"
+#include "pipeline/estimate/search_range.hpp"
+
+namespace crisp {
+
+/// The calibration of the mirror image of the scene, which the same measurements fit as well if the encoder's
+/// counts are negated: by equation (2) λ → −λ + const, τ → −τ, α → −α for each laser. The first laser whose λ
+/// was not estimated keeps it, as it defines the frame. Without terms beyond equation (2).
+Calibration mirrored(const Calibration& calibration);
+
+/// What a rig's nominal values say of a calibration.
+struct RigCheck {
+  bool is_mirrored = false;  ///< the mirror image agrees with the rig, clearly better than the calibration
+  bool knows_direction = false;      ///< the mirror image is clearly farther from the rig
+  std::vector<std::string> caveats;  ///< what contradicts the rig, and what to do; empty if nothing does
+};
+
+/// Compares a calibration with the rig's nominal values. Neither RQE nor surfels can do that: a mirrored
+/// scene is as crisp, and so is one whose lasers have exchanged their names.
+///
+/// A contradiction is explained, where that fits clearly better, by one of: counts that grow the other way;
+/// two lasers that are exchanged; a laser that is mounted upside down. Otherwise each τ and α outside its
+/// range is reported by itself.
+///
+/// @param calibration  one laser for each of the rig's, in its order
+/// @param range        [m, rad] how far τ and α may be from their nominal values
+RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const SearchRange& range);
+
+}  // namespace crisp

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/rig_check.hpp"
+
+#include <gmock/gmock.h>
+
+#include "pipeline/data/oriented_plate.hpp"
+#include "pipeline/model/sensor_model.hpp"
+#include "tests/pipeline/estimate/support.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// What a calibration finds on the default rig, or on another: its truth, off the nominal values by up to 2
+/// cm, 3° and 5°.
+Calibration found(std::uint64_t seed, const Rig& rig = default_rig()) {
+  Calibration calibration = nominal_calibration(rig);
+  const Calibration truth = misplaced_scanner(seed, 1).truth;
+  const Calibration nominal = nominal_calibration(default_rig());
+  for (std::size_t k = 0; k < calibration.lasers.size(); ++k) {
+    LaserCalibration& laser = calibration.lasers[k];
+    laser.lambda.value += truth.lasers[k].lambda.value - nominal.lasers[k].lambda.value;
+    laser.tau.value += truth.lasers[k].tau.value - nominal.lasers[k].tau.value;
+    laser.alpha.value += truth.lasers[k].alpha.value - nominal.lasers[k].alpha.value;
+    laser.lambda.free = k > 0;
+  }
+  return calibration;
+}
+
+RigCheck check(const Calibration& calibration, const Rig& rig = default_rig()) {
+  return check_with_rig(calibration, rig, SearchRange{});
+}
+
+TEST(RigCheck, MirroredPlacesTheMirrorImageOfTheSceneByNegatedCounts) {
+  const auto recording = simulate_measurements(misplaced_scanner(3, 0.2), office());
+  const Placed scene = SensorModel(recording.truth).place(recording.beams, recording.plate);
+  const Placed image =
+      SensorModel(mirrored(recording.truth)).place(recording.beams, reversed(recording.plate));
+  ASSERT_EQ(image.points.cols(), scene.points.cols());
+  // The frame keeps the first laser's λ, so that the mirror is the plane in which that laser lies at φ = 0,
+  // turned by a quarter: x → −x.
+  const Eigen::Matrix3Xd expected = Eigen::Vector3d(-1, 1, 1).asDiagonal() * scene.points;
+  EXPECT_LT((image.points - expected).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(RigCheck, NothingIsSaidOfWhatAgreesWithTheRig) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const RigCheck result = check(found(seed));
+    EXPECT_THAT(result.caveats, IsEmpty());
+    EXPECT_FALSE(result.is_mirrored);
+    EXPECT_TRUE(result.knows_direction);
+  }
+}
+
+TEST(RigCheck, NegatedCountsAreNamed) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const RigCheck result = check(mirrored(found(seed)));
+    EXPECT_TRUE(result.is_mirrored);
+    EXPECT_THAT(result.caveats, ElementsAre(HasSubstr("Set plate.direction: counter_clockwise in the rig")));
+  }
+  Rig rig = default_rig();
+  rig.plate.direction = CountDirection::clockwise;
+  EXPECT_THAT(check(mirrored(found(1, rig)), rig).caveats, ElementsAre(HasSubstr("direction: clockwise in")));
+}
+
+TEST(RigCheck, TheOrderOfTheLasersTellsTheDirectionOfRadialScanPlanes) {
+  Rig rig = default_rig();
+  for (auto& laser : rig.lasers) laser.nominal.alpha.value = 90 * kDegree;
+  EXPECT_TRUE(check(found(4, rig), rig).knows_direction);
+  EXPECT_TRUE(check(mirrored(found(4, rig)), rig).is_mirrored);
+  rig.lasers.resize(2);
+  rig.lasers[1].nominal.lambda.value = 180 * kDegree;
+  const RigCheck two = check(found(4, rig), rig);
+  EXPECT_FALSE(two.knows_direction) << "two radial lasers opposite one another are their own mirror image";
+  EXPECT_THAT(two.caveats, IsEmpty());
+}
+
+TEST(RigCheck, ExchangedLasersAreNamed) {
+  Rig rig = default_rig();
+  rig.lasers[1].nominal.tau.value = 0.25;
+  Calibration calibration = found(5, rig);
+  std::swap(calibration.lasers[1].lambda, calibration.lasers[2].lambda);
+  std::swap(calibration.lasers[1].tau, calibration.lasers[2].tau);
+  EXPECT_THAT(check(calibration, rig).caveats, ElementsAre(HasSubstr("laser2 and laser3 are exchanged")));
+}
+
+TEST(RigCheck, ALaserThatIsUpsideDownIsNamed) {
+  Calibration calibration = found(6);
+  calibration.lasers[2].alpha.value += std::numbers::pi;
+  EXPECT_THAT(check(calibration).caveats, ElementsAre(HasSubstr("laser3 is mounted upside down")));
+  for (std::size_t k : {0, 1}) calibration.lasers[k].alpha.value += std::numbers::pi;
+  EXPECT_THAT(check(calibration).caveats, ElementsAre(HasSubstr("all lasers are mounted upside down")));
+}
+
+TEST(RigCheck, WhatIsOutsideItsRangeIsReportedWithItsNominalValue) {
+  Calibration calibration = found(7);
+  calibration.lasers[1].tau.value = 0.487;
+  calibration.lasers[2].alpha.value = -0.61;
+  EXPECT_THAT(
+      check(calibration).caveats,
+      ElementsAre(
+          HasSubstr("laser2.tau is 487 mm, more than tau_range (100 mm) from the rig's nominal 200 mm"),
+          HasSubstr("laser3.alpha is -35.0 degrees, more than alpha_range (20.1 degrees)")));
+}
+
+TEST(RigCheck, ALaserNearTheAxisMayBeOnEitherSideOfIt) {
+  Rig rig = default_rig();
+  rig.lasers.resize(1);
+  rig.lasers[0].nominal.tau.value = 0.01;
+  const RigCheck one = check(mirrored(found(1, rig)), rig);
+  EXPECT_FALSE(one.knows_direction);
+  EXPECT_FALSE(one.is_mirrored);
+  EXPECT_THAT(one.caveats, IsEmpty());
+}
+
+}  // namespace
+}  // namespace crisp
