@@ -17,7 +17,7 @@ std::string remark(const Parameter& parameter, const std::string& name, const Ca
   const auto& list = calibration.unobservable;
   const bool unknown =
       std::any_of(list.begin(), list.end(), [&](const auto& u) { return u.parameter == name; });
-  if (unknown) return "not observable, kept";
+  if (unknown) return "not observable";
   return parameter.free ? "" : "kept";
 }
 

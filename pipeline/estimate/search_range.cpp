@@ -2,7 +2,10 @@
 #include "pipeline/estimate/search_range.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
+#include "pipeline/data/each_parameter.hpp"
 #include "pipeline/estimate/wanted_terms.hpp"
 
 namespace crisp {
@@ -12,7 +15,18 @@ constexpr double kOfBounds = 0.05;  // share of a term's bounds that its paramet
 
 }  // namespace
 
+std::map<std::string, NominalValue> nominal_values(const Rig& rig) {
+  std::map<std::string, NominalValue> known;
+  const Calibration nominal = nominal_calibration(rig);
+  for_each_parameter(nominal, [&](const std::string& name, const Parameter& parameter) {
+    if (parameter.std_error > 0) known[name] = {.value = parameter.value, .std_error = parameter.std_error};
+  });
+  return known;
+}
+
 double range_of(const SearchRange& range, const std::string& name) {
+  const auto known = range.nominal.find(name);
+  if (known != range.nominal.end()) return range.reach * known->second.std_error;
   if (name.ends_with(".lambda")) return range.lambda;
   if (name.ends_with(".tau")) return range.tau;
   if (name.ends_with(".alpha")) return range.alpha;
@@ -39,6 +53,21 @@ Eigen::VectorXd ranges_of(const SearchRange& range, const SensorModel& model,
         width > 0 ? kOfBounds * width : range_of(range, model.names()[free[i]]);
   }
   return ranges;
+}
+
+Eigen::VectorXd centres_of(const SearchRange& range, const SensorModel& model,
+                           const std::vector<std::size_t>& free) {
+  Eigen::VectorXd centres = picked(model, free);
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const std::string& name = model.names()[free[i]];
+    const auto known = range.nominal.find(name);
+    if (known == range.nominal.end()) continue;
+    double& centre = centres[static_cast<Eigen::Index>(i)];
+    const bool is_angle = name.ends_with(".lambda") || name.ends_with(".alpha");
+    const double off = known->second.value - centre;
+    centre += is_angle ? std::remainder(off, 2 * std::numbers::pi) : off;
+  }
+  return centres;
 }
 
 SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x) {

@@ -3,12 +3,24 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "pipeline/data/rig.hpp"
 #include "pipeline/model/sensor_model.hpp"
 
 namespace crisp {
+
+/// What a rig says of a parameter beforehand.
+struct NominalValue {
+  double value = 0;
+  double std_error = 0;  ///< > 0
+};
+
+/// The nominal values of which the rig gives the standard deviation, by the parameters' full names
+/// ("laser1.tau").
+std::map<std::string, NominalValue> nominal_values(const Rig& rig);
 
 /// How far from its start each kind of parameter is looked for: also what counts as known beforehand.
 struct SearchRange {
@@ -20,6 +32,9 @@ struct SearchRange {
   /// [s] The η to which the plate's readings cover the beams at hand: nowhere is one looked for beyond.
   double earliest_eta = -std::numeric_limits<double>::infinity();
   double latest_eta = std::numeric_limits<double>::infinity();
+  /// What the rig knows better than these ranges, around its nominal values instead of around the start.
+  std::map<std::string, NominalValue> nominal = {};
+  double reach = 1;  ///< [standard deviations] of a nominal value that its range has
 };
 
 /// The range that belongs to a parameter by its name.
@@ -41,5 +56,9 @@ Eigen::VectorXd within_bounds(const SensorModel& model, const std::vector<std::s
 Eigen::VectorXd picked(const SensorModel& model, const std::vector<std::size_t>& free);
 Eigen::VectorXd ranges_of(const SearchRange& range, const SensorModel& model,
                           const std::vector<std::size_t>& free);
+/// And what they are looked for around: the rig's nominal value where it says how well that is known, else
+/// the model's.
+Eigen::VectorXd centres_of(const SearchRange& range, const SensorModel& model,
+                           const std::vector<std::size_t>& free);
 
 }  // namespace crisp

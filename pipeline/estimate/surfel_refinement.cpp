@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "pipeline/data/each_parameter.hpp"
@@ -16,6 +17,7 @@
 #include "pipeline/data/shown_unit.hpp"
 #include "pipeline/estimate/base_slots.hpp"
 #include "pipeline/estimate/can_be_told.hpp"
+#include "pipeline/estimate/considered.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/incidence.hpp"
@@ -58,7 +60,7 @@ class Refiner {
                                   surfel_rows(model_, sample_, free_), settings_.surfels);
     information_ = equations_.matrix / equations_.covariance_factor();
     const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
-    const Eigen::VectorXd from_start = picked(model_, free_) - picked(start_, free_);
+    const Eigen::VectorXd from_start = picked(model_, free_) - centres_of(settings_.prior, start_, free_);
     const Eigen::VectorXd pull =
         equations_.vector / equations_.covariance_factor() + prior.cwiseProduct(from_start);
     const auto n = information_.rows();
@@ -78,7 +80,17 @@ class Refiner {
   /// have been found yet.
   std::vector<Unobservable> hold_unknown() {
     if (!surfaces_->is_settled()) return {};
-    auto told = observability(information_, free_, model_.names(), ranges_of(settings_.prior, model_, free_));
+    // What the rig knows is no more than one observation, and never has to be held.
+    constexpr double kNeverHeld = 10;
+    Eigen::MatrixXd information = information_;
+    Eigen::VectorXd ranges = ranges_of(settings_.prior, model_, free_);
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      if (!settings_.prior.nominal.contains(model_.names()[free_[k]])) continue;
+      const auto i = static_cast<Eigen::Index>(k);
+      information(i, i) += 1 / (ranges[i] * ranges[i]);
+      ranges[i] *= kNeverHeld;
+    }
+    auto told = observability(information, free_, model_.names(), ranges);
     if (told.unobservable.empty()) return {};
     const SensorModel found = model_;
     model_ = with(start_, told.known, picked(found, told.known));
@@ -95,6 +107,35 @@ class Refiner {
         normal_equations(found_, placed.view(noise_), free_.size(), surfel_rows(model_, sample_, free_),
                          settings_.surfels, shared_errors(sample_.beams, found_, placed.view(noise_)));
     covariance_ = widened(covariance_, widening(equations));
+  }
+
+  /// Adds to the covariance what held parameters may be off by, and no longer calls free what hangs on them.
+  ///
+  /// @param unobservable  those that are held; gets what hangs on them
+  void consider_held(std::vector<Unobservable>& unobservable) {
+    if (unobservable.empty() || found_.surfels.empty()) return;
+    std::vector<std::size_t> all = free_;
+    std::vector<std::string> names;
+    Eigen::VectorXd prior(static_cast<Eigen::Index>(unobservable.size()));
+    bool is_from_rig = true;
+    for (const Unobservable& held : unobservable) {
+      prior[static_cast<Eigen::Index>(all.size() - free_.size())] = prior_of_held(held.parameter);
+      is_from_rig = is_from_rig && settings_.prior.nominal.contains(held.parameter);
+      all.push_back(model_.index(held.parameter));
+    }
+    for (const std::size_t parameter : all) names.push_back(model_.names()[parameter]);
+    const PlacedBeams placed(model_, sample_);
+    const auto equations = normal_equations(found_, placed.view(noise_), all.size(),
+                                            surfel_rows(model_, sample_, all), settings_.surfels);
+    Considered considered = consider(covariance_, equations.matrix, names, prior);
+    covariance_ = std::move(considered.covariance);
+    if (is_from_rig) return;  // then the standard errors say how well everything is known
+    for (Unobservable& lost : considered.dependent) {
+      const std::size_t at =
+          static_cast<std::size_t>(std::ranges::find(free_, model_.index(lost.parameter)) - free_.begin());
+      remove(at);
+      unobservable.push_back(std::move(lost));
+    }
   }
 
   const SensorModel& model() const { return model_; }
@@ -121,6 +162,20 @@ class Refiner {
   }
 
  private:
+  double prior_of_held(const std::string& name) const {
+    const auto known = settings_.prior.nominal.find(name);
+    return known != settings_.prior.nominal.end() ? known->second.std_error : range_of(SearchRange{}, name);
+  }
+
+  /// No longer calls a parameter free.
+  void remove(std::size_t at) {
+    std::vector<std::size_t> rest(free_.size());
+    std::iota(rest.begin(), rest.end(), std::size_t{0});
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(at));
+    covariance_ = Eigen::MatrixXd(covariance_(rest, rest));
+    free_.erase(free_.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+
   /// On the surfaces as they were looked for, and once more on those that count.
   ///
   /// @return  whether beams count otherwise from now on
@@ -169,11 +224,11 @@ class Refiner {
 
 /// Refuses standard errors that the noise of so many beams does not allow: a fault of this program, as where
 /// one beam was taken to move infinitely fast.
-void check_errors(const Refinement& result, const Measurements& beams, const SurfelSettings& settings) {
+void check_errors(const Refinement& result, const Measurements& beams, const RefinementSettings& settings) {
   constexpr double kFastest = 2 * std::numbers::pi * 100;  // [rad/s] of a plate
   const double farthest = beams.range.empty() ? 0 : *std::ranges::max_element(beams.range);
   const double across =
-      settings.floor / std::sqrt(static_cast<double>(std::max<std::size_t>(1, beams.size())));
+      settings.surfels.floor / std::sqrt(static_cast<double>(std::max<std::size_t>(1, beams.size())));
   const std::map<std::string, double> most = {// [m] by which one unit of each moves a point
                                               {".lambda", 1 + farthest},
                                               {".tau", 1},
@@ -181,6 +236,7 @@ void check_errors(const Refinement& result, const Measurements& beams, const Sur
                                               {".eta", kFastest * (1 + farthest)}};
   for (std::size_t k = 0; k < result.outcome.free.size(); ++k) {
     const std::string& name = result.outcome.model.names()[result.outcome.free[k]];
+    if (settings.prior.nominal.contains(name)) continue;
     const auto kind = most.find(name.substr(name.find('.')));
     const auto i = static_cast<Eigen::Index>(k);
     if (kind == most.end() || result.outcome.covariance(i, i) >= std::pow(across / kind->second, 2)) continue;
@@ -205,6 +261,18 @@ std::optional<std::string> doubt_of_half_a_turn(const SensorModel& model, const 
       way * 180 / std::numbers::pi);
 }
 
+/// The model with what is held where the rig has it, if the rig says how well it is known.
+SensorModel with_nominal(const SensorModel& model, const std::vector<Unobservable>& held,
+                         const SearchRange& prior) {
+  SensorModel result = model;
+  for (const Unobservable& each : held) {
+    if (!prior.nominal.contains(each.parameter)) continue;
+    const std::size_t parameter = model.index(each.parameter);
+    result = with_one(result, parameter, centres_of(prior, model, {parameter})[0]);
+  }
+  return result;
+}
+
 Refinement refine_once(const SensorModel& start, const Sample& sample, const RefinementSettings& settings,
                        const RoundReporter& report) {
   const LagRange lag = lag_range(start, settings.prior.eta);
@@ -214,7 +282,8 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
       can_be_told(free_parameters(start, inside.beams, settings.fixed, settings.terms, settings.forms), start,
                   inside, SearchRange{});
   auto surfaces = is_in_plane(inside) ? upright_walls(settings.surfels) : patches(settings.surfels);
-  Refiner refiner(start, std::move(inside), parameters.free, std::move(surfaces), settings);
+  Refiner refiner(with_nominal(start, parameters.unobservable, settings.prior), std::move(inside),
+                  parameters.free, std::move(surfaces), settings);
   int round = 0;
   bool converged = false;
   while (!converged && round < settings.max_rounds && !refiner.free().empty()) {
@@ -228,8 +297,9 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
   }
   if (refiner.free().empty()) throw Error("these data determine none of the parameters");
   refiner.widen_by_shared_errors();
+  refiner.consider_held(parameters.unobservable);
   Refinement result = refiner.result();
-  if (round > 0) check_errors(result, sample.beams, settings.surfels);
+  if (round > 0) check_errors(result, sample.beams, settings);
   result.outcome.unobservable = std::move(parameters.unobservable);
   if (doubt) result.outcome.doubts.push_back(*doubt);
   result.rounds = round;
@@ -254,8 +324,8 @@ std::vector<std::string> far_moves(const SensorModel& start, const Outcome& foun
   const Eigen::VectorXd to = picked(found.model, found.free);
   std::vector<std::string> moves;
   for (Eigen::Index k = 0; k < from.size(); ++k) {
-    if (std::abs(to[k] - from[k]) <= trusted[k]) continue;
     const std::string& name = start.names()[found.free[static_cast<std::size_t>(k)]];
+    if (std::abs(to[k] - from[k]) <= trusted[k] || prior.nominal.contains(name)) continue;
     const ShownUnit& unit = units.at(name);
     moves.push_back(fmt::format("{} moved from {:.4g} to {:.4g} {}, by more than {:.3g} {}", name,
                                 from[k] * unit.factor, to[k] * unit.factor, unit.name,

@@ -81,11 +81,39 @@ class RigReader {
     YamlMap map(node, what + ", nominal", errors_);
     map.require("lambda");
     map.require("tau");
-    nominal.lambda.value = angle(map, "lambda");
-    nominal.tau.value = bounded(map, "tau", "m", 0, 10);
-    nominal.alpha.value = angle(map, "alpha");
-    nominal.eta.value = bounded(map, "eta", "s", 0, 10);
+    const auto an_angle = [](YamlMap& of, const std::string& key) { return angle(of, key); };
+    const auto of_unit = [](std::string_view unit) {
+      return [unit](YamlMap& of, const std::string& key) { return bounded(of, key, unit, 0, 10); };
+    };
+    read_nominal_value(map, nominal.lambda, an_angle);
+    read_nominal_value(map, nominal.tau, of_unit("m"));
+    read_nominal_value(map, nominal.alpha, an_angle);
+    read_nominal_value(map, nominal.eta, of_unit("s"));
     map.refuse_others();
+  }
+
+  /// `tau: 20cm`, or `tau: {value: 20cm, sd: 5mm}`.
+  ///
+  /// @param read  (YamlMap&, key) → the number in SI
+  template <class Read>
+  void read_nominal_value(YamlMap& map, Parameter& parameter, const Read& read) {
+    const YamlNode* node = map.find(parameter.name);
+    if (!node || node->kind != YamlNode::Kind::map) {
+      parameter.value = read(map, parameter.name);
+      return;
+    }
+    YamlMap inner(*node, map.what() + ", " + parameter.name, errors_);
+    inner.require("value");
+    parameter.value = read(inner, "value");
+    if (const YamlNode* sd = inner.find("sd")) {
+      const std::size_t mistakes = errors_.size();
+      parameter.std_error = read(inner, "sd");
+      if (errors_.size() == mistakes && !(parameter.std_error > 0)) {
+        inner.fail(sd->place, "'sd': a standard deviation is above 0", "leave it out where it is not known");
+        parameter.std_error = 0;
+      }
+    }
+    inner.refuse_others();
   }
 
   void read_plate(const YamlNode& node) {

@@ -47,8 +47,9 @@ Minimum crispest(SensorModel& model, const Sample& sample, const std::vector<std
                  const MinimiserSettings& settings) {
   const Eigen::VectorXd start = picked(model, free);
   const Eigen::VectorXd ranges = ranges_of(range, model, free);
-  Box box{.lower = start - ranges,
-          .upper = start + ranges,
+  const Eigen::VectorXd centres = centres_of(range, model, free);
+  Box box{.lower = centres - ranges,
+          .upper = centres + ranges,
           .basis = search_basis(model, sample, free, range, scale)};
   keep_covered(box, model, free, range);
   const Objective objective = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {

@@ -47,9 +47,10 @@ class InPlaneCalibration {
     const Sample own = of_laser(front_, laser);
     const auto free = those_free({slot(model_, laser, kEta)});
     if (own.beams.size() < kFewBeams || free.empty()) return;
-    const double centre = model_.values()[static_cast<Eigen::Index>(free[0])];
+    const double centre = centres_of(settings_.range, model_, free)[0];
+    const double reach = range_of(settings_.range, model_.names()[free[0]]);
     constexpr int kSteps = 25;  // to either side
-    const auto grid = around(centre, settings_.range.eta * kSteps / (kSteps + 1), kSteps);
+    const auto grid = around(centre, reach * kSteps / (kSteps + 1), kSteps);
     keep(to_deepest_valley(model_, free[0], grid, false, own, measure_, settings_.range, narrowing()));
     if (bunches_) settle_eta(free[0], own);
   }
@@ -117,8 +118,16 @@ class InPlaneCalibration {
   void find_lambda(std::size_t lambda, const Sample& pair) {
     constexpr int kSteps = 120;  // 3°: the valley at σ = 0.5 m is wider in any room
     constexpr int kFine = 180;
-    keep(bunches_ ? to_straightest(model_, lambda, circle(kFine), true, pair, settings_.sigma_to)
-                  : to_deepest_valley(model_, lambda, circle(kSteps), true, pair, measure_, settings_.range,
+    const bool anywhere = !settings_.range.nominal.contains(model_.names()[lambda]);
+    const auto grid = [&](int steps) {
+      if (anywhere) return circle(steps);
+      const double reach = range_of(settings_.range, model_.names()[lambda]);
+      const double half = std::ceil(reach / (2 * std::numbers::pi / steps));
+      return around(centres_of(settings_.range, model_, {lambda})[0], reach,
+                    std::max(2, static_cast<int>(half)));
+    };
+    keep(bunches_ ? to_straightest(model_, lambda, grid(kFine), anywhere, pair, settings_.sigma_to)
+                  : to_deepest_valley(model_, lambda, grid(kSteps), anywhere, pair, measure_, settings_.range,
                                       narrowing()));
   }
 

@@ -68,6 +68,13 @@ void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context
     context.distrust(
         fmt::format("the calibration {} was doubted when it was made: {}", file_.string(), doubt));
   }
+  for (const auto& lost : calibration.unobservable) {
+    if (lost.combination.empty()) continue;
+    context.warn(fmt::format(
+        "{} was not determined: {}; known is {}. Where the plate turns at another speed than when "
+        "this calibration was made, the cloud is wrong by what that leaves open",
+        lost.parameter, lost.reason, lost.combination));
+  }
   const auto counts_from = [](CountsFrom from) {
     return [from](const TermInfo& term) { return term.counts_from == from; };
   };

@@ -11,6 +11,7 @@
 #include "pipeline/stage/option_check.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/calibrate/report.hpp"
+#include "plugins/calibrate/rig_check.hpp"
 
 namespace crisp {
 namespace {
@@ -80,6 +81,7 @@ void RefineStage::finish(Outputs& out, Context& context) {
   Sample sample = collected_.sample();
   context.count("beams left out of the calibration of a long recording", collected_.left_out());
   const auto& terms = context.run().registrar->get<TermRegistry>();
+  settings_.prior.nominal = nominal_values(context.rig());
   Calibration with_terms = *start_;
   add_wanted_terms(with_terms, settings_.terms, terms);
   const SensorModel start(with_terms, terms);
@@ -125,6 +127,10 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
                           refined.surfels, refined.beams, refined.chi2, refined.rounds));
   tell(refined.views, context);
   for (const auto& doubt : refined.outcome.doubts) context.distrust(doubt);
+  for (const auto& name : known_from_rig_only(calibration, settings_.prior)) {
+    context.say(name + ": known from the rig only; these data do not determine it better");
+  }
+  for (const auto& caveat : far_from_nominal(calibration, context.rig())) context.distrust(caveat);
   const double misfit = std::sqrt(refined.chi2) * settings_.surfels.noise;
   const double scatter = refined.scatter > 0 ? refined.scatter : settings_.surfels.noise;
   context.report({{"misfit", misfit}, {"neighbour_noise", refined.scatter}});

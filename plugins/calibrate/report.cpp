@@ -22,8 +22,8 @@ nlohmann::json json_of(const Parameter& p) {
 }
 
 std::string in_words(const Unobservable& u) {
-  return fmt::format("{} is not observable and was kept: {}{}{}", u.parameter, u.reason,
-                     u.combination.empty() ? "" : "; what is known is ", u.combination);
+  return fmt::format("{} is not observable: {}{}{}", u.parameter, u.reason,
+                     u.combination.empty() ? "" : "; known is ", u.combination);
 }
 
 /// RQE stays the judge, whatever has found the parameters.

@@ -9,13 +9,24 @@
 #include <numbers>
 
 #include "pipeline/data/degree.hpp"
+#include "pipeline/data/each_parameter.hpp"
+#include "pipeline/data/shown_unit.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kLambdaError =
-    15 * kDegree;  // standard deviation of a nominal λ: the search does not need it
+constexpr double kReach = 3;  // standard deviations of a nominal value that a parameter may be off
+
+/// Standard deviations of one laser's nominal values: the rig's, or else half of a range. Nominal values of λ
+/// are not needed by the search, so that they may be rough.
+struct NominalErrors {
+  NominalErrors(const LaserCalibration& nominal, const SearchRange& range)
+      : lambda(nominal.lambda.std_error > 0 ? nominal.lambda.std_error : 15 * kDegree),
+        tau(nominal.tau.std_error > 0 ? nominal.tau.std_error : range.tau / 2),
+        alpha(nominal.alpha.std_error > 0 ? nominal.alpha.std_error : range.alpha / 2) {}
+  double lambda, tau, alpha;
+};
 
 double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
@@ -26,10 +37,11 @@ double square(double x) { return x * x; }
 /// @param turn  [rad] by which the calibration's frame is turned against the rig's
 double distance(const LaserCalibration& found, const LaserCalibration& nominal, double turn,
                 const SearchRange& range) {
-  const auto at = [&](double lambda, double tau, double alpha) {  // half of a range is one standard deviation
-    return square(wrapped(lambda - nominal.lambda.value - turn) / kLambdaError) +
-           square(2 * (tau - nominal.tau.value) / range.tau) +
-           square(2 * wrapped(alpha - nominal.alpha.value) / range.alpha);
+  const NominalErrors error(nominal, range);
+  const auto at = [&](double lambda, double tau, double alpha) {
+    return square(wrapped(lambda - nominal.lambda.value - turn) / error.lambda) +
+           square((tau - nominal.tau.value) / error.tau) +
+           square(wrapped(alpha - nominal.alpha.value) / error.alpha);
   };
   const double lambda = found.lambda.value, tau = found.tau.value, alpha = found.alpha.value;
   return std::min(at(lambda, tau, alpha), at(lambda + kPi, -tau, alpha + kPi));  // both place beams alike
@@ -104,26 +116,48 @@ std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, con
   return all;
 }
 
-/// Each τ and α that is outside of its range.
+/// How far a parameter may be from its nominal value, and what that is called.
+struct Limit {
+  double size = 0;     ///< 0: as far as it likes
+  std::string option;  ///< of calibrate.rqe, if the rig gives no standard deviation
+};
+
+Limit limit_of(const Parameter& nominal, double range) {
+  if (nominal.std_error > 0) return {.size = kReach * nominal.std_error, .option = {}};
+  return {.size = range, .option = nominal.name + "_range"};
+}
+
+void add_if_outside(const std::string& laser, const Parameter& found, const Parameter& nominal,
+                    const Limit& limit, std::vector<std::string>& caveats) {
+  const bool is_angle = nominal.unit == "rad";
+  const double off = is_angle ? wrapped(found.value - nominal.value) : found.value - nominal.value;
+  if (limit.size == 0 || std::abs(off) <= limit.size) return;
+  const ShownUnit unit = shown_unit(nominal.unit);
+  const std::string what =
+      limit.option.empty() ? fmt::format("{} standard deviations", kReach) : limit.option;
+  const std::string remedy =
+      limit.option.empty() ? "or give it a larger sd" : fmt::format("or raise {}", limit.option);
+  caveats.push_back(fmt::format(
+      "{}.{} is {:.1f} {}, more than {} ({:.1f} {}) from the rig's nominal {:.1f} {}: the calibration is "
+      "probably in a wrong "
+      "local minimum. Check the rig's mount, direction and nominal values, {} if {} may be as far off",
+      laser, nominal.name, found.value * unit.factor, unit.name, what, limit.size * unit.factor, unit.name,
+      nominal.value * unit.factor, unit.name, remedy, nominal.name));
+}
+
+/// Each parameter that is farther from its nominal value than the rig or the search allows.
 std::vector<std::string> outside(const Calibration& found, const Rig& rig, const SearchRange& range) {
   std::vector<std::string> caveats;
   for (std::size_t k = 0; k < found.lasers.size(); ++k) {
     const LaserCalibration& laser = found.lasers[k];
     const LaserCalibration& nominal = rig.lasers[k].nominal;
-    if (std::abs(laser.tau.value - nominal.tau.value) > range.tau) {
-      caveats.push_back(fmt::format(
-          "{}.tau is {:.0f} mm, more than tau_range ({:.0f} mm) from the rig's nominal {:.0f} mm: the "
-          "calibration is probably in a wrong local minimum. Check the rig's mount, direction and tau, "
-          "or raise tau_range if tau may be as far off",
-          laser.name, laser.tau.value * 1e3, range.tau * 1e3, nominal.tau.value * 1e3));
-    }
-    if (std::abs(wrapped(laser.alpha.value - nominal.alpha.value)) > range.alpha) {
-      caveats.push_back(fmt::format(
-          "{}.alpha is {:.1f} degrees, more than alpha_range ({:.1f} degrees) from the rig's nominal "
-          "{:.1f}: the calibration is probably in a wrong local minimum. Check the rig's mount, direction "
-          "and alpha, or raise alpha_range if alpha may be as far off",
-          laser.name, laser.alpha.value / kDegree, range.alpha / kDegree, nominal.alpha.value / kDegree));
-    }
+    const auto add = [&](const Parameter& value, const Parameter& expected, const Limit& limit) {
+      add_if_outside(laser.name, value, expected, limit, caveats);
+    };
+    if (laser.lambda.free) add(laser.lambda, nominal.lambda, limit_of(nominal.lambda, 0));
+    add(laser.tau, nominal.tau, limit_of(nominal.tau, range.tau));
+    add(laser.alpha, nominal.alpha, limit_of(nominal.alpha, range.alpha));
+    if (laser.eta.free) add(laser.eta, nominal.eta, limit_of(nominal.eta, 0));
   }
   return caveats;
 }
@@ -150,6 +184,23 @@ Calibration mirrored(const Calibration& calibration) {
   const bool is_clockwise = calibration.direction == CountDirection::clockwise;
   result.direction = is_clockwise ? CountDirection::counter_clockwise : CountDirection::clockwise;
   return result;
+}
+
+std::vector<std::string> known_from_rig_only(const Calibration& calibration, const SearchRange& prior) {
+  constexpr double kAboutAll = 0.9;
+  std::vector<std::string> names;
+  for_each_parameter(calibration, [&](const std::string& name, const Parameter& parameter) {
+    const auto known = prior.nominal.find(name);
+    if (known != prior.nominal.end() && parameter.free &&
+        parameter.std_error > kAboutAll * known->second.std_error) {
+      names.push_back(name);
+    }
+  });
+  return names;
+}
+
+std::vector<std::string> far_from_nominal(const Calibration& calibration, const Rig& rig) {
+  return outside(calibration, rig, {.tau = 0, .alpha = 0});
 }
 
 RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const SearchRange& range) {

@@ -32,4 +32,11 @@ struct RigCheck {
 /// @param range        [m, rad] how far τ and α may be from their nominal values
 RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const SearchRange& range);
 
+/// The parameters whose standard error is about that which the rig gives them.
+std::vector<std::string> known_from_rig_only(const Calibration& calibration, const SearchRange& prior);
+
+/// Of the parameters of which the rig gives a standard deviation those that are more than three from their
+/// nominal value, as caveats.
+std::vector<std::string> far_from_nominal(const Calibration& calibration, const Rig& rig);
+
 }  // namespace crisp

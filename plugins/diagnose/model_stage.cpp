@@ -96,6 +96,7 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
   Sample sample = collected_.sample();
   context.count("beams left out of the diagnosis of a long recording", collected_.left_out());
   settings_.refinement.surfels.noise = noise_;
+  settings_.refinement.prior.nominal = nominal_values(context.rig());
   const auto& terms = context.run().registrar->get<TermRegistry>();
   const SensorModel start(*start_, terms);
   if (RecordingNumbers(*sample.plate).count() > 1) {

@@ -79,14 +79,22 @@ SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const
   const SensorModel truth(exact.truth, terms);
   const FreeParameters parameters = free_parameters(truth, exact.beams, {});
   const auto& free = parameters.free;
-  const auto information_with = [&](double encoder_step) {
-    return calibration_information(truth, met.sample, met.surface, normals, free,
+  SearchRange prior = RefinementSettings{}.prior;
+  prior.nominal = nominal_values(scanner.rig);
+  Eigen::VectorXd from_rig = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const auto known = prior.nominal.find(truth.names()[free[k]]);
+    if (known == prior.nominal.end()) continue;
+    from_rig[static_cast<Eigen::Index>(k)] = 1 / std::pow(known->second.std_error, 2);
+  }
+  const auto information_with = [&](double encoder_step) -> Eigen::MatrixXd {
+    return Eigen::MatrixXd(from_rig.asDiagonal()) +
+           calibration_information(truth, met.sample, met.surface, normals, free,
                                    {.range = scanner.range.sigma, .encoder_step = encoder_step});
   };
   const Eigen::MatrixXd information = information_with(0);
   const double step = std::abs(scanner.rig.plate.angle_per_count());
-  const Observability told =
-      observability(information, free, truth.names(), ranges_of(RefinementSettings{}.prior, truth, free));
+  const Observability told = observability(information, free, truth.names(), ranges_of(prior, truth, free));
 
   SceneBound bound{.parameters = {},
                    .std_errors = errors_of_known(information, free, told.known),

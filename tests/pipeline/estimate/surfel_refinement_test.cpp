@@ -49,8 +49,9 @@ TEST(SurfelRefinement, KeepsWhatAConstantSpeedDoesNotTell) {
   const auto recording = simulate_measurements(scanner, office());
   const Refinement refined =
       refine_by_surfels(off_by(recording.truth, 0.004, 0.004, 0), sample_of(recording), {});
-  ASSERT_EQ(refined.outcome.unobservable.size(), 3U);
+  ASSERT_EQ(refined.outcome.unobservable.size(), 5U);  // and both azimuths, which hang on the lags
   for (const auto& lost : refined.outcome.unobservable) {
+    if (lost.parameter.ends_with(".lambda")) continue;
     EXPECT_THAT(lost.parameter, testing::EndsWith(".eta"));
     const auto slot = static_cast<Eigen::Index>(refined.outcome.model.index(lost.parameter));
     EXPECT_EQ(refined.outcome.model.values()[slot], SensorModel(recording.truth).values()[slot]);
@@ -74,6 +75,62 @@ TEST(SurfelRefinement, DoubtsWhatOneLaserTellsOfASingleSweep) {
   EXPECT_THAT(doubts_up_to(1.5), testing::Contains(testing::HasSubstr("sees no surface twice")));
   EXPECT_THAT(doubts_up_to(6.5),
               testing::Not(testing::Contains(testing::HasSubstr("sees no surface twice"))));
+}
+
+TEST(SurfelRefinement, TakesWhatTheRigSaysForOneMoreObservation) {
+  const auto recording = simulate_measurements(misplaced_scanner(1, 2.0), office());
+  const SensorModel start = off_by(recording.truth, 0.002, 0.002, 0);
+  const auto laser2_tau = [&](double value, double std_error) {
+    RefinementSettings settings;
+    if (std_error > 0) settings.prior.nominal["laser2.tau"] = {.value = value, .std_error = std_error};
+    const auto& outcome = refine_by_surfels(start, sample_of(recording), settings).outcome;
+    return std::pair(outcome.model.values()[5], std::sqrt(outcome.covariance(4, 4)));
+  };
+  const auto [alone, error] = laser2_tau(0, 0);
+  const double elsewhere = alone + 0.01;
+  // Two observations of one value, weighted by their variances.
+  const double near = alone + 2 * error;
+  const auto [mean, mean_error] = laser2_tau(near, error);
+  EXPECT_NEAR(mean, (alone + near) / 2, 0.3 * error);
+  EXPECT_NEAR(mean_error, error / std::numbers::sqrt2, 0.2 * error);
+  EXPECT_NEAR(laser2_tau(elsewhere, 1e3 * error).first, alone, 0.1 * error);
+  EXPECT_NEAR(laser2_tau(elsewhere, 1e-3 * error).first, elsewhere, 0.1 * error);
+}
+
+TEST(SurfelRefinement, WhatTheRigKnowsOfALagIsInTheStandardErrorsAtConstantSpeed) {
+  auto scanner = misplaced_scanner(1, 3.0);
+  scanner.motion = {.kind = MotionKind::constant, .max_rate = 0.91};
+  const auto recording = simulate_measurements(scanner, office());
+  RefinementSettings settings;
+  for (const auto& laser : recording.truth.lasers) {
+    settings.prior.nominal[laser.name + ".eta"] = {.value = laser.eta.value + 0.001, .std_error = 0.002};
+  }
+  const auto refined =
+      refine_by_surfels(off_by(recording.truth, 0.004, 0.004, 0), sample_of(recording), settings);
+  const auto& outcome = refined.outcome;
+  const auto lambda2 = std::ranges::find(outcome.free, outcome.model.index("laser2.lambda"));
+  ASSERT_NE(lambda2, outcome.free.end());
+  const auto k = lambda2 - outcome.free.begin();
+  const double rate = 2 * std::numbers::pi * 0.91;
+  EXPECT_NEAR(std::sqrt(outcome.covariance(k, k)), std::numbers::sqrt2 * rate * 0.002, 0.1 * rate * 0.002);
+  const auto eta = static_cast<Eigen::Index>(outcome.model.index("laser2.eta"));
+  EXPECT_DOUBLE_EQ(outcome.model.values()[eta], recording.truth.lasers[1].eta.value + 0.001);
+}
+
+TEST(SurfelRefinement, AnAzimuthThatHangsOnAnUnknownLagIsNotFree) {
+  auto scanner = misplaced_scanner(1, 3.0);
+  scanner.motion = {.kind = MotionKind::constant, .max_rate = 0.91};
+  const auto recording = simulate_measurements(scanner, office());
+  const Outcome outcome =
+      refine_by_surfels(off_by(recording.truth, 0.004, 0.004, 0), sample_of(recording), {}).outcome;
+  for (const std::size_t lambda : {4, 8}) {
+    EXPECT_EQ(std::ranges::count(outcome.free, lambda), 0) << lambda;
+    const auto lost =
+        std::ranges::find(outcome.unobservable, outcome.model.names()[lambda], &Unobservable::parameter);
+    ASSERT_NE(lost, outcome.unobservable.end());
+    EXPECT_THAT(lost->combination, testing::HasSubstr(".eta"));
+  }
+  EXPECT_EQ(outcome.covariance.rows(), static_cast<Eigen::Index>(outcome.free.size()));
 }
 
 TEST(SurfelRefinement, CountsBeamsAlongEdgesToo) {

@@ -36,6 +36,26 @@ TEST(RigFile, ReadsTheDefaultRigOfTheConfigs) {
   EXPECT_EQ(rig.plate.counts_per_revolution, 16384);
 }
 
+TEST(RigFile, ReadsHowWellANominalValueIsKnown) {
+  const auto text = [](const std::string& lambda) {
+    return "crisp: 1\nplate: {}\nlasers:\n  a: {nominal: {tau: {value: 20cm, sd: 5mm}, lambda: " + lambda +
+           "}}";
+  };
+  const LaserCalibration nominal =
+      parse_rig(parse_yaml(text("{value: 120deg, sd: 5deg}"), "rig.yaml")).lasers[0].nominal;
+  EXPECT_DOUBLE_EQ(nominal.lambda.value, 120 * kDegree);
+  EXPECT_DOUBLE_EQ(nominal.lambda.std_error, 5 * kDegree);
+  EXPECT_DOUBLE_EQ(nominal.tau.value, 0.2);
+  EXPECT_DOUBLE_EQ(nominal.tau.std_error, 0.005);
+  EXPECT_EQ(nominal.alpha.std_error, 0);
+  EXPECT_THAT(
+      errors_of_rig(text("{value: 1deg, sd: 0}")),
+      ElementsAre(HasSubstr("rig.yaml:4:72: error: laser 'a', nominal, lambda: 'sd': a standard deviation is "
+                            "above 0")));
+  EXPECT_THAT(errors_of_rig(text("{sd: 1deg}")), ElementsAre(HasSubstr("'value' is missing")));
+  EXPECT_THAT(errors_of_rig(text("{value: 1deg, std: 1deg}")), ElementsAre(HasSubstr("'std'")));
+}
+
 TEST(RigFile, ReadsTheDirectionInWhichTheEncoderCounts) {
   const auto direction_of = [](const std::string& direction) {
     const std::string text = "crisp: 1\nlasers: {a: {nominal: {lambda: 0, tau: 0}}}\nplate: {direction: ";

@@ -102,8 +102,23 @@ TEST(RigCheck, WhatIsOutsideItsRangeIsReportedWithItsNominalValue) {
   EXPECT_THAT(
       check(calibration).caveats,
       ElementsAre(
-          HasSubstr("laser2.tau is 487 mm, more than tau_range (100 mm) from the rig's nominal 200 mm"),
-          HasSubstr("laser3.alpha is -35.0 degrees, more than alpha_range (20.1 degrees)")));
+          HasSubstr("laser2.tau is 487.0 mm, more than tau_range (100.0 mm) from the rig's nominal 200.0 mm"),
+          HasSubstr("laser3.alpha is -35.0 deg, more than alpha_range (20.1 deg)")));
+}
+
+TEST(RigCheck, TheRigsStandardDeviationsAreItsLimits) {
+  Rig rig = default_rig();
+  rig.lasers[1].nominal.lambda.std_error = 1 * kDegree;
+  rig.lasers[2].nominal.tau.std_error = 0.002;
+  Calibration calibration = nominal_calibration(rig);
+  for (std::size_t k : {1, 2}) calibration.lasers[k].lambda.free = true;
+  EXPECT_THAT(check(calibration, rig).caveats, IsEmpty());
+  calibration.lasers[1].lambda.value += 4 * kDegree;
+  calibration.lasers[2].lambda.value += 4 * kDegree;  // of which the rig does not say how well it is known
+  calibration.lasers[2].tau.value += 0.007;
+  EXPECT_THAT(check(calibration, rig).caveats,
+              ElementsAre(HasSubstr("laser2.lambda is 124.0 deg, more than 3 standard deviations (3.0 deg)"),
+                          HasSubstr("laser3.tau is 207.0 mm, more than 3 standard deviations (6.0 mm)")));
 }
 
 TEST(RigCheck, ALaserNearTheAxisMayBeOnEitherSideOfIt) {

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "pipeline/data/calibration.hpp"
+
+namespace crisp {
+
+/// What parameters that were held at their prior do to the estimates of the others: a consider covariance
+/// (Schmidt 1966). An estimate moves by S per unit of a held parameter.
+struct Considered {
+  Eigen::MatrixXd covariance;  ///< m × m, of the estimates, with the prior uncertainty of the held parameters
+  /// Estimates that hang on a held parameter more than on the data, each with the combination that is known.
+  std::vector<Unobservable> dependent;
+};
+
+/// @param covariance   m × m, of the estimates, as if the held ones were known
+/// @param information  (m + h) × (m + h), Fisher's, of the estimates and then of the held ones
+/// @param names        m + h
+/// @param prior        h standard deviations of the held ones, in their units
+Considered consider(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& information,
+                    const std::vector<std::string>& names, const Eigen::VectorXd& prior);
+
+}  // namespace crisp
