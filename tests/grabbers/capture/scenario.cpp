@@ -51,8 +51,7 @@ std::vector<Frame> Scenario::frames() const {
     for (std::size_t laser = 0; laser < 2; ++laser) {
       ScanData scan = scan_of(laser, k, beams);
       if (same_address && laser == 1) scan.telegram_counter += 1000;
-      lasers[laser].send(TcpSide::Server, encode_scan_data(scan, language),
-                         scan_time(laser, k));
+      lasers[laser].send(TcpSide::Server, encode_scan_data(scan, language), scan_time(laser, k));
     }
     for (std::size_t j = 10 * k; j < 10 * k + 10; ++j) {
       plate.send(as_bytes(encode_plate_sentence(numbered_reading(static_cast<std::uint16_t>(j)))),
