@@ -25,6 +25,7 @@
 #include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/estimate/relative_noise.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
+#include "pipeline/estimate/standard_errors.hpp"
 #include "pipeline/estimate/steady.hpp"
 #include "pipeline/estimate/surfel_rows.hpp"
 #include "pipeline/estimate/view_consistency.hpp"
@@ -222,33 +223,6 @@ class Refiner {
   double last_step_ = std::numeric_limits<double>::infinity();
 };
 
-/// Refuses standard errors that the noise of so many beams does not allow: a fault of this program, as where
-/// one beam was taken to move infinitely fast.
-void check_errors(const Refinement& result, const Measurements& beams, const RefinementSettings& settings) {
-  constexpr double kFastest = 2 * std::numbers::pi * 100;  // [rad/s] of a plate
-  const double farthest = beams.range.empty() ? 0 : *std::ranges::max_element(beams.range);
-  const double across =
-      settings.surfels.floor / std::sqrt(static_cast<double>(std::max<std::size_t>(1, beams.size())));
-  const std::map<std::string, double> most = {// [m] by which one unit of each moves a point
-                                              {".lambda", 1 + farthest},
-                                              {".tau", 1},
-                                              {".alpha", farthest},
-                                              {".eta", kFastest * (1 + farthest)}};
-  for (std::size_t k = 0; k < result.outcome.free.size(); ++k) {
-    const std::string& name = result.outcome.model.names()[result.outcome.free[k]];
-    if (settings.prior.nominal.contains(name)) continue;
-    const auto kind = most.find(name.substr(name.find('.')));
-    const auto i = static_cast<Eigen::Index>(k);
-    if (kind == most.end() || result.outcome.covariance(i, i) >= std::pow(across / kind->second, 2)) continue;
-    throw Error(
-        fmt::format(
-            "{} came out with a standard error of {:.2g}, less than the beams' noise allows: a fault of "
-            "this program",
-            name, std::sqrt(result.outcome.covariance(i, i))),
-        "please report it with the capture");
-  }
-}
-
 /// One laser that has not come round to see surfaces from its other side, too, has only their flatness to go
 /// by, and takes what is not flat for an error of its own.
 std::optional<std::string> doubt_of_half_a_turn(const SensorModel& model, const Sample& sample) {
@@ -299,7 +273,7 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
   refiner.widen_by_shared_errors();
   refiner.consider_held(parameters.unobservable);
   Refinement result = refiner.result();
-  if (round > 0) check_errors(result, sample.beams, settings);
+  if (round > 0) check_errors(result.outcome, sample.beams, settings.surfels.floor, settings.prior);
   result.outcome.unobservable = std::move(parameters.unobservable);
   if (doubt) result.outcome.doubts.push_back(*doubt);
   result.rounds = round;
