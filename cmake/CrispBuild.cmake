@@ -94,7 +94,7 @@ function(crisp_library name)
           FILES_MATCHING PATTERN "*.hpp")
 endfunction()
 
-# crisp_test(<name> [THREADS] [OPTIMISED] [SLOW <filter>] [SMOKE <filter>] [LONG <filter>] SOURCES ... LIBRARIES ...)
+# crisp_test(<name> [THREADS] [SLOW <filter>] [SMOKE <filter>] [LONG <filter>] SOURCES ... LIBRARIES ...)
 # makes one GoogleTest program of a folder's tests. Filters are GoogleTest's. Its quick tests are one test of CTest's,
 # by the program's name; those that a filter calls slow, smoke (slow, but run by `./check`: one of each kind) or long
 # are one each, with that label. Only the release build runs those. With THREADS the thread sanitizer runs the quick

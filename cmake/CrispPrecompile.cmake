@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Precompiled headers. The headers from outside the project that most sources include are parsed once for the libraries
-# and once for the tests. Without them (presets dev and tidy) a source that forgets an include does not compile.
+# and once for the tests. Without them (presets dev, asan and tidy) a source that forgets an include does not compile.
 option(CRISP_PRECOMPILE "Precompile the headers that most sources include" ON)
 
 # crisp_precompile(<target> <library|test>) makes a target use the precompiled headers of that kind.

@@ -11,10 +11,9 @@ namespace crisp {
 /// The same readings of an encoder that counts the other way: φ → −φ.
 PlateTrajectory reversed(const PlateTrajectory& plate);
 
-/// Turns trajectories as a calibration has them. Where the rig leaves the encoder's direction to the
-/// calibration
-/// (`direction: auto`), clock stages read counts as counter-clockwise, and a calibration for the other
-/// direction takes them reversed. Everywhere else trajectories pass as they are.
+/// Gives a trajectory the encoder's direction of a calibration. Where the rig leaves the direction to the
+/// calibration (`direction: auto`), clock stages read counts as counter-clockwise; a calibration for
+/// clockwise counts gets the trajectory reversed. In all other cases the trajectory passes unchanged.
 class OrientedPlate {
  public:
   /// @param calibration  null: the rig's nominal values

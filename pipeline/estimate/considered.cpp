@@ -17,7 +17,7 @@ Considered consider(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& in
   const Eigen::Index h = prior.size();
   Eigen::MatrixXd slopes = -solve_positive_definite(Eigen::MatrixXd(information.topLeftCorner(m, m)),
                                                     Eigen::MatrixXd(information.topRightCorner(m, h)));
-  // In units of what the data tell; what is far below the largest is the encoder's steps, which rates show.
+  // Slopes far below the largest, in standard errors, come from the encoder's steps, which make rates noisy.
   const Eigen::ArrayXXd sizes =
       (information.diagonal().head(m).cwiseSqrt().asDiagonal() * slopes).array().abs();
   for (Eigen::Index j = 0; j < h; ++j) {

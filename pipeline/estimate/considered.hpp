@@ -13,7 +13,8 @@ namespace crisp {
 /// (Schmidt 1966). An estimate moves by S per unit of a held parameter.
 struct Considered {
   Eigen::MatrixXd covariance;  ///< m × m, of the estimates, with the prior uncertainty of the held parameters
-  /// Estimates that hang on a held parameter more than on the data, each with the combination that is known.
+  /// Estimates whose variance comes from held parameters more than from the data, each with the combination
+  /// that is known.
   std::vector<Unobservable> dependent;
 };
 

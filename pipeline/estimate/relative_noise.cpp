@@ -155,7 +155,7 @@ class OfLaser {
   double size_ = 0;
 };
 
-/// [m] By how much each beam's range scatters; 0 where nothing tells it.
+/// [m] Standard deviation of each beam's range; 0 where it is unknown.
 std::vector<double> noise_by_neighbours(const Surfels& surfels, const BeamsView& placed,
                                         const Measurements& beams, const SurfelSettings& settings) {
   Quantities by{.incidence = beams.cos_incidence, .remission = beams.remission, .range = beams.range};

@@ -11,7 +11,7 @@
 namespace crisp {
 namespace {
 
-/// [nat] In ordinary rooms the next valley is 0.3 to 0.5 off.
+/// [nat] In ordinary rooms the next local minimum is 0.3 to 0.5 above the optimum.
 constexpr double kClearlyCrisper = 0.1;
 
 /// Whether a parameter ended where the rig's standard deviation ends the search.
@@ -153,8 +153,7 @@ void RqeStage::finish(Outputs& out, Context& context) {
   Outcome outcome = calibrated(0, has_priors ? 0.5 : 1);
   const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
   if (has_priors && !context.interrupted()) {
-    // Where the rig is wrong no cloud near its values is as crisp as one elsewhere, which tells what is
-    // wrong.
+    // If the rig is wrong, a cloud away from its values is crisper; where that is shows what is wrong.
     const double clearly = is_at_limit(outcome, settings.in_plane.range) ? 0 : kClearlyCrisper;
     settings.in_plane.range.nominal.clear();
     Outcome anywhere = calibrated(0.5, 0.5);
