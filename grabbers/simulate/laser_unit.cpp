@@ -18,7 +18,7 @@ constexpr std::uint32_t kFirstSerialNumber = 18090001;
 constexpr double kRounding = 1e-9;         // [rad] that an angle may be off on the wire
 constexpr std::size_t kHeaderBytes = 110;  // what a telegram needs beside its values, about
 
-void check_unit(const ScannerSettings& settings) {
+void check_unit(const ScannerSettings& settings, const FieldOfView& field) {
   if (settings.range.max_distance > kFarthest) {
     throw Error("a laser's telegrams cannot hold ranges beyond 65 m", "lower the largest distance");
   }
@@ -26,7 +26,6 @@ void check_unit(const ScannerSettings& settings) {
     throw Error("a telegram holds all beams of the field of view, not chosen ones",
                 "narrow the field of view instead");
   }
-  const auto& field = settings.field;
   const auto step = static_cast<std::uint16_t>(std::lround(field.step * kTenThousandths));
   const double first = std::round(field.first * kTenThousandths) / kTenThousandths;
   if (std::abs(exact_angle_step(step) - field.step) > kRounding ||
@@ -53,11 +52,12 @@ LaserUnit::LaserUnit(const RecordingSettings& settings, const RecordingTruth& tr
     : settings_(settings),
       truth_(truth.lasers[index]),
       rig_(settings.scanner.rig.lasers[index]),
+      pattern_(settings.scanner.pattern_of(index)),
       index_(index),
       link_(truth_.link, truth_.minimum_delay, settings.scanner.seed, rig_.name, truth_.latency),
       handover_(settings.scanner.seed, rig_.name + ".handover"),
       losses_(settings.scanner.seed, rig_.name + ".losses") {
-  check_unit(settings.scanner);
+  check_unit(settings.scanner, pattern_.field);
   RandomStream random(settings.scanner.seed, rig_.name + ".counters");
   scan_counter_ = static_cast<std::uint16_t>(random.bits());
   counter_difference_ = static_cast<std::uint16_t>(random.bits() % 512);
@@ -66,7 +66,8 @@ LaserUnit::LaserUnit(const RecordingSettings& settings, const RecordingTruth& tr
 std::optional<LaserTelegram> LaserUnit::send(const Sweep& sweep) {
   const double jitter = settings_.telegrams.handover_jitter * handover_.normal();
   const double handover = std::max(0.0, settings_.telegrams.handover + jitter);
-  const double sent = sweep.revolution.begin + sweep.revolution.period + handover;
+  const double seen = std::max(sweep.revolution.begin + sweep.revolution.period, sweep.times.back());
+  const double sent = seen + handover;
   LaserTelegram telegram{.laser = index_};
   fill_header(telegram.data, sweep, sent);
   fill_channels(telegram.data, sweep);
@@ -88,27 +89,26 @@ void LaserUnit::fill_header(ScanData& data, const Sweep& sweep, double sent) {
   // The rig says how the device's stamp relates to the first possible beam: invert exactly that.
   const double stamp = sweep.revolution.begin - rig_.period_offset * sweep.revolution.period -
                        rig_.time_offset + truth_.stamp_lag;
-  const auto& mirror = settings_.scanner.mirror;
   data.serial_number = kFirstSerialNumber + index_;
   data.device_status = scans_since_start_++ < settings_.telegrams.settling_scans ? 1 : 0;
   data.scan_counter = scan_counter_++;
   data.telegram_counter = static_cast<std::uint16_t>(data.scan_counter + counter_difference_);
   data.scan_time_us = truth_.clock.microseconds(stamp);
   data.transmission_time_us = truth_.clock.microseconds(sent);
-  data.scan_frequency = static_cast<std::uint32_t>(std::lround(mirror.frequency * 100));
-  const double beams_a_turn = 2 * std::numbers::pi / settings_.scanner.field.step;
-  data.measurement_frequency = static_cast<std::uint32_t>(std::lround(mirror.frequency * beams_a_turn / 100));
+  data.scan_frequency = static_cast<std::uint32_t>(std::lround(pattern_.frequency * 100));
+  const double beams_a_turn = 2 * std::numbers::pi / pattern_.field.step;
+  data.measurement_frequency =
+      static_cast<std::uint32_t>(std::lround(pattern_.frequency * beams_a_turn / 100));
 }
 
 void LaserUnit::fill_channels(ScanData& data, const Sweep& sweep) const {
-  const auto& field = settings_.scanner.field;
-  ChannelBlock distances = channel("DIST1", field, sweep.ranges.size());
+  ChannelBlock distances = channel("DIST1", pattern_.field, sweep.ranges.size());
   for (const float range : sweep.ranges) {
     distances.raw.push_back(static_cast<std::uint16_t>(std::lround(range * kMillimetres)));
   }
   data.channels16.push_back(std::move(distances));
   if (settings_.telegrams.remission == RemissionChannel::none) return;
-  ChannelBlock remissions = channel("RSSI1", field, sweep.remissions.size());
+  ChannelBlock remissions = channel("RSSI1", pattern_.field, sweep.remissions.size());
   for (const float remission : sweep.remissions) {
     remissions.raw.push_back(static_cast<std::uint16_t>(remission));
   }

@@ -36,6 +36,7 @@ class LaserUnit {
   RecordingSettings settings_;
   DeviceTruth truth_;
   RigLaser rig_;
+  ScanPattern pattern_;
   std::uint16_t index_;
   Link link_;
   RandomStream handover_;

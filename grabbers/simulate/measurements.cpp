@@ -32,14 +32,15 @@ void append(SimulatedMeasurements& result, const Sweep& sweep, const ScannerSett
   Measurements& to = result.beams;
   const double eta = settings.truth.lasers[sweep.laser].eta.value;
   const double mount = settings.rig.lasers[sweep.laser].mount;
+  const FieldOfView field = settings.pattern_of(sweep.laser).field;
   for (std::size_t i = 0; i < sweep.beams.size(); ++i) {
     if (sweep.ranges[i] == 0) {
       ++result.no_echo;
       continue;
     }
     to.range.push_back(sweep.ranges[i]);
-    to.mirror_angle.push_back(static_cast<float>(
-        wrapped_mirror_angle(settings.field.first + sweep.beams[i] * settings.field.step - mount)));
+    to.mirror_angle.push_back(
+        static_cast<float>(wrapped_mirror_angle(field.angle_of(sweep.beams[i]) - mount)));
     to.time.push_back(sweep.times[i] - eta);
     to.laser.push_back(sweep.laser);
     to.remission.push_back(sweep.remissions[i]);

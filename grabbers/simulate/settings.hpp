@@ -23,6 +23,14 @@ struct FieldOfView {
 
   /// @throws Error if the step is not positive, or the field is empty or wider than a turn
   std::size_t beams() const;
+
+  double angle_of(std::size_t beam) const { return first + static_cast<double>(beam) * step; }  ///< [rad]
+};
+
+/// What a laser of a kind of its own reports, and how often.
+struct ScanPattern {
+  FieldOfView field;
+  double frequency = 50;  ///< [Hz] nominal rate of the mirror
 };
 
 /// Scans of several kinds that take turns: `mirror.interleave` of the catalogue.
@@ -46,14 +54,15 @@ struct LaserEffects {
   bool mirror_drawn = true;  ///< false: an excess of 0 is one of 0
 };
 
-/// The scanner to simulate: what is true of it. All lasers are of one kind; their mirrors, clocks and noise
-/// are their own.
+/// The scanner to simulate: what is true of it. Lasers are of one kind unless `patterns` says otherwise;
+/// their mirrors, clocks and noise are their own.
 struct ScannerSettings {
   Rig rig = default_rig();
   Calibration truth = nominal_calibration(default_rig());  ///< one laser each of the rig, in its order
   MirrorSettings mirror;
   FieldOfView field;
-  std::vector<std::uint16_t> beams;  ///< indices of the only beams to fire; empty: all
+  std::vector<ScanPattern> patterns;  ///< one a laser, before `field` and the mirror's frequency; empty: none
+  std::vector<std::uint16_t> beams;   ///< indices of the only beams to fire; empty: all
   RangeSettings range;
   std::vector<LaserEffects> laser_effects;  ///< one a laser; empty: none
   MotionSettings motion;
@@ -61,6 +70,13 @@ struct ScannerSettings {
   bool encoder_quantised = true;  ///< whole counts, as the encoder reports them; false: exact angles
   double duration = 10;           ///< [s]
   std::uint64_t seed = 1;
+
+  ScanPattern pattern_of_all() const { return {.field = field, .frequency = mirror.frequency}; }
+
+  /// What one laser reports, and how often.
+  ScanPattern pattern_of(std::size_t laser) const {
+    return patterns.empty() ? pattern_of_all() : patterns.at(laser);
+  }
 
   /// The effects of one laser, whether there are any or not.
   LaserEffects effects_of(std::size_t laser) const {

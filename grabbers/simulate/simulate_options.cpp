@@ -53,6 +53,7 @@ void SimulateStage::describe_lasers(Description& d) {
       .unit("m")
       .range(0, 1);
   describe_field(d, &S::scanner);
+  describe_kinds(d, &S::kinds_);
 }
 
 void SimulateStage::describe_stamps(Description& d) {

@@ -66,7 +66,7 @@ void SimulateStage::check(const RunSettings& run) const {
                                 std::back_inserter(effects));
             },
             [&] { make_motion(planned.scanner.motion, planned.scanner.duration, planned.scanner.seed); },
-            [&] { planned.scanner.field.beams(); });
+            [&] { planned.scanner.field.beams(); }, [&] { kinds_.apply(planned.scanner); });
   add_terms(planned.scanner.truth, apply_device_effects(std::move(effects), planned), terms);
   draw_devices(planned);
 }
@@ -74,6 +74,7 @@ void SimulateStage::check(const RunSettings& run) const {
 void SimulateStage::process(const Inputs&, Outputs& out, Context& context) {
   const TermRegistry& terms = known_terms(context.run());
   simulated_ = settings(context.run());
+  kinds_.apply(simulated_.scanner);
   simulated_.scanner.truth = hidden_.load(context, simulated_.scanner.seed);
   const auto catalogue = recording_catalogue(terms);
   auto effects = likeness_.load(catalogue, context);

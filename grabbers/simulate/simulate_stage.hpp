@@ -49,6 +49,7 @@ class SimulateStage final : public Stage {
                       .calibration_file = {},
                       .effects = {}};
   LikenessChoice likeness_;
+  KindChoice kinds_;
   WireFaults wire_faults_;
   SceneChoice scene_;
   std::vector<std::string> silences_;

@@ -46,19 +46,28 @@ void check(const ScannerSettings& settings) {
   if (!settings.laser_effects.empty() && settings.laser_effects.size() != settings.rig.lasers.size()) {
     throw Error("the simulation needs the effects of each laser, or none at all");
   }
+  if (!settings.patterns.empty() && settings.patterns.size() != settings.rig.lasers.size()) {
+    throw Error("the simulation needs the field of view of each laser, or one of all");
+  }
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < settings.rig.lasers.size(); ++i) {
+    most = std::max(most, settings.pattern_of(i).field.beams());
+  }
   for (const auto beam : settings.beams) {
-    if (beam >= settings.field.beams()) {
+    if (beam >= most) {
       throw Error("beam " + std::to_string(beam) + " is outside the field of view of " +
-                  std::to_string(settings.field.beams()) + " beams");
+                  std::to_string(most) + " beams");
     }
   }
 }
 
-std::vector<std::uint16_t> fired_beams(const ScannerSettings& settings) {
-  if (!settings.beams.empty()) return settings.beams;
-  std::vector<std::uint16_t> all(settings.field.beams());
+std::vector<std::uint16_t> fired_beams(const ScannerSettings& settings, const FieldOfView& field) {
+  std::vector<std::uint16_t> all(field.beams());
   std::iota(all.begin(), all.end(), std::uint16_t{0});
-  return all;
+  if (settings.beams.empty()) return all;
+  std::vector<std::uint16_t> chosen = settings.beams;
+  std::erase_if(chosen, [&](std::uint16_t beam) { return beam >= all.size(); });
+  return chosen;
 }
 
 }  // namespace
@@ -69,12 +78,12 @@ SweepSimulator::SweepSimulator(const ScannerSettings& settings, const Scene& sce
   check(settings_);
   std::vector<double> reflectances;
   for (std::size_t k = 0; k < scene.things(); ++k) reflectances.push_back(scene.reflectance_of(k));
-  beams_ = fired_beams(settings_);
-  traced_.resize(beams_.size());
   for (std::size_t i = 0; i < settings_.rig.lasers.size(); ++i) {
     const auto& name = settings_.rig.lasers[i].name;
     const LaserEffects effects = settings_.effects_of(i);
+    const ScanPattern pattern = settings_.pattern_of(i);
     MirrorSettings mirror = settings_.mirror;
+    mirror.frequency = pattern.frequency;
     if (!effects.mirror_drawn) mirror.slowest = 0;
     if (effects.mirror_wander > 0) mirror.wander = Mirror::wander_of_rms(effects.mirror_wander);
     Laser& laser =
@@ -83,6 +92,8 @@ SweepSimulator::SweepSimulator(const ScannerSettings& settings, const Scene& sce
                                    .foliage = RandomStream(settings_.seed, name + ".foliage"),
                                    .spot = Spot(effects.noise, settings_.range.max_distance, reflectances),
                                    .upcoming = {},
+                                   .field = pattern.field,
+                                   .beams = fired_beams(settings_, pattern.field),
                                    .interleave = effects.interleave,
                                    .parameters = {}});
     laser.upcoming = laser.mirror.next();
@@ -99,7 +110,7 @@ Sweep SweepSimulator::next() {
   Sweep sweep;
   sweep.laser = static_cast<std::uint16_t>(earliest - lasers_.begin());
   sweep.revolution = earliest->upcoming;
-  sweep.beams = beams_;
+  sweep.beams = earliest->beams;
   earliest->upcoming = earliest->mirror.next();
   aim(*earliest, sweep);
   measure(*earliest, sweep);
@@ -109,29 +120,31 @@ Sweep SweepSimulator::next() {
 void SweepSimulator::aim(Laser& laser, Sweep& sweep) {
   const double eta = laser.parameters[3];
   const double mount = settings_.rig.lasers[sweep.laser].mount;
-  const auto& field = settings_.field;
+  const auto& beams = laser.beams;
   const double shift = laser.interleave.of(sweep.revolution.number);
-  sweep.times.resize(beams_.size());
-  for (std::size_t i = 0; i < beams_.size(); ++i) {
-    const double angle = field.first + beams_[i] * field.step + shift;
+  sweep.times.resize(beams.size());
+  traced_.resize(beams.size());
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const double angle = laser.field.angle_of(beams[i]) + shift;
     const double turned = (angle - kFirstPossibleBeam) / (360 * kDegree);
     sweep.times[i] = sweep.revolution.begin + turned * sweep.revolution.period;
     traced_[i] = {};
     traced_[i].measured_mirror = angle - mount;
     traced_[i].hub_time = sweep.times[i] - eta;
-    traced_[i].number = beams_[i];
+    traced_[i].number = beams[i];
   }
-  const auto known = std::make_unique<bool[]>(beams_.size());  // a true motion knows every instant
-  trace<double>(model_.chain(sweep.laser), laser.parameters, traced_, *motion_, {known.get(), beams_.size()});
+  const auto known = std::make_unique<bool[]>(beams.size());  // a true motion knows every instant
+  trace<double>(model_.chain(sweep.laser), laser.parameters, traced_, *motion_, {known.get(), beams.size()});
 }
 
 void SweepSimulator::measure(Laser& laser, Sweep& sweep) {
-  sweep.ranges.assign(beams_.size(), 0);
-  sweep.remissions.assign(beams_.size(), 0);
-  sweep.cos_incidences.assign(beams_.size(), 0);
-  sweep.surfaces.assign(beams_.size(), 0);
-  for (std::size_t i = 0; i < beams_.size(); ++i) {
-    const RangeNoise::Draw noise = laser.noise.draw(beams_[i]);
+  const std::size_t beams = laser.beams.size();
+  sweep.ranges.assign(beams, 0);
+  sweep.remissions.assign(beams, 0);
+  sweep.cos_incidences.assign(beams, 0);
+  sweep.surfaces.assign(beams, 0);
+  for (std::size_t i = 0; i < beams; ++i) {
+    const RangeNoise::Draw noise = laser.noise.draw(laser.beams[i]);
     Beam<double>& beam = traced_[i];
     const auto echo = laser.spot.echo(caster_, {beam.origin, beam.direction},
                                       {.time = sweep.times[i], .chance = &laser.foliage});

@@ -49,6 +49,8 @@ class SweepSimulator {
     RandomStream foliage;
     Spot spot;
     Revolution upcoming;
+    FieldOfView field;
+    std::vector<std::uint16_t> beams;  ///< that it fires
     Interleave interleave;
     std::vector<double> parameters;  ///< of its chain: λ, τ, α, η and those of its terms
   };
@@ -61,7 +63,6 @@ class SweepSimulator {
   RayCaster caster_;
   SensorModel model_;
   std::vector<Laser> lasers_;
-  std::vector<std::uint16_t> beams_;
   std::vector<Beam<double>> traced_;
 };
 

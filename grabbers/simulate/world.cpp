@@ -10,6 +10,7 @@
 #include "grabbers/simulate/found_effects.hpp"
 #include "grabbers/simulate/paper.hpp"
 #include "grabbers/simulate/real_devices.hpp"
+#include "grabbers/simulate/scan_patterns.hpp"
 #include "grabbers/simulate/scene_file.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/error.hpp"
@@ -50,6 +51,10 @@ Calibration TruthChoice::load(Context& context, std::uint64_t seed) const {
   // Whatever it is of the scanner that it was made for, of the simulated one it is the truth.
   truth.doubts.clear();
   return truth;
+}
+
+void KindChoice::apply(ScannerSettings& scanner) const {
+  scanner.patterns = read_patterns(lasers, scanner.rig, scanner.pattern_of_all());
 }
 
 std::vector<Effect> LikenessChoice::load(const std::vector<EffectInfo>& catalogue, Context& context) const {

@@ -9,6 +9,7 @@
 #include "grabbers/simulate/departures.hpp"
 #include "grabbers/simulate/effects.hpp"
 #include "grabbers/simulate/scene.hpp"
+#include "grabbers/simulate/settings.hpp"
 #include "pipeline/stage/context.hpp"
 
 namespace crisp {
@@ -34,6 +35,14 @@ struct TruthChoice {
   /// The file's, or else drawn.
   /// @throws Error if the file is not a calibration of the run's rig
   Calibration load(Context& context, std::uint64_t seed) const;
+};
+
+/// Which lasers of a scanner that a stage simulates are of another kind than the rest.
+struct KindChoice {
+  OptionGroups lasers;  ///< by name: see read_patterns()
+
+  /// Gives the scanner the field of view and rate of each laser of its rig. @throws Errors as read_patterns()
+  void apply(ScannerSettings& scanner) const;
 };
 
 /// Which real devices those that a stage simulates are like.

@@ -81,6 +81,14 @@ void describe_motion(StageDescription<S>& d, Way way) {
       .range(0, 1e4);
 }
 
+/// @param way  to a KindChoice
+template <class S, class Way>
+void describe_kinds(StageDescription<S>& d, Way way) {
+  d.option("lasers", way, &KindChoice::lasers,
+           "lasers of another kind: `{laser2: {first_angle: -5deg, last_angle: 185deg, step: 0.25deg, "
+           "mirror_frequency: 25Hz}}`; what is not given is as for all");
+}
+
 /// @param way  to a ScannerSettings
 template <class S, class Way>
 void describe_field(StageDescription<S>& d, Way way) {

@@ -55,8 +55,8 @@ SimulatedMeasurements simulate_beams(BeamChoice beams, ScannerSettings scanner, 
   if (beams == BeamChoice::kAll) return simulate_measurements(scanner, scene, motion, terms);
   std::vector<std::vector<std::uint16_t>> wanted;
   scanner.beams.clear();
-  for (const RigLaser& laser : scanner.rig.lasers) {
-    wanted.push_back(in_plane_of(laser, scanner.field));
+  for (std::size_t i = 0; i < scanner.rig.lasers.size(); ++i) {
+    wanted.push_back(in_plane_of(scanner.rig.lasers[i], scanner.pattern_of(i).field));
     scanner.beams.insert(scanner.beams.end(), wanted.back().begin(), wanted.back().end());
   }
   std::ranges::sort(scanner.beams);

@@ -84,6 +84,7 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
   describe_motion(d, &BoundStage::motion);
   describe_truth(d, &BoundStage::truth_);
   describe_field(d, &BoundStage::scanner_);
+  describe_kinds(d, &BoundStage::kinds_);
   d.option("refine", &BoundStage::refine_, "whether to try as well what calibrate.refine reaches");
   d.option("file", &BoundStage::file_, "where the bounds go, as CSV").writes();
 }
@@ -98,12 +99,18 @@ void BoundStage::check(const RunSettings& run) const {
         Calibration truth = truth_.drawn(run, run.seed);
         add_terms(truth, effects(run), known_terms(run));
       },
-      [&] { make_motion(scanner_.motion, scanner_.duration, run.seed); }, [&] { scanner_.field.beams(); });
+      [&] { make_motion(scanner_.motion, scanner_.duration, run.seed); }, [&] { scanner_.field.beams(); },
+      [&] {
+        ScannerSettings planned = scanner_;
+        planned.rig = run.rig;
+        kinds_.apply(planned);
+      });
 }
 
 void BoundStage::process(const Inputs&, Outputs&, Context& context) {
   ScannerSettings scanner = scanner_;
   scanner.rig = context.rig();
+  kinds_.apply(scanner);
   scanner.seed = context.seed();
   scanner.truth = truth_.load(context, scanner.seed);
   add_terms(scanner.truth, effects(context.run()), known_terms(context.run()));

@@ -31,6 +31,7 @@ class BoundStage final : public Stage {
   ScannerSettings scanner_;
   SceneChoice scene_;
   TruthChoice truth_;
+  KindChoice kinds_;
   BeamChoice beams_ = BeamChoice::kAll;
   bool refine_ = true;
   std::filesystem::path file_;
