@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pipeline/clocks/clock_line.hpp"
+#include "pipeline/clocks/delay_law.hpp"
 #include "pipeline/clocks/lower_hull.hpp"
 
 namespace crisp {
@@ -35,13 +36,17 @@ double typical(std::vector<double> minima) {
   return sum / static_cast<double>(end - 2) / kLowerThreeQuarters;
 }
 
+constexpr std::size_t kBlocks = 32;
+
+/// Whether there are enough stamps for the least delays of blocks to tell how far a line is from the clock.
+bool tells_blocks(std::span<const Stamp> stamps) { return stamps.size() >= 2 * kBlocks; }
+
 /// How far above a line of known slope the lowest of all stamps is expected. From blocks to halves as many,
 /// the least delay falls by a power that depends on the law of the delays; followed down to one block.
 double lowest_delay(std::span<const Stamp> stamps, const ClockLine& line) {
-  constexpr std::size_t kBlocks = 32;
   constexpr double kUsualDelay = 1e-3;  // [s] where there are too few stamps to tell
   if (stamps.size() < 4) return kUsualDelay;
-  if (stamps.size() < 2 * kBlocks) return typical(block_minima(stamps, line, stamps.size()));
+  if (!tells_blocks(stamps)) return typical(block_minima(stamps, line, stamps.size()));
   const auto fine = block_minima(stamps, line, kBlocks);
   const auto middle = paired_minima(fine);
   const double of_fine = typical(fine);
@@ -119,7 +124,10 @@ LineErrors errors_of_line(std::span<const Stamp> stamps, const ClockLine& line, 
   const double scale = std::max(lowest_delay(stamps, line), quantum);
   LowerHull hull;
   for (const auto& stamp : stamps) hull.add(stamp);
-  return {.at_center = scale, .slope = slope_spread(hull.vertices(), line, scale)};
+  const Lateness late = lateness_of(stamps, line, quantum);
+  return {.late = late.mean,
+          .at_center = tells_blocks(stamps) ? std::max(late.std_error, scale) : late.std_error,
+          .slope = slope_spread(hull.vertices(), line, scale)};
 }
 
 }  // namespace crisp

@@ -20,6 +20,7 @@ struct ClockMap {
   std::vector<ClockPiece> pieces;  ///< ascending in device_begin
   double device_end = 0;           ///< [s] unwrapped device time of the last stamp
   double skew_std_error = 0;       ///< standard error of the mean skew, as a ratio
+  double std_error = 0;            ///< [s] standard error of the hub times, in the mean over the recording
   double residual_median = 0;      ///< [s] median delay of the stamps above the line
   double residual_95 = 0;          ///< [s] 95 % quantile of it
   std::size_t stamps = 0;          ///< pairs (device time, receipt time) that the map is fitted to

@@ -202,7 +202,7 @@ void FittedClock::settle(Segment& segment, double begin, double end) {
   // The map passes through the line at the window's middle, or as near to it as there are stamps.
   const double rate = 1 + line.slope;
   const double hub = std::clamp(0.5 * (begin + end), segment.hub(stamps.front()), segment.hub(stamps.back()));
-  const double at_center = segment.first_hub + line.center + line.at_center;
+  const double at_center = segment.first_hub + line.center + line.at_center - errors.late;
   const double device = line.center + (hub - at_center) / rate;
   carry_on(segment, {.device = segment.device(device), .hub = hub, .rate = rate, .errors = errors});
   std::erase_if(segment.stamps, [&](const Stamp& stamp) { return segment.hub(stamp) < end; });
@@ -228,6 +228,8 @@ void FittedClock::carry_on(Segment& segment, const Knot& knot) {
          .rate_std_error = std::hypot(before.errors.at_center, knot.errors.at_center) / span});
   }
   segment.last_knot = knot;
+  squared_offsets_ += knot.errors.at_center * knot.errors.at_center;
+  ++knots_;
 }
 
 void FittedClock::close(Segment& segment) {
@@ -254,8 +256,10 @@ bool FittedClock::idle() const {
 void FittedClock::finish() {
   std::optional<double> followed_error;
   if (!segments_.empty() && segments_.back().followed) {
-    followed_error = errors_of_line(segments_.back().stamps, line_of(segments_.back())).slope;
+    const LineErrors errors = errors_of_line(segments_.back().stamps, line_of(segments_.back()));
+    followed_error = errors.slope;
     map_.pieces.back().rate_std_error = *followed_error;
+    map_.std_error = std::hypot(errors.at_center, errors.late);  // a clock that is followed lies on its line
   }
   for (auto& segment : segments_) close(segment);
   segments_.clear();
@@ -263,6 +267,7 @@ void FittedClock::finish() {
   map_.skew_std_error = followed_error     ? *followed_error
                         : fitted_time_ > 0 ? std::sqrt(squared_errors_) / fitted_time_
                                            : kMostSkew;
+  if (knots_ > 0) map_.std_error = std::sqrt(squared_offsets_) / static_cast<double>(knots_);
   map_.residual_median = delays_.quantile(0.5);
   map_.residual_95 = delays_.quantile(0.95);
 }

@@ -119,8 +119,10 @@ class FittedClock {
   ClockMap map_;
   DelayHistogram delays_;
   std::vector<StampStep> delay_steps_;
-  double fitted_time_ = 0;     ///< [s] spans of the closed segments
-  double squared_errors_ = 0;  ///< [s²] sum of the squares of their skews' errors, times their spans
+  double fitted_time_ = 0;      ///< [s] spans of the closed segments
+  double squared_errors_ = 0;   ///< [s²] sum of the squares of their skews' errors, times their spans
+  double squared_offsets_ = 0;  ///< [s²] sum of the squares of the knots' errors
+  std::size_t knots_ = 0;
 };
 
 }  // namespace crisp
