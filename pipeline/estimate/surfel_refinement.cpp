@@ -18,6 +18,7 @@
 #include "pipeline/estimate/base_slots.hpp"
 #include "pipeline/estimate/can_be_told.hpp"
 #include "pipeline/estimate/considered.hpp"
+#include "pipeline/estimate/encoder_steps.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/incidence.hpp"
@@ -29,6 +30,7 @@
 #include "pipeline/estimate/steady.hpp"
 #include "pipeline/estimate/surfel_rows.hpp"
 #include "pipeline/estimate/view_consistency.hpp"
+#include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 namespace {
@@ -108,6 +110,7 @@ class Refiner {
         normal_equations(found_, placed.view(noise_), free_.size(), surfel_rows(model_, sample_, free_),
                          settings_.surfels, shared_errors(sample_.beams, found_, placed.view(noise_)));
     covariance_ = widened(covariance_, widening(equations));
+    if (settings_.angle_step > 0) covariance_ = widened(covariance_, widening_by_steps(equations));
   }
 
   /// Adds to the covariance what held parameters may be off by, and no longer calls free what hangs on them.
@@ -155,7 +158,8 @@ class Refiner {
     const PlacedBeams placed(model_, sample_);
     result.scatter = neighbour_noise(found_, placed.view(noise_), sample_.beams, settings_.surfels);
     for (const ViewPartition& partition : view_partitions(sample_, lasers())) {
-      const auto pairs = view_consistency(all_, placed.view(noise_), partition, settings_.surfels.noise);
+      const auto pairs = view_consistency(all_, placed.view(noise_), partition,
+                                          {.range = settings_.surfels.noise, .angle = settings_.angle_error});
       if (const auto caveat = inconsistency(partition, pairs)) result.outcome.doubts.push_back(*caveat);
       result.views.insert(result.views.end(), pairs.begin(), pairs.end());
     }
@@ -163,6 +167,23 @@ class Refiner {
   }
 
  private:
+  /// By how much standard errors grow as beams share the errors of the encoder's steps.
+  ///
+  /// @param without  the equations as if they did not
+  Eigen::VectorXd widening_by_steps(const NormalEquations& without) const {
+    const PlacedBeams placed(model_, sample_);
+    const auto noise =
+        noise_with_steps(found_, placed.view(noise_), sample_, settings_.angle_step, settings_.surfels.noise);
+    const auto with = normal_equations(found_, placed.view(noise), free_.size(),
+                                       surfel_rows(model_, sample_, free_), settings_.surfels);
+    const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
+    const auto variances = [&](const NormalEquations& equations) -> Eigen::VectorXd {
+      const Eigen::MatrixXd information = equations.matrix / without.covariance_factor();
+      return inverse(information + Eigen::MatrixXd(prior.asDiagonal())).diagonal();
+    };
+    return variances(with).cwiseQuotient(variances(without)).cwiseSqrt().cwiseMax(1);
+  }
+
   double prior_of_held(const std::string& name) const {
     const auto known = settings_.prior.nominal.find(name);
     return known != settings_.prior.nominal.end() ? known->second.std_error : range_of(SearchRange{}, name);
@@ -308,6 +329,21 @@ std::vector<std::string> far_moves(const SensorModel& start, const Outcome& foun
   return moves;
 }
 
+/// Whether the start, which counts as an observation, draws a parameter from where the data have it by a good
+/// part of its standard error: (x − x₀) · s²/p² for a standard deviation p of the start.
+bool is_drawn_to_start(const SensorModel& start, const Outcome& found, const SearchRange& prior) {
+  constexpr double kMuch = 0.2;
+  const Eigen::VectorXd trusted = ranges_of(prior, start, found.free);
+  const Eigen::VectorXd moved = picked(found.model, found.free) - picked(start, found.free);
+  for (Eigen::Index k = 0; k < moved.size(); ++k) {
+    if (prior.nominal.contains(start.names()[found.free[static_cast<std::size_t>(k)]])) continue;
+    const double error = std::sqrt(found.covariance(k, k));
+    if (std::abs(moved[k]) > 2 * trusted[k]) return true;
+    if (std::abs(moved[k]) * error > kMuch * trusted[k] * trusted[k]) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
@@ -317,9 +353,10 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
   SensorModel from = start;
   // The start counts as an observation: a start that was far off would draw the result towards itself.
   for (int restart = 0; restart < kRestarts; ++restart) {
-    if (far_moves(from, result.outcome, settings.prior).empty()) return result;
+    if (!is_drawn_to_start(from, result.outcome, settings.prior)) return result;
     from = result.outcome.model;
     result = refine_once(from, sample, settings, report);
+    result.restarts = restart + 1;
   }
   for (const std::string& move : far_moves(from, result.outcome, settings.prior)) {
     result.outcome.doubts.push_back(fmt::format(

@@ -19,6 +19,8 @@ struct RefinementSettings {
   bool forms = false;  ///< whether the terms' forms are to be found as well, from about the right ones
   SurfelSettings surfels;
   SearchRange prior{.lambda = 0.05, .tau = 0.03, .alpha = 0.05, .eta = 0.01, .other = 0.05};  ///< see below
+  double angle_step = 0;   ///< [rad] of the encoder, for the standard errors; 0: none
+  double angle_error = 0;  ///< [rad] standard deviation of the plate's angle at a beam's time: see ViewErrors
   int max_rounds = 20;
   double tolerance = 0.02;  ///< [standard errors] steps below which the refinement has converged
 };
@@ -32,6 +34,7 @@ struct Refinement {
       0;  ///< [m] of ranges from neighbour to neighbour on a surface, see neighbour_noise(); 0: unknown
   std::vector<ViewConsistency> views;  ///< how consistent the beams' views of the surfaces are
   int rounds = 0;
+  int restarts = 0;  ///< how often it began anew since its start was far off
   bool converged = false;
 };
 

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <set>
+#include <span>
 #include <utility>
 
 #include "pipeline/data/recordings.hpp"
@@ -17,22 +20,25 @@ namespace crisp {
 namespace {
 
 constexpr double kExpectedShare = 0.7;  // in halls and streets, with the true calibration; in rooms 0.9
+constexpr double kApart = 3;            // [σ] by which views may miss one another
 
-/// Directions from the scanner in bins of about 6°, and which views measure in them.
+/// The beams by their directions, in bins of about 3°.
 class Directions {
  public:
-  Directions(const BeamsView& beams, const ViewPartition& partition)
-      : views_(partition.views.size()), counts_(kBins * views_), bins_(partition.of_beam.size()) {
+  explicit Directions(const PointsView& directions) : begins_(kBins + 1), bins_(directions.size()) {
     for (std::size_t i = 0; i < bins_.size(); ++i) {
-      bins_[i] = bin_of(beams.directions, i);
-      ++counts_[bins_[i] * views_ + partition.of_beam[i]];
+      bins_[i] = bin_of(directions, i);
+      ++begins_[bins_[i] + 1];
     }
+    std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+    beams_.resize(bins_.size());
+    std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
+    for (std::size_t i = 0; i < bins_.size(); ++i) beams_[next[bins_[i]]++] = static_cast<std::uint32_t>(i);
   }
 
-  /// Whether a view measures where a beam went.
-  bool has(std::size_t beam, std::size_t view) const {
-    constexpr std::uint32_t kFew = 5;
-    return counts_[bins_[beam] * views_ + view] >= kFew;
+  std::size_t bin(std::size_t beam) const { return bins_[beam]; }
+  std::span<const std::uint32_t> beams_in(std::size_t bin) const {
+    return std::span(beams_).subspan(begins_[bin], begins_[bin + 1] - begins_[bin]);
   }
 
  private:
@@ -45,11 +51,11 @@ class Directions {
     return within(azimuth, kAzimuths) * kHeights + within(height, kHeights);
   }
 
-  static constexpr std::size_t kAzimuths = 60, kHeights = 20;
+  static constexpr std::size_t kAzimuths = 120, kHeights = 40;
   static constexpr std::size_t kBins = kAzimuths * kHeights;
-  std::size_t views_;
-  std::vector<std::uint32_t> counts_;  // bins × views
-  std::vector<std::size_t> bins_;      // of the beams
+  std::vector<std::size_t> begins_;   // of each bin's beams
+  std::vector<std::size_t> bins_;     // of the beams
+  std::vector<std::uint32_t> beams_;  // by bins
 };
 
 /// Sums over surfels for each ordered pair of views.
@@ -65,63 +71,105 @@ struct PairSums {
   std::vector<double> agreed;
 };
 
+using Cell = std::pair<int, int>;
+
 /// A square metre of a surfel. Over a whole wall, planes that are tilted against one another would agree on
 /// average.
 struct Piece {
-  explicit Piece(std::size_t views) : distances(views), within(views * views) {}
+  explicit Piece(std::size_t views) : distances(views), through(views) {}
 
-  void add(std::size_t view, double distance, const std::vector<bool>& has_others) {
-    distances[view].push_back(distance);
-    for (std::size_t other = 0; other < distances.size(); ++other) {
-      within[view * distances.size() + other] += has_others[other] ? 1 : 0;
-    }
-  }
-
-  void add_to(PairSums& sums, double apart) {
-    constexpr double kFew = 5;           // beams whose median is known to half of the noise
-    constexpr double kLeastPart = 0.01;  // of the piece's beams
-    double all = 0;
+  void add_to(PairSums& sums, const ViewErrors& errors) {
+    constexpr double kFew = 5;          // beams whose median is known to half of the noise
+    constexpr double kLeastPart = 0.2;  // of the beams that should have met it
+    const double apart = kApart * std::hypot(errors.range, farthest * errors.angle);
     std::vector<double> middles;
     for (auto& own : distances) {
-      all += static_cast<double>(own.size());
       middles.push_back(own.empty() ? 0 : middle_of(own));
     }
     for (std::size_t view = 0; view < distances.size(); ++view) {
+      const auto beams = static_cast<double>(distances[view].size());
       for (std::size_t other = 0; other < distances.size(); ++other) {
         const std::size_t pair = view * distances.size() + other;
-        if (other == view || within[pair] == 0) continue;
-        sums.beams[pair] += within[pair];
-        const bool meets = static_cast<double>(distances[other].size()) >= std::max(kFew, kLeastPart * all);
-        if (meets && std::abs(middles[other] - middles[view]) < apart) sums.agreed[pair] += within[pair];
+        if (other == view || through[other] < kFew) continue;
+        sums.beams[pair] += beams;
+        const auto met = static_cast<double>(distances[other].size());
+        const bool meets = met >= std::max(kFew, kLeastPart * through[other]);
+        if (meets && std::abs(middles[other] - middles[view]) < apart) sums.agreed[pair] += beams;
       }
     }
   }
 
+  double farthest = 0;   ///< [m] from the spin axis
+  std::set<Cell> cells;  ///< that hold a point
   /// [m] From the surface's plane, for each view. Of beams that were rejected as well: a whole view may have
   /// been.
   std::vector<std::vector<double>> distances;
-  std::vector<double>
-      within;  // of a view's beams those in directions in which another one measures, by pairs
+  std::vector<double> through;  ///< for each view, beams that meet the surface or should have met it
 };
 
-void add(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams, const ViewPartition& partition,
-         const Directions& directions, double apart, PairSums& sums) {
-  constexpr double kSide = 1;  // [m]
-  const std::size_t n = partition.views.size();
-  std::map<std::pair<int, int>, Piece> pieces;
-  std::vector<bool> has_others(n);
-  for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
-    const std::uint32_t beam = surfels.members[k];
-    const Eigen::Vector3d point(beams.points.x[beam], beams.points.y[beam], beams.points.z[beam]);
-    const Eigen::Vector3d from_middle = point - surfel.middle;
-    const std::pair at(static_cast<int>(std::floor(surfel.u.dot(from_middle) / kSide)),
-                       static_cast<int>(std::floor(surfel.v.dot(from_middle) / kSide)));
-    for (std::size_t other = 0; other < n; ++other) has_others[other] = directions.has(beam, other);
-    pieces.try_emplace(at, n).first->second.add(partition.of_beam[beam], surfel.normal.dot(from_middle),
-                                                has_others);
+/// One surfel in pieces.
+class Pieces {
+ public:
+  Pieces(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams, const ViewPartition& partition)
+      : surfel_(surfel), beams_(beams), partition_(partition) {
+    for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) add(surfels.members[k]);
   }
-  for (auto& [at, piece] : pieces) piece.add_to(sums, apart);
-}
+
+  /// Finds which beams go through the pieces: a beam that was measured from elsewhere may pass beside them,
+  /// or end at something in front.
+  void find_beams_through(std::span<const std::uint32_t> members, const Directions& directions) {
+    std::set<std::size_t> bins;
+    for (const std::uint32_t beam : members) bins.insert(directions.bin(beam));
+    for (const std::size_t bin : bins) {
+      for (const std::uint32_t beam : directions.beams_in(bin)) find_through(beam);
+    }
+  }
+
+  void add_to(PairSums& sums, const ViewErrors& errors) {
+    for (auto& [at, piece] : pieces_) piece.add_to(sums, errors);
+  }
+
+ private:
+  static constexpr double kSide = 1;    // [m] of a piece
+  static constexpr double kCell = 0.1;  // [m]
+
+  static Eigen::Vector3d vector(const PointsView& all, std::size_t i) {
+    return {all.x[i], all.y[i], all.z[i]};
+  }
+  Cell cell(const Eigen::Vector3d& from_middle, double side) const {
+    return {static_cast<int>(std::floor(surfel_.u.dot(from_middle) / side)),
+            static_cast<int>(std::floor(surfel_.v.dot(from_middle) / side))};
+  }
+
+  void add(std::uint32_t beam) {
+    const Eigen::Vector3d point = vector(beams_.points, beam);
+    const Eigen::Vector3d from_middle = point - surfel_.middle;
+    Piece& piece = pieces_.try_emplace(cell(from_middle, kSide), partition_.views.size()).first->second;
+    piece.distances[partition_.of_beam[beam]].push_back(surfel_.normal.dot(from_middle));
+    piece.farthest = std::max(piece.farthest, std::hypot(point.x(), point.y()));
+    piece.cells.insert(cell(from_middle, kCell));
+  }
+
+  void find_through(std::uint32_t beam) {
+    constexpr double kInFront = 0.3;  // [m] of a surface: what ends farther off has met something else
+    constexpr double kGrazing = 0.1;  // cosine of incidence
+    const Eigen::Vector3d direction = vector(beams_.directions, beam);
+    const double cosine = surfel_.normal.dot(direction);
+    if (std::abs(cosine) < kGrazing) return;
+    const Eigen::Vector3d from_middle = vector(beams_.points, beam) - surfel_.middle;
+    const double on = -surfel_.normal.dot(from_middle) / cosine;
+    if (on > kInFront) return;
+    const Eigen::Vector3d crossing = from_middle + on * direction;
+    const auto piece = pieces_.find(cell(crossing, kSide));
+    if (piece == pieces_.end() || !piece->second.cells.contains(cell(crossing, kCell))) return;
+    piece->second.through[partition_.of_beam[beam]] += 1;
+  }
+
+  const Surfel& surfel_;
+  const BeamsView& beams_;
+  const ViewPartition& partition_;
+  std::map<Cell, Piece> pieces_;
+};
 
 Orientation orientation_of(const Surfel& surfel) {
   constexpr double kLevel = 0.7;  // cosine of 45° between normal and spin axis
@@ -176,19 +224,22 @@ std::vector<ViewPartition> view_partitions(const Sample& sample, const std::vect
 }
 
 std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const BeamsView& beams,
-                                              const ViewPartition& partition, double noise) {
-  constexpr double kApart = 3;          // [σ]
+                                              const ViewPartition& partition, const ViewErrors& errors) {
   constexpr double kLeastShare = 0.02;  // of all beams: fewer are no reason to doubt
   constexpr std::size_t kLeastBlock = 64, kMostBlocks = 8;
   const std::size_t n = partition.views.size();
-  const Directions directions(beams, partition);
+  const Directions directions(beams.directions);
   const std::size_t block = std::max(kLeastBlock, surfels.surfels.size() / kMostBlocks);
   std::vector<ViewConsistency> pairs;
   for (const Orientation orientation : {Orientation::upright, Orientation::level}) {
     const auto add_block = [&](PairSums& sums, std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
         if (orientation_of(surfels.surfels[s]) != orientation) continue;
-        add(surfels.surfels[s], surfels, beams, partition, directions, kApart * noise, sums);
+        const Surfel& surfel = surfels.surfels[s];
+        Pieces pieces(surfel, surfels, beams, partition);
+        pieces.find_beams_through(std::span(surfels.members).subspan(surfel.begin, surfel.end - surfel.begin),
+                                  directions);
+        pieces.add_to(sums, errors);
       }
     };
     const auto all = sum_over_blocks(surfels.surfels.size(), block, PairSums(n), add_block);

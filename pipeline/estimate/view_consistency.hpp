@@ -28,21 +28,25 @@ std::vector<ViewPartition> view_partitions(const Sample& sample, const std::vect
 /// Errors about the spin axis show on upright surfaces alone.
 enum class Orientation : std::uint8_t { upright, level };
 
+/// What a right calibration leaves between views, as standard deviations.
+struct ViewErrors {
+  double range = 0;  ///< [m] of a range
+  double angle = 0;  ///< [rad] of the plate at a beam's time: steps of its encoder, errors of the clocks
+};
+
 /// How far one view sees flat surfaces where another one does.
 struct ViewConsistency {
   std::string view;
   std::string other;
   Orientation orientation = Orientation::upright;  ///< of the surfaces
-  double beams = 0;  ///< of `view` on them, in directions in which `other` measures as well
-  double share = 0;  ///< of these, on surfaces that `other` meets within 3 standard deviations of a range
+  double beams = 0;                                ///< of `view` on them, where beams of `other` go as well
+  double share = 0;  ///< of these, on surfaces that `other` meets within 3 standard deviations
 };
 
 /// All ordered pairs of a partition's views that have beams on such surfaces in the same directions, in the
 /// order of the views. Pairs with few such beams are left out.
-///
-/// @param noise  [m] standard deviation of a range
 std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const BeamsView& beams,
-                                              const ViewPartition& partition, double noise);
+                                              const ViewPartition& partition, const ViewErrors& errors);
 
 /// "walls" or "floors and ceilings".
 const char* in_words(Orientation orientation);

@@ -2,6 +2,7 @@
 #include "plugins/calibrate/in_plane_calibration.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -11,6 +12,7 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/estimate/base_slots.hpp"
+#include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/deepest_valley.hpp"
 #include "plugins/calibrate/straightness.hpp"
 
@@ -38,13 +40,15 @@ class InPlaneCalibration {
       : model_(model),
         free_(free),
         front_(in_plane(sample, settings.half_width, Half::kFront)),
+        back_(in_plane(sample, settings.half_width, Half::kBack)),
         both_(in_plane(sample, settings.half_width, Half::kBoth)),
         measure_(measure),
         settings_(settings),
-        bunches_(turns_both_ways(front_)) {}
+        bunches_(turns_both_ways(both_)) {}
 
   void find_eta(std::size_t laser) {
-    const Sample own = of_laser(front_, laser);
+    const Sample front = of_laser(front_, laser);
+    const Sample own = front.beams.size() < kFewBeams ? of_laser(back_, laser) : front;
     const auto free = those_free({slot(model_, laser, kEta)});
     if (own.beams.size() < kFewBeams || free.empty()) return;
     const double centre = centres_of(settings_.range, model_, free)[0];
@@ -58,7 +62,7 @@ class InPlaneCalibration {
   void find_tau_alpha(std::size_t laser) {
     const Sample own = of_laser(both_, laser);
     const auto free = those_free({slot(model_, laser, kTau), slot(model_, laser, kAlpha)});
-    if (own.beams.size() < kFewBeams || free.empty()) return;
+    if (!sees_both_sides(laser) || free.empty()) return;
     for (const double sigma : annealing(settings_.sigma_from, settings_.sigma_to)) {
       crispest(model_, thin_for(sigma, own), free, measure_, sigma, settings_.range,
                sigma > settings_.sigma_to ? rough(settings_.minimiser) : settings_.minimiser);
@@ -85,9 +89,12 @@ class InPlaneCalibration {
   void find_geometry() {
     std::vector<std::size_t> geometry;
     for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
-      const auto own =
-          those_free({slot(model_, laser, kLambda), slot(model_, laser, kTau), slot(model_, laser, kAlpha)});
-      if (!has_few(laser)) geometry.insert(geometry.end(), own.begin(), own.end());
+      std::vector<std::size_t> own = {slot(model_, laser, kLambda)};
+      if (sees_both_sides(laser)) {
+        own.insert(own.end(), {slot(model_, laser, kTau), slot(model_, laser, kAlpha)});
+      }
+      const auto free = those_free(own);
+      if (!has_few(laser)) geometry.insert(geometry.end(), free.begin(), free.end());
     }
     if (geometry.empty()) return;
     crispest(model_, both_, geometry, measure_, settings_.sigma_to, settings_.range, settings_.minimiser);
@@ -98,6 +105,13 @@ class InPlaneCalibration {
  private:
   bool has_few(std::size_t laser) const {
     return std::cmp_less(std::ranges::count(both_.beams.laser, laser), kFewBeams);
+  }
+
+  /// Where a laser has one of the two beams only, the cloud becomes crisper as the room becomes smaller.
+  bool sees_both_sides(std::size_t laser) const {
+    return std::ranges::all_of(std::array{&front_, &back_}, [&](const Sample* half) {
+      return !std::cmp_less(std::ranges::count(half->beams.laser, laser), kFewBeams);
+    });
   }
 
   void keep(const std::optional<Rival>& rival) {
@@ -115,20 +129,56 @@ class InPlaneCalibration {
     keep(to_straightest(model_, eta, around(centre, reach, kSteps), false, own, settings_.sigma_to));
   }
 
+  /// Where the rig gives no standard deviation, anywhere on the circle. Of valleys as deep the one near the
+  /// start counts.
   void find_lambda(std::size_t lambda, const Sample& pair) {
     constexpr int kSteps = 120;  // 3°: the valley at σ = 0.5 m is wider in any room
     constexpr int kFine = 180;
-    const bool anywhere = !settings_.range.nominal.contains(model_.names()[lambda]);
-    const auto grid = [&](int steps) {
-      if (anywhere) return circle(steps);
-      const double reach = range_of(settings_.range, model_.names()[lambda]);
+    constexpr double kNear = 20 * kDegree;
+    const int steps = bunches_ ? kFine : kSteps;
+    const std::string& name = model_.names()[lambda];
+    const auto grid_around = [&](double centre, double reach) {
       const double half = std::ceil(reach / (2 * std::numbers::pi / steps));
-      return around(centres_of(settings_.range, model_, {lambda})[0], reach,
-                    std::max(2, static_cast<int>(half)));
+      return around(centre, reach, std::max(2, static_cast<int>(half)));
     };
-    keep(bunches_ ? to_straightest(model_, lambda, grid(kFine), anywhere, pair, settings_.sigma_to)
-                  : to_deepest_valley(model_, lambda, grid(kSteps), anywhere, pair, measure_, settings_.range,
-                                      narrowing()));
+    if (settings_.range.nominal.contains(name)) {
+      const double centre = centres_of(settings_.range, model_, {lambda})[0];
+      const auto grid = grid_around(centre, range_of(settings_.range, name));
+      return keep(to_best_lambda(model_, lambda, grid, false, pair));
+    }
+    const SensorModel start = model_;
+    const double from = start.values()[static_cast<Eigen::Index>(lambda)];
+    const auto is_near = [&](double value) { return between(value, from, true) < kNear; };
+    const auto rival = to_best_lambda(model_, lambda, circle(steps), true, pair);
+    if (is_near(model_.values()[static_cast<Eigen::Index>(lambda)])) {
+      if (rival && is_near(rival->at)) keep(rival);
+      return;
+    }
+    SensorModel near = start;
+    to_best_lambda(near, lambda, grid_around(from, kNear), false, pair);
+    if (height_above(near, model_, pair) < kClearlyDeeper) {
+      model_ = near;
+    } else {
+      keep(rival);
+    }
+  }
+
+  std::optional<Rival> to_best_lambda(SensorModel& model, std::size_t lambda, const std::vector<double>& grid,
+                                      bool circular, const Sample& pair) const {
+    return bunches_ ? to_straightest(model, lambda, grid, circular, pair, settings_.sigma_to)
+                    : to_deepest_valley(model, lambda, grid, circular, pair, measure_, settings_.range,
+                                        narrowing());
+  }
+
+  /// [nat] By how much less crisp the cloud is with one model than with another.
+  double height_above(const SensorModel& model, const SensorModel& best, const Sample& pair) const {
+    if (bunches_) {
+      const double noise = settings_.sigma_to;
+      return std::log(straightness(model, pair, noise) / straightness(best, pair, noise)) / 2;
+    }
+    const Sample thin = thin_for(settings_.sigma_to, pair);
+    return model_quality(model, thin, measure_, settings_.sigma_to) -
+           model_quality(best, thin, measure_, settings_.sigma_to);
   }
 
   Narrowing narrowing() const { return {.from = settings_.sigma_from, .to = settings_.sigma_to}; }
@@ -144,6 +194,7 @@ class InPlaneCalibration {
   std::vector<Rival> rivals_;
   const std::vector<std::size_t>& free_;
   Sample front_;
+  Sample back_;
   Sample both_;
   Measure& measure_;
   const InPlaneSettings& settings_;

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/recordings.hpp"
+#include "pipeline/estimate/clock_errors.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/estimate/wanted_terms.hpp"
@@ -12,16 +15,10 @@
 #include "pipeline/stage/registry.hpp"
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"
+#include "plugins/calibrate/suspects.hpp"
+#include "plugins/calibrate/verdict.hpp"
 
 namespace crisp {
-namespace {
-
-/// How far beams may miss their surfaces, in units of the noise. The surfaces' own roughness makes up to 1.4:
-/// see SurfelSettings::max_excess.
-constexpr double kPoorFit = 1.5;
-
-}  // namespace
-
 void RefineStage::describe(StageDescription<RefineStage>& d) {
   d.name("calibrate.refine").summary("refines a calibration by the flat surfaces that all beams show");
   d.details(
@@ -29,11 +26,13 @@ void RefineStage::describe(StageDescription<RefineStage>& d) {
       "surfaces' planes as unknowns. It has none of the bias of an entropy's optimum and a tenth of its "
       "scatter, but needs a start that is right to some centimetres: calibrate.rqe, or calibrate.load. What "
       "the data do not determine stays as it came.\n\n"
+      "Where the clocks' own errors are known (clock.convex_hull), they are part of those of eta.\n\n"
       "Several recordings (what pauses of 5 s divide) may have been made in several places: no surface is "
       "looked for in more than one of them, and each has lags of its own, of which the mean is eta.\n\n"
       "If all beams lie in the plate's plane (two of each laser), the walls that they meet are taken to be "
       "upright.");
-  d.takes<Measurements>().holds<PlateTrajectory>().holds<Calibration>().gives<Calibration>();
+  d.takes<Measurements>().takes<ClockMap>(Need::optional);
+  d.holds<PlateTrajectory>().holds<Calibration>().gives<Calibration>();
   d.option("noise", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::noise,
            "standard deviation of a range")
       .unit("m")
@@ -72,6 +71,8 @@ void RefineStage::check(const RunSettings& run) const {
 }
 
 void RefineStage::process(const Inputs& in, Outputs&, Context& context) {
+  if (const auto* clock = in.find<ClockMap>()) clocks_[clock->device] = *clock;
+  if (!in.find<Measurements>()) return;
   start_ = in.share<Calibration>();
   collected_.add(in.share<Measurements>(),
                  oriented_(in.share<PlateTrajectory>(), start_.get(), context.rig()));
@@ -82,6 +83,8 @@ void RefineStage::finish(Outputs& out, Context& context) {
   context.count("beams left out of the calibration of a long recording", collected_.left_out());
   const auto& terms = context.run().registrar->get<TermRegistry>();
   settings_.prior.nominal = nominal_values(context.rig());
+  settings_.angle_step = std::abs(context.rig().plate.angle_per_count());
+  settings_.angle_error = plate_angle_error(*sample.plate, context.rig(), clocks_);
   Calibration with_terms = *start_;
   add_wanted_terms(with_terms, settings_.terms, terms);
   const SensorModel start(with_terms, terms);
@@ -98,12 +101,28 @@ void RefineStage::finish(Outputs& out, Context& context) {
   }
   if (context.interrupted()) return;
 
+  add_clock_errors(refined.outcome, context.rig(), clocks_);
   Calibration calibration = calibration_of(refined.outcome, context.rig());
   judge(sample, refined, calibration, context);
   calibration.provenance = start_->provenance;
   calibration.provenance["refinement"] = "calibrate.refine";
   tell(calibration, *start_, context);
   out.give(std::move(calibration));
+}
+
+std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refinement& refined, bool fits,
+                                               Measure& measure, Context& context) const {
+  if (is_in_plane(sample)) return {};
+  const SuspectSettings settings{
+      .terms = &context.run().registrar->get<TermRegistry>(),
+      .measure = &measure,
+      .refinement = settings_,
+      .interrupted = [&] { return context.interrupted(); },
+      .report = [&](double done, std::string_view what) { context.progress(done, what); }};
+  auto found = mounts_off(refined.outcome.model, sample, context.rig(), settings);
+  if (fits || !found.empty()) return found;
+  if (auto mistake = mistake_in_rig(sample, context.rig(), settings)) found.push_back(std::move(*mistake));
+  return found;
 }
 
 void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibration& calibration,
@@ -126,20 +145,19 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
   context.say(fmt::format("{} flat surfaces with {} beams; chi2 {:.3f} per degree of freedom after {} rounds",
                           refined.surfels, refined.beams, refined.chi2, refined.rounds));
   tell(refined.views, context);
-  for (const auto& doubt : refined.outcome.doubts) context.distrust(doubt);
   for (const auto& name : known_from_rig_only(calibration, settings_.prior)) {
     context.say(name + ": known from the rig only; these data do not determine it better");
   }
-  for (const auto& caveat : far_from_nominal(calibration, context.rig())) context.distrust(caveat);
-  const double misfit = std::sqrt(refined.chi2) * settings_.surfels.noise;
-  const double scatter = refined.scatter > 0 ? refined.scatter : settings_.surfels.noise;
-  context.report({{"misfit", misfit}, {"neighbour_noise", refined.scatter}});
-  if (misfit > kPoorFit * scatter) {
-    context.distrust(fmt::format(
-        "beams miss their surfaces by {:.1f} mm (RMS), {:.1f} times what ranges scatter from neighbour to "
-        "neighbour ({:.1f} mm): the rig is wrong by a little, or the sensor model lacks an effect. Check the "
-        "rig's mount and counts_per_revolution; configs/diagnose.yaml looks for the effect",
-        misfit * 1e3, misfit / scatter, scatter * 1e3));
+  const double noise = settings_.surfels.noise;
+  context.report({{"misfit", misfit_of(refined, noise)}, {"neighbour_noise", refined.scatter}});
+  auto caveats = caveats_of_fit(refined, calibration, *start_, context.rig(), noise);
+  for (auto& caveat : mistakes(sample, refined, caveats.empty(), *measure, context)) {
+    caveats.push_back(std::move(caveat));
+  }
+  for (const auto& caveat : caveats) context.distrust(caveat);
+  if (caveats.empty() && start_->doubts.empty()) {
+    context.lift_doubts(KindName<Calibration>::value,
+                        "the refined calibration fits, and agrees with the rig");
   }
 }
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "pipeline/data/clock_map.hpp"
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/collected.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
+#include "pipeline/quality/measure.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 
@@ -24,11 +28,16 @@ class RefineStage final : public Stage {
   void judge(const Sample& sample, const Refinement& refined, Calibration& calibration,
              Context& context) const;
 
+  /// What is wrong in the rig, as caveats: mounts always, the rest where the calibration does not fit.
+  std::vector<std::string> mistakes(const Sample& sample, const Refinement& refined, bool fits,
+                                    Measure& measure, Context& context) const;
+
   RefinementSettings settings_;
   double sigma_ = 0.02;  // [m] near the ranges' noise, where RQE itself is hardly biased
   OrientedPlate oriented_;
   Collected collected_;
   std::shared_ptr<const Calibration> start_;
+  std::map<std::string, ClockMap> clocks_;  ///< by device
 };
 
 }  // namespace crisp

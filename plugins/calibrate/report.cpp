@@ -26,22 +26,12 @@ std::string in_words(const Unobservable& u) {
                      u.combination.empty() ? "" : "; known is ", u.combination);
 }
 
-/// RQE stays the judge, whatever has found the parameters.
-void judge(const std::map<std::string, double>& quality, Context& context) {
-  constexpr double kLess = 0.05;  // [nat] that chance and the bias of an optimum of RQE do not explain
+void tell_crispness(const std::map<std::string, double>& quality, Context& context) {
   if (!quality.contains("rqe_before") || !quality.contains("rqe_after")) return;
-  const double after = quality.at("rqe_after");
   const auto start = quality.find("rqe_unrefined");
-  const bool is_refined = start != quality.end();
   context.say(fmt::format("RQE {:.4f} before{}, {:.4f} after (sigma {:g} cm)", quality.at("rqe_before"),
-                          is_refined ? fmt::format(", {:.4f} unrefined", start->second) : "", after,
-                          quality.at("rqe_sigma") * 100));
-  if (after > quality.at("rqe_before")) {
-    context.distrust("the calibration made the cloud less crisp than it was");
-  } else if (is_refined && after > start->second + kLess) {
-    context.distrust(fmt::format("the refinement made the cloud less crisp, by {:.3f} nat, than it found it",
-                                 after - start->second));
-  }
+                          start != quality.end() ? fmt::format(", {:.4f} unrefined", start->second) : "",
+                          quality.at("rqe_after"), quality.at("rqe_sigma") * 100));
 }
 
 }  // namespace
@@ -74,7 +64,7 @@ void tell(const Calibration& calibration, const Calibration& start, Context& con
     if (!told_before) context.warn(in_words(u));
   }
   context.report({{"lasers", lasers}, {"quality", calibration.quality}, {"unobservable", unobservable}});
-  judge(calibration.quality, context);
+  tell_crispness(calibration.quality, context);
 }
 
 void tell(const std::vector<ViewConsistency>& views, Context& context) {

@@ -186,6 +186,31 @@ Calibration mirrored(const Calibration& calibration) {
   return result;
 }
 
+Calibration in_form_of_rig(Calibration calibration, const Rig& rig) {
+  double as_it_is = 0;
+  double turned = 0;
+  for (std::size_t k = 0; k < rig.lasers.size(); ++k) {
+    const double tau = calibration.lasers[k].tau.value;
+    as_it_is += std::abs(tau - rig.lasers[k].nominal.tau.value);
+    turned += std::abs(-tau - rig.lasers[k].nominal.tau.value);
+  }
+  if (as_it_is <= turned) return calibration;
+  for (std::size_t k = 0; k < rig.lasers.size(); ++k) {
+    LaserCalibration& laser = calibration.lasers[k];
+    const double nominal = rig.lasers[k].nominal.alpha.value;
+    laser.tau.value = -laser.tau.value;
+    laser.alpha.value = nominal + wrapped(laser.alpha.value + kPi - nominal);
+  }
+  const std::size_t m = calibration.covariance_order.size();
+  const auto changes_sign = [&](std::size_t k) { return calibration.covariance_order[k].ends_with(".tau"); };
+  for (std::size_t row = 0; row < m; ++row) {
+    for (std::size_t column = 0; column < m; ++column) {
+      if (changes_sign(row) != changes_sign(column)) calibration.covariance[row * m + column] *= -1;
+    }
+  }
+  return calibration;
+}
+
 std::vector<std::string> known_from_rig_only(const Calibration& calibration, const SearchRange& prior) {
   constexpr double kAboutAll = 0.9;
   std::vector<std::string> names;
@@ -213,6 +238,7 @@ RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const Se
   const bool fits = best.distance < kFitsPerLaser * static_cast<double>(rig.lasers.size());
   const bool is_explained = fits && best.distance + kClearly < as_it_is;
   RigCheck check{.is_mirrored = is_explained && &best == &mirror_image,
+                 .is_explained = is_explained,
                  .knows_direction = as_it_is + kClearly < mirror_image.distance};
   check.caveats = is_explained ? std::vector{best.caveat} : outside(calibration, rig, range);
   return check;

@@ -14,9 +14,14 @@ namespace crisp {
 /// was not estimated keeps it, as it defines the frame. Without terms beyond equation (2).
 Calibration mirrored(const Calibration& calibration);
 
+/// The same calibration as (λ, τ, α) or as (λ, −τ, α + 180°) of all lasers at once, which is the frame turned
+/// by 180°: in the form that is nearer to the rig's nominal values.
+Calibration in_form_of_rig(Calibration calibration, const Rig& rig);
+
 /// What a rig's nominal values say of a calibration.
 struct RigCheck {
-  bool is_mirrored = false;  ///< the mirror image agrees with the rig, clearly better than the calibration
+  bool is_mirrored = false;   ///< the mirror image agrees with the rig, clearly better than the calibration
+  bool is_explained = false;  ///< what contradicts the rig is one of its usual mistakes
   bool knows_direction = false;      ///< the mirror image is clearly farther from the rig
   std::vector<std::string> caveats;  ///< what contradicts the rig, and what to do; empty if nothing does
 };

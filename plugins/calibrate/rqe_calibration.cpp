@@ -8,6 +8,7 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
+#include "pipeline/estimate/base_slots.hpp"
 #include "pipeline/estimate/can_be_told.hpp"
 #include "pipeline/estimate/observability.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
@@ -16,11 +17,6 @@
 
 namespace crisp {
 namespace {
-
-/// [nat] From where a valley is clearly less deep than the deepest. Two lasers whose clouds have nothing in
-/// common are by log 2 less crisp than two that see the same; in ordinary rooms the next valley is 0.3 to 0.5
-/// off.
-constexpr double kClearlyDeeper = 0.1;
 
 constexpr const char* kSingleSpots =
     "the plate was only ever seen in a few directions, as its rate and the mirrors' are commensurate: walls "
@@ -69,6 +65,7 @@ class RqeCalibration {
         sample_(with_margin(start, sample, settings_.in_plane)),
         parameters_(can_be_told(free_parameters(start, sample.beams, settings.fixed), start, sample_,
                                 settings.in_plane.range)) {
+    keep_where_one_side_is_seen();
     if (parameters_.free.empty()) {
       throw Error("these data leave nothing to calibrate",
                   "record with more than one laser or with a plate that turns, and see what is fixed");
@@ -88,14 +85,15 @@ class RqeCalibration {
       parameters_.free = known.known;
       parameters_.unobservable.insert(parameters_.unobservable.end(), known.unobservable.begin(),
                                       known.unobservable.end());
-      if (parameters_.free.empty()) throw Error("these data determine none of the parameters");
-      covariance = scatter(used);
+      covariance = parameters_.free.empty() ? Eigen::MatrixXd() : scatter(used);
     }
     return {.model = model_,
             .free = parameters_.free,
             .covariance = std::move(covariance),
             .unobservable = parameters_.unobservable,
-            .doubts = doubts()};
+            .doubts = doubts(),
+            .rivals = doubts_of_rivals(),
+            .kept = kept_};
   }
 
  private:
@@ -122,6 +120,25 @@ class RqeCalibration {
                   "see whether the rig's mount, lambda and tau are right, and record several turns of the "
                   "plate; if lags may "
                   "be as large, raise eta_range");
+    }
+  }
+
+  /// Leaves τ and α as they are where a laser sees next to nothing on one side of the spin axis: there is no
+  /// surface then that it sees twice, from either side, and an entropy falls as τ and α make the scene
+  /// smaller.
+  void keep_where_one_side_is_seen() {
+    constexpr double kLeastShare = 0.15;
+    for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
+      const Sample own = of_laser(sample_, laser);
+      const auto left = static_cast<double>(
+          std::ranges::count_if(own.beams.mirror_angle, [](float theta) { return theta < 0; }));
+      const auto all = static_cast<double>(own.beams.size());
+      if (std::min(left, all - left) >= kLeastShare * all) continue;
+      for (const BaseSlot which : {kTau, kAlpha}) {
+        if (std::erase(parameters_.free, slot(model_, laser, which)) > 0) {
+          kept_.push_back(slot(model_, laser, which));
+        }
+      }
     }
   }
 
@@ -159,8 +176,12 @@ class RqeCalibration {
   }
 
   std::vector<std::string> doubts() const {
+    if (sees_single_spots(sample_, settings_.in_plane)) return {kSingleSpots};
+    return {};
+  }
+
+  std::vector<std::string> doubts_of_rivals() const {
     std::vector<std::string> found;
-    if (sees_single_spots(sample_, settings_.in_plane)) found.emplace_back(kSingleSpots);
     for (const Rival& rival : rivals_) {
       if (rival.height > kClearlyDeeper) continue;
       found.push_back(fmt::format(
@@ -177,6 +198,7 @@ class RqeCalibration {
   std::vector<Rival> rivals_;
   Sample sample_;
   FreeParameters parameters_;
+  std::vector<std::size_t> kept_;
 };
 
 }  // namespace

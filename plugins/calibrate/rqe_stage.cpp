@@ -1,29 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/rqe_stage.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "pipeline/data/all_errors.hpp"
 #include "pipeline/stage/option_check.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"
+#include "plugins/calibrate/rig_search.hpp"
 
 namespace crisp {
-namespace {
-
-/// [nat] In ordinary rooms the next local minimum is 0.3 to 0.5 above the optimum.
-constexpr double kClearlyCrisper = 0.1;
-
-/// Whether a parameter ended where the rig's standard deviation ends the search.
-bool is_at_limit(const Outcome& outcome, const SearchRange& range) {
-  constexpr double kNear = 0.99;
-  const Eigen::VectorXd off =
-      picked(outcome.model, outcome.free) - centres_of(range, outcome.model, outcome.free);
-  const Eigen::VectorXd reach = ranges_of(range, outcome.model, outcome.free);
-  return (off.array().abs() > kNear * reach.array()).any();
-}
-
-}  // namespace
 
 void RqeStage::describe(StageDescription<RqeStage>& d) {
   d.name("calibrate.rqe")
@@ -116,13 +105,13 @@ Calibration RqeStage::compared_with_rig(Calibration calibration, Context& contex
         "the encoder counts clockwise, by the signs of tau and alpha and the order of the lasers; the "
         "calibration "
         "takes it so. Set plate.direction: clockwise in the rig");
-    return with_lambdas_near(mirrored(calibration), context.rig());
+    return in_form_of_rig(with_lambdas_near(mirrored(calibration), context.rig()), context.rig());
   }
   if (asks_direction && !check.knows_direction) {
-    context.distrust(
+    calibration.doubts.emplace_back(
         "nothing shows which way the encoder counts, as the mirror image agrees with the rig's nominal "
-        "values as well: "
-        "the cloud may be the mirror image of the scene. Set plate.direction in the rig");
+        "values as well: the cloud may be the mirror image of the scene. Set plate.direction in the rig");
+    context.distrust(calibration.doubts.back());
   }
   for (const auto& caveat : check.caveats) context.distrust(caveat);
   return calibration;
@@ -137,39 +126,39 @@ void RqeStage::finish(Outputs& out, Context& context) {
   settings.in_plane.sigma_from = in_plane_sigma_[0];
   settings.in_plane.sigma_to = in_plane_sigma_[1];
   settings.in_plane.range = range_;
-  settings.in_plane.range.nominal = nominal_values(context.rig());
-  settings.in_plane.range.reach = 3;
   settings.in_plane.minimiser.interrupted = [&] { return context.interrupted(); };
   settings.seed = context.seed();
   const auto measure = make_measure(context.run());
   const auto& terms = context.run().registrar->get<TermRegistry>();
   const Calibration start = start_ ? *start_ : nominal_calibration(context.rig());
-  const auto calibrated = [&](double from, double share) {
-    return calibrate_by_rqe(
-        SensorModel(start, terms), sample, *measure, settings,
-        [&](double done, std::string_view what) { context.progress(from + share * done, what); });
-  };
-  const bool has_priors = !settings.in_plane.range.nominal.empty();
-  Outcome outcome = calibrated(0, has_priors ? 0.5 : 1);
-  const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
-  if (has_priors && !context.interrupted()) {
-    // If the rig is wrong, a cloud away from its values is crisper; where that is shows what is wrong.
-    const double clearly = is_at_limit(outcome, settings.in_plane.range) ? 0 : kClearlyCrisper;
-    settings.in_plane.range.nominal.clear();
-    Outcome anywhere = calibrated(0.5, 0.5);
-    const Crispness crispness(sample, anywhere.model, {.sigma = sigma, .points = settings.points}, *measure);
-    if (crispness.of(anywhere.model) + clearly < crispness.of(outcome.model)) outcome = std::move(anywhere);
-  }
+  const Outcome outcome =
+      search_around_rig(SensorModel(start, terms), sample, *measure, settings, context.rig(),
+                        [&](double done, std::string_view what) { context.progress(done, what); });
   if (context.interrupted()) return;
 
   for (const auto& doubt : outcome.doubts) context.distrust(doubt);
+  for (const auto& rival : outcome.rivals) context.distrust(rival);
   Calibration calibration = calibration_of(outcome, context.rig());
+  calibration.doubts = outcome.doubts;  // of the data: no refinement answers them
+  const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
   const Crispness crispness(sample, outcome.model, {.sigma = sigma, .points = settings.points}, *measure);
   calibration.quality = {{"rqe_before", crispness.of(SensorModel(start, terms))},
                          {"rqe_after", crispness.of(outcome.model)},
                          {"rqe_sigma", sigma}};
   calibration.provenance["calibration"] = "calibrate.rqe";
   calibration = compared_with_rig(std::move(calibration), context);
+  if (calibration.quality.at("rqe_after") > calibration.quality.at("rqe_before")) {
+    context.distrust("the calibration made the cloud less crisp than it was");
+  }
+  if (outcome.free.empty()) context.distrust("RQE determines none of the parameters");
+  if (!outcome.kept.empty()) {
+    std::vector<std::string> names;
+    for (const std::size_t parameter : outcome.kept) names.push_back(outcome.model.names()[parameter]);
+    context.say(
+        fmt::format("{} stay as they were: the laser sees one side of the spin axis only, and a smaller room "
+                    "would be as crisp (calibrate.refine finds them)",
+                    fmt::join(names, ", ")));
+  }
   tell(calibration, {}, context);
   context.say(
       "standard errors count how beams scatter; by how much the crispest cloud is not the true one comes on "

@@ -3,8 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
+
 #include "tests/pipeline/estimate/support.hpp"
-#include "tests/pipeline/estimate/viewed_surfels.hpp"
 
 namespace crisp {
 namespace {
@@ -12,55 +13,114 @@ namespace {
 using testing::AllOf;
 using testing::Field;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-std::vector<ViewConsistency> consistency_of(const test::ViewedSurfels& wall,
-                                            const std::vector<std::string>& views) {
-  return view_consistency(wall.surfels, wall.view(), {.views = views, .of_beam = wall.views, .advice = {}},
-                          0.01);
-}
+/// Walls in the planes x = const, and what beams from the origin or from beside it met there.
+class Walls {
+ public:
+  struct Part {
+    std::uint32_t view = 0;
+    double off = 0;        ///< [m] behind the wall
+    int beams = 0;         ///< a millimetre apart
+    double beside = 0;     ///< [m] in y of where they were measured from, and of where they end
+    bool is_on_it = true;  ///< whether they belong to the surfel
+  };
+
+  void add(double distance, const std::vector<Part>& parts) {
+    Surfel surfel{.middle = {distance, 0, 0}, .normal = {1, 0, 0}, .u = {0, 1, 0}, .v = {0, 0, 1}};
+    surfel.begin = static_cast<std::uint32_t>(surfels.members.size());
+    for (const Part& part : parts) {
+      for (int k = 0; k < part.beams; ++k) {
+        if (part.is_on_it) surfels.members.push_back(static_cast<std::uint32_t>(views.size()));
+        if (part.is_on_it) surfels.weights.push_back(1);
+        views.push_back(part.view);
+        add({distance + part.off, part.beside + 1e-3 * k, 0.05}, {0, part.beside, 0});
+      }
+    }
+    surfel.end = static_cast<std::uint32_t>(surfels.members.size());
+    surfels.surfels.push_back(surfel);
+  }
+
+  std::vector<ViewConsistency> consistency(const std::vector<std::string>& names, double angle = 0) const {
+    const BeamsView beams{.points = points_.view(), .directions = directions_.view(), .views = views};
+    return view_consistency(surfels, beams, {.views = names, .of_beam = views, .advice = {}},
+                            {.range = 0.01, .angle = angle});
+  }
+
+  Surfels surfels;
+  std::vector<std::uint32_t> views;
+
+ private:
+  void add(const Eigen::Vector3d& point, const Eigen::Vector3d& from) {
+    const Eigen::Vector3d direction = (point - from).normalized();
+    points_.x.push_back(point.x());
+    points_.y.push_back(point.y());
+    points_.z.push_back(point.z());
+    directions_.x.push_back(direction.x());
+    directions_.y.push_back(direction.y());
+    directions_.z.push_back(direction.z());
+  }
+
+  Vectors points_;
+  Vectors directions_;
+};
 
 auto pair_of(const std::string& view, const std::string& other, double beams, double agreed) {
   return AllOf(Field(&ViewConsistency::view, view), Field(&ViewConsistency::other, other),
                Field(&ViewConsistency::beams, beams),
-               Field(&ViewConsistency::share, testing::DoubleEq(agreed / beams)));
+               Field(&ViewConsistency::share, testing::DoubleNear(agreed / beams, 1e-9)));
 }
 
 TEST(ViewConsistency, CountsBeamsThatTheOtherViewMeetsAtTheSamePlace) {
-  test::ViewedSurfels wall;
-  wall.add({{.view = 0, .height = 0, .beams = 100}, {.view = 1, .height = 0.02, .beams = 60}});  // within 3 σ
-  wall.add({{.view = 0, .height = 0, .beams = 100}, {.view = 1, .height = 0.05, .beams = 20}});  // apart
-  wall.add({{.view = 0, .height = 0, .beams = 1000}, {.view = 1, .height = 0, .beams = 4}});     // by chance
-  EXPECT_THAT(consistency_of(wall, {"a", "b"}),
-              UnorderedElementsAre(pair_of("a", "b", 1200, 100), pair_of("b", "a", 84, 64)));
+  Walls walls;
+  walls.add(2, {{.view = 0, .beams = 50}, {.view = 1, .off = 0.02, .beams = 50}});   // within 3 σ
+  walls.add(20, {{.view = 0, .beams = 50}, {.view = 1, .off = 0.05, .beams = 40}});  // apart
+  EXPECT_THAT(walls.consistency({"a", "b"}),
+              UnorderedElementsAre(pair_of("a", "b", 100, 50), pair_of("b", "a", 90, 50)));
+}
+
+TEST(ViewConsistency, AViewThatLooksThroughASurfaceContradictsIt) {
+  Walls walls;
+  walls.add(2, {{.view = 0, .beams = 50}, {.view = 1, .off = 1, .beams = 50, .is_on_it = false}});
+  EXPECT_THAT(walls.consistency({"a", "b"}), UnorderedElementsAre(pair_of("a", "b", 50, 0)));
+}
+
+TEST(ViewConsistency, AViewThatEndsInFrontOrPassesBesideSaysNothing) {
+  Walls in_front;
+  in_front.add(2, {{.view = 0, .beams = 50}, {.view = 1, .off = -0.5, .beams = 50, .is_on_it = false}});
+  EXPECT_THAT(in_front.consistency({"a", "b"}), IsEmpty());
+  // In the same directions, but from half a metre aside: they pass where nothing was seen.
+  Walls beside;
+  beside.add(
+      2, {{.view = 0, .beams = 50}, {.view = 1, .off = 1, .beams = 50, .beside = 0.5, .is_on_it = false}});
+  EXPECT_THAT(beside.consistency({"a", "b"}), IsEmpty());
 }
 
 TEST(ViewConsistency, EachPairOfThreeIsComparedSoThatTwoWhichAgreeHideNoThird) {
-  test::ViewedSurfels wall;
-  wall.add({{.view = 0, .height = 0, .beams = 100}, {.view = 1, .height = 0, .beams = 100}});
-  wall.add({{.view = 2, .height = 0.04, .beams = 100}});
-  EXPECT_THAT(consistency_of(wall, {"a", "b", "c"}),
-              UnorderedElementsAre(pair_of("a", "b", 100, 100), pair_of("b", "a", 100, 100),
-                                   pair_of("a", "c", 100, 0), pair_of("b", "c", 100, 0),
-                                   pair_of("c", "a", 100, 0), pair_of("c", "b", 100, 0)));
+  Walls walls;
+  walls.add(2, {{.view = 0, .beams = 50}, {.view = 1, .beams = 50}, {.view = 2, .off = 0.05, .beams = 50}});
+  EXPECT_THAT(
+      walls.consistency({"a", "b", "c"}),
+      UnorderedElementsAre(pair_of("a", "b", 50, 50), pair_of("b", "a", 50, 50), pair_of("a", "c", 50, 0),
+                           pair_of("b", "c", 50, 0), pair_of("c", "a", 50, 0), pair_of("c", "b", 50, 0)));
 }
 
-TEST(ViewConsistency, DirectionsInWhichTheOtherViewDoesNotMeasureDoNotCount) {
-  test::ViewedSurfels wall;
-  wall.add({{.view = 0, .height = 0, .beams = 100}, {.view = 1, .height = 0, .beams = 100}});
-  wall.add({{.view = 0, .height = 0.9, .beams = 100}});  // a view's directions are its points here
-  EXPECT_THAT(consistency_of(wall, {"a", "b"}),
-              UnorderedElementsAre(pair_of("a", "b", 100, 100), pair_of("b", "a", 100, 100)));
+TEST(ViewConsistency, WhatThePlateMayBeTurnedByCountsWithTheDistance) {
+  Walls walls;
+  walls.add(20, {{.view = 0, .beams = 50}, {.view = 1, .off = 0.05, .beams = 50}});
+  EXPECT_EQ(walls.consistency({"a", "b"})[0].share, 0);
+  EXPECT_EQ(walls.consistency({"a", "b"}, 1e-3)[0].share, 1);  // 20 mm there
 }
 
 TEST(ViewConsistency, UprightAndLevelSurfacesAreApart) {
-  test::ViewedSurfels wall;
-  wall.add({{.view = 0, .height = 0, .beams = 1000}, {.view = 1, .height = 0, .beams = 1000}});
-  wall.add({{.view = 0, .height = 0.1, .beams = 100}, {.view = 1, .height = 0.19, .beams = 100}});
-  wall.surfels.surfels[1].normal = {0, 0.8, 0.6};
-  const auto pairs = consistency_of(wall, {"a", "b"});
+  Walls walls;
+  walls.add(2, {{.view = 0, .beams = 50}, {.view = 1, .beams = 50}});
+  walls.add(20, {{.view = 0, .beams = 50}, {.view = 1, .off = 0.05, .beams = 50}});
+  walls.surfels.surfels[1].normal = {0.6, 0, 0.8};
+  const auto pairs = walls.consistency({"a", "b"});
   ASSERT_EQ(pairs.size(), 4U);
-  for (const auto& pair : pairs) EXPECT_EQ(pair.share, pair.orientation == Orientation::level ? 1 : 0);
+  for (const auto& pair : pairs) EXPECT_EQ(pair.share, pair.orientation == Orientation::upright ? 1 : 0);
 }
 
 TEST(ViewConsistency, TheLeastConsistentPairIsReportedBelowAHalf) {

@@ -111,10 +111,33 @@ TEST(CalibrateByRqe, IsNotSureInARoomThatLooksTheSameFromBehind) {
   RqeCalibrationSettings settings = quick();
   settings.full_field = false;
   const auto measure = rqe_measure();
-  const Outcome outcome =
-      calibrate_by_rqe(SensorModel(recording.truth), sample_of(recording), *measure, settings);
-  ASSERT_EQ(outcome.doubts.size(), 1U);
-  EXPECT_THAT(outcome.doubts[0], testing::StartsWith("laser2.lambda at "));
+  Calibration start = recording.truth;
+  start.lasers[1].lambda.value += 70 * kDegree;
+  const Outcome outcome = calibrate_by_rqe(SensorModel(start), sample_of(recording), *measure, settings);
+  ASSERT_EQ(outcome.rivals.size(), 1U);
+  EXPECT_THAT(outcome.rivals[0], testing::StartsWith("laser2.lambda at "));
+}
+
+TEST(CalibrateByRqe, TheNominalLambdaTellsWhichOfTwoPlacesIsMeant) {
+  const Scene twin{.name = "twin",
+                   .surfaces = walls("wall", {{-4, -3}, {4, -3}, {4, 3}, {-4, 3}}, -1, 1, 0.5)};
+  ScannerSettings scanner;
+  scanner.rig.lasers.resize(2);
+  scanner.truth = nominal_calibration(scanner.rig);
+  scanner.duration = 5;
+  const auto recording = simulate_measurements(scanner, twin);
+  RqeCalibrationSettings settings = quick();
+  settings.full_field = false;
+  const auto measure = rqe_measure();
+  for (const double off : {-10 * kDegree, 10 * kDegree}) {
+    Calibration start = recording.truth;
+    start.lasers[1].lambda.value += off;
+    const Outcome outcome = calibrate_by_rqe(SensorModel(start), sample_of(recording), *measure, settings);
+    EXPECT_THAT(outcome.rivals, testing::IsEmpty());
+    const double found = outcome.model.calibration().lasers[1].lambda.value;
+    EXPECT_NEAR(std::remainder(found - recording.truth.lasers[1].lambda.value, 2 * std::numbers::pi), 0,
+                2 * kDegree);
+  }
 }
 
 TEST(CalibrateByRqe, RefusesARecordingThatIsTooShortForTheLagsAtOnce) {

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/turn_period.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace crisp {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kMost = 0.5;  // [m] by which ranges count as different
+
+struct Look {
+  double angle = 0;  ///< [rad] of the plate
+  double range = 0;  ///< [m]
+};
+
+/// What each of some beams of each laser saw, by the plate's angle.
+using Looks = std::vector<std::vector<Look>>;
+
+Looks looks_of(const Sample& sample) {
+  constexpr std::size_t kBeams = 16;  // of each laser, spread over its field of view
+  const Measurements& beams = sample.beams;
+  std::map<std::uint16_t, std::uint16_t> last;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    auto& most = last[beams.laser[i]];
+    most = std::max(most, beams.beam[i]);
+  }
+  std::map<std::pair<std::uint16_t, std::uint16_t>, std::vector<Look>> by_beam;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const std::size_t step = std::max<std::size_t>(1, (last[beams.laser[i]] + 1U) / kBeams);
+    if (beams.beam[i] % step != step / 2) continue;
+    const auto plate = sample.plate->at(beams.time[i]);
+    if (plate) by_beam[{beams.laser[i], beams.beam[i]}].push_back({plate->angle, beams.range[i]});
+  }
+  Looks looks;
+  for (auto& [beam, own] : by_beam) {
+    std::ranges::sort(own, {}, &Look::angle);
+    looks.push_back(std::move(own));
+  }
+  return looks;
+}
+
+struct Miss {
+  double sum = 0;
+  std::size_t pairs = 0;
+};
+
+/// Compares what was seen with what is seen a period later, at the nearest angle.
+void add_misses(const std::vector<Look>& looks, double period, Miss& miss) {
+  constexpr double kNear = 0.04;  // [rad]
+  std::size_t next = 0;
+  for (const Look& look : looks) {
+    const double then = look.angle + period;
+    while (next + 1 < looks.size() &&
+           std::abs(looks[next + 1].angle - then) <= std::abs(looks[next].angle - then)) {
+      ++next;
+    }
+    if (std::abs(looks[next].angle - then) > kNear) continue;
+    miss.sum += std::min(kMost, std::abs(looks[next].range - look.range));
+    ++miss.pairs;
+  }
+}
+
+/// [m] Mean difference after a period; infinite where too few looks have another one then.
+double miss_of(const Looks& looks, double period) {
+  constexpr std::size_t kFew = 200;
+  Miss miss;
+  for (const auto& own : looks) add_misses(own, period, miss);
+  return miss.pairs < kFew ? HUGE_VAL : miss.sum / static_cast<double>(miss.pairs);
+}
+
+}  // namespace
+
+std::optional<TurnPeriod> turn_period(const Sample& sample) {
+  constexpr double kLeastTurns = 1.2;
+  constexpr double kAround = 0.08;
+  constexpr double kStep = 0.002;
+  constexpr std::array kFactors = {0.25, 1.0 / 3, 0.5, 1.0, 2.0, 3.0, 4.0};  // ascending
+  constexpr double kAsGood = 1.15, kBesides = 0.01;                          // [m]
+  if (sample.beams.size() == 0 || turned(sample) < kLeastTurns * kTurn) return std::nullopt;
+  const Looks looks = looks_of(sample);
+  const double at_2pi = miss_of(looks, kTurn);
+  if (!std::isfinite(at_2pi)) return std::nullopt;
+  std::vector<TurnPeriod> nearest;  // one for each factor
+  for (const double factor : kFactors) {
+    TurnPeriod best{.angle = factor * kTurn, .miss = miss_of(looks, factor * kTurn), .at_2pi = at_2pi};
+    for (double share = 1 - kAround; share < 1 + kAround + kStep / 2; share += kStep) {
+      const double miss = miss_of(looks, factor * share * kTurn);
+      if (miss < best.miss) best = {.angle = factor * share * kTurn, .miss = miss, .at_2pi = at_2pi};
+    }
+    nearest.push_back(best);
+  }
+  // After two turns all is the same again: of periods that are as good the shortest is the turn.
+  const double least = std::ranges::min(nearest, {}, &TurnPeriod::miss).miss;
+  return *std::ranges::find_if(
+      nearest, [&](const TurnPeriod& period) { return period.miss <= kAsGood * least + kBesides; });
+}
+
+bool contradicts_counts(const TurnPeriod& period) {
+  constexpr double kClearly = 0.6;  // of the mean difference
+  const double share = period.angle / kTurn;
+  const bool is_part = share < 1 / 1.5;
+  return is_part || (std::abs(share - 1) > 0.003 && period.miss < kClearly * period.at_2pi);
+}
+
+}  // namespace crisp

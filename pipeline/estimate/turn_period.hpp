@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "pipeline/estimate/sample.hpp"
+
+namespace crisp {
+
+/// After which angle of the plate, by its encoder, a laser sees the same again.
+struct TurnPeriod {
+  double angle = 0;   ///< [rad] 2π if the encoder's counts a revolution are right
+  double miss = 0;    ///< [m] by how much ranges differ after that angle, in the mean over all up to 0.5 m
+  double at_2pi = 0;  ///< [m] and after 2π
+};
+
+/// Compares the ranges of the same beam of the same laser after one turn and another, without any
+/// calibration: for periods within 8 % of 2π, and of its half, third and quarter and as many times as much.
+///
+/// @return nothing where the plate did not turn by more than a turn and a fifth
+std::optional<TurnPeriod> turn_period(const Sample& sample);
+
+/// Whether that tells that the counts a revolution are wrong.
+bool contradicts_counts(const TurnPeriod& period);
+
+}  // namespace crisp

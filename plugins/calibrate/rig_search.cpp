@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/rig_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "pipeline/data/degree.hpp"
+#include "pipeline/data/error.hpp"
+#include "pipeline/estimate/base_slots.hpp"
+#include "pipeline/estimate/surfel_refinement.hpp"
+#include "plugins/calibrate/cloud_objective.hpp"
+#include "plugins/calibrate/report.hpp"
+#include "plugins/calibrate/rig_check.hpp"
+
+namespace crisp {
+namespace {
+
+/// [nat] In ordinary rooms the next local minimum is 0.3 to 0.5 above the optimum.
+constexpr double kClearlyCrisper = 0.1;
+
+constexpr double kDeviations = 3;  // [standard deviations] of a nominal value within which one is looked for
+constexpr double kUsualLambda = 20 * kDegree;  // within which nominal λ are, unless the rig is wrong
+
+/// The range with λ near the start, too.
+SearchRange with_lambdas(const SensorModel& start, SearchRange range) {
+  for (std::size_t laser = 0; laser < start.lasers(); ++laser) {
+    const std::size_t parameter = slot(start, laser, kLambda);
+    range.nominal.try_emplace(start.names()[parameter],
+                              NominalValue{.value = start.values()[static_cast<Eigen::Index>(parameter)],
+                                           .std_error = kUsualLambda / kDeviations});
+  }
+  return range;
+}
+
+double off(const Outcome& outcome, const SearchRange& range, std::size_t parameter) {
+  return std::abs(picked(outcome.model, {parameter})[0] - centres_of(range, outcome.model, {parameter})[0]);
+}
+
+/// Whether a parameter ended where its range ends, η apart.
+bool is_at_limit(const Outcome& outcome, const SearchRange& range) {
+  constexpr double kNear = 0.99;
+  return std::ranges::any_of(outcome.free, [&](std::size_t parameter) {
+    return range.nominal.contains(outcome.model.names()[parameter]) &&
+           off(outcome, range, parameter) > kNear * ranges_of(range, outcome.model, {parameter})[0];
+  });
+}
+
+/// Whether a λ is elsewhere than where the rig has it.
+bool has_moved_lambda(const Outcome& outcome, const SearchRange& near) {
+  return std::ranges::any_of(outcome.free, [&](std::size_t parameter) {
+    return outcome.model.names()[parameter].ends_with(".lambda") &&
+           off(outcome, near, parameter) > kUsualLambda;
+  });
+}
+
+/// The outcome refined; nothing if nothing is flat there, or nothing is determined.
+std::optional<Refinement> refined(const Outcome& outcome, const Sample& sample, const Rig& rig,
+                                  const std::function<bool()>& interrupted) {
+  RefinementSettings settings;
+  settings.prior.nominal = nominal_values(rig);
+  try {
+    return refine_by_surfels(outcome.model, sample, settings, [&](int) { return !interrupted(); });
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+SearchRange range_near(const SensorModel& start, const Rig& rig, SearchRange range) {
+  range.reach = kDeviations;
+  range.nominal = nominal_values(rig);
+  for (std::size_t laser = 0; laser < start.lasers(); ++laser) {
+    for (const auto& [kind, reach] : {std::pair{kTau, range.tau}, std::pair{kAlpha, range.alpha}}) {
+      const std::size_t parameter = slot(start, laser, kind);
+      range.nominal.try_emplace(start.names()[parameter],
+                                NominalValue{.value = start.values()[static_cast<Eigen::Index>(parameter)],
+                                             .std_error = reach / kDeviations});
+    }
+  }
+  return range;
+}
+
+Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measure& measure,
+                          RqeCalibrationSettings settings, const Rig& rig, const Reporter& report) {
+  constexpr double kMore = 1.2;
+  const SearchRange given = settings.in_plane.range;
+  const auto interrupted = [&] {
+    return settings.in_plane.minimiser.interrupted && settings.in_plane.minimiser.interrupted();
+  };
+  const auto calibrated = [&](const SearchRange& range, double from, double share) {
+    settings.in_plane.range = range;
+    return calibrate_by_rqe(start, sample, measure, settings,
+                            [&](double done, std::string_view what) { report(from + share * done, what); });
+  };
+  const SearchRange near = range_near(start, rig, given);
+  const SearchRange nearest = with_lambdas(start, near);
+  const auto fits = [&](const std::optional<Refinement>& fit) {
+    return fit && fit->outcome.doubts.empty() &&
+           check_with_rig(calibration_of(fit->outcome, rig), rig, given).caveats.empty();
+  };
+  Outcome here = calibrated(near, 0, 0.5);
+  const bool ends_here = is_at_limit(here, near);
+  const bool moved = has_moved_lambda(here, nearest);
+  if (interrupted() || (!ends_here && !moved && nominal_values(rig).empty())) return here;
+  if (moved) {  // in a corridor both ways round fit
+    Outcome nearer = calibrated(nearest, 0.5, 0.1);
+    if (interrupted() || fits(refined(nearer, sample, rig, interrupted))) return nearer;
+  }
+  report(0.6, "flat surfaces");
+  const auto fit = refined(here, sample, rig, interrupted);
+  if (interrupted() || fits(fit)) return here;
+
+  Outcome anywhere = calibrated(given, 0.7, 0.25);
+  const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
+  const Crispness crispness(sample, anywhere.model, {.sigma = sigma, .points = settings.points}, measure);
+  const double clearly = ends_here ? 0 : kClearlyCrisper;
+  if (interrupted() || crispness.of(anywhere.model) + clearly > crispness.of(here.model)) return here;
+  if (check_with_rig(calibration_of(anywhere, rig), rig, given).is_explained) return anywhere;
+  report(0.95, "flat surfaces");
+  const auto other = refined(anywhere, sample, rig, interrupted);
+  const auto beams_of = [](const std::optional<Refinement>& refinement) {
+    return refinement ? static_cast<double>(refinement->beams) : 0.0;
+  };
+  return beams_of(other) > kMore * beams_of(fit) ? std::move(anywhere) : std::move(here);
+}
+
+}  // namespace crisp

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/suspects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "pipeline/data/degree.hpp"
+#include "pipeline/data/error.hpp"
+#include "pipeline/data/mirror_angle.hpp"
+#include "pipeline/estimate/turn_period.hpp"
+#include "pipeline/estimate/wanted_terms.hpp"
+#include "plugins/calibrate/rig_check.hpp"
+#include "plugins/calibrate/rig_search.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::size_t kBeams = 200'000;  // enough to see whether they fit
+constexpr const char* kMirrorZero = "mount.mirror_zero";
+
+/// How the rig would have to be changed.
+struct Suspect {
+  std::string change;               ///< in words: "plate.direction: clockwise"
+  double direction = 1;             ///< −1: the encoder counts the other way
+  std::vector<double> mount_turns;  ///< [rad] by which each laser's mount is greater
+};
+
+std::vector<Suspect> suspects_of(const Rig& rig) {
+  const std::size_t n = rig.lasers.size();
+  const bool is_clockwise = rig.plate.direction == CountDirection::clockwise;
+  std::vector<Suspect> all = {
+      {.change = fmt::format("plate.direction: {}", is_clockwise ? "counter_clockwise" : "clockwise"),
+       .direction = -1,
+       .mount_turns = std::vector<double>(n, 0.0)}};
+  const std::vector<double> turns = {180 * kDegree, 90 * kDegree, -90 * kDegree, 45 * kDegree, -45 * kDegree};
+  const auto changed = [&](std::size_t laser, double turn) {
+    const double mount = std::remainder(rig.lasers[laser].mount + turn, 2 * std::numbers::pi);
+    return fmt::format("mount: {:.4g}deg of {} (the rig has {:.4g})", mount / kDegree, rig.lasers[laser].name,
+                       rig.lasers[laser].mount / kDegree);
+  };
+  for (const double turn : turns) {
+    Suspect suspect{.change = changed(0, turn), .mount_turns = std::vector<double>(n, turn)};
+    if (n > 1) suspect.change += " and the mounts of the others turned alike";
+    all.push_back(std::move(suspect));
+  }
+  for (std::size_t laser = 0; n > 1 && laser < n; ++laser) {
+    for (const double turn : turns) {
+      Suspect suspect{.change = changed(laser, turn), .mount_turns = std::vector<double>(n, 0.0)};
+      suspect.mount_turns[laser] = turn;
+      all.push_back(std::move(suspect));
+    }
+  }
+  return all;
+}
+
+/// The data as they would be with the rig changed.
+class ChangedSample {
+ public:
+  ChangedSample(const Sample& sample, const Suspect& suspect) : sample_(sample) {
+    for (std::size_t i = 0; i < sample_.beams.size(); ++i) {
+      float& angle = sample_.beams.mirror_angle[i];
+      angle = static_cast<float>(wrapped_mirror_angle(angle - suspect.mount_turns[sample_.beams.laser[i]]));
+    }
+    const PlateTrajectory& plate = *sample.plate;
+    std::vector<double> angles;
+    for (const double angle : plate.angles()) angles.push_back(suspect.direction * angle);
+    plate_ =
+        PlateTrajectory(plate.epoch_ns(), {plate.times().begin(), plate.times().end()}, std::move(angles),
+                        plate.max_gap(), {plate.new_zeros().begin(), plate.new_zeros().end()});
+    sample_.plate = &plate_;
+  }
+  ChangedSample(const ChangedSample&) = delete;
+  ChangedSample& operator=(const ChangedSample&) = delete;
+  ~ChangedSample() = default;
+
+  const Sample& sample() const { return sample_; }
+
+ private:
+  Sample sample_;
+  PlateTrajectory plate_;
+};
+
+/// A refinement with the mounts free.
+Refinement refined_with_mounts(const SensorModel& model, const Sample& sample,
+                               const SuspectSettings& settings) {
+  Calibration start = model.calibration();
+  RefinementSettings refinement = settings.refinement;
+  refinement.terms.emplace_back(kMirrorZero);
+  add_wanted_terms(start, refinement.terms, *settings.terms);
+  return refine_by_surfels(SensorModel(start, *settings.terms), sample, refinement,
+                           [&](int) { return !settings.interrupted(); });
+}
+
+bool fits_with(const Suspect& suspect, const Sample& sample, const Rig& rig,
+               const SuspectSettings& settings) {
+  const ChangedSample changed(sample, suspect);
+  RqeCalibrationSettings rqe;
+  rqe.points = 20'000;
+  rqe.probes = 8;
+  rqe.in_plane.minimiser.interrupted = settings.interrupted;
+  try {
+    const SensorModel start(nominal_calibration(rig), *settings.terms);
+    rqe.in_plane.range = range_near(start, rig, SearchRange{});
+    const Outcome crisp = calibrate_by_rqe(start, changed.sample(), *settings.measure, rqe);
+    if (settings.interrupted()) return false;
+    const Refinement refined = refined_with_mounts(crisp.model, changed.sample(), settings);
+    return refined.outcome.doubts.empty() && !refined.views.empty() &&
+           check_with_rig(calibration_of(refined.outcome, rig), rig, SearchRange{}).caveats.empty();
+  } catch (const Error&) {
+    return false;  // nothing is flat with that, or nothing determined
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> mounts_off(const SensorModel& model, const Sample& sample, const Rig& rig,
+                                    const SuspectSettings& settings) {
+  constexpr double kLeast = 0.1 * kDegree;  // 2 mm a metre
+  constexpr double kClearly = 5;            // standard errors
+  std::vector<std::string> caveats;
+  const Refinement refined = refined_with_mounts(model, thin_evenly(sample, kBeams, 1), settings);
+  if (settings.interrupted() || !refined.outcome.doubts.empty()) return {};
+  const Calibration found = calibration_of(refined.outcome, rig);
+  for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
+    for (const TermParameters& term : found.lasers[laser].terms) {
+      if (term.term != kMirrorZero || term.parameters.empty()) continue;
+      const Parameter& zero = term.parameters.front();
+      if (!zero.free || std::abs(zero.value) < std::max(kLeast, kClearly * zero.std_error)) continue;
+      const RigLaser& own = rig.lasers[laser];
+      caveats.push_back(
+          fmt::format("{}'s mount is off: {:.2f} ± {:.2f} deg fits, the rig has {:.2f} deg. Set mount in the "
+                      "rig, or find it with calibrate.refine's terms: [{}]",
+                      own.name, (own.mount - zero.value) / kDegree, zero.std_error / kDegree,
+                      own.mount / kDegree, kMirrorZero));
+    }
+  }
+  return caveats;
+}
+
+std::optional<std::string> mistake_in_rig(const Sample& sample, const Rig& rig,
+                                          const SuspectSettings& settings) {
+  const auto period = turn_period(sample);
+  if (period && contradicts_counts(*period)) {
+    const double counts = rig.plate.counts_per_revolution;
+    return fmt::format(
+        "the scene repeats after about {:.0f} counts of the encoder, not after {:.0f}: ranges there differ "
+        "by "
+        "{:.0f} mm instead of {:.0f} mm. Set plate.counts_per_revolution in the rig",
+        counts * period->angle / (2 * std::numbers::pi), counts, period->miss * 1e3, period->at_2pi * 1e3);
+  }
+  const Sample some = thin_evenly(longest_recording(sample), kBeams, 1);
+  const auto all = suspects_of(rig);
+  for (std::size_t k = 0; k < all.size() && !settings.interrupted(); ++k) {
+    if (settings.report) {
+      settings.report(static_cast<double>(k) / static_cast<double>(all.size()), "what if " + all[k].change);
+    }
+    if (!fits_with(all[k], some, rig, settings)) continue;
+    return fmt::format("the rig is probably wrong: with {} the data fit. Set it in the rig", all[k].change);
+  }
+  return std::nullopt;
+}
+
+}  // namespace crisp

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "plugins/calibrate/rig_check.hpp"
+
+namespace crisp {
+namespace {
+
+/// How far beams may miss their surfaces, in units of the noise. The surfaces' own roughness makes up to 1.4:
+/// see SurfelSettings::max_excess.
+constexpr double kPoorFit = 1.5;
+
+using Caveats = std::vector<std::string>;
+
+void append(Caveats& to, Caveats more) { std::ranges::move(more, std::back_inserter(to)); }
+
+Caveats of_misfit(const Refinement& refined, double noise) {
+  const double misfit = misfit_of(refined, noise);
+  const double scatter = refined.scatter > 0 ? refined.scatter : noise;
+  if (misfit <= kPoorFit * scatter) return {};
+  return {fmt::format(
+      "beams miss their surfaces by {:.1f} mm (RMS), {:.1f} times what ranges scatter from neighbour to "
+      "neighbour ({:.1f} mm): the rig is wrong by a little, or the sensor model lacks an effect. Check the "
+      "rig's mount and counts_per_revolution; configs/diagnose.yaml looks for the effect",
+      misfit * 1e3, misfit / scatter, scatter * 1e3)};
+}
+
+/// What contradicts the rig. That the start was outside a range already is told where it came from.
+Caveats of_rig(const Calibration& calibration, const Calibration& start, const Rig& rig) {
+  const SearchRange range;
+  const RigCheck check = check_with_rig(calibration, rig, range);
+  const bool is_new = check.is_explained || check_with_rig(start, rig, range).caveats.empty();
+  return is_new ? check.caveats : far_from_nominal(calibration, rig);
+}
+
+/// Whether views are known to agree well, so that no other judge is needed.
+bool agrees_well(const Refinement& refined) {
+  constexpr double kWell = 0.7;
+  return !refined.views.empty() && std::ranges::min(refined.views, {}, &ViewConsistency::share).share > kWell;
+}
+
+Caveats of_crispness(const std::map<std::string, double>& quality, bool is_near_start) {
+  constexpr double kLess = 0.05;  // [nat] that chance and the bias of an optimum of RQE do not explain
+  const double after = quality.at("rqe_after");
+  if (after > quality.at("rqe_before")) return {"the calibration made the cloud less crisp than it was"};
+  const double less = after - quality.at("rqe_unrefined");
+  if (!is_near_start || less <= kLess) return {};
+  return {fmt::format("the refinement made the cloud less crisp, by {:.3f} nat, than it found it", less)};
+}
+
+}  // namespace
+
+double misfit_of(const Refinement& refined, double noise) { return std::sqrt(refined.chi2) * noise; }
+
+std::vector<std::string> caveats_of_fit(const Refinement& refined, const Calibration& calibration,
+                                        const Calibration& start, const Rig& rig, double noise) {
+  Caveats caveats = refined.outcome.doubts;
+  append(caveats, of_misfit(refined, noise));
+  append(caveats, of_rig(calibration, start, rig));
+  if (!agrees_well(refined)) append(caveats, of_crispness(calibration.quality, refined.restarts == 0));
+  return caveats;
+}
+
+}  // namespace crisp

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/data/calibration.hpp"
+#include "pipeline/data/rig.hpp"
+#include "pipeline/estimate/surfel_refinement.hpp"
+
+namespace crisp {
+
+/// Why the fit of a refined calibration is not to be trusted; empty if it is: whether it settled, whether
+/// views agree, how far beams miss their surfaces beside how they scatter, what the rig says, and RQE.
+///
+/// RQE counts only where views do not tell, and that of the start only if the refinement ended near it: an
+/// entropy falls as well where a wrong calibration folds the scene into less room.
+///
+/// @param refined      of `start`
+/// @param calibration  the refined one, with its quality: "rqe_before", "rqe_unrefined", "rqe_after" [nat]
+/// @param noise        [m] standard deviation of a range
+std::vector<std::string> caveats_of_fit(const Refinement& refined, const Calibration& calibration,
+                                        const Calibration& start, const Rig& rig, double noise);
+
+/// [m] How far beams miss their surfaces (RMS).
+double misfit_of(const Refinement& refined, double noise);
+
+}  // namespace crisp

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/suspects.hpp"
+
+#include <gmock/gmock.h>
+
+#include "pipeline/data/mirror_angle.hpp"
+#include "tests/pipeline/estimate/support.hpp"
+
+namespace crisp {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A recording in the office, and what a rig that is wrong makes of it.
+class Suspects : public testing::Test {
+ protected:
+  Suspects() {
+    register_built_in(terms_);
+    ScannerSettings scanner = misplaced_scanner(2, 5);
+    for (LaserCalibration& laser : scanner.truth.lasers) laser.eta.value /= 10;
+    simulated_ = simulate_measurements(scanner, office());
+  }
+
+  /// The data as a rig reads them whose mounts are greater by so much than the true ones.
+  Sample with_mounts(const std::vector<double>& greater) {
+    Sample sample = sample_of(simulated_);
+    for (std::size_t i = 0; i < sample.beams.size(); ++i) {
+      float& angle = sample.beams.mirror_angle[i];
+      angle = static_cast<float>(wrapped_mirror_angle(angle - greater[sample.beams.laser[i]]));
+    }
+    return sample;
+  }
+  Rig rig_with_mounts(const std::vector<double>& greater) const {
+    Rig rig = default_rig();
+    for (std::size_t i = 0; i < greater.size(); ++i) rig.lasers[i].mount += greater[i];
+    return rig;
+  }
+  SuspectSettings settings() { return {.terms = &terms_, .measure = measure_.get(), .refinement = {}}; }
+
+  TermRegistry terms_;
+  std::unique_ptr<Measure> measure_ = rqe_measure();
+  SimulatedMeasurements simulated_;
+};
+
+TEST_F(Suspects, AMountThatIsOffByADegreeIsFound) {
+  const std::vector<double> off = {0, 1 * kDegree, 0};
+  const auto caveats =
+      mounts_off(SensorModel(simulated_.truth, terms_), with_mounts(off), rig_with_mounts(off), settings());
+  EXPECT_THAT(caveats, ElementsAre(AllOf(HasSubstr("laser2's mount is off: 45.00"),
+                                         HasSubstr("the rig has 46.00 deg"))));
+}
+
+TEST_F(Suspects, MountsThatAreRightAreNotSuspected) {
+  const std::vector<double> off(3, 0.0);
+  EXPECT_THAT(mounts_off(SensorModel(simulated_.truth, terms_), with_mounts(off), default_rig(), settings()),
+              IsEmpty());
+}
+
+TEST_F(Suspects, MountsThatAreAllOffByARightAngleAreFoundFromTheRigsNominalValues) {
+  const std::vector<double> off(3, -90 * kDegree);
+  const auto mistake = mistake_in_rig(with_mounts(off), rig_with_mounts(off), settings());
+  ASSERT_TRUE(mistake);
+  EXPECT_THAT(*mistake, AllOf(HasSubstr("mount: 45deg of laser1 (the rig has -45)"),
+                              HasSubstr("the others turned alike")));
+}
+
+}  // namespace
+}  // namespace crisp
