@@ -71,7 +71,7 @@ class Refiner {
     covariance_ = posterior.solve(Eigen::MatrixXd::Identity(n, n));
     covariance_ = covariance_.selfadjointView<Eigen::Lower>();  // to the last bit
     const Eigen::VectorXd before = picked(model_, free_);
-    const Eigen::VectorXd after = within_bounds(model_, free_, before - posterior.solve(pull));
+    const Eigen::VectorXd after = keep_covered(within_bounds(model_, free_, before - posterior.solve(pull)));
     const Eigen::VectorXd change = after - before;
     model_ = with(model_, free_, after);
     last_step_ = (change.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
@@ -182,6 +182,17 @@ class Refiner {
       return inverse(information + Eigen::MatrixXd(prior.asDiagonal())).diagonal();
     };
     return variances(with).cwiseQuotient(variances(without)).cwiseSqrt().cwiseMax(1);
+  }
+
+  /// Each η no farther than the plate's readings cover the beams.
+  Eigen::VectorXd keep_covered(Eigen::VectorXd values) const {
+    const LagRange lag = lag_range(start_, settings_.prior.eta);
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      if (!model_.names()[free_[k]].ends_with(".eta")) continue;
+      double& eta = values[static_cast<Eigen::Index>(k)];
+      eta = std::clamp(eta, lag.earliest, lag.latest);
+    }
+    return values;
   }
 
   double prior_of_held(const std::string& name) const {
@@ -338,6 +349,8 @@ bool is_drawn_to_start(const SensorModel& start, const Outcome& found, const Sea
   for (Eigen::Index k = 0; k < moved.size(); ++k) {
     if (prior.nominal.contains(start.names()[found.free[static_cast<std::size_t>(k)]])) continue;
     const double error = std::sqrt(found.covariance(k, k));
+    const bool is_lag = start.names()[found.free[static_cast<std::size_t>(k)]].ends_with(".eta");
+    if (is_lag && std::abs(moved[k]) > 0.99 * trusted[k]) return true;  // where the covered lags may end
     if (std::abs(moved[k]) > 2 * trusted[k]) return true;
     if (std::abs(moved[k]) * error > kMuch * trusted[k] * trusted[k]) return true;
   }

@@ -103,9 +103,11 @@ std::optional<TurnPeriod> turn_period(const Sample& sample) {
 
 bool contradicts_counts(const TurnPeriod& period) {
   constexpr double kClearly = 0.6;  // of the mean difference
+  constexpr double kLeast = 0.03;   // [m] by which it is smaller
   const double share = period.angle / kTurn;
   const bool is_part = share < 1 / 1.5;
-  return is_part || (std::abs(share - 1) > 0.003 && period.miss < kClearly * period.at_2pi);
+  return is_part || (std::abs(share - 1) > 0.003 && period.miss < kClearly * period.at_2pi &&
+                     period.miss < period.at_2pi - kLeast);
 }
 
 }  // namespace crisp

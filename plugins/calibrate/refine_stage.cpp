@@ -104,6 +104,7 @@ void RefineStage::finish(Outputs& out, Context& context) {
   add_clock_errors(refined.outcome, context.rig(), clocks_);
   Calibration calibration = calibration_of(refined.outcome, context.rig());
   judge(sample, refined, calibration, context);
+  if (context.interrupted()) return;
   calibration.provenance = start_->provenance;
   calibration.provenance["refinement"] = "calibrate.refine";
   tell(calibration, *start_, context);
@@ -131,10 +132,13 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
   const auto& terms = registrar.get<TermRegistry>();
   const auto measure =
       registrar.get<MeasureRegistry>().make("rqe", MeasureSettings{}, registrar.get<SearchRegistry>());
-  const Crispness crispness(longest_recording(sample), refined.outcome.model, {.sigma = sigma_}, *measure);
-  calibration.quality = {{"rqe_before", crispness.of(SensorModel(nominal_calibration(context.rig()), terms))},
-                         {"rqe_unrefined", crispness.of(SensorModel(*start_, terms))},
-                         {"rqe_after", crispness.of(refined.outcome.model)},
+  const auto crispness =
+      crispness_of({refined.outcome.model, SensorModel(nominal_calibration(context.rig()), terms),
+                    SensorModel(*start_, terms)},
+                   longest_recording(sample), {.sigma = sigma_}, *measure);
+  calibration.quality = {{"rqe_before", crispness[1]},
+                         {"rqe_unrefined", crispness[2]},
+                         {"rqe_after", crispness[0]},
                          {"rqe_sigma", sigma_},
                          {"chi2", refined.chi2}};
   context.report({{"surfels", refined.surfels},
@@ -150,10 +154,10 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
   }
   const double noise = settings_.surfels.noise;
   context.report({{"misfit", misfit_of(refined, noise)}, {"neighbour_noise", refined.scatter}});
-  auto caveats = caveats_of_fit(refined, calibration, *start_, context.rig(), noise);
-  for (auto& caveat : mistakes(sample, refined, caveats.empty(), *measure, context)) {
-    caveats.push_back(std::move(caveat));
-  }
+  const auto of_fit = caveats_of_fit(refined, calibration, *start_, context.rig(), noise);
+  auto caveats =
+      mistakes(sample, refined, of_fit.empty(), *measure, context);  // first, as they explain the rest
+  caveats.insert(caveats.end(), of_fit.begin(), of_fit.end());
   for (const auto& caveat : caveats) context.distrust(caveat);
   if (caveats.empty() && start_->doubts.empty()) {
     context.lift_doubts(KindName<Calibration>::value,

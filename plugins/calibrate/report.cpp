@@ -13,10 +13,6 @@
 namespace crisp {
 namespace {
 
-/// [s] by how much the η of calibrations that are compared may lie beyond those of the one that chose the
-/// beams.
-constexpr double kMargin = 0.1;
-
 nlohmann::json json_of(const Parameter& p) {
   return {{"value", p.value}, {"unit", p.unit}, {"std_error", p.std_error}, {"free", p.free}};
 }
@@ -36,15 +32,18 @@ void tell_crispness(const std::map<std::string, double>& quality, Context& conte
 
 }  // namespace
 
-Crispness::Crispness(const Sample& sample, const SensorModel& model, const CrispnessSettings& settings,
-                     Measure& measure)
-    : sigma_(settings.sigma), measure_(measure) {
-  const LagRange lag = lag_range(model, kMargin);
-  beams_ = thin_by_area(covered(sample, lag.earliest, lag.latest), model, settings.points, 1);
-}
-
-double Crispness::of(const SensorModel& model) const {
-  return model_quality(model, beams_, measure_, sigma_);
+std::vector<double> crispness_of(const std::vector<SensorModel>& models, const Sample& sample,
+                                 const CrispnessSettings& settings, Measure& measure) {
+  LagRange lags = lag_range(models.front(), 0);
+  for (const SensorModel& model : models) {
+    const LagRange own = lag_range(model, 0);
+    lags = {.earliest = std::min(lags.earliest, own.earliest), .latest = std::max(lags.latest, own.latest)};
+  }
+  const Sample beams =
+      thin_by_area(covered(sample, lags.earliest, lags.latest), models.front(), settings.points, 1);
+  std::vector<double> all;
+  for (const SensorModel& model : models) all.push_back(model_quality(model, beams, measure, settings.sigma));
+  return all;
 }
 
 void tell(const Calibration& calibration, const Calibration& start, Context& context) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include "pipeline/estimate/outcome.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/estimate/sample.hpp"
@@ -15,19 +17,10 @@ struct CrispnessSettings {
   std::size_t points = 60000;  ///< about so many
 };
 
-/// Compares calibrations by the crispness of the same beams, spread evenly over the surfaces.
-class Crispness {
- public:
-  /// @param model  places the beams to be chosen
-  Crispness(const Sample& sample, const SensorModel& model, const CrispnessSettings& settings,
-            Measure& measure);
-  double of(const SensorModel& model) const;
-
- private:
-  Sample beams_;
-  double sigma_;
-  Measure& measure_;
-};
+/// [nat] How crisp the cloud is with each of some models, by the same beams: spread evenly over the surfaces
+/// that the first one puts them on, and covered by the plate's readings at the lags of all.
+std::vector<double> crispness_of(const std::vector<SensorModel>& models, const Sample& sample,
+                                 const CrispnessSettings& settings, Measure& measure);
 
 /// Puts a calibration into the run's summary: the table for people, all of its numbers for programs, and a
 /// warning for each parameter that is not observable, unless a stage above has said so of `start`.

@@ -22,17 +22,6 @@ constexpr double kClearlyCrisper = 0.1;
 constexpr double kDeviations = 3;  // [standard deviations] of a nominal value within which one is looked for
 constexpr double kUsualLambda = 20 * kDegree;  // within which nominal λ are, unless the rig is wrong
 
-/// The range with λ near the start, too.
-SearchRange with_lambdas(const SensorModel& start, SearchRange range) {
-  for (std::size_t laser = 0; laser < start.lasers(); ++laser) {
-    const std::size_t parameter = slot(start, laser, kLambda);
-    range.nominal.try_emplace(start.names()[parameter],
-                              NominalValue{.value = start.values()[static_cast<Eigen::Index>(parameter)],
-                                           .std_error = kUsualLambda / kDeviations});
-  }
-  return range;
-}
-
 double off(const Outcome& outcome, const SearchRange& range, std::size_t parameter) {
   return std::abs(picked(outcome.model, {parameter})[0] - centres_of(range, outcome.model, {parameter})[0]);
 }
@@ -82,6 +71,17 @@ SearchRange range_near(const SensorModel& start, const Rig& rig, SearchRange ran
   return range;
 }
 
+SearchRange range_nearest(const SensorModel& start, const Rig& rig, const SearchRange& given) {
+  SearchRange range = range_near(start, rig, given);
+  for (std::size_t laser = 0; laser < start.lasers(); ++laser) {
+    const std::size_t parameter = slot(start, laser, kLambda);
+    range.nominal.try_emplace(start.names()[parameter],
+                              NominalValue{.value = start.values()[static_cast<Eigen::Index>(parameter)],
+                                           .std_error = kUsualLambda / kDeviations});
+  }
+  return range;
+}
+
 Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measure& measure,
                           RqeCalibrationSettings settings, const Rig& rig, const Reporter& report) {
   constexpr double kMore = 1.2;
@@ -95,7 +95,7 @@ Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measur
                             [&](double done, std::string_view what) { report(from + share * done, what); });
   };
   const SearchRange near = range_near(start, rig, given);
-  const SearchRange nearest = with_lambdas(start, near);
+  const SearchRange nearest = range_nearest(start, rig, given);
   const auto fits = [&](const std::optional<Refinement>& fit) {
     return fit && fit->outcome.doubts.empty() &&
            check_with_rig(calibration_of(fit->outcome, rig), rig, given).caveats.empty();
@@ -114,9 +114,10 @@ Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measur
 
   Outcome anywhere = calibrated(given, 0.7, 0.25);
   const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
-  const Crispness crispness(sample, anywhere.model, {.sigma = sigma, .points = settings.points}, measure);
+  const auto crispness = crispness_of({anywhere.model, here.model}, sample,
+                                      {.sigma = sigma, .points = settings.points}, measure);
   const double clearly = ends_here ? 0 : kClearlyCrisper;
-  if (interrupted() || crispness.of(anywhere.model) + clearly > crispness.of(here.model)) return here;
+  if (interrupted() || crispness[0] + clearly > crispness[1]) return here;
   if (check_with_rig(calibration_of(anywhere, rig), rig, given).is_explained) return anywhere;
   report(0.95, "flat surfaces");
   const auto other = refined(anywhere, sample, rig, interrupted);

@@ -10,6 +10,9 @@ namespace crisp {
 /// deviations.
 SearchRange range_near(const SensorModel& start, const Rig& rig, SearchRange range);
 
+/// The same with each λ within 20° of the start, too.
+SearchRange range_nearest(const SensorModel& start, const Rig& rig, const SearchRange& given);
+
 /// The crispest cloud near what the rig says; or away from it, where that shows that the rig is wrong.
 ///
 /// Each τ and α is looked for within its range around the start, and whatever has a standard deviation in the

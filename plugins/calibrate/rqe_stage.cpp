@@ -141,10 +141,9 @@ void RqeStage::finish(Outputs& out, Context& context) {
   Calibration calibration = calibration_of(outcome, context.rig());
   calibration.doubts = outcome.doubts;  // of the data: no refinement answers them
   const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
-  const Crispness crispness(sample, outcome.model, {.sigma = sigma, .points = settings.points}, *measure);
-  calibration.quality = {{"rqe_before", crispness.of(SensorModel(start, terms))},
-                         {"rqe_after", crispness.of(outcome.model)},
-                         {"rqe_sigma", sigma}};
+  const auto crispness = crispness_of({outcome.model, SensorModel(start, terms)}, sample,
+                                      {.sigma = sigma, .points = settings.points}, *measure);
+  calibration.quality = {{"rqe_before", crispness[1]}, {"rqe_after", crispness[0]}, {"rqe_sigma", sigma}};
   calibration.provenance["calibration"] = "calibrate.rqe";
   calibration = compared_with_rig(std::move(calibration), context);
   if (calibration.quality.at("rqe_after") > calibration.quality.at("rqe_before")) {

@@ -2,8 +2,10 @@
 #include "plugins/calibrate/suspects.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -19,7 +21,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kBeams = 200'000;  // enough to see whether they fit
+constexpr std::size_t kBeams = 100'000;  // enough to see whether they fit
 constexpr const char* kMirrorZero = "mount.mirror_zero";
 
 /// How the rig would have to be changed.
@@ -29,30 +31,26 @@ struct Suspect {
   std::vector<double> mount_turns;  ///< [rad] by which each laser's mount is greater
 };
 
-std::vector<Suspect> suspects_of(const Rig& rig) {
+constexpr std::array kTurns = {180 * kDegree, 90 * kDegree, -90 * kDegree, 45 * kDegree, -45 * kDegree};
+
+std::string with_mount(const RigLaser& laser, double turn) {
+  const double mount = std::remainder(laser.mount + turn, 2 * std::numbers::pi);
+  return fmt::format("mount: {:.4g}deg of {} (the rig has {:.4g})", mount / kDegree, laser.name,
+                     laser.mount / kDegree);
+}
+
+/// What may be wrong with the plate, or with all lasers alike.
+std::vector<Suspect> common_suspects(const Rig& rig) {
   const std::size_t n = rig.lasers.size();
   const bool is_clockwise = rig.plate.direction == CountDirection::clockwise;
   std::vector<Suspect> all = {
       {.change = fmt::format("plate.direction: {}", is_clockwise ? "counter_clockwise" : "clockwise"),
        .direction = -1,
        .mount_turns = std::vector<double>(n, 0.0)}};
-  const std::vector<double> turns = {180 * kDegree, 90 * kDegree, -90 * kDegree, 45 * kDegree, -45 * kDegree};
-  const auto changed = [&](std::size_t laser, double turn) {
-    const double mount = std::remainder(rig.lasers[laser].mount + turn, 2 * std::numbers::pi);
-    return fmt::format("mount: {:.4g}deg of {} (the rig has {:.4g})", mount / kDegree, rig.lasers[laser].name,
-                       rig.lasers[laser].mount / kDegree);
-  };
-  for (const double turn : turns) {
-    Suspect suspect{.change = changed(0, turn), .mount_turns = std::vector<double>(n, turn)};
+  for (const double turn : kTurns) {
+    Suspect suspect{.change = with_mount(rig.lasers[0], turn), .mount_turns = std::vector<double>(n, turn)};
     if (n > 1) suspect.change += " and the mounts of the others turned alike";
     all.push_back(std::move(suspect));
-  }
-  for (std::size_t laser = 0; n > 1 && laser < n; ++laser) {
-    for (const double turn : turns) {
-      Suspect suspect{.change = changed(laser, turn), .mount_turns = std::vector<double>(n, 0.0)};
-      suspect.mount_turns[laser] = turn;
-      all.push_back(std::move(suspect));
-    }
   }
   return all;
 }
@@ -84,6 +82,9 @@ class ChangedSample {
   PlateTrajectory plate_;
 };
 
+/// "0.000" and not "-0.000".
+double without_sign_of_zero(double value) { return std::abs(value) < 5e-4 ? 0 : value; }
+
 /// A refinement with the mounts free.
 Refinement refined_with_mounts(const SensorModel& model, const Sample& sample,
                                const SuspectSettings& settings) {
@@ -99,12 +100,12 @@ bool fits_with(const Suspect& suspect, const Sample& sample, const Rig& rig,
                const SuspectSettings& settings) {
   const ChangedSample changed(sample, suspect);
   RqeCalibrationSettings rqe;
-  rqe.points = 20'000;
-  rqe.probes = 8;
+  rqe.points = 10'000;
+  rqe.probes = 4;
   rqe.in_plane.minimiser.interrupted = settings.interrupted;
   try {
     const SensorModel start(nominal_calibration(rig), *settings.terms);
-    rqe.in_plane.range = range_near(start, rig, SearchRange{});
+    rqe.in_plane.range = range_nearest(start, rig, SearchRange{});
     const Outcome crisp = calibrate_by_rqe(start, changed.sample(), *settings.measure, rqe);
     if (settings.interrupted()) return false;
     const Refinement refined = refined_with_mounts(crisp.model, changed.sample(), settings);
@@ -113,6 +114,23 @@ bool fits_with(const Suspect& suspect, const Sample& sample, const Rig& rig,
   } catch (const Error&) {
     return false;  // nothing is flat with that, or nothing determined
   }
+}
+
+/// The mount with which one laser's own beams fit, if they do not with the rig's.
+std::optional<std::string> mount_of_one(std::size_t laser, const Sample& sample, const Rig& rig,
+                                        const SuspectSettings& settings) {
+  const Sample own = of_laser(sample, laser);
+  const auto fits = [&](double turn) {
+    Suspect suspect{.change = {}, .mount_turns = std::vector<double>(rig.lasers.size(), 0.0)};
+    suspect.mount_turns[laser] = turn;
+    return fits_with(suspect, own, rig, settings);
+  };
+  if (own.beams.size() == 0 || fits(0)) return std::nullopt;
+  for (const double turn : kTurns) {
+    if (settings.interrupted()) break;
+    if (fits(turn)) return with_mount(rig.lasers[laser], turn);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -132,10 +150,10 @@ std::vector<std::string> mounts_off(const SensorModel& model, const Sample& samp
       if (!zero.free || std::abs(zero.value) < std::max(kLeast, kClearly * zero.std_error)) continue;
       const RigLaser& own = rig.lasers[laser];
       caveats.push_back(
-          fmt::format("{}'s mount is off: {:.2f} ± {:.2f} deg fits, the rig has {:.2f} deg. Set mount in the "
+          fmt::format("{}'s mount is off: {:.3f} ± {:.3f} deg fits, the rig has {:.3f} deg. Set mount in the "
                       "rig, or find it with calibrate.refine's terms: [{}]",
-                      own.name, (own.mount - zero.value) / kDegree, zero.std_error / kDegree,
-                      own.mount / kDegree, kMirrorZero));
+                      own.name, without_sign_of_zero((own.mount - zero.value) / kDegree),
+                      zero.std_error / kDegree, own.mount / kDegree, kMirrorZero));
     }
   }
   return caveats;
@@ -153,15 +171,24 @@ std::optional<std::string> mistake_in_rig(const Sample& sample, const Rig& rig,
         counts * period->angle / (2 * std::numbers::pi), counts, period->miss * 1e3, period->at_2pi * 1e3);
   }
   const Sample some = thin_evenly(longest_recording(sample), kBeams, 1);
-  const auto all = suspects_of(rig);
-  for (std::size_t k = 0; k < all.size() && !settings.interrupted(); ++k) {
-    if (settings.report) {
-      settings.report(static_cast<double>(k) / static_cast<double>(all.size()), "what if " + all[k].change);
-    }
-    if (!fits_with(all[k], some, rig, settings)) continue;
-    return fmt::format("the rig is probably wrong: with {} the data fit. Set it in the rig", all[k].change);
+  const auto all = common_suspects(rig);
+  const double steps = static_cast<double>(all.size() + rig.lasers.size());
+  const auto report = [&](std::size_t step, const std::string& what) {
+    if (settings.report) settings.report(static_cast<double>(step) / steps, "what if " + what);
+  };
+  std::vector<std::string> changes;
+  for (std::size_t k = 0; k < all.size() && changes.empty() && !settings.interrupted(); ++k) {
+    report(k, all[k].change);
+    if (fits_with(all[k], some, rig, settings)) changes.push_back(all[k].change);
   }
-  return std::nullopt;
+  for (std::size_t laser = 0; changes.empty() && rig.lasers.size() > 1 && laser < rig.lasers.size();
+       ++laser) {
+    report(all.size() + laser, "another mount of " + rig.lasers[laser].name);
+    if (auto change = mount_of_one(laser, some, rig, settings)) changes.push_back(std::move(*change));
+  }
+  if (changes.empty()) return std::nullopt;
+  return fmt::format("the rig is probably wrong: with {} the data fit. Set it in the rig",
+                     fmt::join(changes, ", "));
 }
 
 }  // namespace crisp

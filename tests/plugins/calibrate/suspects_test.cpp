@@ -50,7 +50,7 @@ TEST_F(Suspects, AMountThatIsOffByADegreeIsFound) {
   const auto caveats =
       mounts_off(SensorModel(simulated_.truth, terms_), with_mounts(off), rig_with_mounts(off), settings());
   EXPECT_THAT(caveats, ElementsAre(AllOf(HasSubstr("laser2's mount is off: 45.00"),
-                                         HasSubstr("the rig has 46.00 deg"))));
+                                         HasSubstr("the rig has 46.000 deg"))));
 }
 
 TEST_F(Suspects, MountsThatAreRightAreNotSuspected) {
