@@ -101,10 +101,15 @@ void RefineStage::finish(Outputs& out, Context& context) {
   }
   if (context.interrupted()) return;
 
+  const auto halves = cross_validate(refined.outcome.model, sample, settings_,
+                                     [&](int) { return !context.interrupted(); });
+  if (context.interrupted()) return;
   add_clock_errors(refined.outcome, context.rig(), clocks_);
   Calibration calibration = calibration_of(refined.outcome, context.rig());
   judge(sample, refined, calibration, context);
   if (context.interrupted()) return;
+  tell(halves, context);
+  if (halves) calibration.quality["cross_validation"] = halves->ratio();
   calibration.provenance = start_->provenance;
   calibration.provenance["refinement"] = "calibrate.refine";
   tell(calibration, *start_, context);

@@ -2,6 +2,7 @@
 #include "plugins/calibrate/report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
+#include "plugins/calibrate/correlations.hpp"
 
 namespace crisp {
 namespace {
@@ -20,6 +22,19 @@ nlohmann::json json_of(const Parameter& p) {
 std::string in_words(const Unobservable& u) {
   return fmt::format("{} is not observable: {}{}{}", u.parameter, u.reason,
                      u.combination.empty() ? "" : "; known is ", u.combination);
+}
+
+void tell_correlations(const Calibration& calibration, Context& context) {
+  constexpr std::size_t kMost = 3;
+  constexpr double kLeast = 0.8;
+  auto section = nlohmann::json::array();
+  std::vector<std::string> words;
+  for (const Correlation& pair : strongest_correlations(calibration, kMost, kLeast)) {
+    section.push_back({{"one", pair.one}, {"other", pair.other}, {"value", pair.value}});
+    words.push_back(fmt::format("{} and {}: {:+.2f}", pair.one, pair.other, pair.value));
+  }
+  context.report({{"correlations", section}});
+  if (!words.empty()) context.say(fmt::format("strongest correlations: {}", fmt::join(words, ", ")));
 }
 
 void tell_crispness(const std::map<std::string, double>& quality, Context& context) {
@@ -63,7 +78,22 @@ void tell(const Calibration& calibration, const Calibration& start, Context& con
     if (!told_before) context.warn(in_words(u));
   }
   context.report({{"lasers", lasers}, {"quality", calibration.quality}, {"unobservable", unobservable}});
+  tell_correlations(calibration, context);
   tell_crispness(calibration.quality, context);
+}
+
+void tell(const std::optional<CrossValidation>& halves, Context& context) {
+  if (!halves) {
+    context.say("cross-validation: the plate turned too little, or half of the beams determines too little");
+    return;
+  }
+  context.report(
+      {{"cross_validation",
+        {{"difference", halves->difference}, {"expected", halves->expected}, {"ratio", halves->ratio()}}}});
+  context.say(fmt::format(
+      "cross-validation: fitted to either half of the turns, the clouds differ by {:.2f} mm (RMS), "
+      "{:.1f} times what their standard errors say (1 is honest; less where all turns share an error)",
+      halves->difference * 1e3, halves->ratio()));
 }
 
 void tell(const std::vector<ViewConsistency>& views, Context& context) {

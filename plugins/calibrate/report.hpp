@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "pipeline/estimate/cross_validation.hpp"
 #include "pipeline/estimate/outcome.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/estimate/sample.hpp"
@@ -28,6 +30,9 @@ void tell(const Calibration& calibration, const Calibration& start, Context& con
 
 /// The recordings, and each one's lags, for people and for programs.
 void tell(const RecordingLags& lags, const PlateTrajectory& plate, Context& context);
+
+/// How far the halves of a recording agree.
+void tell(const std::optional<CrossValidation>& halves, Context& context);
 
 /// How consistent the views are: all pairs for programs, the least consistent one for people.
 void tell(const std::vector<ViewConsistency>& views, Context& context);
