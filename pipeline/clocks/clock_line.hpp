@@ -43,13 +43,13 @@ ClockLine line_by_linear_program(std::span<const Stamp> stamps, double center);
 
 /// The errors of a line below stamps.
 struct LineErrors {
-  double late = 0;       ///< [s] how far above the clock it lies on the average: no stamp has the least delay
+  double bias = 0;       ///< [s] how far above the clock it lies on the average: no stamp has the least delay
   double at_center = 0;  ///< [s] standard error there, once that is taken out
   double slope = 0;      ///< standard error
 };
 
 /// How far the line may be from the clock, estimated from how the stamps thin out towards it: see
-/// lateness_of().
+/// estimate_line_bias().
 ///
 /// @param stamps  those that the line was fitted to
 /// @param quantum [s] the resolution of the stamps

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pipeline/clocks/clock_line.hpp"
-#include "pipeline/clocks/delay_law.hpp"
+#include "pipeline/clocks/line_bias.hpp"
 #include "pipeline/clocks/lower_hull.hpp"
 
 namespace crisp {
@@ -124,9 +124,9 @@ LineErrors errors_of_line(std::span<const Stamp> stamps, const ClockLine& line, 
   const double scale = std::max(lowest_delay(stamps, line), quantum);
   LowerHull hull;
   for (const auto& stamp : stamps) hull.add(stamp);
-  const Lateness late = lateness_of(stamps, line, quantum);
-  return {.late = late.mean,
-          .at_center = tells_blocks(stamps) ? std::max(late.std_error, scale) : late.std_error,
+  const LineBias bias = estimate_line_bias(stamps, line, quantum);
+  return {.bias = bias.mean,
+          .at_center = tells_blocks(stamps) ? std::max(bias.std_error, scale) : bias.std_error,
           .slope = slope_spread(hull.vertices(), line, scale)};
 }
 

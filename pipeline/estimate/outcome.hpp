@@ -17,8 +17,10 @@ struct Outcome {
   Eigen::MatrixXd covariance;     ///< m × m, of these, in their order
   std::vector<Unobservable> unobservable;
   std::vector<std::string> doubts = {};  ///< why this may not be the truth, in words
-  std::vector<std::string> rivals = {};  ///< other values that this method cannot tell from these, in words
-  std::vector<std::size_t> kept = {};    ///< parameters that this method cannot find, though another may
+  std::vector<std::string> other_minima =
+      {};  ///< other values that this method cannot tell from these, in words
+  std::vector<std::size_t> not_estimated =
+      {};  ///< parameters that this method cannot find, though another may
 };
 
 /// The outcome as a calibration: values, standard errors, covariance, and what is unobservable. Each λ is

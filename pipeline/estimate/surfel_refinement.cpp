@@ -18,7 +18,7 @@
 #include "pipeline/estimate/base_slots.hpp"
 #include "pipeline/estimate/can_be_told.hpp"
 #include "pipeline/estimate/considered.hpp"
-#include "pipeline/estimate/encoder_steps.hpp"
+#include "pipeline/estimate/encoder_quantization.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/incidence.hpp"
@@ -110,7 +110,7 @@ class Refiner {
         normal_equations(found_, placed.view(noise_), free_.size(), surfel_rows(model_, sample_, free_),
                          settings_.surfels, shared_errors(sample_.beams, found_, placed.view(noise_)));
     covariance_ = widened(covariance_, widening(equations));
-    if (settings_.angle_step > 0) covariance_ = widened(covariance_, widening_by_steps(equations));
+    if (settings_.angle_step > 0) covariance_ = widened(covariance_, widening_by_quantization(equations));
   }
 
   /// Adds to the covariance what held parameters may be off by, and no longer calls free what hangs on them.
@@ -170,10 +170,10 @@ class Refiner {
   /// By how much standard errors grow as beams share the errors of the encoder's steps.
   ///
   /// @param without  the equations as if they did not
-  Eigen::VectorXd widening_by_steps(const NormalEquations& without) const {
+  Eigen::VectorXd widening_by_quantization(const NormalEquations& without) const {
     const PlacedBeams placed(model_, sample_);
-    const auto noise =
-        noise_with_steps(found_, placed.view(noise_), sample_, settings_.angle_step, settings_.surfels.noise);
+    const auto noise = noise_with_quantization(found_, placed.view(noise_), sample_, settings_.angle_step,
+                                               settings_.surfels.noise);
     const auto with = normal_equations(found_, placed.view(noise), free_.size(),
                                        surfel_rows(model_, sample_, free_), settings_.surfels);
     const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();

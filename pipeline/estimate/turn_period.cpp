@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/estimate/turn_period.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -108,6 +110,16 @@ bool contradicts_counts(const TurnPeriod& period) {
   const bool is_part = share < 1 / 1.5;
   return is_part || (std::abs(share - 1) > 0.003 && period.miss < kClearly * period.at_2pi &&
                      period.miss < period.at_2pi - kLeast);
+}
+
+std::string counts_caveat(const TurnPeriod& period) {
+  const double turns = period.angle / kTurn;
+  return fmt::format(
+      "the scene repeats after {:.3f} turns of the plate, as the rig counts them: ranges there differ by "
+      "{:.0f} "
+      "mm, and by {:.0f} mm after one turn. The rig's plate.counts_per_revolution is wrong: multiply it by "
+      "{:.3f}",
+      turns, period.miss * 1e3, period.at_2pi * 1e3, turns);
 }
 
 }  // namespace crisp

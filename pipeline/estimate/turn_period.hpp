@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "pipeline/estimate/sample.hpp"
 
@@ -20,7 +21,10 @@ struct TurnPeriod {
 /// @return nothing where the plate did not turn by more than a turn and a fifth
 std::optional<TurnPeriod> turn_period(const Sample& sample);
 
-/// Whether that tells that the counts a revolution are wrong.
+/// Whether that shows that the counts a revolution are wrong.
 bool contradicts_counts(const TurnPeriod& period);
+
+/// What is wrong then, and what to do.
+std::string counts_caveat(const TurnPeriod& period);
 
 }  // namespace crisp

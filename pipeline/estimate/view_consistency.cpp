@@ -225,7 +225,8 @@ std::vector<ViewPartition> view_partitions(const Sample& sample, const std::vect
 
 std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const BeamsView& beams,
                                               const ViewPartition& partition, const ViewErrors& errors) {
-  constexpr double kLeastShare = 0.02;  // of all beams: fewer are no reason to doubt
+  constexpr double kLeastShare = 0.02;  // of a view's beams: fewer are no reason for a caveat
+  constexpr double kLeastBeams = 500;
   constexpr std::size_t kLeastBlock = 64, kMostBlocks = 8;
   const std::size_t n = partition.views.size();
   const Directions directions(beams.directions);
@@ -243,7 +244,8 @@ std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const Beam
       }
     };
     const auto all = sum_over_blocks(surfels.surfels.size(), block, PairSums(n), add_block);
-    const double least = kLeastShare * static_cast<double>(beams.points.size()) / static_cast<double>(n);
+    const double least = std::max(
+        kLeastBeams, kLeastShare * static_cast<double>(beams.points.size()) / static_cast<double>(n));
     for (std::size_t pair = 0; pair < n * n; ++pair) {
       if (all.beams[pair] == 0 || all.beams[pair] < least) continue;
       pairs.push_back({.view = partition.views[pair / n],

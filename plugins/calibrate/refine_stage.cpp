@@ -13,10 +13,10 @@
 #include "pipeline/estimate/wanted_terms.hpp"
 #include "pipeline/stage/option_check.hpp"
 #include "pipeline/stage/registry.hpp"
+#include "plugins/calibrate/fit_check.hpp"
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"
-#include "plugins/calibrate/suspects.hpp"
-#include "plugins/calibrate/verdict.hpp"
+#include "plugins/calibrate/rig_hypotheses.hpp"
 
 namespace crisp {
 void RefineStage::describe(StageDescription<RefineStage>& d) {
@@ -101,8 +101,8 @@ void RefineStage::finish(Outputs& out, Context& context) {
   }
   if (context.interrupted()) return;
 
-  const auto halves = cross_validate(refined.outcome.model, sample, settings_,
-                                     [&](int) { return !context.interrupted(); });
+  const auto halves =
+      cross_validate(refined.outcome.model, sample, settings_, [&](int) { return !context.interrupted(); });
   if (context.interrupted()) return;
   add_clock_errors(refined.outcome, context.rig(), clocks_);
   Calibration calibration = calibration_of(refined.outcome, context.rig());
@@ -119,15 +119,15 @@ void RefineStage::finish(Outputs& out, Context& context) {
 std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refinement& refined, bool fits,
                                                Measure& measure, Context& context) const {
   if (is_in_plane(sample)) return {};
-  const SuspectSettings settings{
+  const HypothesisSettings settings{
       .terms = &context.run().registrar->get<TermRegistry>(),
       .measure = &measure,
       .refinement = settings_,
       .interrupted = [&] { return context.interrupted(); },
       .report = [&](double done, std::string_view what) { context.progress(done, what); }};
-  auto found = mounts_off(refined.outcome.model, sample, context.rig(), settings);
+  auto found = check_mounts(refined.outcome.model, sample, context.rig(), settings);
   if (fits || !found.empty()) return found;
-  if (auto mistake = mistake_in_rig(sample, context.rig(), settings)) found.push_back(std::move(*mistake));
+  if (auto mistake = find_rig_error(sample, context.rig(), settings)) found.push_back(std::move(*mistake));
   return found;
 }
 
@@ -159,7 +159,7 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
   }
   const double noise = settings_.surfels.noise;
   context.report({{"misfit", misfit_of(refined, noise)}, {"neighbour_noise", refined.scatter}});
-  const auto of_fit = caveats_of_fit(refined, calibration, *start_, context.rig(), noise);
+  const auto of_fit = check_fit(refined, calibration, *start_, context.rig(), noise);
   auto caveats =
       mistakes(sample, refined, of_fit.empty(), *measure, context);  // first, as they explain the rest
   caveats.insert(caveats.end(), of_fit.begin(), of_fit.end());

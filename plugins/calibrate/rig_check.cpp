@@ -186,7 +186,7 @@ Calibration mirrored(const Calibration& calibration) {
   return result;
 }
 
-Calibration in_form_of_rig(Calibration calibration, const Rig& rig) {
+Calibration match_form_of_rig(Calibration calibration, const Rig& rig) {
   double as_it_is = 0;
   double turned = 0;
   for (std::size_t k = 0; k < rig.lasers.size(); ++k) {

@@ -16,7 +16,7 @@ Calibration mirrored(const Calibration& calibration);
 
 /// The same calibration as (λ, τ, α) or as (λ, −τ, α + 180°) of all lasers at once, which is the frame turned
 /// by 180°: in the form that is nearer to the rig's nominal values.
-Calibration in_form_of_rig(Calibration calibration, const Rig& rig);
+Calibration match_form_of_rig(Calibration calibration, const Rig& rig);
 
 /// What a rig's nominal values say of a calibration.
 struct RigCheck {

@@ -57,7 +57,7 @@ std::optional<Refinement> refined(const Outcome& outcome, const Sample& sample, 
 
 }  // namespace
 
-SearchRange range_near(const SensorModel& start, const Rig& rig, SearchRange range) {
+SearchRange search_range_around(const SensorModel& start, const Rig& rig, SearchRange range) {
   range.reach = kDeviations;
   range.nominal = nominal_values(rig);
   for (std::size_t laser = 0; laser < start.lasers(); ++laser) {
@@ -71,8 +71,8 @@ SearchRange range_near(const SensorModel& start, const Rig& rig, SearchRange ran
   return range;
 }
 
-SearchRange range_nearest(const SensorModel& start, const Rig& rig, const SearchRange& given) {
-  SearchRange range = range_near(start, rig, given);
+SearchRange search_range_with_lambda(const SensorModel& start, const Rig& rig, const SearchRange& given) {
+  SearchRange range = search_range_around(start, rig, given);
   for (std::size_t laser = 0; laser < start.lasers(); ++laser) {
     const std::size_t parameter = slot(start, laser, kLambda);
     range.nominal.try_emplace(start.names()[parameter],
@@ -94,8 +94,8 @@ Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measur
     return calibrate_by_rqe(start, sample, measure, settings,
                             [&](double done, std::string_view what) { report(from + share * done, what); });
   };
-  const SearchRange near = range_near(start, rig, given);
-  const SearchRange nearest = range_nearest(start, rig, given);
+  const SearchRange near = search_range_around(start, rig, given);
+  const SearchRange nearest = search_range_with_lambda(start, rig, given);
   const auto fits = [&](const std::optional<Refinement>& fit) {
     return fit && fit->outcome.doubts.empty() &&
            check_with_rig(calibration_of(fit->outcome, rig), rig, given).caveats.empty();

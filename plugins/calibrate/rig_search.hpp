@@ -8,10 +8,10 @@ namespace crisp {
 
 /// The range with those of τ and α around the start, and what the rig knows better: three standard
 /// deviations.
-SearchRange range_near(const SensorModel& start, const Rig& rig, SearchRange range);
+SearchRange search_range_around(const SensorModel& start, const Rig& rig, SearchRange range);
 
 /// The same with each λ within 20° of the start, too.
-SearchRange range_nearest(const SensorModel& start, const Rig& rig, const SearchRange& given);
+SearchRange search_range_with_lambda(const SensorModel& start, const Rig& rig, const SearchRange& given);
 
 /// The crispest cloud near what the rig says; or away from it, where that shows that the rig is wrong.
 ///

@@ -11,6 +11,7 @@
 #include "pipeline/estimate/base_slots.hpp"
 #include "pipeline/estimate/can_be_told.hpp"
 #include "pipeline/estimate/observability.hpp"
+#include "pipeline/estimate/turn_period.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
 #include "plugins/calibrate/deepest_valley.hpp"
 #include "plugins/calibrate/optimum_scatter.hpp"
@@ -92,8 +93,8 @@ class RqeCalibration {
             .covariance = std::move(covariance),
             .unobservable = parameters_.unobservable,
             .doubts = doubts(),
-            .rivals = doubts_of_rivals(),
-            .kept = kept_};
+            .other_minima = other_minima(),
+            .not_estimated = not_estimated_};
   }
 
  private:
@@ -115,6 +116,8 @@ class RqeCalibration {
       const std::string& name = model_.names()[parameter];
       const double value = model_.values()[static_cast<Eigen::Index>(parameter)];
       if (!is_at_the_end(settings_.in_plane.range, name, value)) continue;
+      const auto period = turn_period(sample_);
+      if (period && contradicts_counts(*period)) throw Error(counts_caveat(*period));
       throw Error(fmt::format("{} ran to {:.0f} ms, the end of its range: no cloud there is crisp", name,
                               value * 1e3),
                   "see whether the rig's mount, lambda and tau are right, and record several turns of the "
@@ -136,7 +139,7 @@ class RqeCalibration {
       if (std::min(left, all - left) >= kLeastShare * all) continue;
       for (const BaseSlot which : {kTau, kAlpha}) {
         if (std::erase(parameters_.free, slot(model_, laser, which)) > 0) {
-          kept_.push_back(slot(model_, laser, which));
+          not_estimated_.push_back(slot(model_, laser, which));
         }
       }
     }
@@ -180,7 +183,7 @@ class RqeCalibration {
     return {};
   }
 
-  std::vector<std::string> doubts_of_rivals() const {
+  std::vector<std::string> other_minima() const {
     std::vector<std::string> found;
     for (const Rival& rival : rivals_) {
       if (rival.height > kClearlyDeeper) continue;
@@ -198,7 +201,7 @@ class RqeCalibration {
   std::vector<Rival> rivals_;
   Sample sample_;
   FreeParameters parameters_;
-  std::vector<std::size_t> kept_;
+  std::vector<std::size_t> not_estimated_;
 };
 
 }  // namespace

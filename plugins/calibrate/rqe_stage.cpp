@@ -105,7 +105,7 @@ Calibration RqeStage::compared_with_rig(Calibration calibration, Context& contex
         "the encoder counts clockwise, by the signs of tau and alpha and the order of the lasers; the "
         "calibration "
         "takes it so. Set plate.direction: clockwise in the rig");
-    return in_form_of_rig(with_lambdas_near(mirrored(calibration), context.rig()), context.rig());
+    return match_form_of_rig(with_lambdas_near(mirrored(calibration), context.rig()), context.rig());
   }
   if (asks_direction && !check.knows_direction) {
     calibration.doubts.emplace_back(
@@ -137,7 +137,7 @@ void RqeStage::finish(Outputs& out, Context& context) {
   if (context.interrupted()) return;
 
   for (const auto& doubt : outcome.doubts) context.distrust(doubt);
-  for (const auto& rival : outcome.rivals) context.distrust(rival);
+  for (const auto& minimum : outcome.other_minima) context.distrust(minimum);
   Calibration calibration = calibration_of(outcome, context.rig());
   calibration.doubts = outcome.doubts;  // of the data: no refinement answers them
   const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
@@ -150,9 +150,10 @@ void RqeStage::finish(Outputs& out, Context& context) {
     context.distrust("the calibration made the cloud less crisp than it was");
   }
   if (outcome.free.empty()) context.distrust("RQE determines none of the parameters");
-  if (!outcome.kept.empty()) {
+  if (!outcome.not_estimated.empty()) {
     std::vector<std::string> names;
-    for (const std::size_t parameter : outcome.kept) names.push_back(outcome.model.names()[parameter]);
+    for (const std::size_t parameter : outcome.not_estimated)
+      names.push_back(outcome.model.names()[parameter]);
     context.say(
         fmt::format("{} stay as they were: the laser sees one side of the spin axis only, and a smaller room "
                     "would be as crisp (calibrate.refine finds them)",

@@ -202,7 +202,7 @@ void FittedClock::settle(Segment& segment, double begin, double end) {
   // The map passes through the line at the window's middle, or as near to it as there are stamps.
   const double rate = 1 + line.slope;
   const double hub = std::clamp(0.5 * (begin + end), segment.hub(stamps.front()), segment.hub(stamps.back()));
-  const double at_center = segment.first_hub + line.center + line.at_center - errors.late;
+  const double at_center = segment.first_hub + line.center + line.at_center - errors.bias;
   const double device = line.center + (hub - at_center) / rate;
   carry_on(segment, {.device = segment.device(device), .hub = hub, .rate = rate, .errors = errors});
   std::erase_if(segment.stamps, [&](const Stamp& stamp) { return segment.hub(stamp) < end; });
@@ -259,7 +259,7 @@ void FittedClock::finish() {
     const LineErrors errors = errors_of_line(segments_.back().stamps, line_of(segments_.back()));
     followed_error = errors.slope;
     map_.pieces.back().rate_std_error = *followed_error;
-    map_.std_error = std::hypot(errors.at_center, errors.late);  // a clock that is followed lies on its line
+    map_.std_error = std::hypot(errors.at_center, errors.bias);  // a clock that is followed lies on its line
   }
   for (auto& segment : segments_) close(segment);
   segments_.clear();

@@ -51,9 +51,9 @@ INSTANTIATE_TEST_SUITE_P(Laws, ErrorsOfLine,
 // as often as it says where delays are as likely down to the least one or more so; where they thin out
 // (gamma2) their law is known less well: nine in ten. Of delays of which none is near the least one (gamma8)
 // two fifths are taken out.
-class LatenessOfLine : public ErrorsOfLine {};
+class BiasOfLine : public ErrorsOfLine {};
 
-TEST_P(LatenessOfLine, IsTakenOut) {
+TEST_P(BiasOfLine, IsTakenOut) {
   constexpr int kSeeds = 400;
   double late = 0;
   double left = 0;
@@ -66,17 +66,17 @@ TEST_P(LatenessOfLine, IsTakenOut) {
     const LineErrors errors = errors_of_line(stamps, line);
     const double before = line.at_center;
     late += before / kSeeds;
-    left += (before - errors.late) / kSeeds;
+    left += (before - errors.bias) / kSeeds;
     squared_before += before * before / kSeeds;
-    squared_after += (before - errors.late) * (before - errors.late) / kSeeds;
-    in_two += std::abs(before - errors.late) <= 2 * errors.at_center;
+    squared_after += (before - errors.bias) * (before - errors.bias) / kSeeds;
+    in_two += std::abs(before - errors.bias) <= 2 * errors.at_center;
   }
   EXPECT_LT(std::abs(left), 0.35 * late);
   EXPECT_LT(squared_after, squared_before);
   EXPECT_GE(in_two, 0.87 * kSeeds);
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, LatenessOfLine,
+INSTANTIATE_TEST_SUITE_P(Laws, BiasOfLine,
                          ::testing::Values(Law{"exponential", exponential_delays(3e-4)},
                                            Law{"gamma2", gamma_delays(2, 2e-4)},
                                            Law{"bursts", bursty_delays(3e-4, 5e-3, 30, 0.002)}),
@@ -87,7 +87,7 @@ TEST(ErrorsOfLine, AFewStampsThatAreFasterThanAllOthersAreTheLeast) {
   for (int i = 0; i < 500; ++i) stamps.push_back({0.02 * i, 60e-6 + 1e-7 * ((i * 7919) % 97)});
   for (const int fast : {20, 210, 300, 470}) stamps[static_cast<std::size_t>(fast)].lead = 1e-6 * (fast % 4);
   const auto errors = errors_of_line(stamps, line_by_convex_hull(stamps, 5));
-  EXPECT_LT(errors.late, 12e-6);
+  EXPECT_LT(errors.bias, 12e-6);
   EXPECT_GT(errors.at_center, 10e-6);  // or they are not: the others are 60 us later
 }
 

@@ -74,49 +74,50 @@ auto pair_of(const std::string& view, const std::string& other, double beams, do
 
 TEST(ViewConsistency, CountsBeamsThatTheOtherViewMeetsAtTheSamePlace) {
   Walls walls;
-  walls.add(2, {{.view = 0, .beams = 50}, {.view = 1, .off = 0.02, .beams = 50}});   // within 3 σ
-  walls.add(20, {{.view = 0, .beams = 50}, {.view = 1, .off = 0.05, .beams = 40}});  // apart
+  walls.add(2, {{.view = 0, .beams = 600}, {.view = 1, .off = 0.02, .beams = 600}});   // within 3 σ
+  walls.add(20, {{.view = 0, .beams = 600}, {.view = 1, .off = 0.05, .beams = 500}});  // apart
   EXPECT_THAT(walls.consistency({"a", "b"}),
-              UnorderedElementsAre(pair_of("a", "b", 100, 50), pair_of("b", "a", 90, 50)));
+              UnorderedElementsAre(pair_of("a", "b", 1200, 600), pair_of("b", "a", 1100, 600)));
 }
 
 TEST(ViewConsistency, AViewThatLooksThroughASurfaceContradictsIt) {
   Walls walls;
-  walls.add(2, {{.view = 0, .beams = 50}, {.view = 1, .off = 1, .beams = 50, .is_on_it = false}});
-  EXPECT_THAT(walls.consistency({"a", "b"}), UnorderedElementsAre(pair_of("a", "b", 50, 0)));
+  walls.add(2, {{.view = 0, .beams = 600}, {.view = 1, .off = 1, .beams = 600, .is_on_it = false}});
+  EXPECT_THAT(walls.consistency({"a", "b"}), UnorderedElementsAre(pair_of("a", "b", 600, 0)));
 }
 
 TEST(ViewConsistency, AViewThatEndsInFrontOrPassesBesideSaysNothing) {
   Walls in_front;
-  in_front.add(2, {{.view = 0, .beams = 50}, {.view = 1, .off = -0.5, .beams = 50, .is_on_it = false}});
+  in_front.add(2, {{.view = 0, .beams = 600}, {.view = 1, .off = -0.5, .beams = 600, .is_on_it = false}});
   EXPECT_THAT(in_front.consistency({"a", "b"}), IsEmpty());
-  // In the same directions, but from half a metre aside: they pass where nothing was seen.
+  // In the same directions, but from a metre aside: they pass where nothing was seen.
   Walls beside;
   beside.add(
-      2, {{.view = 0, .beams = 50}, {.view = 1, .off = 1, .beams = 50, .beside = 0.5, .is_on_it = false}});
+      2, {{.view = 0, .beams = 600}, {.view = 1, .off = 1, .beams = 600, .beside = 0.9, .is_on_it = false}});
   EXPECT_THAT(beside.consistency({"a", "b"}), IsEmpty());
 }
 
 TEST(ViewConsistency, EachPairOfThreeIsComparedSoThatTwoWhichAgreeHideNoThird) {
   Walls walls;
-  walls.add(2, {{.view = 0, .beams = 50}, {.view = 1, .beams = 50}, {.view = 2, .off = 0.05, .beams = 50}});
-  EXPECT_THAT(
-      walls.consistency({"a", "b", "c"}),
-      UnorderedElementsAre(pair_of("a", "b", 50, 50), pair_of("b", "a", 50, 50), pair_of("a", "c", 50, 0),
-                           pair_of("b", "c", 50, 0), pair_of("c", "a", 50, 0), pair_of("c", "b", 50, 0)));
+  walls.add(2,
+            {{.view = 0, .beams = 600}, {.view = 1, .beams = 600}, {.view = 2, .off = 0.05, .beams = 600}});
+  EXPECT_THAT(walls.consistency({"a", "b", "c"}),
+              UnorderedElementsAre(pair_of("a", "b", 600, 600), pair_of("b", "a", 600, 600),
+                                   pair_of("a", "c", 600, 0), pair_of("b", "c", 600, 0),
+                                   pair_of("c", "a", 600, 0), pair_of("c", "b", 600, 0)));
 }
 
 TEST(ViewConsistency, WhatThePlateMayBeTurnedByCountsWithTheDistance) {
   Walls walls;
-  walls.add(20, {{.view = 0, .beams = 50}, {.view = 1, .off = 0.05, .beams = 50}});
+  walls.add(20, {{.view = 0, .beams = 600}, {.view = 1, .off = 0.05, .beams = 600}});
   EXPECT_EQ(walls.consistency({"a", "b"})[0].share, 0);
   EXPECT_EQ(walls.consistency({"a", "b"}, 1e-3)[0].share, 1);  // 20 mm there
 }
 
 TEST(ViewConsistency, UprightAndLevelSurfacesAreApart) {
   Walls walls;
-  walls.add(2, {{.view = 0, .beams = 50}, {.view = 1, .beams = 50}});
-  walls.add(20, {{.view = 0, .beams = 50}, {.view = 1, .off = 0.05, .beams = 50}});
+  walls.add(2, {{.view = 0, .beams = 600}, {.view = 1, .beams = 600}});
+  walls.add(20, {{.view = 0, .beams = 600}, {.view = 1, .off = 0.05, .beams = 600}});
   walls.surfels.surfels[1].normal = {0.6, 0, 0.8};
   const auto pairs = walls.consistency({"a", "b"});
   ASSERT_EQ(pairs.size(), 4U);

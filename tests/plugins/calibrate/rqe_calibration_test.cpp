@@ -114,8 +114,8 @@ TEST(CalibrateByRqe, IsNotSureInARoomThatLooksTheSameFromBehind) {
   Calibration start = recording.truth;
   start.lasers[1].lambda.value += 70 * kDegree;
   const Outcome outcome = calibrate_by_rqe(SensorModel(start), sample_of(recording), *measure, settings);
-  ASSERT_EQ(outcome.rivals.size(), 1U);
-  EXPECT_THAT(outcome.rivals[0], testing::StartsWith("laser2.lambda at "));
+  ASSERT_EQ(outcome.other_minima.size(), 1U);
+  EXPECT_THAT(outcome.other_minima[0], testing::StartsWith("laser2.lambda at "));
 }
 
 TEST(CalibrateByRqe, TheNominalLambdaTellsWhichOfTwoPlacesIsMeant) {
@@ -133,7 +133,7 @@ TEST(CalibrateByRqe, TheNominalLambdaTellsWhichOfTwoPlacesIsMeant) {
     Calibration start = recording.truth;
     start.lasers[1].lambda.value += off;
     const Outcome outcome = calibrate_by_rqe(SensorModel(start), sample_of(recording), *measure, settings);
-    EXPECT_THAT(outcome.rivals, testing::IsEmpty());
+    EXPECT_THAT(outcome.other_minima, testing::IsEmpty());
     const double found = outcome.model.calibration().lasers[1].lambda.value;
     EXPECT_NEAR(std::remainder(found - recording.truth.lasers[1].lambda.value, 2 * std::numbers::pi), 0,
                 2 * kDegree);

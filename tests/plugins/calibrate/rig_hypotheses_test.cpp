@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/calibrate/suspects.hpp"
+#include "plugins/calibrate/rig_hypotheses.hpp"
 
 #include <gmock/gmock.h>
 
@@ -15,9 +15,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// A recording in the office, and what a rig that is wrong makes of it.
-class Suspects : public testing::Test {
+class RigHypotheses : public testing::Test {
  protected:
-  Suspects() {
+  RigHypotheses() {
     register_built_in(terms_);
     ScannerSettings scanner = misplaced_scanner(2, 5);
     for (LaserCalibration& laser : scanner.truth.lasers) laser.eta.value /= 10;
@@ -38,30 +38,31 @@ class Suspects : public testing::Test {
     for (std::size_t i = 0; i < greater.size(); ++i) rig.lasers[i].mount += greater[i];
     return rig;
   }
-  SuspectSettings settings() { return {.terms = &terms_, .measure = measure_.get(), .refinement = {}}; }
+  HypothesisSettings settings() { return {.terms = &terms_, .measure = measure_.get(), .refinement = {}}; }
 
   TermRegistry terms_;
   std::unique_ptr<Measure> measure_ = rqe_measure();
   SimulatedMeasurements simulated_;
 };
 
-TEST_F(Suspects, AMountThatIsOffByADegreeIsFound) {
+TEST_F(RigHypotheses, AMountThatIsOffByADegreeIsFound) {
   const std::vector<double> off = {0, 1 * kDegree, 0};
   const auto caveats =
-      mounts_off(SensorModel(simulated_.truth, terms_), with_mounts(off), rig_with_mounts(off), settings());
+      check_mounts(SensorModel(simulated_.truth, terms_), with_mounts(off), rig_with_mounts(off), settings());
   EXPECT_THAT(caveats, ElementsAre(AllOf(HasSubstr("laser2's mount is off: 45.00"),
                                          HasSubstr("the rig has 46.000 deg"))));
 }
 
-TEST_F(Suspects, MountsThatAreRightAreNotSuspected) {
+TEST_F(RigHypotheses, MountsThatAreRightAreNotSuspected) {
   const std::vector<double> off(3, 0.0);
-  EXPECT_THAT(mounts_off(SensorModel(simulated_.truth, terms_), with_mounts(off), default_rig(), settings()),
-              IsEmpty());
+  EXPECT_THAT(
+      check_mounts(SensorModel(simulated_.truth, terms_), with_mounts(off), default_rig(), settings()),
+      IsEmpty());
 }
 
-TEST_F(Suspects, MountsThatAreAllOffByARightAngleAreFoundFromTheRigsNominalValues) {
+TEST_F(RigHypotheses, MountsThatAreAllOffByARightAngleAreFoundFromTheRigsNominalValues) {
   const std::vector<double> off(3, -90 * kDegree);
-  const auto mistake = mistake_in_rig(with_mounts(off), rig_with_mounts(off), settings());
+  const auto mistake = find_rig_error(with_mounts(off), rig_with_mounts(off), settings());
   ASSERT_TRUE(mistake);
   EXPECT_THAT(*mistake, AllOf(HasSubstr("mount: 45deg of laser1 (the rig has -45)"),
                               HasSubstr("the others turned alike")));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/estimate/encoder_steps.hpp"
+#include "pipeline/estimate/encoder_quantization.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +17,8 @@ double beams_a_second(const Sample& sample) {
 
 }  // namespace
 
-std::vector<float> noise_with_steps(const Surfels& surfels, const BeamsView& beams, const Sample& sample,
-                                    double step, double noise) {
+std::vector<float> noise_with_quantization(const Surfels& surfels, const BeamsView& beams,
+                                           const Sample& sample, double step, double noise) {
   std::vector<float> with_steps(beams.points.size());
   for (std::size_t i = 0; i < with_steps.size(); ++i) with_steps[i] = static_cast<float>(beams.noise_of(i));
   if (sample.beams.size() == 0) return with_steps;

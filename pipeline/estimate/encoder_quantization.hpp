@@ -20,7 +20,7 @@ namespace crisp {
 /// @param step   [rad] of the encoder
 /// @param noise  [m] standard deviation of a range
 /// @return       of each beam; of those on no surface their own
-std::vector<float> noise_with_steps(const Surfels& surfels, const BeamsView& beams, const Sample& sample,
-                                    double step, double noise);
+std::vector<float> noise_with_quantization(const Surfels& surfels, const BeamsView& beams,
+                                           const Sample& sample, double step, double noise);
 
 }  // namespace crisp

@@ -19,8 +19,8 @@ namespace crisp {
 /// @param refined      of `start`
 /// @param calibration  the refined one, with its quality: "rqe_before", "rqe_unrefined", "rqe_after" [nat]
 /// @param noise        [m] standard deviation of a range
-std::vector<std::string> caveats_of_fit(const Refinement& refined, const Calibration& calibration,
-                                        const Calibration& start, const Rig& rig, double noise);
+std::vector<std::string> check_fit(const Refinement& refined, const Calibration& calibration,
+                                   const Calibration& start, const Rig& rig, double noise);
 
 /// [m] How far beams miss their surfaces (RMS).
 double misfit_of(const Refinement& refined, double noise);

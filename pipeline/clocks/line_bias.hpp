@@ -8,7 +8,7 @@
 namespace crisp {
 
 /// How far a line below stamps lies above their clock, as no stamp has the least delay.
-struct Lateness {
+struct LineBias {
   double mean = 0;       ///< [s]
   double std_error = 0;  ///< [s] of it
 };
@@ -19,6 +19,6 @@ struct Lateness {
 ///
 /// @param stamps  those that the line was fitted to
 /// @param quantum [s] the resolution of the stamps
-Lateness lateness_of(std::span<const Stamp> stamps, const ClockLine& line, double quantum);
+LineBias estimate_line_bias(std::span<const Stamp> stamps, const ClockLine& line, double quantum);
 
 }  // namespace crisp

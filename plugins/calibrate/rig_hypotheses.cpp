@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/calibrate/suspects.hpp"
+#include "plugins/calibrate/rig_hypotheses.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,7 +25,7 @@ constexpr std::size_t kBeams = 100'000;  // enough to see whether they fit
 constexpr const char* kMirrorZero = "mount.mirror_zero";
 
 /// How the rig would have to be changed.
-struct Suspect {
+struct RigHypothesis {
   std::string change;               ///< in words: "plate.direction: clockwise"
   double direction = 1;             ///< −1: the encoder counts the other way
   std::vector<double> mount_turns;  ///< [rad] by which each laser's mount is greater
@@ -40,17 +40,18 @@ std::string with_mount(const RigLaser& laser, double turn) {
 }
 
 /// What may be wrong with the plate, or with all lasers alike.
-std::vector<Suspect> common_suspects(const Rig& rig) {
+std::vector<RigHypothesis> common_hypotheses(const Rig& rig) {
   const std::size_t n = rig.lasers.size();
   const bool is_clockwise = rig.plate.direction == CountDirection::clockwise;
-  std::vector<Suspect> all = {
+  std::vector<RigHypothesis> all = {
       {.change = fmt::format("plate.direction: {}", is_clockwise ? "counter_clockwise" : "clockwise"),
        .direction = -1,
        .mount_turns = std::vector<double>(n, 0.0)}};
   for (const double turn : kTurns) {
-    Suspect suspect{.change = with_mount(rig.lasers[0], turn), .mount_turns = std::vector<double>(n, turn)};
-    if (n > 1) suspect.change += " and the mounts of the others turned alike";
-    all.push_back(std::move(suspect));
+    RigHypothesis hypothesis{.change = with_mount(rig.lasers[0], turn),
+                             .mount_turns = std::vector<double>(n, turn)};
+    if (n > 1) hypothesis.change += " and the mounts of the others turned alike";
+    all.push_back(std::move(hypothesis));
   }
   return all;
 }
@@ -58,14 +59,15 @@ std::vector<Suspect> common_suspects(const Rig& rig) {
 /// The data as they would be with the rig changed.
 class ChangedSample {
  public:
-  ChangedSample(const Sample& sample, const Suspect& suspect) : sample_(sample) {
+  ChangedSample(const Sample& sample, const RigHypothesis& hypothesis) : sample_(sample) {
     for (std::size_t i = 0; i < sample_.beams.size(); ++i) {
       float& angle = sample_.beams.mirror_angle[i];
-      angle = static_cast<float>(wrapped_mirror_angle(angle - suspect.mount_turns[sample_.beams.laser[i]]));
+      angle =
+          static_cast<float>(wrapped_mirror_angle(angle - hypothesis.mount_turns[sample_.beams.laser[i]]));
     }
     const PlateTrajectory& plate = *sample.plate;
     std::vector<double> angles;
-    for (const double angle : plate.angles()) angles.push_back(suspect.direction * angle);
+    for (const double angle : plate.angles()) angles.push_back(hypothesis.direction * angle);
     plate_ =
         PlateTrajectory(plate.epoch_ns(), {plate.times().begin(), plate.times().end()}, std::move(angles),
                         plate.max_gap(), {plate.new_zeros().begin(), plate.new_zeros().end()});
@@ -85,30 +87,44 @@ class ChangedSample {
 /// "0.000" and not "-0.000".
 double without_sign_of_zero(double value) { return std::abs(value) < 5e-4 ? 0 : value; }
 
+/// "laser1.mount.mirror_zero" for each laser whose mirror sweeps: a device of single beams has no mount to
+/// tell.
+std::vector<std::string> mount_terms(const Sample& sample, const Rig& rig) {
+  constexpr float kSweep = 30 * kDegree;
+  std::vector<std::string> terms;
+  for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
+    const Sample own = of_laser(sample, laser);
+    if (own.beams.size() == 0) continue;
+    const auto [first, last] = std::ranges::minmax(own.beams.mirror_angle);
+    if (last - first > kSweep) terms.push_back(rig.lasers[laser].name + "." + kMirrorZero);
+  }
+  return terms;
+}
+
 /// A refinement with the mounts free.
-Refinement refined_with_mounts(const SensorModel& model, const Sample& sample,
-                               const SuspectSettings& settings) {
+Refinement refined_with_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
+                               const HypothesisSettings& settings) {
   Calibration start = model.calibration();
   RefinementSettings refinement = settings.refinement;
-  refinement.terms.emplace_back(kMirrorZero);
+  for (auto& term : mount_terms(sample, rig)) refinement.terms.push_back(std::move(term));
   add_wanted_terms(start, refinement.terms, *settings.terms);
   return refine_by_surfels(SensorModel(start, *settings.terms), sample, refinement,
                            [&](int) { return !settings.interrupted(); });
 }
 
-bool fits_with(const Suspect& suspect, const Sample& sample, const Rig& rig,
-               const SuspectSettings& settings) {
-  const ChangedSample changed(sample, suspect);
+bool fits_with(const RigHypothesis& hypothesis, const Sample& sample, const Rig& rig,
+               const HypothesisSettings& settings) {
+  const ChangedSample changed(sample, hypothesis);
   RqeCalibrationSettings rqe;
   rqe.points = 10'000;
   rqe.probes = 4;
   rqe.in_plane.minimiser.interrupted = settings.interrupted;
   try {
     const SensorModel start(nominal_calibration(rig), *settings.terms);
-    rqe.in_plane.range = range_nearest(start, rig, SearchRange{});
+    rqe.in_plane.range = search_range_with_lambda(start, rig, SearchRange{});
     const Outcome crisp = calibrate_by_rqe(start, changed.sample(), *settings.measure, rqe);
     if (settings.interrupted()) return false;
-    const Refinement refined = refined_with_mounts(crisp.model, changed.sample(), settings);
+    const Refinement refined = refined_with_mounts(crisp.model, changed.sample(), rig, settings);
     return refined.outcome.doubts.empty() && !refined.views.empty() &&
            check_with_rig(calibration_of(refined.outcome, rig), rig, SearchRange{}).caveats.empty();
   } catch (const Error&) {
@@ -118,12 +134,12 @@ bool fits_with(const Suspect& suspect, const Sample& sample, const Rig& rig,
 
 /// The mount with which one laser's own beams fit, if they do not with the rig's.
 std::optional<std::string> mount_of_one(std::size_t laser, const Sample& sample, const Rig& rig,
-                                        const SuspectSettings& settings) {
+                                        const HypothesisSettings& settings) {
   const Sample own = of_laser(sample, laser);
   const auto fits = [&](double turn) {
-    Suspect suspect{.change = {}, .mount_turns = std::vector<double>(rig.lasers.size(), 0.0)};
-    suspect.mount_turns[laser] = turn;
-    return fits_with(suspect, own, rig, settings);
+    RigHypothesis hypothesis{.change = {}, .mount_turns = std::vector<double>(rig.lasers.size(), 0.0)};
+    hypothesis.mount_turns[laser] = turn;
+    return fits_with(hypothesis, own, rig, settings);
   };
   if (own.beams.size() == 0 || fits(0)) return std::nullopt;
   for (const double turn : kTurns) {
@@ -135,12 +151,14 @@ std::optional<std::string> mount_of_one(std::size_t laser, const Sample& sample,
 
 }  // namespace
 
-std::vector<std::string> mounts_off(const SensorModel& model, const Sample& sample, const Rig& rig,
-                                    const SuspectSettings& settings) {
+std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
+                                      const HypothesisSettings& settings) {
   constexpr double kLeast = 0.1 * kDegree;  // 2 mm a metre
   constexpr double kClearly = 5;            // standard errors
   std::vector<std::string> caveats;
-  const Refinement refined = refined_with_mounts(model, thin_evenly(sample, kBeams, 1), settings);
+  const Sample some = thin_evenly(sample, kBeams, 1);
+  if (mount_terms(some, rig).empty()) return {};
+  const Refinement refined = refined_with_mounts(model, some, rig, settings);
   if (settings.interrupted() || !refined.outcome.doubts.empty()) return {};
   const Calibration found = calibration_of(refined.outcome, rig);
   for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
@@ -159,19 +177,12 @@ std::vector<std::string> mounts_off(const SensorModel& model, const Sample& samp
   return caveats;
 }
 
-std::optional<std::string> mistake_in_rig(const Sample& sample, const Rig& rig,
-                                          const SuspectSettings& settings) {
+std::optional<std::string> find_rig_error(const Sample& sample, const Rig& rig,
+                                          const HypothesisSettings& settings) {
   const auto period = turn_period(sample);
-  if (period && contradicts_counts(*period)) {
-    const double counts = rig.plate.counts_per_revolution;
-    return fmt::format(
-        "the scene repeats after about {:.0f} counts of the encoder, not after {:.0f}: ranges there differ "
-        "by "
-        "{:.0f} mm instead of {:.0f} mm. Set plate.counts_per_revolution in the rig",
-        counts * period->angle / (2 * std::numbers::pi), counts, period->miss * 1e3, period->at_2pi * 1e3);
-  }
+  if (period && contradicts_counts(*period)) return counts_caveat(*period);
   const Sample some = thin_evenly(longest_recording(sample), kBeams, 1);
-  const auto all = common_suspects(rig);
+  const auto all = common_hypotheses(rig);
   const double steps = static_cast<double>(all.size() + rig.lasers.size());
   const auto report = [&](std::size_t step, const std::string& what) {
     if (settings.report) settings.report(static_cast<double>(step) / steps, "what if " + what);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/calibrate/verdict.hpp"
+#include "plugins/calibrate/fit_check.hpp"
 
 #include <fmt/format.h>
 
@@ -58,8 +58,8 @@ Caveats of_crispness(const std::map<std::string, double>& quality, bool is_near_
 
 double misfit_of(const Refinement& refined, double noise) { return std::sqrt(refined.chi2) * noise; }
 
-std::vector<std::string> caveats_of_fit(const Refinement& refined, const Calibration& calibration,
-                                        const Calibration& start, const Rig& rig, double noise) {
+std::vector<std::string> check_fit(const Refinement& refined, const Calibration& calibration,
+                                   const Calibration& start, const Rig& rig, double noise) {
   Caveats caveats = refined.outcome.doubts;
   append(caveats, of_misfit(refined, noise));
   append(caveats, of_rig(calibration, start, rig));

@@ -14,7 +14,7 @@
 namespace crisp {
 
 /// What is needed to calibrate anew under another assumption of the rig.
-struct SuspectSettings {
+struct HypothesisSettings {
   const TermRegistry* terms = nullptr;
   Measure* measure = nullptr;
   RefinementSettings refinement;
@@ -25,15 +25,15 @@ struct SuspectSettings {
 /// Mounts that are off by little, as caveats: where `mount.mirror_zero` is clearly not 0 once it is free.
 ///
 /// @param model  a refined one
-std::vector<std::string> mounts_off(const SensorModel& model, const Sample& sample, const Rig& rig,
-                                    const SuspectSettings& settings);
+std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
+                                      const HypothesisSettings& settings);
 
 /// Which mistake in the rig explains that a calibration does not fit, as a caveat: counts a revolution after
 /// which the scene does not repeat; or the encoder's direction, or a mount of all lasers or one that is off
 /// by 45, 90 or 180 degrees, where a calibration with it right fits and agrees with the nominal values.
 ///
 /// Takes some calibrations' time, with a share of the beams each.
-std::optional<std::string> mistake_in_rig(const Sample& sample, const Rig& rig,
-                                          const SuspectSettings& settings);
+std::optional<std::string> find_rig_error(const Sample& sample, const Rig& rig,
+                                          const HypothesisSettings& settings);
 
 }  // namespace crisp

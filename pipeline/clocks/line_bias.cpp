@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/clocks/delay_law.hpp"
+#include "pipeline/clocks/line_bias.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ std::vector<double> delays_above(std::span<const Stamp> stamps, const ClockLine&
 
 }  // namespace
 
-Lateness lateness_of(std::span<const Stamp> stamps, const ClockLine& line, double quantum) {
+LineBias estimate_line_bias(std::span<const Stamp> stamps, const ClockLine& line, double quantum) {
   constexpr double kUsualDelay = 1e-3;  // [s] where there are too few stamps to tell
   constexpr double kRoots = 2.5;        // of the stamps: few enough to be near the least one
   constexpr double kBeforehand = 2;     // stamps that speak for a shape of 1
