@@ -362,13 +362,19 @@ bool is_drawn_to_start(const SensorModel& start, const Outcome& found, const Sea
 Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
                              const RefinementSettings& settings, const RoundReporter& report) {
   constexpr int kRestarts = 3;
+  const auto was_stopped = [&](const Refinement& refinement) {
+    return !refinement.converged && refinement.rounds < settings.max_rounds;
+  };
   Refinement result = refine_once(start, sample, settings, report);
   SensorModel from = start;
   // The start counts as an observation: a start that was far off would draw the result towards itself.
   for (int restart = 0; restart < kRestarts; ++restart) {
-    if (!is_drawn_to_start(from, result.outcome, settings.prior)) return result;
+    const bool is_settled = result.converged && !is_drawn_to_start(from, result.outcome, settings.prior);
+    if (was_stopped(result) || is_settled) return result;
     from = result.outcome.model;
-    result = refine_once(from, sample, settings, report);
+    Refinement next = refine_once(from, sample, settings, report);
+    if (was_stopped(next)) return result;
+    result = std::move(next);
     result.restarts = restart + 1;
   }
   for (const std::string& move : far_moves(from, result.outcome, settings.prior)) {

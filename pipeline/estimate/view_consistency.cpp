@@ -20,7 +20,7 @@ namespace crisp {
 namespace {
 
 constexpr double kExpectedShare = 0.7;  // in halls and streets, with the true calibration; in rooms 0.9
-constexpr double kApart = 3;            // [σ] by which views may miss one another
+constexpr double kDeviationsApart = 3;  // [σ] by which views may miss one another
 
 /// The beams by their directions, in bins of about 3°.
 class Directions {
@@ -81,7 +81,7 @@ struct Piece {
   void add_to(PairSums& sums, const ViewErrors& errors) {
     constexpr double kFew = 5;          // beams whose median is known to half of the noise
     constexpr double kLeastPart = 0.2;  // of the beams that should have met it
-    const double apart = kApart * std::hypot(errors.range, farthest * errors.angle);
+    const double apart = kDeviationsApart * std::hypot(errors.range, farthest * errors.angle);
     std::vector<double> middles;
     for (auto& own : distances) {
       middles.push_back(own.empty() ? 0 : middle_of(own));

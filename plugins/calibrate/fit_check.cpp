@@ -39,12 +39,6 @@ Caveats of_rig(const Calibration& calibration, const Calibration& start, const R
   return is_new ? check.caveats : far_from_nominal(calibration, rig);
 }
 
-/// Whether views are known to agree well, so that no other judge is needed.
-bool agrees_well(const Refinement& refined) {
-  constexpr double kWell = 0.7;
-  return !refined.views.empty() && std::ranges::min(refined.views, {}, &ViewConsistency::share).share > kWell;
-}
-
 Caveats of_crispness(const std::map<std::string, double>& quality, bool is_near_start) {
   constexpr double kLess = 0.05;  // [nat] that chance and the bias of an optimum of RQE do not explain
   const double after = quality.at("rqe_after");
@@ -55,6 +49,11 @@ Caveats of_crispness(const std::map<std::string, double>& quality, bool is_near_
 }
 
 }  // namespace
+
+bool agrees_well(const Refinement& refined) {
+  constexpr double kWell = 0.7;
+  return !refined.views.empty() && std::ranges::min(refined.views, {}, &ViewConsistency::share).share > kWell;
+}
 
 double misfit_of(const Refinement& refined, double noise) { return std::sqrt(refined.chi2) * noise; }
 

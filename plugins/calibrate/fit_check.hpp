@@ -22,6 +22,9 @@ namespace crisp {
 std::vector<std::string> check_fit(const Refinement& refined, const Calibration& calibration,
                                    const Calibration& start, const Rig& rig, double noise);
 
+/// Whether views are known to agree well, so that no other judge is needed.
+bool agrees_well(const Refinement& refined);
+
 /// [m] How far beams miss their surfaces (RMS).
 double misfit_of(const Refinement& refined, double noise);
 

@@ -126,7 +126,7 @@ std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refin
       .interrupted = [&] { return context.interrupted(); },
       .report = [&](double done, std::string_view what) { context.progress(done, what); }};
   auto found = check_mounts(refined.outcome.model, sample, context.rig(), settings);
-  if (fits || !found.empty()) return found;
+  if (fits || agrees_well(refined) || !found.empty()) return found;
   if (auto mistake = find_rig_error(sample, context.rig(), settings)) found.push_back(std::move(*mistake));
   return found;
 }

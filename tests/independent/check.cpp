@@ -169,7 +169,7 @@ Setup read_setup(const std::string& folder, World& world) {
   while (arguments >> argument)
     fixed[argument.substr(0, argument.find('='))] = argument.substr(argument.find('=') + 1);
   Draws draws(std::stoull(seed), fixed);
-  const Setup setup = draw_setup(draws);
+  Setup setup = draw_setup(draws);
   world = build_scene(setup.scene, setup.height, draws.stream("scene.solids"));
   return setup;
 }

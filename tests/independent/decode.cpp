@@ -81,7 +81,7 @@ class FieldReader {
  private:
   std::string token() {
     const auto end = std::min(body_.find(' ', at_), body_.size());
-    const std::string found = body_.substr(at_, end - at_);
+    std::string found = body_.substr(at_, end - at_);
     at_ = end + 1;
     return found;
   }

@@ -77,7 +77,10 @@ std::string Draws::choice(const std::string& name, const std::vector<Weighted>& 
 
 void Draws::require_all_used() const {
   for (const auto& [name, value] : fixed_) {
-    if (!used_.contains(name)) throw std::runtime_error(name + "=" + value + " fixes no draw of this rig");
+    if (used_.contains(name)) continue;
+    std::string draw = name;
+    draw.append("=").append(value).append(" fixes no draw of this rig");
+    throw std::runtime_error(draw);
   }
 }
 

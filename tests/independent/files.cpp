@@ -42,7 +42,7 @@ void write_rig(const std::string& path, const Setup& setup) {
     file << "    mount: " << number(laser.rig_mount * kDegrees) << "deg\n";
     if (laser.period_offset) file << "    period_offset: " << laser.period_offset << "\n";
     file << "    nominal:\n      lambda: "
-         << nominal(g.lambda * kDegrees, &laser == &setup.lasers[0] ? 0 : sd.lambda * kDegrees, "deg");
+         << nominal(g.lambda * kDegrees, &laser == setup.lasers.data() ? 0 : sd.lambda * kDegrees, "deg");
     file << "\n      tau: " << nominal(g.tau * 1000, sd.tau * 1000, "mm");
     file << "\n      alpha: " << nominal(g.alpha * kDegrees, sd.alpha * kDegrees, "deg") << "\n";
   }
