@@ -186,6 +186,7 @@ TEST(RigFile, TheExampleOfItsPageIsOne) {
   std::ifstream page(source_dir() + "/docs/rig.md");
   std::string example;
   for (std::string line; std::getline(page, line);) {
+    if (!line.starts_with("    ") && !example.empty()) break;  // further ones are no rigs
     if (line.starts_with("    ")) example += line.substr(4) + "\n";
   }
   const Rig rig = parse_rig(parse_yaml(example, "rig.md"));
