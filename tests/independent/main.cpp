@@ -26,7 +26,8 @@ void simulate(const std::string& seed, const std::string& folder,
               const std::map<std::string, std::string>& fixed) {
   Outcome outcome;
   outcome.arguments = seed;
-  for (const auto& [name, value] : fixed) outcome.arguments += " " + name + "=" + value;
+  for (const auto& [name, value] : fixed)
+    outcome.arguments.append(" ").append(name).append("=").append(value);
   Draws draws(std::stoull(seed), fixed);
   const Setup setup = draw_setup(draws);
   draws.require_all_used();

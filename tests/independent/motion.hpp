@@ -25,6 +25,6 @@ class PlateMotion {
 /// Draws a motion by name: varied, reversal, stop_and_go, ripple or constant.
 ///
 /// A motion that covers less than 1.25 turns (reversal: 0.75) is drawn again, up to 100 times.
-PlateMotion draw_motion(const std::string& name, double duration, std::mt19937_64 random);
+PlateMotion draw_motion(const std::string& name, double duration, std::mt19937_64 engine);
 
 }  // namespace independent

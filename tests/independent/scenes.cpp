@@ -8,8 +8,6 @@ namespace independent {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kKeepOut =
-    0.85;  // [m] free space about the scanner: its lasers stand up to 0.55 m off the axis
 
 /// A rectangle that holds the scanner, not in its middle.
 struct Floor {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace independent {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 /// Writes fields as tokens (CoLa-A) or packed in big-endian order (CoLa-B).
 class Fields {
  public:
-  Fields(const std::string& command, bool is_text) : is_text_(is_text), body_(command) {
+  Fields(std::string command, bool is_text) : is_text_(is_text), body_(std::move(command)) {
     if (!is_text_) body_ += ' ';
   }
 
