@@ -100,14 +100,19 @@ TEST(CalibrateByRqe, FindsWhereALaserSitsThatIsThoughtToBeOnTheSpinAxis) {
   EXPECT_LT(std::abs(error[6]), 3 * kDegree) << "α";
 }
 
-TEST(CalibrateByRqe, IsNotSureInARoomThatLooksTheSameFromBehind) {
+/// By two lasers.
+SimulatedMeasurements in_a_room_that_looks_the_same_from_behind() {
   const Scene twin{.name = "twin",
                    .surfaces = walls("wall", {{-4, -3}, {4, -3}, {4, 3}, {-4, 3}}, -1, 1, 0.5)};
   ScannerSettings scanner;
   scanner.rig.lasers.resize(2);
   scanner.truth = nominal_calibration(scanner.rig);
   scanner.duration = 5;
-  const auto recording = simulate_measurements(scanner, twin);
+  return simulate_measurements(scanner, twin);
+}
+
+TEST(CalibrateByRqe, IsNotSureInARoomThatLooksTheSameFromBehind) {
+  const auto recording = in_a_room_that_looks_the_same_from_behind();
   RqeCalibrationSettings settings = quick();
   settings.full_field = false;
   const auto measure = rqe_measure();
@@ -119,13 +124,7 @@ TEST(CalibrateByRqe, IsNotSureInARoomThatLooksTheSameFromBehind) {
 }
 
 TEST(CalibrateByRqe, TheNominalLambdaTellsWhichOfTwoPlacesIsMeant) {
-  const Scene twin{.name = "twin",
-                   .surfaces = walls("wall", {{-4, -3}, {4, -3}, {4, 3}, {-4, 3}}, -1, 1, 0.5)};
-  ScannerSettings scanner;
-  scanner.rig.lasers.resize(2);
-  scanner.truth = nominal_calibration(scanner.rig);
-  scanner.duration = 5;
-  const auto recording = simulate_measurements(scanner, twin);
+  const auto recording = in_a_room_that_looks_the_same_from_behind();
   RqeCalibrationSettings settings = quick();
   settings.full_field = false;
   const auto measure = rqe_measure();
