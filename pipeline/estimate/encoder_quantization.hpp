@@ -8,8 +8,8 @@
 
 namespace crisp {
 
-/// By how much less beams tell than their ranges' noise says, as they share the errors of the plate's angle:
-/// for each its noise, in units of `noise`, times
+/// The noise of each beam, inflated by the design effect of the encoder's quantization, an error that beams
+/// share: its own noise, in units of `noise`, times
 ///
 ///     √(1 + n (ρ δ / σ)²)
 ///

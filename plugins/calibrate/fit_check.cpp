@@ -31,7 +31,7 @@ Caveats of_misfit(const Refinement& refined, double noise) {
       misfit * 1e3, misfit / scatter, scatter * 1e3)};
 }
 
-/// What contradicts the rig. That the start was outside a range already is told where it came from.
+/// Contradictions of the rig. The stage that gave a start outside of a range has reported that already.
 Caveats of_rig(const Calibration& calibration, const Calibration& start, const Rig& rig) {
   const SearchRange range;
   const RigCheck check = check_with_rig(calibration, rig, range);

@@ -13,8 +13,8 @@ namespace crisp {
 /// Why the fit of a refined calibration is not to be trusted; empty if it is: whether it settled, whether
 /// views agree, how far beams miss their surfaces beside how they scatter, what the rig says, and RQE.
 ///
-/// RQE counts only where views do not tell, and that of the start only if the refinement ended near it: an
-/// entropy falls as well where a wrong calibration folds the scene into less room.
+/// RQE counts only where the views are not known to agree, and that of the start only if the refinement ended
+/// near it: an entropy falls as well where a wrong calibration folds the scene into less room.
 ///
 /// @param refined      of `start`
 /// @param calibration  the refined one, with its quality: "rqe_before", "rqe_unrefined", "rqe_after" [nat]

@@ -101,15 +101,19 @@ std::vector<std::string> mount_terms(const Sample& sample, const Rig& rig) {
   return terms;
 }
 
-/// A refinement with the mounts free.
-Refinement refined_with_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
-                               const HypothesisSettings& settings) {
+/// A refinement with the mounts free; nothing if no surface is flat, or nothing is determined.
+std::optional<Refinement> refined_with_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
+                                              const HypothesisSettings& settings) {
   Calibration start = model.calibration();
   RefinementSettings refinement = settings.refinement;
   for (auto& term : mount_terms(sample, rig)) refinement.terms.push_back(std::move(term));
   add_wanted_terms(start, refinement.terms, *settings.terms);
-  return refine_by_surfels(SensorModel(start, *settings.terms), sample, refinement,
-                           [&](int) { return !settings.interrupted(); });
+  try {
+    return refine_by_surfels(SensorModel(start, *settings.terms), sample, refinement,
+                             [&](int) { return !settings.interrupted(); });
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
 
 bool fits_with(const RigHypothesis& hypothesis, const Sample& sample, const Rig& rig,
@@ -124,11 +128,11 @@ bool fits_with(const RigHypothesis& hypothesis, const Sample& sample, const Rig&
     rqe.in_plane.range = search_range_with_lambda(start, rig, SearchRange{});
     const Outcome crisp = calibrate_by_rqe(start, changed.sample(), *settings.measure, rqe);
     if (settings.interrupted()) return false;
-    const Refinement refined = refined_with_mounts(crisp.model, changed.sample(), rig, settings);
-    return refined.outcome.doubts.empty() && !refined.views.empty() &&
-           check_with_rig(calibration_of(refined.outcome, rig), rig, SearchRange{}).caveats.empty();
+    const auto refined = refined_with_mounts(crisp.model, changed.sample(), rig, settings);
+    return refined && refined->outcome.doubts.empty() && !refined->views.empty() &&
+           check_with_rig(calibration_of(refined->outcome, rig), rig, SearchRange{}).caveats.empty();
   } catch (const Error&) {
-    return false;  // nothing is flat with that, or nothing determined
+    return false;  // RQE refuses the data with that
   }
 }
 
@@ -158,9 +162,9 @@ std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sa
   std::vector<std::string> caveats;
   const Sample some = thin_evenly(sample, kBeams, 1);
   if (mount_terms(some, rig).empty()) return {};
-  const Refinement refined = refined_with_mounts(model, some, rig, settings);
-  if (settings.interrupted() || !refined.outcome.doubts.empty()) return {};
-  const Calibration found = calibration_of(refined.outcome, rig);
+  const auto refined = refined_with_mounts(model, some, rig, settings);
+  if (settings.interrupted() || !refined || !refined->outcome.doubts.empty()) return {};
+  const Calibration found = calibration_of(refined->outcome, rig);
   for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
     for (const TermParameters& term : found.lasers[laser].terms) {
       if (term.term != kMirrorZero || term.parameters.empty()) continue;
