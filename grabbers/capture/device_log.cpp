@@ -113,6 +113,12 @@ std::shared_ptr<const Scan> DeviceLog::take_scan(const ColaTelegram& telegram, s
     return {};
   }
   if (data_.appended > 0) note("scan telegrams with unknown fields at their end");
+  if (data_.layer != 0) {  // a cone: the rig describes planes
+    if (is_new(data_.telegram_counter, data_.transmission_time_us, time_ns)) {
+      lose("scans of a tilted layer: of a laser with several layers, the one at 0 degrees is read only");
+    }
+    return {};
+  }
   auto scan = scans_.get();
   const auto refusal = to_scan(data_, laser_, time_ns, *scan);
   if (refusal != ScanFailure::None) {
