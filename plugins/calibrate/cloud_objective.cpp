@@ -9,7 +9,8 @@ namespace {
 
 Vectors as_arrays(const Placed& placed, const Sample& sample) {
   if (placed.index.size() != sample.beams.size()) {
-    throw Error("the calibration's sample holds beams that the plate's readings do not cover");
+    throw Error("an eta moved some beams out of the time that the encoder readings cover",
+                "check the rig's eta, the clock stages, and whether the encoder was recorded from begin to end");
   }
   Vectors arrays;
   arrays.assign(placed.index.size(), 0);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -40,14 +41,12 @@ class Diagnoser {
  public:
   Diagnoser(const SensorModel& start, const Sample& sample, const TermRegistry& terms,
             const DiagnosisSettings& settings, const DiagnosisReporter& report)
-      : sample_(sample), terms_(terms), settings_(settings), report_(report), start_(start.calibration()) {
-    const LagRange lag = lag_range(start, settings.refinement.prior.eta);
-    inside_ = covered(sample, lag.earliest, lag.latest);
-  }
+      : sample_(sample), terms_(terms), settings_(settings), report_(report), start_(start.calibration()) {}
 
   Diagnosis run() {
     tell(0, "refining without any terms");
     const Refinement plain = refined(with_terms(start_, {}), sample_);
+    limit_lags(plain.outcome.model);
     Diagnosis result{.before = plain, .after = plain};
     extend(result);
     if (!result.departures.empty()) {
@@ -71,10 +70,19 @@ class Diagnoser {
     RefinementSettings settings = settings_.refinement;
     settings.terms = terms_in(calibration, terms_);
     settings.forms = true;
+    settings.prior.earliest_eta = lags_.earliest;
+    settings.prior.latest_eta = lags_.latest;
     return refine_by_surfels(SensorModel(calibration, terms_), sample, settings, [this](int) {
       stop_if_asked();
       return true;
     });
+  }
+
+  /// Keeps the beams that the encoder readings cover at each η near that of the plain model, and each further
+  /// refinement within these η: a start that was far off may have moved by more than its prior.
+  void limit_lags(const SensorModel& plain) {
+    lags_ = lag_range(plain, settings_.refinement.prior.eta);
+    inside_ = covered(sample_, lags_.earliest, lags_.latest);
   }
 
   void stop_if_asked() const {
@@ -230,6 +238,8 @@ class Diagnoser {
   const DiagnosisSettings& settings_;
   const DiagnosisReporter& report_;
   Calibration start_;
+  LagRange lags_{.earliest = -std::numeric_limits<double>::infinity(),
+                 .latest = std::numeric_limits<double>::infinity()};
   Sample inside_;
 };
 

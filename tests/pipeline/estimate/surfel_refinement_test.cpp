@@ -43,6 +43,16 @@ TEST_P(SurfelRefinement, FindsTheTruthWithinItsStandardErrors) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, SurfelRefinement, testing::Values(1, 2, 3));
 
+TEST(SurfelRefinement, KeepsEtasWithinTheLimitsOfThePrior) {
+  const auto recording = simulate_measurements(misplaced_scanner(1, 4.0), office());
+  const SensorModel truth(recording.truth);
+  RefinementSettings settings;
+  settings.prior.latest_eta = truth.values()({3, 7, 11}).maxCoeff() - 0.002;
+  const Refinement refined =
+      refine_by_surfels(off_by(recording.truth, 0.008, 0.01, -0.004), sample_of(recording), settings);
+  for (const auto eta : {3, 7, 11}) EXPECT_LE(refined.outcome.model.values()[eta], settings.prior.latest_eta);
+}
+
 TEST(SurfelRefinement, KeepsWhatAConstantSpeedDoesNotTell) {
   auto scanner = misplaced_scanner(1, 3.0);
   scanner.motion = {.kind = MotionKind::constant, .max_rate = 0.91};  // no whole number of scans a turn

@@ -13,7 +13,7 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-/// What diagnose.model says of a recording that was calibrated without terms.
+/// Runs diagnose.model on a recording, from a calibration without terms.
 StageReport report_of(const test::Recording& recording, const Findings& before = {}) {
   TermRegistry terms = built_in_terms();
   Registrar registrar;
@@ -25,6 +25,19 @@ StageReport report_of(const test::Recording& recording, const Findings& before =
   stage.feed(recording.made.beams, recording.made.plate, nominal_calibration(recording.scanner.rig));
   stage.finish();
   return stage.report();
+}
+
+/// The trajectory without its first and last `seconds`, so that it ends before the beams do.
+PlateTrajectory trimmed(const PlateTrajectory& plate, double seconds) {
+  std::vector<double> times;
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < plate.size(); ++i) {
+    const double time = plate.times()[i];
+    if (time < plate.begin() + seconds || time > plate.end() - seconds) continue;
+    times.push_back(time);
+    angles.push_back(plate.angles()[i]);
+  }
+  return {plate.epoch_ns(), std::move(times), std::move(angles), plate.max_gap()};
 }
 
 TEST(DiagnoseModel, PrintsTheCalibrationThatItExtendsAndAnswersDoubtsAboutTheOneBefore) {
@@ -51,6 +64,13 @@ TEST(DiagnoseModel, DoesNotNameASlowMirrorThatStampsWouldShow) {
   EXPECT_THAT(told, HasSubstr("laser1.timing.intra_scan"));
   EXPECT_THAT(told, testing::Not(HasSubstr("mirror.period of laser1")));
   EXPECT_THAT(told, testing::Not(HasSubstr("laser1.mirror.period")));
+}
+
+TEST(DiagnoseModel, FollowsEtasThatMoveFartherThanTheirPrior) {
+  auto recording = test::hidden(7, 4, office(), {});
+  recording.made.plate = trimmed(recording.made.plate, 0.5);
+  for (double& time : recording.made.beams.time) time += 0.025;
+  EXPECT_THAT(report_of(recording).lines, Contains(HasSubstr("no cause")));
 }
 
 }  // namespace

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/surfel_refiner.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/estimate/base_slots.hpp"
+#include "pipeline/estimate/considered.hpp"
+#include "pipeline/estimate/encoder_quantization.hpp"
+#include "pipeline/estimate/incidence.hpp"
+#include "pipeline/estimate/observability.hpp"
+#include "pipeline/estimate/relative_noise.hpp"
+#include "pipeline/estimate/shared_errors.hpp"
+#include "pipeline/estimate/steady.hpp"
+#include "pipeline/estimate/surfel_rows.hpp"
+#include "pipeline/statistics/dense_solvers.hpp"
+
+namespace crisp {
+
+LagRange refined_lags(const SensorModel& start, const SearchRange& prior) {
+  const LagRange lags = lag_range(start, prior.eta);
+  return {.earliest = std::max(lags.earliest, prior.earliest_eta),
+          .latest = std::min(lags.latest, prior.latest_eta)};
+}
+
+SurfelRefiner::SurfelRefiner(const SensorModel& start, Sample sample, std::vector<std::size_t> free,
+                             const RefinementSettings& settings)
+    : start_(start),
+      model_(start),
+      sample_(std::move(sample)),
+      free_(std::move(free)),
+      settings_(settings),
+      surfaces_(is_in_plane(sample_) ? upright_walls(settings.surfels) : patches(settings.surfels)) {}
+
+bool SurfelRefiner::step() {
+  const PlacedBeams placed(model_, sample_);
+  all_ = surfaces_->update(placed.view(noise_), last_step_);
+  found_ = static_surfaces(all_, placed.view(noise_));
+  if (found_.surfels.empty()) {
+    throw Error(
+        "no flat surface is seen by these data",
+        "leave calibrate.refine out where nothing is flat, or search finer with a smaller `smallest`");
+  }
+  // For terms that depend on it.
+  sample_.beams.cos_incidence = incidences(found_, placed.view(noise_));
+  const Eigen::VectorXd before = picked(model_, free_);
+  const Eigen::VectorXd after = keep_covered(within_bounds(model_, free_, posterior_mode(placed)));
+  model_ = with(model_, free_, after);
+  last_step_ = ((after - before).array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
+  last_values_.push_back(after);
+  const bool is_reweighted = update_noise(placed.view(noise_));
+  return surfaces_->is_settled() && last_step_ < settings_.tolerance && !is_reweighted;
+}
+
+/// The parameters where the linearized posterior is largest; computes the information and the covariance.
+Eigen::VectorXd SurfelRefiner::posterior_mode(const PlacedBeams& placed) {
+  equations_ = normal_equations(found_, placed.view(noise_), free_.size(),
+                                surfel_rows(model_, sample_, free_), settings_.surfels);
+  information_ = equations_.matrix / equations_.covariance_factor();
+  const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
+  const Eigen::VectorXd from_start = picked(model_, free_) - centres_of(settings_.prior, start_, free_);
+  const Eigen::VectorXd gradient =
+      equations_.vector / equations_.covariance_factor() + prior.cwiseProduct(from_start);
+  const auto n = information_.rows();
+  const auto posterior = (information_ + Eigen::MatrixXd(prior.asDiagonal())).eval().ldlt();
+  covariance_ = posterior.solve(Eigen::MatrixXd::Identity(n, n));
+  covariance_ = covariance_.selfadjointView<Eigen::Lower>();  // to the last bit
+  return picked(model_, free_) - posterior.solve(gradient);
+}
+
+std::vector<Unobservable> SurfelRefiner::hold_unobservable() {
+  if (!surfaces_->is_settled()) return {};
+  // What the rig knows is no more than one observation, and never has to be held.
+  constexpr double kNeverHeld = 10;
+  Eigen::MatrixXd information = information_;
+  Eigen::VectorXd ranges = ranges_of(settings_.prior, model_, free_);
+  for (std::size_t k = 0; k < free_.size(); ++k) {
+    if (!settings_.prior.nominal.contains(model_.names()[free_[k]])) continue;
+    const auto i = static_cast<Eigen::Index>(k);
+    information(i, i) += 1 / (ranges[i] * ranges[i]);
+    ranges[i] *= kNeverHeld;
+  }
+  auto determined = observability(information, free_, model_.names(), ranges);
+  if (determined.unobservable.empty()) return {};
+  const SensorModel found = model_;
+  model_ = with(start_, determined.known, picked(found, determined.known));
+  free_ = determined.known;
+  last_values_.clear();
+  return determined.unobservable;
+}
+
+void SurfelRefiner::widen_by_shared_errors() {
+  if (found_.surfels.empty()) return;
+  const PlacedBeams placed(model_, sample_);
+  const auto equations =
+      normal_equations(found_, placed.view(noise_), free_.size(), surfel_rows(model_, sample_, free_),
+                       settings_.surfels, shared_errors(sample_.beams, found_, placed.view(noise_)));
+  covariance_ = widened(covariance_, widening(equations));
+  if (settings_.angle_step > 0) covariance_ = widened(covariance_, widening_by_quantization(equations));
+}
+
+double SurfelRefiner::widen_by_ripple() {
+  constexpr std::size_t kRounds = 6;
+  if (last_values_.size() < kRounds) return 0;
+  const std::span<const Eigen::VectorXd> last(last_values_.end() - kRounds, last_values_.end());
+  Eigen::VectorXd least = last.front();
+  Eigen::VectorXd most = last.front();
+  for (const Eigen::VectorXd& values : last) {
+    least = least.cwiseMin(values);
+    most = most.cwiseMax(values);
+  }
+  const Eigen::VectorXd variances = covariance_.diagonal();
+  const Eigen::VectorXd ripple = (most - least).cwiseAbs2();
+  covariance_.diagonal() += ripple;
+  return std::sqrt(ripple.cwiseQuotient(variances).maxCoeff());
+}
+
+void SurfelRefiner::consider_held(std::vector<Unobservable>& unobservable) {
+  if (unobservable.empty() || found_.surfels.empty()) return;
+  std::vector<std::size_t> all = free_;
+  std::vector<std::string> names;
+  Eigen::VectorXd prior(static_cast<Eigen::Index>(unobservable.size()));
+  bool is_from_rig = true;
+  for (const Unobservable& held : unobservable) {
+    prior[static_cast<Eigen::Index>(all.size() - free_.size())] = prior_of_held(held.parameter);
+    is_from_rig = is_from_rig && settings_.prior.nominal.contains(held.parameter);
+    all.push_back(model_.index(held.parameter));
+  }
+  for (const std::size_t parameter : all) names.push_back(model_.names()[parameter]);
+  const PlacedBeams placed(model_, sample_);
+  const auto equations = normal_equations(found_, placed.view(noise_), all.size(),
+                                          surfel_rows(model_, sample_, all), settings_.surfels);
+  Considered considered = consider(covariance_, equations.matrix, names, prior);
+  covariance_ = std::move(considered.covariance);
+  if (is_from_rig) return;  // then the standard errors say how well everything is known
+  for (Unobservable& lost : considered.dependent) {
+    const std::size_t at =
+        static_cast<std::size_t>(std::ranges::find(free_, model_.index(lost.parameter)) - free_.begin());
+    remove(at);
+    unobservable.push_back(std::move(lost));
+  }
+}
+
+Refinement SurfelRefiner::result() const {
+  Refinement result{.outcome = {.model = model_,
+                                .free = free_,
+                                .covariance = covariance_,
+                                .unobservable = {},
+                                .doubts = {}},
+                    .surfels = found_.surfels.size(),
+                    .beams = equations_.beams,
+                    .chi2 = equations_.chi2 / std::max(1.0, equations_.freedom)};
+  if (found_.surfels.empty()) return result;
+  const PlacedBeams placed(model_, sample_);
+  result.scatter = neighbour_noise(found_, placed.view(noise_), sample_.beams, settings_.surfels);
+  for (const ViewPartition& partition : view_partitions(sample_, lasers())) {
+    const auto pairs = view_consistency(all_, placed.view(noise_), partition,
+                                        {.range = settings_.surfels.noise, .angle = settings_.angle_error});
+    if (const auto caveat = inconsistency(partition, pairs)) result.outcome.doubts.push_back(*caveat);
+    result.views.insert(result.views.end(), pairs.begin(), pairs.end());
+  }
+  return result;
+}
+
+/// The factors by which standard errors grow since beams share the errors of the encoder's steps.
+///
+/// @param without  the equations as if they did not
+Eigen::VectorXd SurfelRefiner::widening_by_quantization(const NormalEquations& without) const {
+  const PlacedBeams placed(model_, sample_);
+  const auto noise = noise_with_quantization(found_, placed.view(noise_), sample_, settings_.angle_step,
+                                             settings_.surfels.noise);
+  const auto with = normal_equations(found_, placed.view(noise), free_.size(),
+                                     surfel_rows(model_, sample_, free_), settings_.surfels);
+  const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
+  const auto variances = [&](const NormalEquations& equations) -> Eigen::VectorXd {
+    const Eigen::MatrixXd information = equations.matrix / without.covariance_factor();
+    return inverse(information + Eigen::MatrixXd(prior.asDiagonal())).diagonal();
+  };
+  return variances(with).cwiseQuotient(variances(without)).cwiseSqrt().cwiseMax(1);
+}
+
+/// Clamps each η to where the plate's readings cover the beams.
+Eigen::VectorXd SurfelRefiner::keep_covered(Eigen::VectorXd values) const {
+  const LagRange lag = refined_lags(start_, settings_.prior);
+  for (std::size_t k = 0; k < free_.size(); ++k) {
+    if (!model_.names()[free_[k]].ends_with(".eta")) continue;
+    double& eta = values[static_cast<Eigen::Index>(k)];
+    eta = std::clamp(eta, lag.earliest, lag.latest);
+  }
+  return values;
+}
+
+double SurfelRefiner::prior_of_held(const std::string& name) const {
+  const auto known = settings_.prior.nominal.find(name);
+  return known != settings_.prior.nominal.end() ? known->second.std_error : range_of(SearchRange{}, name);
+}
+
+/// Removes a parameter from the free ones.
+void SurfelRefiner::remove(std::size_t at) {
+  std::vector<std::size_t> rest(free_.size());
+  std::iota(rest.begin(), rest.end(), std::size_t{0});
+  rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(at));
+  covariance_ = Eigen::MatrixXd(covariance_(rest, rest));
+  free_.erase(free_.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+/// Estimates the beams' relative noise on the surfaces as first found, and once more on the static ones.
+///
+/// @return  whether the beams' weights changed
+bool SurfelRefiner::update_noise(const BeamsView& placed) {
+  constexpr int kTimes = 2;
+  if (last_step_ > kSmallStep || noise_updates_ == kTimes) return false;
+  ++noise_updates_;
+  const bool was_uniform = noise_.empty();
+  noise_ = relative_noise(found_, placed, sample_.beams, settings_.surfels);
+  return !noise_.empty() || !was_uniform;
+}
+
+/// Selects the static surfaces anew while the parameters move, and keeps the selection in the end, so that
+/// the steps converge.
+Surfels SurfelRefiner::static_surfaces(const Surfels& found, const BeamsView& beams) {
+  if (last_step_ > kSmallStep || is_static_.size() != found.surfels.size()) {
+    is_static_ = steady(found, beams, settings_.surfels.noise);
+  }
+  return kept(found, is_static_);
+}
+
+std::vector<std::string> SurfelRefiner::lasers() const {
+  std::vector<std::string> names;
+  for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
+    const std::string& lambda = model_.names()[slot(model_, laser, kLambda)];
+    names.push_back(lambda.substr(0, lambda.rfind('.')));
+  }
+  return names;
+}
+
+}  // namespace crisp

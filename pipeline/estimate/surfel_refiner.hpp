@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pipeline/estimate/flat_surfaces.hpp"
+#include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/estimate/surfel_refinement.hpp"
+
+namespace crisp {
+
+/// Gauss-Newton steps of a model against the flat surfaces that its beams meet, with the start as one more
+/// observation (a Gaussian prior).
+class SurfelRefiner {
+ public:
+  /// @param sample  beams that the plate's readings cover at every η of refined_lags()
+  /// @param free    indices of the parameters to be estimated
+  SurfelRefiner(const SensorModel& start, Sample sample, std::vector<std::size_t> free,
+                const RefinementSettings& settings);
+
+  /// Places the beams, updates the surfaces and takes one step.
+  ///
+  /// @return  whether the steps have converged
+  /// @throws Error  if no flat surface is seen
+  bool step();
+
+  /// Holds at their start the parameters that the data do not determine. Holds none as long as surfaces are
+  /// searched for, since few may have been found yet.
+  std::vector<Unobservable> hold_unobservable();
+
+  /// Widens the standard errors to what pieces of the recording, directions of the mirrors, or places on the
+  /// surfaces disagree by.
+  void widen_by_shared_errors();
+
+  /// Adds to the variances the squared range over which the last rounds moved each parameter: associations
+  /// that change from round to round may alternate between several sets, whose optima differ.
+  ///
+  /// @return  the largest of these ranges over its parameter's standard error before
+  double widen_by_ripple();
+
+  /// Adds to the covariance what held parameters may be off by, and no longer calls free what hangs on them.
+  ///
+  /// @param unobservable  the held parameters; gets those that hang on them
+  void consider_held(std::vector<Unobservable>& unobservable);
+
+  const std::vector<std::size_t>& free() const { return free_; }
+
+  Refinement result() const;
+
+ private:
+  Eigen::VectorXd posterior_mode(const PlacedBeams& placed);
+  Eigen::VectorXd widening_by_quantization(const NormalEquations& without) const;
+  Eigen::VectorXd keep_covered(Eigen::VectorXd values) const;
+  double prior_of_held(const std::string& name) const;
+  void remove(std::size_t at);
+  bool update_noise(const BeamsView& placed);
+  Surfels static_surfaces(const Surfels& found, const BeamsView& beams);
+  std::vector<std::string> lasers() const;
+
+  SensorModel start_;
+  SensorModel model_;
+  Sample sample_;
+  std::vector<std::size_t> free_;
+  const RefinementSettings& settings_;
+  std::unique_ptr<FlatSurfaces> surfaces_;
+  std::vector<bool> is_static_;  // of the surfels
+  std::vector<float> noise_;     // of the beams, relative to one another
+  int noise_updates_ = 0;
+  Surfels all_;    // in the last round
+  Surfels found_;  // of them those that count
+  NormalEquations equations_;
+  Eigen::MatrixXd information_;
+  Eigen::MatrixXd covariance_;
+  std::vector<Eigen::VectorXd> last_values_;  // of `free`, of the last rounds
+  double last_step_ = std::numeric_limits<double>::infinity();
+};
+
+/// The η at which the plate's readings have to cover a refinement's beams.
+LagRange refined_lags(const SensorModel& start, const SearchRange& prior);
+
+}  // namespace crisp
