@@ -46,7 +46,6 @@ SensorModel with_nominal(const SensorModel& model, const std::vector<Unobservabl
 
 Refinement refine_once(const SensorModel& start, const Sample& sample, const RefinementSettings& settings,
                        const RoundReporter& report) {
-  constexpr double kSmallRipple = 0.5;  // [standard errors]
   const LagRange lag = refined_lags(start, settings.prior);
   Sample inside = covered(sample, lag.earliest, lag.latest);
   const auto doubt = doubt_of_half_a_turn(start, inside);
@@ -68,9 +67,6 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
   }
   if (refiner.free().empty()) throw Error("these data determine none of the parameters");
   refiner.widen_by_shared_errors();
-  const bool was_stopped = !converged && round < settings.max_rounds;
-  const double ripple = converged || was_stopped ? 0 : refiner.widen_by_ripple();
-  converged = converged || (!was_stopped && ripple < kSmallRipple);
   refiner.consider_held(parameters.unobservable);
   Refinement result = refiner.result();
   if (round > 0) check_errors(result.outcome, sample.beams, settings.surfels.floor, settings.prior);
@@ -78,11 +74,11 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
   if (doubt) result.outcome.doubts.push_back(*doubt);
   result.rounds = round;
   result.converged = converged;
-  if (!converged && !was_stopped) {
-    result.outcome.doubts.push_back(fmt::format(
-        "the refinement did not converge in {} rounds: its last rounds moved a parameter by {:.1f} "
-        "standard errors. Look for what moved in the scene, or record for longer",
-        round, ripple));
+  if (!converged && round == settings.max_rounds) {
+    result.outcome.doubts.push_back(
+        fmt::format("the refinement did not converge in {} rounds: its last step was {:.2g} standard errors. "
+                    "Look for what moved in the scene, or record for longer",
+                    round, refiner.last_step()));
   }
   return result;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <span>
 #include <utility>
 
 #include "pipeline/data/error.hpp"
@@ -49,10 +48,12 @@ bool SurfelRefiner::step() {
   // For terms that depend on it.
   sample_.beams.cos_incidence = incidences(found_, placed.view(noise_));
   const Eigen::VectorXd before = picked(model_, free_);
-  const Eigen::VectorXd after = keep_covered(within_bounds(model_, free_, posterior_mode(placed)));
+  const Eigen::VectorXd step = posterior_mode(placed) - before;
+  update_damping(step);
+  const Eigen::VectorXd after = keep_covered(within_bounds(model_, free_, before + damping_ * step));
+  last_change_ = after - before;
   model_ = with(model_, free_, after);
-  last_step_ = ((after - before).array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
-  last_values_.push_back(after);
+  last_step_ = (last_change_.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
   const bool is_reweighted = update_noise(placed.view(noise_));
   return surfaces_->is_settled() && last_step_ < settings_.tolerance && !is_reweighted;
 }
@@ -73,6 +74,21 @@ Eigen::VectorXd SurfelRefiner::posterior_mode(const PlacedBeams& placed) {
   return picked(model_, free_) - posterior.solve(gradient);
 }
 
+/// Damps the steps by the secant method where one takes back what the step before did: where parameters are
+/// nearly exchangeable, the information changes within a standard error, and full steps alternate for ever.
+void SurfelRefiner::update_damping(const Eigen::VectorXd& step) {
+  if (!surfaces_->is_settled() || last_change_.size() != step.size()) {
+    damping_ = 1;
+    return;
+  }
+  const Eigen::VectorXd weighted = last_change_.cwiseQuotient(covariance_.diagonal());
+  const double length = weighted.dot(last_change_);
+  if (!(length > 0)) return;
+  // Steps fall by this much over the last change, as multiples of it.
+  const double slope = 1 / damping_ - weighted.dot(step) / length;
+  damping_ = slope > 1 ? 1 / slope : 1;
+}
+
 std::vector<Unobservable> SurfelRefiner::hold_unobservable() {
   if (!surfaces_->is_settled()) return {};
   // What the rig knows is no more than one observation, and never has to be held.
@@ -90,7 +106,6 @@ std::vector<Unobservable> SurfelRefiner::hold_unobservable() {
   const SensorModel found = model_;
   model_ = with(start_, determined.known, picked(found, determined.known));
   free_ = determined.known;
-  last_values_.clear();
   return determined.unobservable;
 }
 
@@ -102,22 +117,6 @@ void SurfelRefiner::widen_by_shared_errors() {
                        settings_.surfels, shared_errors(sample_.beams, found_, placed.view(noise_)));
   covariance_ = widened(covariance_, widening(equations));
   if (settings_.angle_step > 0) covariance_ = widened(covariance_, widening_by_quantization(equations));
-}
-
-double SurfelRefiner::widen_by_ripple() {
-  constexpr std::size_t kRounds = 6;
-  if (last_values_.size() < kRounds) return 0;
-  const std::span<const Eigen::VectorXd> last(last_values_.end() - kRounds, last_values_.end());
-  Eigen::VectorXd least = last.front();
-  Eigen::VectorXd most = last.front();
-  for (const Eigen::VectorXd& values : last) {
-    least = least.cwiseMin(values);
-    most = most.cwiseMax(values);
-  }
-  const Eigen::VectorXd variances = covariance_.diagonal();
-  const Eigen::VectorXd ripple = (most - least).cwiseAbs2();
-  covariance_.diagonal() += ripple;
-  return std::sqrt(ripple.cwiseQuotient(variances).maxCoeff());
 }
 
 void SurfelRefiner::consider_held(std::vector<Unobservable>& unobservable) {
@@ -221,11 +220,15 @@ bool SurfelRefiner::update_noise(const BeamsView& placed) {
   return !noise_.empty() || !was_uniform;
 }
 
-/// Selects the static surfaces anew while the parameters move, and keeps the selection in the end, so that
-/// the steps converge.
+/// Selects the static surfaces anew while the parameters move, for a few rounds on the final surfaces, and
+/// then keeps the selection: two selections may each have the other's surfaces for moving at their optimum,
+/// and the steps would alternate between them for ever.
 Surfels SurfelRefiner::static_surfaces(const Surfels& found, const BeamsView& beams) {
-  if (last_step_ > kSmallStep || is_static_.size() != found.surfels.size()) {
+  constexpr int kTimes = 5;
+  const bool is_moving = last_step_ > kSmallStep && selections_ < kTimes;
+  if (is_moving || is_static_.size() != found.surfels.size()) {
     is_static_ = steady(found, beams, settings_.surfels.noise);
+    if (surfaces_->is_settled()) ++selections_;
   }
   return kept(found, is_static_);
 }

@@ -38,23 +38,19 @@ class SurfelRefiner {
   /// surfaces disagree by.
   void widen_by_shared_errors();
 
-  /// Adds to the variances the squared range over which the last rounds moved each parameter: associations
-  /// that change from round to round may alternate between several sets, whose optima differ.
-  ///
-  /// @return  the largest of these ranges over its parameter's standard error before
-  double widen_by_ripple();
-
   /// Adds to the covariance what held parameters may be off by, and no longer calls free what hangs on them.
   ///
   /// @param unobservable  the held parameters; gets those that hang on them
   void consider_held(std::vector<Unobservable>& unobservable);
 
   const std::vector<std::size_t>& free() const { return free_; }
+  double last_step() const { return last_step_; }  ///< [standard errors] of the parameter that moved most
 
   Refinement result() const;
 
  private:
   Eigen::VectorXd posterior_mode(const PlacedBeams& placed);
+  void update_damping(const Eigen::VectorXd& step);
   Eigen::VectorXd widening_by_quantization(const NormalEquations& without) const;
   Eigen::VectorXd keep_covered(Eigen::VectorXd values) const;
   double prior_of_held(const std::string& name) const;
@@ -72,12 +68,14 @@ class SurfelRefiner {
   std::vector<bool> is_static_;  // of the surfels
   std::vector<float> noise_;     // of the beams, relative to one another
   int noise_updates_ = 0;
-  Surfels all_;    // in the last round
-  Surfels found_;  // of them those that count
+  int selections_ = 0;  // of static surfaces among the final ones
+  Surfels all_;         // in the last round
+  Surfels found_;       // of them those that count
   NormalEquations equations_;
   Eigen::MatrixXd information_;
   Eigen::MatrixXd covariance_;
-  std::vector<Eigen::VectorXd> last_values_;  // of `free`, of the last rounds
+  Eigen::VectorXd last_change_;
+  double damping_ = 1;  // of the steps
   double last_step_ = std::numeric_limits<double>::infinity();
 };
 
