@@ -2,6 +2,7 @@
 #include "plugins/diagnose/register.hpp"
 
 #include "plugins/diagnose/crispness_stage.hpp"
+#include "plugins/diagnose/encoder_stage.hpp"
 #include "plugins/diagnose/findings_inspector.hpp"
 #include "plugins/diagnose/model_stage.hpp"
 #include "plugins/diagnose/noise_stage.hpp"
@@ -12,6 +13,7 @@ namespace crisp {
 
 void register_diagnose(Registrar& registrar) {
   registrar.stage<CrispnessStage>();
+  registrar.stage<DiagnoseEncoderStage>();
   registrar.stage<DiagnoseModelStage>();
   registrar.stage<DiagnoseNoiseStage>();
   registrar.stage<DiagnoseScatterStage>();
