@@ -10,6 +10,7 @@
 #include "pipeline/data/counted.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/file_kind.hpp"
+#include "pipeline/files/folder_lock.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/rig_file.hpp"
@@ -40,9 +41,14 @@ bool print_stage_list(const StageRegistry& stages, std::string_view wanted) {
   return !before.empty();
 }
 
-void write_reference(const StageRegistry& stages, const fs::path& folder) {
+ExitStatus write_reference(const StageRegistry& stages, const fs::path& folder) try {
+  const FolderLock lock(folder);
   for (const auto* type : stages.all()) write_file(folder / (type->name + ".md"), stage_markdown(*type));
   write_file(folder / "README.md", index_markdown(stages));
+  return ExitStatus::done;
+} catch (const Error& error) {
+  print_errors(error);
+  return ExitStatus::misused;
 }
 
 /// A stage, or a family of them.
@@ -113,7 +119,7 @@ ExitStatus stages_command(const StagesRequest& request, const Registrar& registr
   } else if (request.names) {
     for (const auto& name : stages.names()) std::cout << name << "\n";
   } else if (request.markdown && request.output) {
-    write_reference(stages, *request.output);
+    return write_reference(stages, *request.output);
   } else if (request.markdown) {
     std::cout << index_markdown(stages);
     for (const auto* type : stages.all()) std::cout << "\n" << stage_markdown(*type);

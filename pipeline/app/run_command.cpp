@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <tbb/global_control.h>
@@ -7,7 +6,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <ctime>
 #include <iostream>
 
 #include "pipeline/app/commands.hpp"
@@ -18,6 +16,8 @@
 #include "pipeline/app/status_board.hpp"
 #include "pipeline/app/summary.hpp"
 #include "pipeline/data/all_errors.hpp"
+#include "pipeline/files/folder_lock.hpp"
+#include "pipeline/files/utc_now.hpp"
 #include "pipeline/pcd/parts.hpp"
 
 namespace crisp {
@@ -27,17 +27,6 @@ namespace fs = std::filesystem;
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-std::string utc_now() { return fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr))); }
-
-/// Finds out at once, and not after the work, that nothing can be written there.
-void make_output_folder(const fs::path& folder) {
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (!failure && access(folder.c_str(), W_OK | X_OK) != 0)
-    failure = std::error_code(errno, std::generic_category());
-  if (failure) throw Error("cannot write into the folder " + folder.string() + ": " + failure.message());
 }
 
 /// What was cut into several files is called by the name that they come of.
@@ -95,9 +84,19 @@ std::vector<NodeResult> run_with_progress(Pipeline pipeline, const RunSettings& 
   return run_pipeline(pipeline, run, hooks);
 }
 
+/// Whether another process writes into the output folder, because it took this one for dead.
+bool has_lost_folder(const FolderLock* lock, const fs::path& folder) {
+  if (!lock || !lock->is_lost()) return false;
+  print_errors(Error("another process has taken over the folder " + folder.string() +
+                         ", as this one gave no sign of life for too long: the files there may be of either",
+                     "run it anew, with another folder"));
+  return true;
+}
+
 /// Each part is tried though another failed: a summary without the rest still says what happened.
 /// @return whether all of it could be written
-bool keep_record(RunRecord& record, const fs::path& folder) {
+bool keep_record(RunRecord& record, const fs::path& folder, const FolderLock* lock) {
+  if (has_lost_folder(lock, folder)) return false;
   bool all_kept = true;
   const auto keep = [&](const auto& part) {
     for_each_error(part, [&](const Error& error) {
@@ -119,7 +118,8 @@ ExitStatus status_of(int signal) {
   return signal == SIGTERM ? ExitStatus::terminated : ExitStatus::interrupted;
 }
 
-ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const RunSettings& run) {
+ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const RunSettings& run,
+                      const FolderLock* lock) {
   const StopOnSignal stop;
   RunRecord record = begin_record(loaded, run);
   const double began = seconds_now();
@@ -127,7 +127,7 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
     record.seconds = seconds_now() - began;
     record.failure = std::move(why);
     record.exit_status = static_cast<int>(status);
-    keep_record(record, run.output);
+    keep_record(record, run.output, lock);
     return status;
   };
   try {
@@ -148,7 +148,7 @@ ExitStatus run_loaded(LoadedPipeline loaded, const RunRequest& request, const Ru
     std::cout << summary_text(record, request.verbose) << std::flush;
   const ExitStatus status = record.is_trusted() ? ExitStatus::done : ExitStatus::not_trusted;
   record.exit_status = static_cast<int>(status);
-  return keep_record(record, run.output) ? status : ExitStatus::failed;
+  return keep_record(record, run.output, lock) ? status : ExitStatus::failed;
 }
 
 }  // namespace
@@ -161,19 +161,21 @@ ExitStatus run_command(const RunRequest& request, const Registrar& registrar) {
   run.threads = request.threads;
   run.seed = request.seed;
   std::optional<LoadedPipeline> loaded;
+  std::unique_ptr<FolderLock> lock;
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   std::max(1U, request.threads));
   try {
     loaded = request.text.empty() ? load_pipeline(request.file, request.arguments, run)
                                   : load_pipeline(request.text, request.file, request.arguments, run);
     check_input(request.arguments.input);
-    if (!run.output.empty()) make_output_folder(run.output);
+    // Finds out before the work, and not after it, that nothing can be written there.
+    if (!run.output.empty()) lock = std::make_unique<FolderLock>(run.output);
     print_warnings(loaded->pipeline);
   } catch (const Error& error) {
     print_errors(error);
     return ExitStatus::misused;
   }
-  return run_loaded(std::move(*loaded), request, run);
+  return run_loaded(std::move(*loaded), request, run, lock.get());
 }
 
 }  // namespace crisp

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <ostream>
 
-#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/signal_cleanup.hpp"
 
 namespace crisp {
 namespace {
@@ -30,7 +30,7 @@ void handle(void (*handler)(int)) {
 }
 
 void end_at_once(int signal) {
-  remove_files_aside();
+  remove_files_at_signal();
   raise(signal);
 }
 

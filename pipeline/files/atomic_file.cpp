@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <array>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -61,42 +59,16 @@ void sync_folder(const fs::path& folder) {
   close(descriptor);
 }
 
-// A signal handler reaches nothing but objects of static storage, and may not wait for a lock.
-constexpr std::size_t kMostAside = 64;  // files at once; those beyond are not told of
-std::array<std::atomic<const char*>, kMostAside> files_aside;
-static_assert(std::atomic<const char*>::is_always_lock_free);
-
-void tell_of(const char* aside) {
-  for (auto& place : files_aside) {
-    const char* free = nullptr;
-    if (place.compare_exchange_strong(free, aside)) return;
-  }
-}
-
-void forget(const char* aside) {
-  for (auto& place : files_aside) {
-    const char* known = aside;
-    if (place.compare_exchange_strong(known, nullptr)) return;
-  }
-}
-
 }  // namespace
-
-void remove_files_aside() noexcept {
-  for (const auto& place : files_aside) {
-    if (const char* aside = place.load()) unlink(aside);
-  }
-}
 
 AtomicFile::AtomicFile(fs::path file) : file_(std::move(file)) {
   make_folder_of(file_);
   target_ = final_target(file_);
   stream_.reset(create_aside(file_, target_, aside_));
-  tell_of(aside_.c_str());
+  at_signal_.emplace(aside_.string());
 }
 
 AtomicFile::~AtomicFile() {
-  forget(aside_.c_str());
   if (!stream_) return;
   std::error_code ignored;  // nothing can be done about it here
   fs::remove(aside_, ignored);
@@ -116,6 +88,7 @@ void AtomicFile::commit() {
   close(descriptor);
   if (synced != 0) fail(file_, code);
   if (std::rename(aside_.c_str(), target_.c_str()) != 0) fail(file_, errno);
+  at_signal_.reset();
   stream_.reset();
   sync_folder(target_.parent_path());
 }

@@ -4,7 +4,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string_view>
+
+#include "pipeline/files/signal_cleanup.hpp"
 
 namespace crisp {
 
@@ -40,12 +43,9 @@ class AtomicFile {
   std::filesystem::path file_;
   std::filesystem::path target_;  ///< file_, with symbolic links followed
   std::filesystem::path aside_;
+  std::optional<SignalCleanup> at_signal_;
   std::unique_ptr<std::FILE, Close> stream_;
 };
-
-/// Removes the files aside of all AtomicFiles there are: for a signal handler, before the program ends at
-/// once.
-void remove_files_aside() noexcept;
 
 /// Writes a whole file at once, as AtomicFile does.
 void write_file(const std::filesystem::path& file, std::string_view bytes);

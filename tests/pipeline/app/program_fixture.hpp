@@ -7,9 +7,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include "pipeline/files/atomic_file.hpp"
@@ -66,6 +69,16 @@ class ProgramTest : public testing::Test {
   }
 
   Outcome crisp(const std::vector<std::string>& words) { return wait_for(start(words)); }
+
+  /// Until a run in the folder out has begun to write a file.
+  void wait_for_part() const {
+    const auto is_part = [](const auto& entry) { return entry.path().extension() == ".part"; };
+    std::error_code not_yet;
+    for (const auto out = folder_ / "out";; std::this_thread::yield()) {
+      const std::filesystem::directory_iterator entries(out, not_yet);
+      if (std::any_of(begin(entries), end(entries), is_part)) return;
+    }
+  }
 
   std::string content(const std::string& name) const { return read_text_file(folder_ / name, 1 << 24); }
   nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(content(name)); }

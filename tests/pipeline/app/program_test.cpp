@@ -260,7 +260,7 @@ TEST_F(ProgramTest, StopsInGoodOrderOnSignals) {
   for (const auto& [signal, status] :
        {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}, std::pair{SIGHUP, 129}}) {
     const pid_t child = start({"run", path("wait.yaml"), "-o", path("out")});
-    while (!fs::exists(folder_ / "out") || fs::is_empty(folder_ / "out")) std::this_thread::yield();
+    wait_for_part();
     kill(child, signal);
     const auto outcome = wait_for(child);
     EXPECT_EQ(outcome.status, status);
@@ -279,7 +279,7 @@ TEST_F(ProgramTest, LeavesNoPartsOfFilesWhenItIsEndedAtOnce) {
              "crisp: 1\npipeline:\n  - {stage: toy.hang, with: {file: ${output}/x.txt}}\n");
   for (const int second : {SIGINT, SIGTERM}) {
     const pid_t child = start({"run", path("hang.yaml"), "-o", path("out")});
-    while (!fs::exists(folder_ / "out") || fs::is_empty(folder_ / "out")) std::this_thread::yield();
+    wait_for_part();
     kill(child, SIGINT);
     while (content("stderr").find("stopping") == std::string::npos) std::this_thread::yield();
     kill(child, second);

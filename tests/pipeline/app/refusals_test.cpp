@@ -2,6 +2,10 @@
 // What the program refuses of pipelines: files that would overwrite each other, and all mistakes at once.
 #include <gmock/gmock.h>
 
+#include <csignal>
+#include <iterator>
+
+#include "pipeline/files/folder_lock.hpp"
 #include "tests/pipeline/app/program_fixture.hpp"
 #include "tests/support/source_dir.hpp"
 
@@ -55,6 +59,50 @@ TEST_F(ProgramTest, RefusesToOverwriteWhatItReadsOrHasWritten) {
                        "  - {stage: toy.write, with: {file: \"${output}/summary.json\"}}\n"),
               HasSubstr(":5:37: error: toy.write: it would overwrite " + path("out/summary.json") +
                         ", which this run writes; let it write another file"));
+}
+
+TEST_F(ProgramTest, RefusesAFolderThatAnotherProcessWritesInto) {
+  fs::create_directory(folder_ / "out");
+  const FolderLock lock(folder_ / "out");
+  const std::string out = path("out");
+  const std::vector<std::vector<std::string>> commands = {
+      {"run", path("sum.yaml"), "-o", out},
+      {"record", "-o", out},
+      {"bound", "-o", out},
+      {"stages", "--markdown", "--output", out},
+  };
+  for (const auto& command : commands) {
+    const auto outcome = crisp(command);
+    EXPECT_EQ(outcome.status, 2) << command.front();
+    EXPECT_THAT(outcome.error,
+                HasSubstr("the folder " + out + " is in use: process " + std::to_string(getpid()) + " on "));
+    EXPECT_THAT(outcome.error, HasSubstr("wait for its end, or give another folder"));
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(out), {}), 1) << "the lock";
+}
+
+TEST_F(ProgramTest, RefusesASecondRunIntoAFolderAndLetsTheFirstGoOn) {
+  write_file(folder_ / "wait.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.wait, with: {file: ${output}/x.txt}}\n");
+  const pid_t first = start({"run", path("wait.yaml"), "-o", path("out")});
+  wait_for_part();
+  const auto second = crisp({"run", path("sum.yaml"), "-o", path("out")});
+  EXPECT_EQ(second.status, 2);
+  EXPECT_THAT(second.error, HasSubstr("process " + std::to_string(first) + " on "));
+  kill(first, SIGINT);
+  EXPECT_EQ(wait_for(first).status, 130);
+  EXPECT_EQ(json("out/summary.json")["pipeline"], path("wait.yaml"));
+}
+
+TEST_F(ProgramTest, TakesOverTheFolderOfARunThatWasKilled) {
+  write_file(folder_ / "wait.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.wait, with: {file: ${output}/x.txt}}\n");
+  const pid_t killed = start({"run", path("wait.yaml"), "-o", path("out")});
+  wait_for_part();
+  kill(killed, SIGKILL);
+  EXPECT_EQ(wait_for(killed).status, -SIGKILL);
+  EXPECT_EQ(crisp({"run", path("sum.yaml"), "-o", path("out")}).status, 0);
+  EXPECT_EQ(content("out/sum.txt"), "10\n");
 }
 
 TEST_F(ProgramTest, RefusesToOverwriteWhatComesOfAnotherStagesFile) {

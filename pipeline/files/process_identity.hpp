@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <string>
+
+namespace crisp {
+
+/// A process, described so that other processes can find out later whether it still runs.
+struct ProcessIdentity {
+  std::string host;         ///< name of its machine, for people
+  std::string machine;      ///< within which a process number means one process: boot and PID namespace
+  pid_t number = 0;         ///< its process number
+  std::uint64_t start = 0;  ///< [clock ticks since boot] tells it from a later process of the same number
+
+  bool operator==(const ProcessIdentity&) const = default;
+};
+
+/// The calling process.
+ProcessIdentity this_process();
+
+enum class Liveness {
+  alive,
+  dead,
+  unknown,  ///< it belongs to another machine, another boot or another container
+};
+
+Liveness liveness_of(const ProcessIdentity& process);
+
+}  // namespace crisp
