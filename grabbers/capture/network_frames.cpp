@@ -20,9 +20,13 @@ namespace {
 
 bool is_ipv6(const Address& address) { return address.ip.find(':') != std::string::npos; }
 
+// Of a hardware address: that it is locally administered, and who made the frame.
+constexpr std::uint8_t kLocal = 0x02, kRecordedMark = 0, kSimulatedMark = 0x53;
+constexpr std::size_t kTarget = 0, kSource = 6;  // where a frame has its hardware addresses
+
 /// A locally administered hardware address that is the same for the same IP address.
 Tins::HWAddress<6> hardware_address(const Address& address) {
-  std::array<std::uint8_t, 6> bytes{0x02, 0, 0, 0, 0, 0};
+  std::array<std::uint8_t, 6> bytes{kLocal, kRecordedMark, 0, 0, 0, 0};
   if (is_ipv6(address)) {
     const Tins::IPv6Address ip(address.ip);
     std::copy(ip.begin() + 12, ip.end(), bytes.begin() + 2);
@@ -65,19 +69,26 @@ Tins::RawPDU raw(ByteView bytes) { return {bytes.data(), static_cast<std::uint32
 
 }  // namespace
 
-bool has_own_hardware_addresses(ByteView frame) {
+FrameOrigin origin_of(ByteView frame) {
   constexpr std::size_t kIp = 14, kLastFour = 4;  // an Ethernet header's length; bytes of the IP address
-  constexpr std::size_t kTarget = 0, kSource = 6;
-  if (frame.size() < kIp + 1) return false;
+  if (frame.size() < kIp + 1) return FrameOrigin::Foreign;
   const bool ipv6 = frame[kIp] >> 4U == 6;
   const std::size_t source_ip = kIp + (ipv6 ? 20 : 12), target_ip = kIp + (ipv6 ? 36 : 16);
-  if (frame.size() < target_ip + kLastFour) return false;
-  const auto belongs = [&](std::size_t hardware, std::size_t ip) {
+  if (frame.size() < target_ip + kLastFour) return FrameOrigin::Foreign;
+  const auto belongs = [&](std::size_t hardware, std::size_t ip, std::uint8_t mark) {
     const auto address = frame.subspan(hardware, 6);
-    return address[0] == 2 && address[1] == 0 &&
+    return address[0] == kLocal && address[1] == mark &&
            std::ranges::equal(address.subspan(2), frame.subspan(ip, kLastFour));
   };
-  return belongs(kTarget, target_ip) && belongs(kSource, source_ip);
+  const auto is_marked = [&](std::uint8_t mark) {
+    return belongs(kTarget, target_ip, mark) && belongs(kSource, source_ip, mark);
+  };
+  if (is_marked(kRecordedMark)) return FrameOrigin::Recorded;
+  return is_marked(kSimulatedMark) ? FrameOrigin::Simulated : FrameOrigin::Foreign;
+}
+
+void mark_as_simulated(Bytes& frame) {
+  for (const std::size_t hardware : {kTarget, kSource}) frame.at(hardware + 1) = kSimulatedMark;
 }
 
 void FrameSorter::push(std::int64_t time_ns, ByteView frame) {

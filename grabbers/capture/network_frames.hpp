@@ -27,8 +27,17 @@ class FrameSorter {
   std::multimap<std::int64_t, Bytes> held_;
 };
 
-/// Whether a frame has the hardware addresses that this program gives to what it writes.
-bool has_own_hardware_addresses(ByteView frame);
+/// Who made a frame, as its hardware addresses tell.
+enum class FrameOrigin : std::uint8_t {
+  Recorded,   ///< crisp, of what a device sent
+  Simulated,  ///< crisp, of what a simulated device sent
+  Foreign,    ///< a network card
+};
+
+FrameOrigin origin_of(ByteView frame);
+
+/// Gives a frame of crisp's the hardware addresses of a simulated one.
+void mark_as_simulated(Bytes& frame);
 
 /// How a TCP connection looks on the wire.
 struct TcpSettings {

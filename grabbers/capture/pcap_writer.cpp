@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/capture/pcap_writer.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <pcap/pcap.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 
+#include "grabbers/capture/file_window.hpp"
+#include "grabbers/capture/pcap_extent.hpp"
 #include "grabbers/capture/pcap_records.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
@@ -22,7 +27,6 @@ constexpr int kSnapshot = 262144;  // what tcpdump writes by default
 struct Free {
   void operator()(pcap_t* p) const { pcap_close(p); }
   void operator()(pcap_dumper_t* p) const { pcap_dump_close(p); }
-  void operator()(std::FILE* p) const { std::fclose(p); }
 };
 using Pcap = std::unique_ptr<pcap_t, Free>;
 
@@ -31,38 +35,73 @@ Error cannot_write(const std::filesystem::path& path, int error) {
                "check the folder, its permissions and the space on the disk");
 }
 
-/// Length of the whole records of an existing capture.
-std::uint64_t whole_records(const std::filesystem::path& path) {
-  char message[PCAP_ERRBUF_SIZE] = "";
-  std::unique_ptr<std::FILE, Free> raw(std::fopen(path.c_str(), "rb"));
-  std::uint32_t magic = 0;
-  constexpr std::uint32_t kNanosecondMagic = 0xa1b23c4d;  // in this machine's byte order
-  const bool same_kind =
-      raw && std::fread(&magic, sizeof magic, 1, raw.get()) == 1 && magic == kNanosecondMagic;
-  if (same_kind) std::rewind(raw.get());
-  const Pcap pcap(
-      same_kind ? pcap_fopen_offline_with_tstamp_precision(raw.get(), PCAP_TSTAMP_PRECISION_NANO, message)
-                : nullptr);
-  if (!pcap || pcap_datalink(pcap.get()) != DLT_EN10MB) {
-    throw Error(
-        fmt::format("{} exists and cannot be continued: it is no nanosecond Ethernet pcap", path.string()),
-        "give another name, or remove the file");
+/// Where the last whole record ends of those that this program wrote into the file from `begin` on.
+std::uint64_t end_of_own_records(const std::filesystem::path& path, std::uint64_t begin) {
+  FileWindow file(path);
+  file.skip(begin);
+  while (true) {
+    const auto header = file.peek(kRecordHeader);
+    if (header.size() < kRecordHeader) return file.offset();
+    std::uint32_t captured = 0;
+    std::memcpy(&captured, header.data() + 8, sizeof captured);
+    const std::uint64_t size = kRecordHeader + captured;
+    if (file.offset() + size > file.size()) return file.offset();
+    file.skip(size);
   }
-  static_cast<void>(raw.release());  // pcap_close() closes it
-  std::uint64_t length = kPcapFileHeader;
-  pcap_pkthdr* header = nullptr;
-  const u_char* data = nullptr;
-  while (pcap_next_ex(pcap.get(), &header, &data) == 1) length += kRecordHeader + header->caplen;
-  return length;
 }
+
+/// Cuts off a record that a crash left half written, and nothing else.
+/// @return the length of the file
+std::uint64_t prepare_to_continue(const std::filesystem::path& path) {
+  const PcapExtent extent = pcap_extent(path);
+  if (!extent.can_be_continued()) {
+    throw Error(fmt::format("{} is damaged: no reader can make anything of its last {} bytes, nor of what is "
+                            "written behind them",
+                            path.string(), extent.bytes - extent.whole),
+                "give another name");
+  }
+  if (extent.whole < extent.bytes) std::filesystem::resize_file(path, extent.whole);
+  return extent.whole;
+}
+
+}  // namespace
+
+namespace {
+
+/// Keeps other writers out of a file that grows, in this process and others; those that replace it have one
+/// each.
+class WriterLock {
+ public:
+  explicit WriterLock(const std::filesystem::path& path) {
+    std::error_code none;
+    if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none))
+      return;  // a pipe
+    descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) throw cannot_write(path, errno);
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    ::close(descriptor_);
+    throw Error(path.string() + " is being written by another recorder",
+                "wait for its end, or give another name or folder");
+  }
+  ~WriterLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  WriterLock(const WriterLock&) = delete;
+  WriterLock& operator=(const WriterLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
 
 }  // namespace
 
 struct PcapWriter::File {
   std::filesystem::path path;            ///< that is written
+  std::optional<WriterLock> lock;        ///< when growing
   std::unique_ptr<AtomicFile> replaced;  ///< whose aside() that is, when replacing
   Pcap pcap;
   std::unique_ptr<pcap_dumper_t, Free> dump;
+  std::uint64_t begin = kPcapFileHeader;  ///< of what this program writes
   std::uint64_t length = kPcapFileHeader;
 
   std::FILE* stream() const { return pcap_dump_file(dump.get()); }
@@ -72,7 +111,7 @@ struct PcapWriter::File {
     const int error = errno;
     dump.reset();
     try {
-      std::filesystem::resize_file(path, whole_records(path));
+      std::filesystem::resize_file(path, end_of_own_records(path, begin));
     } catch (const std::exception&) {  // there is not even a header: what failed first is what is told
     }
     throw cannot_write(path, error);
@@ -86,13 +125,11 @@ PcapWriter::PcapWriter(std::filesystem::path path, PcapMode mode) : file_(std::m
     f.path = f.replaced->aside();
   } else {
     f.path = std::move(path);
+    f.lock.emplace(f.path);
   }
   const bool continued =
       !f.replaced && std::filesystem::exists(f.path) && std::filesystem::file_size(f.path) > 0;
-  if (continued) {
-    f.length = whole_records(f.path);
-    std::filesystem::resize_file(f.path, f.length);
-  }
+  if (continued) f.begin = f.length = prepare_to_continue(f.path);
   f.pcap.reset(pcap_open_dead_with_tstamp_precision(DLT_EN10MB, kSnapshot, PCAP_TSTAMP_PRECISION_NANO));
   errno = 0;
   f.dump.reset(continued ? pcap_dump_open_append(f.pcap.get(), f.path.c_str())
@@ -136,6 +173,7 @@ void PcapWriter::close() {
   if (!f.dump) return;
   flush();
   f.dump.reset();
+  f.lock.reset();
   if (f.replaced) f.replaced->commit();
 }
 

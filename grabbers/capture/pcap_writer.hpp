@@ -13,14 +13,14 @@ namespace crisp {
 enum class PcapMode : std::uint8_t {
   Replace,  ///< written aside and put in its place by close(): never a half-written file under the name
   Grow,  ///< written in place, behind what a file of the same kind already holds; a record that a crash left
-         ///< half written is cut off first
+         ///< half written at its end is cut off first, and nothing else
 };
 
 /// Writes Ethernet frames into a pcap file with nanosecond stamps, as tcpdump would.
 class PcapWriter {
  public:
   /// @throws Error if the file cannot be written, or (Grow) exists and is no nanosecond Ethernet pcap of this
-  ///         machine's byte order
+  ///         machine's byte order, or one that cannot be continued (PcapExtent)
   PcapWriter(std::filesystem::path path, PcapMode mode);
   ~PcapWriter();  ///< closes a growing file; drops a replacing one that was not closed
   PcapWriter(const PcapWriter&) = delete;

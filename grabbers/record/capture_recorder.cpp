@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/record/capture_recorder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <optional>
 #include <utility>
 
 #include "grabbers/capture/capture_file.hpp"
+#include "grabbers/capture/pcap_extent.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 #include "pipeline/data/error.hpp"
@@ -21,25 +24,58 @@ constexpr std::size_t kAtOnce = 4096;  // items that are written before the paus
 constexpr std::size_t kMostWaiting =
     40000;  // items: a minute's of three lasers at 50 Hz and a plate at 500 Hz
 
-bool is_own(const std::filesystem::path& file) {
+FrameOrigin origin_of_file(const std::filesystem::path& file) {
   try {
     CaptureFile capture(file);
     const Packet* first = capture.next();
-    return first == nullptr || has_own_hardware_addresses(first->bytes);
+    return first == nullptr ? FrameOrigin::Recorded : origin_of(first->bytes);
   } catch (const Error&) {  // no capture at all
-    return false;
+    return FrameOrigin::Foreign;
   }
+}
+
+/// Not so /dev/stdout, nor a link to a pipe.
+bool is_link_to_file(const std::filesystem::path& file) {
+  std::error_code none;
+  if (!std::filesystem::is_symlink(file, none)) return false;
+  if (std::filesystem::read_symlink(file, none).string().starts_with("/proc/")) return false;
+  return std::filesystem::is_regular_file(file, none) || !std::filesystem::exists(file, none);
+}
+
+bool is_there(const std::filesystem::path& file) {
+  std::error_code none;
+  return std::filesystem::is_regular_file(file, none) && std::filesystem::file_size(file, none) > 0;
+}
+
+/// What is to be said of a recording that is about to be written on; empty if it is sound.
+std::string note_on(const std::filesystem::path& file, const PcapExtent& extent) {
+  if (extent.whole < extent.bytes)
+    return fmt::format(
+        "{} ended within a record, as after a crash or a power cut: the {} bytes of that record were cut "
+        "off",
+        file.string(), extent.bytes - extent.whole);
+  if (extent.damaged_records > 0)
+    return fmt::format(
+        "{} is damaged: {} bytes of it in {} places cannot be read. The recording goes on behind all that "
+        "is there",
+        file.string(), extent.damaged_bytes, extent.damaged_records);
+  return {};
 }
 
 }  // namespace
 
 void refuse_foreign(const std::filesystem::path& file) {
-  std::error_code none;
-  if (!std::filesystem::is_regular_file(file, none) || std::filesystem::file_size(file, none) == 0) return;
-  if (is_own(file)) return;
-  throw Error(
-      file.string() + " is there already and is no recording of crisp's, which alone can be continued",
-      "give another name or folder, or move the file away");
+  if (is_link_to_file(file))
+    throw Error(file.string() + " is a symbolic link, behind which nothing is recorded",
+                "name the file that it leads to, or remove the link");
+  if (!is_there(file)) return;
+  const FrameOrigin origin = origin_of_file(file);
+  if (origin == FrameOrigin::Recorded) return;
+  throw Error(fmt::format("{} is there already and is {}, which cannot be continued: only a recording of "
+                          "crisp's can",
+                          file.string(),
+                          origin == FrameOrigin::Simulated ? "a simulated capture" : "of another program"),
+              "give another name or folder, or move the file away");
 }
 
 /// One capture that is being written.
@@ -97,13 +133,28 @@ void CaptureRecorder::record(const std::vector<HubItem>& items) {
   safe_until_ = now;
 }
 
-void CaptureRecorder::open() {
+std::filesystem::path CaptureRecorder::next_path() {
   std::filesystem::path path = first_;
-  if (!files_.empty()) {
-    path.replace_filename(first_.stem().string() + "-" + std::to_string(files_.size() + 1) +
+  if (++names_ > 1) {
+    path.replace_filename(first_.stem().string() + "-" + std::to_string(names_) +
                           first_.extension().string());
   }
-  refuse_foreign(path);
+  return path;
+}
+
+void CaptureRecorder::open() {
+  std::filesystem::path path = next_path();
+  for (refuse_foreign(path); is_there(path); refuse_foreign(path = next_path())) {
+    const PcapExtent extent = pcap_extent(path);
+    if (extent.can_be_continued()) {
+      if (auto note = note_on(path, extent); !note.empty()) notes_.push_back(std::move(note));
+      break;
+    }
+    notes_.push_back(
+        fmt::format("{} is damaged: its last {} bytes cannot be read, nor could what is written behind "
+                    "them. It stays as it is, and the recording goes on in another file",
+                    path.string(), extent.bytes - extent.whole));
+  }
   file_ = std::make_unique<File>(path, rig_);
   file_->pcap.flush();  // readable from the beginning on
   files_.push_back(std::move(path));

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "grabbers/capture/hub_traffic.hpp"
@@ -16,7 +17,8 @@
 
 namespace crisp {
 
-/// A recording that crisp wrote can be written on; a file that came from elsewhere stays as it is.
+/// A recording that crisp wrote can be written on; a file that came from elsewhere, or that the simulator
+/// wrote, stays as it is.
 /// @throws Error  if there is such a file
 void refuse_foreign(const std::filesystem::path& file);
 
@@ -34,7 +36,7 @@ struct RecorderSettings {
 class CaptureRecorder {
  public:
   /// @param file  the first one; the next are name-2.pcap, name-3.pcap … A recording that exists is written
-  /// on.
+  /// on, unless it is damaged so that nothing behind its end could be read; then the next one is.
   /// @throws Error  if it cannot be written, or is no recording of crisp's
   CaptureRecorder(std::filesystem::path file, Rig rig, const RecorderSettings& settings);
   ~CaptureRecorder();
@@ -50,6 +52,8 @@ class CaptureRecorder {
   // Once it is closed, or has thrown:
   const std::vector<std::filesystem::path>& files() const { return files_; }
   std::uint64_t recorded() const { return recorded_; }  ///< items
+  /// What is to be said of recordings that were there already and damaged.
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   struct File;
@@ -57,6 +61,7 @@ class CaptureRecorder {
   void record(const std::vector<HubItem>& items);
   void record(const HubItem& item);
   void open();
+  std::filesystem::path next_path();
   void rotate(std::int64_t now_ns);
   void end_file();
 
@@ -67,6 +72,8 @@ class CaptureRecorder {
 
   // of the thread that writes, until it has nothing left to do
   std::vector<std::filesystem::path> files_;
+  std::vector<std::string> notes_;
+  std::size_t names_ = 0;  ///< that were used or passed over: hub.pcap, hub-2.pcap …
   std::uint64_t recorded_ = 0;
   std::unique_ptr<File> file_;
   Clock::time_point safe_until_;  ///< what came before is on the disk

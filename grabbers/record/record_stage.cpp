@@ -15,7 +15,11 @@ void RecordStage::describe(StageDescription<RecordStage>& d) {
       "times of receipt.\n\n"
       "The file grows in place, and what was received is on the disk soon after: neither Ctrl-C nor a power "
       "cut "
-      "leaves a file that cannot be read. A recording that is there already is written on; another's file of "
+      "leaves a file that cannot be read. A recording that is there already is written on, behind what of it "
+      "is damaged; "
+      "if nothing behind its end could be read, it stays as it is and file-2.pcap is begun. A simulated "
+      "capture, or "
+      "another program's file, of "
       "that "
       "name is refused. A disk that is full ends the "
       "recording, "
@@ -68,6 +72,7 @@ void RecordStage::end() {
   if (!recorder_) return;
   files_ = recorder_->files();
   recorded_ = recorder_->recorded();
+  notes_ = recorder_->notes();
   recorder_.reset();
 }
 
@@ -82,6 +87,7 @@ void RecordStage::finish(Outputs&, Context& context) {
     fail(error, context);
   }
   end();
+  for (auto& note : notes_) context.warn(std::move(note));
   context.count("items that were not recorded", given_ - recorded_);
   for (const auto& file : files_) context.wrote(file);
 }

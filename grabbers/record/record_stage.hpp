@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "grabbers/record/capture_recorder.hpp"
@@ -34,6 +35,7 @@ class RecordStage final : public Stage {
   std::uint64_t given_ = 0;                   ///< items
   std::uint64_t recorded_ = 0;                ///< of them, once it has ended
   std::vector<std::filesystem::path> files_;  ///< likewise
+  std::vector<std::string> notes_;            ///< likewise
 };
 
 /// The recorder's stage.

@@ -48,7 +48,13 @@ RecordedCapture::RecordedCapture(std::filesystem::path path, RecordingSettings s
     : settings_(std::move(settings)),
       truth_(std::move(truth)),
       file_(std::move(path), PcapMode::Replace),
-      sorter_([this](std::int64_t ns, ByteView frame) { file_.write(ns, frame); }, kHold),
+      sorter_(
+          [this](std::int64_t ns, ByteView frame) {
+            Bytes simulated(frame.begin(), frame.end());
+            mark_as_simulated(simulated);
+            file_.write(ns, simulated);
+          },
+          kHold),
       wire_(faults, settings_.scanner.seed,
             [this](std::int64_t ns, ByteView frame) { sorter_.push(ns, frame); }),
       hub_(settings_.scanner.rig, settings_.telegrams.language,

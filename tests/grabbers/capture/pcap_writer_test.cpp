@@ -83,6 +83,21 @@ TEST(PcapWriter, GivesWhatWasFlushedToOtherReadersAtOnce) {
   EXPECT_THAT(records(folder / "a.pcap"), ElementsAre(Pair(kTime, 1)));
 }
 
+TEST(PcapWriter, KeepsAnotherWriterOutOfAFileThatGrows) {
+  const TemporaryFolder folder;
+  PcapWriter writer(folder / "a.pcap", PcapMode::Grow);
+  writer.write(kTime, Bytes(60, 1));
+  try {
+    const PcapWriter second(folder / "a.pcap", PcapMode::Grow);
+    FAIL() << "two writers";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("a.pcap is being written by another recorder"));
+  }
+  writer.close();
+  PcapWriter(folder / "a.pcap", PcapMode::Grow).write(kTime + 1, Bytes(60, 2));
+  EXPECT_THAT(records(folder / "a.pcap"), ElementsAre(Pair(kTime, 1), Pair(kTime + 1, 2)));
+}
+
 TEST(PcapWriter, RefusesToContinueAnotherKindOfFile) {
   const TemporaryFolder folder;
   const std::string text = "This is no capture but someone's precious notes.";

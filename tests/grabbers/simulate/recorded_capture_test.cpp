@@ -9,6 +9,8 @@
 #include <iterator>
 #include <map>
 
+#include "grabbers/capture/capture_file.hpp"
+#include "grabbers/capture/network_frames.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "grabbers/simulate/truth_file.hpp"
 #include "grabbers/wire/cola_framer.hpp"
@@ -133,6 +135,16 @@ TEST_F(RecordedCaptureTest, HoldsEveryTelegramAsItWasSentWithItsReceiptTime) {
       }
     }
   }
+}
+
+TEST_F(RecordedCaptureTest, IsMarkedAsSimulatedInEveryFrame) {
+  record(folder_ / "hub.pcap");
+  CaptureFile capture(folder_ / "hub.pcap");
+  std::size_t frames = 0;
+  for (; const Packet* packet = capture.next(); ++frames) {
+    ASSERT_EQ(origin_of(packet->bytes), FrameOrigin::Simulated);
+  }
+  EXPECT_GT(frames, 0U);
 }
 
 TEST_F(RecordedCaptureTest, HasTheSameBytesForTheSameSeed) {
