@@ -10,11 +10,14 @@
 #include <system_error>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/process_identity.hpp"
 
 namespace crisp {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kPart = ".part";
 
 [[noreturn]] void fail(const fs::path& file, int code) {
   const char* advice = code == ENOSPC || code == EDQUOT || code == EFBIG ? "make room on the disk" : "";
@@ -28,27 +31,30 @@ void make_folder_of(const fs::path& file) {
   if (failure) fail(file, failure.value());
 }
 
-/// The file behind symbolic links, so that these stay links; refuses to replace devices and folders.
-fs::path final_target(const fs::path& file) {
+/// Refuses to replace devices and folders, also where a symbolic link leads to one.
+void refuse_no_file(const fs::path& file) {
   std::error_code missing;  // that there is no such file yet is no failure
-  fs::path target = fs::is_symlink(file, missing) ? fs::weakly_canonical(file) : file;
-  const auto status = fs::status(target, missing);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
+  const auto status = fs::status(file, missing);
+  const bool is_stream =  // /dev/stdout, whatever that is just now
+      fs::is_symlink(file, missing) && fs::read_symlink(file, missing).string().starts_with("/proc/");
+  if (is_stream || (fs::exists(status) && !fs::is_regular_file(status)))
     throw Error("cannot write " + file.string() + ": it is there and is not a file");
-  }
-  return target;
 }
 
-/// A file of a new name beside `target`, which tells a person what it was to become.
-std::FILE* create_aside(const fs::path& file, const fs::path& target, fs::path& aside) {
-  constexpr int kTries = 1000;
-  for (int i = 0; i < kTries; ++i) {
-    aside = target.parent_path() / fmt::format(".{}.{}-{}.part", target.filename().string(), getpid(), i);
-    const int descriptor = open(aside.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor >= 0) return fdopen(descriptor, "w+b");
-    if (errno != EEXIST) fail(file, errno);
-  }
-  fail(file, EEXIST);
+/// A file of a new name beside `file`, which tells a person what it was to become.
+std::FILE* create_aside(const fs::path& file, fs::path& aside) {
+  aside = file.parent_path() / fmt::format(".{}.{}{}", file.filename().string(), unique_name(), kPart);
+  const int descriptor = open(aside.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail(file, errno);
+  return fdopen(descriptor, "w+b");
+}
+
+/// Whether a process that is dead left this file, before it was complete.
+bool is_left_over(const fs::path& file) {
+  const std::string name = file.filename().string();
+  if (!name.starts_with('.') || !name.ends_with(kPart)) return false;
+  const std::string stem = name.substr(0, name.size() - std::strlen(kPart));
+  return liveness_of_maker(stem.substr(stem.rfind('.') + 1)) == Liveness::dead;
 }
 
 /// Makes the renaming itself last. Some file systems cannot; that is no reason to fail.
@@ -63,8 +69,8 @@ void sync_folder(const fs::path& folder) {
 
 AtomicFile::AtomicFile(fs::path file) : file_(std::move(file)) {
   make_folder_of(file_);
-  target_ = final_target(file_);
-  stream_.reset(create_aside(file_, target_, aside_));
+  refuse_no_file(file_);
+  stream_.reset(create_aside(file_, aside_));
   at_signal_.emplace(aside_.string());
 }
 
@@ -87,10 +93,19 @@ void AtomicFile::commit() {
   const int code = errno;
   close(descriptor);
   if (synced != 0) fail(file_, code);
-  if (std::rename(aside_.c_str(), target_.c_str()) != 0) fail(file_, errno);
+  if (std::rename(aside_.c_str(), file_.c_str()) != 0) fail(file_, errno);
   at_signal_.reset();
   stream_.reset();
-  sync_folder(target_.parent_path());
+  sync_folder(file_.parent_path());
+}
+
+void remove_left_over_parts(const fs::path& folder) {
+  std::error_code failure;  // what cannot be removed is in nobody's way
+  fs::directory_iterator entry(folder, failure);
+  for (; !failure && entry != fs::directory_iterator(); entry.increment(failure)) {
+    std::error_code not_removed;
+    if (is_left_over(entry->path())) fs::remove(entry->path(), not_removed);
+  }
 }
 
 void write_file(const fs::path& file, std::string_view bytes) {

@@ -13,7 +13,8 @@ namespace crisp {
 
 /// A file that is there whole or not at all: it is written aside, in the same folder, and takes its name when
 /// it is complete and on the disk. Left without commit() (an exception, an interruption), nothing remains of
-/// it, and a file of that name from before stays as it was.
+/// it, and a file of that name from before stays as it was. A symbolic link of that name is replaced, and the
+/// file that it leads to stays as it is.
 ///
 /// Write through write(), or let a library write to aside() and then commit().
 class AtomicFile {
@@ -41,11 +42,13 @@ class AtomicFile {
   };
 
   std::filesystem::path file_;
-  std::filesystem::path target_;  ///< file_, with symbolic links followed
   std::filesystem::path aside_;
   std::optional<SignalCleanup> at_signal_;
   std::unique_ptr<std::FILE, Close> stream_;
 };
+
+/// Removes from a folder what AtomicFiles of processes on this machine left that were killed.
+void remove_left_over_parts(const std::filesystem::path& folder);
 
 /// Writes a whole file at once, as AtomicFile does.
 void write_file(const std::filesystem::path& file, std::string_view bytes);

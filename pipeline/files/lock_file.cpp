@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -30,13 +29,6 @@ std::string command_of_this_process() {
   while (command.ends_with('\0')) command.pop_back();
   std::ranges::replace(command, '\0', ' ');
   return command;
-}
-
-/// Differs from that of every other lock file, on whichever machine and whenever it was made.
-std::string unique_name(const ProcessIdentity& process) {
-  static std::atomic<unsigned> made = 0;
-  return fmt::format("{:016x}-{}-{}-{}", std::hash<std::string>()(process.host + process.machine),
-                     process.number, process.start, made++);
 }
 
 [[noreturn]] void fail_to_lock(const fs::path& folder, int code) {
@@ -99,7 +91,7 @@ std::optional<LockOwner> parse_lock_owner(const std::string& text) try {
 
 LockFile::LockFile(const fs::path& folder, const std::string& prefix)
     : owner_{this_process(), utc_now(), command_of_this_process()},
-      path_(folder / (prefix + "." + unique_name(owner_.process))) {
+      path_(folder / (prefix + "." + unique_name())) {
   descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail_to_lock(folder, errno);
   at_signal_.emplace(path_.string());

@@ -5,10 +5,12 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <optional>
 #include <sstream>
@@ -57,6 +59,10 @@ std::optional<ProcessState> state_of(pid_t number) {
   return fields ? std::optional(process) : std::nullopt;
 }
 
+std::string machine_in_name(const ProcessIdentity& process) {
+  return fmt::format("{:016x}", std::hash<std::string>()(process.machine));
+}
+
 bool has_process(pid_t number) { return kill(number, 0) == 0 || errno == EPERM; }
 
 }  // namespace
@@ -74,6 +80,22 @@ Liveness liveness_of(const ProcessIdentity& process) {
   if (!state) return Liveness::alive;  // the kernel hides processes of other users
   const bool has_ended = state->state == 'Z' || state->state == 'X';
   return has_ended || state->start != process.start ? Liveness::dead : Liveness::alive;
+}
+
+std::string unique_name() {
+  static std::atomic<unsigned> made = 0;
+  const ProcessIdentity process = this_process();
+  return fmt::format("{}-{}-{}-{}", machine_in_name(process), process.number, process.start, made++);
+}
+
+Liveness liveness_of_maker(std::string_view name) {
+  ProcessIdentity maker = this_process();
+  std::istringstream fields{std::string(name)};
+  std::string machine;
+  char dash = 0;
+  std::getline(fields, machine, '-');
+  fields >> maker.number >> dash >> maker.start;
+  return fields && machine == machine_in_name(maker) ? liveness_of(maker) : Liveness::unknown;
 }
 
 }  // namespace crisp

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace crisp {
 
@@ -28,5 +29,13 @@ enum class Liveness {
 };
 
 Liveness liveness_of(const ProcessIdentity& process);
+
+/// A part of a file's name that no other process, past or future, on whichever machine, gives to a file:
+/// "MACHINE-NUMBER-START-COUNT".
+std::string unique_name();
+
+/// Of the process on this machine that made such a name, whether it lives; unknown of one on another machine,
+/// and of a name that is none.
+Liveness liveness_of_maker(std::string_view unique_name);
 
 }  // namespace crisp

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "pipeline/stage/name_pattern.hpp"
 
@@ -19,6 +20,19 @@ fs::path one_name(const fs::path& file) {
   return failure ? fs::absolute(file).lexically_normal() : name;
 }
 
+/// The name under which a file is written: a link of that name is replaced, not followed.
+fs::path name_in_folder(const fs::path& file) {
+  const fs::path whole = fs::absolute(file).lexically_normal();
+  return one_name(whole.parent_path()) / whole.filename();
+}
+
+/// The names of a file that is read: its own, and that of the file that it leads to if it is a link.
+std::vector<NamePattern> names_read(const fs::path& path) {
+  std::vector<NamePattern> names{NamePattern(one_name(path))};
+  if (const fs::path own = name_in_folder(path); own != one_name(path)) names.emplace_back(own);
+  return names;
+}
+
 /// A path that a stage was given, or the run itself, and the files that this means.
 struct OwnFiles {
   std::string who;
@@ -26,18 +40,16 @@ struct OwnFiles {
   std::vector<NamePattern> names;
 };
 
-/// All files that come of this path. What is named after it lies beside the path itself, even where that is a
-/// link to a file elsewhere.
+/// All files that come of this path. What is named after it lies beside it.
 std::vector<NamePattern> names_written(const Option& option, const fs::path& path) {
   std::vector<NamePattern> names;
-  const fs::path folder = one_name(path.parent_path());
   for (const auto& shape : option.writes) {
     if (shape == kFileItself)
-      names.emplace_back(one_name(path));
+      names.emplace_back(name_in_folder(path));
     else if (option.is_folder)
       names.push_back(NamePattern::within(one_name(path), shape));
     else
-      names.push_back(NamePattern::beside(folder / path.filename(), shape));
+      names.push_back(NamePattern::beside(name_in_folder(path), shape));
   }
   const std::size_t files = names.size();
   for (std::size_t i = 0; i < files; ++i) names.push_back(names[i] + kProvenance);
@@ -61,7 +73,7 @@ FilesOfStages files_of(const Pipeline& pipeline) {
       const auto* text = scalar ? std::get_if<std::string>(scalar) : nullptr;
       if (!text || text->empty()) continue;
       if (option.writes.empty())
-        files.read.push_back({node.tag, node.place_of(option.name), {NamePattern(one_name(*text))}});
+        files.read.push_back({node.tag, node.place_of(option.name), names_read(*text)});
       else
         files.written.push_back(
             {node.tag, node.place_of(option.name), names_written(option, fs::absolute(*text))});
@@ -105,14 +117,15 @@ void check_files_written(const Pipeline& pipeline, const FilesOfRun& run, std::v
   OwnFiles& read_already = files.read.emplace_back();
   read_already.who = "this run";
   for (const auto& file : run.read) {
-    if (!file.empty()) read_already.names.emplace_back(one_name(file));
+    if (!file.empty()) std::ranges::copy(names_read(file), std::back_inserter(read_already.names));
   }
   std::vector<OwnFiles> others;
   if (!run.summary.empty()) {
     OwnFiles& own = others.emplace_back();
     own.who = "this run";
-    own.names.emplace_back(one_name(run.summary));
+    own.names.emplace_back(name_in_folder(run.summary));
     refuse_folders(own, errors);
+    for (const auto& reader : files.read) refuse_same(own, reader, "reads", errors);
   }
   for (const auto& writer : files.written) {
     refuse_folders(writer, errors);

@@ -15,7 +15,7 @@ inline constexpr const char* kSummary = "summary.json";
 
 /// What a run itself reads and writes, besides its stages. Empty paths are passed over.
 struct FilesOfRun {
-  std::vector<std::filesystem::path> read;  ///< the pipeline's own file and the rig's
+  std::vector<std::filesystem::path> read;  ///< the pipeline's own file, the rig's and the input
   std::filesystem::path summary;
 };
 

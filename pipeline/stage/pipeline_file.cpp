@@ -239,7 +239,7 @@ LoadedPipeline load_pipeline(const YamlNode& root, const fs::path& file, const P
   run.output = arguments.output ? fs::absolute(*arguments.output).lexically_normal() : fs::path();
   Pipeline pipeline = build_pipeline(plan.stages, run, errors, plan.rig_is_known);
   const fs::path output = arguments.only_validate && !arguments.output ? kNoOutput : run.output;
-  const FilesOfRun own{.read = {file, plan.rig_file},
+  const FilesOfRun own{.read = {file, plan.rig_file, arguments.input.value_or(fs::path())},
                        .summary = output.empty() ? fs::path() : output / kSummary};
   check_files_written(pipeline, own, errors);
   sort_by_place(errors);

@@ -65,16 +65,23 @@ TEST_F(AtomicFileTest, CommitsWhatALibraryWroteAside) {
   EXPECT_EQ(content(folder_ / "x.txt"), "by another hand");
 }
 
-TEST_F(AtomicFileTest, WritesThroughALinkAndKeepsIt) {
+TEST_F(AtomicFileTest, ReplacesALinkAndLeavesTheFileThatItLeadsTo) {
   write_file(folder_ / "target", "old");
-  fs::create_symlink("target", folder_ / "link");
-  write_file(folder_ / "link", "new");
-  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
-  EXPECT_EQ(content(folder_ / "target"), "new");
+  for (const char* target : {"target", "none"}) {
+    fs::remove(folder_ / "link");
+    fs::create_symlink(target, folder_ / "link");
+    write_file(folder_ / "link", "new");
+    EXPECT_FALSE(fs::is_symlink(folder_ / "link"));
+    EXPECT_EQ(content(folder_ / "link"), "new");
+  }
+  EXPECT_EQ(content(folder_ / "target"), "old");
+  EXPECT_FALSE(fs::exists(folder_ / "none"));
 }
 
 TEST_F(AtomicFileTest, RefusesToReplaceWhatIsNotAFile) {
-  for (const fs::path& target : {fs::path("/dev/null"), folder_}) {
+  fs::create_symlink("/dev/null", folder_ / "null");
+  fs::create_symlink("/proc/self/fd/1", folder_ / "stdout");
+  for (const fs::path& target : {fs::path("/dev/null"), folder_, folder_ / "null", folder_ / "stdout"}) {
     try {
       write_file(target, "x");
       FAIL() << target;
