@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "grabbers/pcd/surplus.hpp"
 #include "pipeline/pcd/cloud_table.hpp"
 #include "pipeline/pcd/parts.hpp"
 
@@ -61,6 +62,7 @@ void GrabCloudStage::process(const Inputs&, Outputs& out, Context& context) {
     rounding = std::max(rounding, change);
     context.reads(file);
     context.count("points that are not numbers", not_finite);
+    count_surplus(table, file, context);
     if (!context.interrupted()) out.give(std::move(cloud));
   });
   if (rounding > kVisible) context.warn(rounding_in_words(rounding, shift));

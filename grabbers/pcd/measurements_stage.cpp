@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "grabbers/pcd/surplus.hpp"
 #include "pipeline/pcd/measurement_tables.hpp"
 #include "pipeline/pcd/parts.hpp"
 
@@ -62,6 +63,7 @@ void GrabMeasurementsStage::process(const Inputs&, Outputs& out, Context& contex
     const auto read = about(file, [&] { return measurements_of(table); });
     const Measurements& beams = read.beams;
     context.count("measurements that cannot be", read.impossible);
+    count_surplus(table, file, context);
     about(file, [&] { refuse_other_rigs(beams, context.rig()); });
     auto plate = trajectory(table, file, context);
     if (plate.epoch_ns() != beams.epoch_ns) {
@@ -85,6 +87,7 @@ PlateTrajectory GrabMeasurementsStage::trajectory(const PcdTable& table, const s
   }
   context.reads(plate_file);
   const PcdTable readings = read_pcd(plate_file);
+  count_surplus(readings, plate_file, context);
   return about(plate_file, [&] { return trajectory_of(readings); });
 }
 

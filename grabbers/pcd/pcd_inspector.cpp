@@ -65,6 +65,11 @@ Inspection inspect(const std::filesystem::path& file, const Rig&) {
   inspection.text = fmt::format("  {} points, {}\n  {:<16}{:<6}{:>16} {:>16}", table.rows(),
                                 format_of(table.header().format), "field", "type", "least", "most");
   inspection.data = {{"points", table.rows()}, {"format", format_of(table.header().format)}};
+  if (table.surplus() > 0) {
+    inspection.text +=
+        fmt::format("\n  {} more points stand behind those that POINTS gives", table.surplus());
+    inspection.data["surplus_points"] = table.surplus();
+  }
   for (const PcdField& field : table.header().fields) add_field(table, field, inspection);
   for (const auto& [key, value] : table.header().notes) {
     inspection.text += fmt::format("\n  {}: {}", key, value);

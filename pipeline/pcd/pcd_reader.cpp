@@ -22,8 +22,17 @@ constexpr std::size_t kMostExpansion = 264;  // LZF's longest match takes three 
 /// What follows a header, and the header's claims held against it.
 class BodyReader {
  public:
-  BodyReader(const PcdHeader& header, std::string_view body, const std::string& name)
-      : header_(header), body_(body), name_(name), record_(header.record_size()) {}
+  BodyReader(const PcdHeader& header, std::string_view file, const std::string& name)
+      : header_(header),
+        file_(file),
+        body_(file.substr(header.data_begin)),
+        name_(name),
+        record_(header.record_size()) {
+    for (const auto& field : header.fields) values_ += field.count;
+  }
+
+  /// Points behind those that the header counts, once it has read those.
+  std::size_t surplus() const { return surplus_; }
 
   /// All fields' values, one field after the other.
   std::string read() {
@@ -60,8 +69,9 @@ class BodyReader {
     }
   }
 
-  std::string read_binary() const {
+  std::string read_binary() {
     std::string columns = room_for_points(body_.size());
+    surplus_ = body_.size() / record_ - header_.points;
     const char* from = body_.data();
     for_each_value(columns, [&](const PcdField& field, char* to, std::size_t) {
       std::memcpy(to, from, field.width());
@@ -86,31 +96,62 @@ class BodyReader {
   }
 
   std::string read_ascii() {
-    std::size_t values = 0;
-    for (const auto& field : header_.fields) values += field.count;
     // A value takes a digit and a blank at least, and 8 bytes of ours at most.
-    if (header_.points > 0 && values > (body_.size() + 1) / 2 / header_.points) {
+    if (header_.points > 0 && values_ > (body_.size() + 1) / 2 / header_.points) {
       fail(fmt::format("says that it has {} points, but it is too short for them", header_.points));
     }
     std::string columns(header_.points * record_, '\0');
     for_each_value(columns, [&](const PcdField& field, char* to, std::size_t row) {
+      if (&field == header_.fields.data()) begin_point(row);
       visit_number(field, [&]<PcdNumber T>(T) {
         for (std::size_t i = 0; i < field.count; ++i) {
-          const T value = next_value<T>(row);
+          const T value = number_of<T>(next_word(), row);
           std::memcpy(to + i * sizeof(T), &value, sizeof(T));
         }
       });
     });
+    refuse_more_values();
+    while (next_line()) ++surplus_;
     return columns;
   }
 
-  template <PcdNumber T>
-  T next_value(std::size_t row) {
-    constexpr std::string_view kBlank = " \t\r\n";
+  /// Moves on to the next line that is not blank; false at the end.
+  bool next_line() {
     body_.remove_prefix(std::min(body_.find_first_not_of(kBlank), body_.size()));
-    const auto word = body_.substr(0, body_.find_first_of(kBlank));
-    body_.remove_prefix(word.size());
-    return number_of<T>(word, row);
+    line_ = body_.substr(0, body_.find('\n'));
+    body_.remove_prefix(line_.size());
+    return !line_.empty();
+  }
+
+  void begin_point(std::size_t row) {
+    refuse_more_values();
+    if (!next_line()) fail(fmt::format("ends after {} of its {} points", row, header_.points));
+    words_ = 0;
+  }
+
+  /// Empty at the end of the line.
+  std::string_view next_word() {
+    line_.remove_prefix(std::min(line_.find_first_not_of(kBlank), line_.size()));
+    const auto word = line_.substr(0, line_.find_first_of(kBlank));
+    line_.remove_prefix(word.size());
+    if (word.empty()) fail_in_line(fmt::format("{} values, where a point has {}", words_, values_));
+    ++words_;
+    return word;
+  }
+
+  void refuse_more_values() {
+    if (line_.find_first_not_of(kBlank) == std::string_view::npos) return;
+    while (line_.find_first_not_of(kBlank) != std::string_view::npos) next_word();
+    fail_in_line(fmt::format("{} values, where a point has {}", words_, values_));
+  }
+
+  [[noreturn]] void fail_in_line(const std::string& what) const {
+    const auto before = file_.substr(0, file_.size() - body_.size());
+    const auto line = std::ranges::count(before, '\n') + 1;
+    throw Error("the line has " + what,
+                "each point is a line of as many values as FIELDS and COUNT give; the file is damaged, or "
+                "FIELDS is wrong",
+                {.file = name_, .line = static_cast<int>(line), .column = 1});
   }
 
   template <PcdNumber T>
@@ -121,23 +162,32 @@ class BodyReader {
       if (code == std::errc::result_out_of_range) return static_cast<float>(number_of<double>(word, row));
     }
     if (code != std::errc() || end != word.data() + word.size() || word.empty()) {
-      fail(fmt::format("has '{}' in place of a number, in point {}", shown(word), row + 1));
+      fail_in_line(fmt::format("'{}' in place of a number, in point {}", shown(word), row + 1));
     }
     return value;
   }
 
+  static constexpr std::string_view kBlank = " \t\r\n";
+
   const PcdHeader& header_;
-  std::string_view body_;
+  std::string_view file_;
+  std::string_view body_;  ///< what of it was not read
+  std::string_view line_;  ///< in ASCII: what of the current line was not read
+  std::size_t words_ = 0;  ///< that were read of that line
   const std::string& name_;
-  std::size_t record_;
+  std::size_t record_;      ///< [bytes] of a point
+  std::size_t values_ = 0;  ///< of a point
+  std::size_t surplus_ = 0;
 };
 
 }  // namespace
 
 PcdTable parse_pcd(std::string_view bytes, const std::string& name) {
   PcdHeader header = parse_pcd_header(bytes, name);
-  std::string columns = BodyReader(header, bytes.substr(header.data_begin), name).read();
-  return {std::move(header), std::move(columns)};
+  BodyReader body(header, bytes, name);
+  std::string columns = body.read();
+  const std::size_t surplus = body.surplus();
+  return {std::move(header), std::move(columns), surplus};
 }
 
 PcdTable read_pcd(const std::filesystem::path& file) {

@@ -27,8 +27,8 @@ T converted(From value, std::string_view field) {
 
 }  // namespace
 
-PcdTable::PcdTable(PcdHeader header, std::string columns)
-    : header_(std::move(header)), columns_(std::move(columns)) {
+PcdTable::PcdTable(PcdHeader header, std::string columns, std::size_t surplus)
+    : header_(std::move(header)), columns_(std::move(columns)), surplus_(surplus) {
   if (columns_.size() != header_.points * header_.record_size()) {
     throw Error("the columns of a PCD table do not fit its header");
   }

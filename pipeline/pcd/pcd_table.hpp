@@ -23,9 +23,11 @@ class PcdTable {
  public:
   explicit PcdTable(std::size_t rows) { header_.points = rows; }
   /// @param columns all the fields' values, one field after the other, as the header says
-  PcdTable(PcdHeader header, std::string columns);
+  /// @param surplus points that stood in the file behind those that the header counts, and were not read
+  PcdTable(PcdHeader header, std::string columns, std::size_t surplus = 0);
 
   std::size_t rows() const { return header_.points; }
+  std::size_t surplus() const { return surplus_; }
   const PcdHeader& header() const { return header_; }
   std::string_view bytes() const { return columns_; }
   bool has(std::string_view field) const { return header_.find(field) != nullptr; }
@@ -54,6 +56,7 @@ class PcdTable {
  private:
   PcdHeader header_;
   std::string columns_;
+  std::size_t surplus_ = 0;
 };
 
 /// Writes a PCD file in the format that is asked for; a binary_compressed one can hold 4 GB. The same table
@@ -63,7 +66,9 @@ class PcdTable {
 void write_pcd(AtomicFile& out, const PcdTable& table, PcdFormat format);
 
 /// Reads a PCD file of any origin.
-/// @throws Error if it cannot be read, its header is wrong, or it does not hold what its header says
+/// @throws Error if it cannot be read, its header is wrong, or it does not hold what its header says, in
+/// ASCII a point
+///         a line
 PcdTable read_pcd(const std::filesystem::path& file);
 
 /// The same from memory. Needs no more memory than some 300 times the bytes, whatever the header claims.

@@ -180,6 +180,17 @@ TEST_F(GrabMeasurements, ACloudIsReadByItsOwnGrabber) {
   EXPECT_THAT(stage.report().warnings, testing::IsEmpty());
 }
 
+TEST_F(GrabMeasurements, PointsBehindThoseThatTheHeaderGivesAreCountedAndWarnedOf) {
+  write_file(folder_ / "long.pcd",
+             "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nDATA ascii\n1 2 3\n4 5 6\n7 8 9\n");
+  auto stage = StageDriver::of<GrabCloudStage>(file("long.pcd"));
+  stage.feed();
+  EXPECT_EQ(stage.given<Cloud>().at(0)->size(), 2U);
+  EXPECT_EQ(stage.report().counts.at("points beyond those that the header gives"), 1U);
+  EXPECT_THAT(stage.report().warnings,
+              testing::ElementsAre(HasSubstr("long.pcd: 1 points stand behind the 2")));
+}
+
 TEST_F(GrabMeasurements, ACloudOfDoublesFarFromTheOriginIsWarnedOfUnlessItIsShifted) {
   PcdTable table(30);
   table.add<double>("x", [](std::size_t i) { return 691'607.5 + 0.1 * static_cast<double>(i); });

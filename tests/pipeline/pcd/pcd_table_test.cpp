@@ -113,6 +113,29 @@ TEST(PcdTable, AValueThatIsNotANumberIsShown) {
   EXPECT_THAT(complaint(ascii_file("FIELDS x\nSIZE 1\nTYPE U\nWIDTH 1", "256\n")), HasSubstr("'256'"));
 }
 
+TEST(PcdTable, AnAsciiLineOfMoreOrFewerValuesThanAPointHasIsRefusedWithItsPlace) {
+  const std::string header = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3";
+  EXPECT_THAT(complaint(ascii_file(header, "1 2 3\n\n4 5 6 7\n8 9 10\n")),
+              HasSubstr("x.pcd:9:1: error: the line has 4 values, where a point has 3;"));
+  EXPECT_THAT(complaint(ascii_file(header, "1 2 3\n4 5 6\n7 8 9 10")),
+              HasSubstr("x.pcd:9:1: error: the line has 4 "));
+  EXPECT_THAT(complaint(ascii_file(header, "1 2 3\n4 5\n6 7 8 9\n")),
+              HasSubstr("x.pcd:8:1: error: the line has 2 values, where a point has 3;"));
+  EXPECT_THAT(complaint(ascii_file(header, "1.000 2.0 3.0000\n4.0000 5 6\n\n")),
+              HasSubstr("ends after 2 of its 3 points"));
+}
+
+TEST(PcdTable, PointsBeyondThoseOfTheHeaderAreCounted) {
+  const std::string ascii = "FIELDS x n\nSIZE 4 2\nTYPE F U\nWIDTH 1";
+  EXPECT_EQ(parse_pcd(ascii_file(ascii, "1 2\n"), "x.pcd").surplus(), 0U);
+  EXPECT_EQ(parse_pcd(ascii_file(ascii, "1 2\n3 4\n\n5 6"), "x.pcd").surplus(), 2U);
+  const std::string binary = ascii + "\nDATA binary\n" + std::string(6, '\0');
+  EXPECT_EQ(parse_pcd(binary, "x.pcd").surplus(), 0U);
+  EXPECT_EQ(parse_pcd(binary + "\n", "x.pcd").surplus(), 0U)
+      << "a line break that an editor added is no point";
+  EXPECT_EQ(parse_pcd(binary + std::string(18, '\0'), "x.pcd").surplus(), 3U);
+}
+
 TEST(PcdTable, WhatIsNoPcdDoesNothingToATerminal) {
   const auto said_of = [](const std::string& bytes) {
     const std::string text = complaint(bytes);
@@ -127,7 +150,7 @@ TEST(PcdTable, WhatIsNoPcdDoesNothingToATerminal) {
               HasSubstr("x.pcd:1:1: error: there is a control"));
   EXPECT_THAT(said_of("\x8b\xe9\n"), HasSubstr("'\\x8b\\xe9' is no key of PCD;"));
   EXPECT_THAT(said_of(ascii_file("FIELDS x\nSIZE 4\nWIDTH 1", std::string("\0\x1b[2J", 5))),
-              HasSubstr("x.pcd has '\\x00\\x1b[2J' in place of a number, in point 1; the file is damaged"));
+              HasSubstr("x.pcd:5:1: error: the line has '\\x00\\x1b[2J' in place of a number, in point 1"));
 }
 
 TEST(PcdTable, ColumnsAreRefusedThatAreNotThereOrDoNotFit) {
