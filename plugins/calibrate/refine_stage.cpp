@@ -17,6 +17,7 @@
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 #include "plugins/calibrate/rig_hypotheses.hpp"
+#include "plugins/calibrate/single_beams.hpp"
 
 namespace crisp {
 void RefineStage::describe(StageDescription<RefineStage>& d) {
@@ -85,6 +86,7 @@ void RefineStage::finish(Outputs& out, Context& context) {
   settings_.prior.nominal = nominal_values(context.rig());
   settings_.angle_step = std::abs(context.rig().plate.angle_per_count());
   settings_.angle_error = plate_angle_error(*sample.plate, context.rig(), clocks_);
+  refuse_single_beams(sample.beams, *start_, settings_.fixed);
   Calibration with_terms = *start_;
   add_wanted_terms(with_terms, settings_.terms, terms);
   const SensorModel start(with_terms, terms);

@@ -11,6 +11,7 @@
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 #include "plugins/calibrate/rig_search.hpp"
+#include "plugins/calibrate/single_beams.hpp"
 
 namespace crisp {
 
@@ -131,6 +132,7 @@ void RqeStage::finish(Outputs& out, Context& context) {
   const auto measure = make_measure(context.run());
   const auto& terms = context.run().registrar->get<TermRegistry>();
   const Calibration start = start_ ? *start_ : nominal_calibration(context.rig());
+  refuse_single_beams(sample.beams, start, settings_.fixed);
   const Outcome outcome =
       search_around_rig(SensorModel(start, terms), sample, *measure, settings, context.rig(),
                         [&](double done, std::string_view what) { context.progress(done, what); });

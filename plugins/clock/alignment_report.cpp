@@ -99,6 +99,12 @@ AlignmentReport HubTracks::report() const {
   AlignmentReport report{.devices = reports()};
   for (const auto& laser : lasers_) {
     report.counts[laser.laser().name + ": scans without ranges"] = laser.without_ranges();
+    report.counts[laser.laser().name + ": beams without echo"] = laser.without_echo();
+    if (laser.sees_nothing())
+      report.warnings.push_back(fmt::format(
+          "{}: none of its {} beams has an echo: it looks at nothing within its range, its window is "
+          "covered, or it sends codes in place of ranges",
+          laser.laser().name, laser.without_echo()));
     if (auto warning = laser.stamp_warning(); !warning.empty()) report.warnings.push_back(std::move(warning));
   }
   for (const auto& device : report.devices) {

@@ -60,6 +60,7 @@ LaserTrack* HubTracks::track_of(const Scan& scan) {
 std::shared_ptr<const Measurements> HubTracks::measurements_of(const TimedScan& scan) {
   auto measurements = measurements_.get();
   fill_measurements(scan, lasers_[scan.scan->laser].laser(), epoch_ns_, *measurements);
+  lasers_[scan.scan->laser].count_beams(scan.scan->echoes.front().ranges.size(), measurements->size());
   return measurements;
 }
 

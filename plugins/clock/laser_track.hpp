@@ -41,6 +41,13 @@ class LaserTrack {
   const RigLaser& laser() const { return laser_; }
   DeviceReport report() const { return stamps_.report(); }
   std::uint64_t without_ranges() const { return without_ranges_; }
+  /// Notes of a scan how many beams it has, and how many of them came back.
+  void count_beams(std::size_t beams, std::size_t came_back) {
+    beams_ += beams;
+    without_echo_ += beams - came_back;
+  }
+  std::uint64_t without_echo() const { return without_echo_; }  ///< beams
+  bool sees_nothing() const { return beams_ > 0 && without_echo_ == beams_; }
   /// What the stamps say against the rig's period_offset, or "".
   std::string stamp_warning() const;
 
@@ -63,6 +70,8 @@ class LaserTrack {
   std::vector<MirrorStamp> taken_;  ///< the last stamps that were handed out: neighbours of the next ones
   DelayHistogram handovers_;        ///< from stamp to transmission
   std::uint64_t without_ranges_ = 0;
+  std::uint64_t beams_ = 0;
+  std::uint64_t without_echo_ = 0;
 };
 
 }  // namespace crisp

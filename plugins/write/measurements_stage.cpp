@@ -41,7 +41,7 @@ void WriteMeasurementsStage::write_part(bool more) {
 void WriteMeasurementsStage::finish(Outputs&, Context& context) {
   if (pending_.size() == 0) {
     throw Error("no measurement came, so that there is nothing to write",
-                "what was lost until then says why");
+                "the losses and warnings above say why; without any, no stage above gave one");
   }
   write_part(false);
   finish_parts(*writer_, written_, "measurements", context);

@@ -67,7 +67,8 @@ void WritePcdStage::add(const Point& point) {
 
 void WritePcdStage::finish(Outputs&, Context& context) {
   if (pending_.empty()) {
-    throw Error("no point came, so that there is no cloud to write", "what was lost until then says why");
+    throw Error("no point came, so that there is no cloud to write",
+                "the losses and warnings above say why; without any, no stage above gave one");
   }
   writer_->write(to_table(pending_), false);
   finish_parts(*writer_, written_ + pending_.size(), "points", context);

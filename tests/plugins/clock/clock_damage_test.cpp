@@ -9,6 +9,7 @@ namespace {
 
 using namespace testing;  // NOLINT(google-build-using-namespace)
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 TEST(ClockDamage, CountsLostTelegramsAndStillKnowsTheMirrorsPeriod) {
@@ -135,6 +136,21 @@ TEST(ClockDamage, NamesThePeriodOffsetThatAFirmwareNeeds) {
   const auto aligned = align({turns}, readings, {}, rig);
   EXPECT_TRUE(aligned.report.warnings.empty());
   EXPECT_LT(beam_time_errors(aligned, 0, laser, turns).worst, 25e-6);
+}
+
+TEST(ClockDamage, CountsBeamsWithoutEchoAndNamesALaserThatSeesNothing) {
+  std::vector<Turns> lasers{three_lasers(4)[0].turns(4, 0, 5), three_lasers(4)[1].turns(4, 1, 5)};
+  for (auto& turn : lasers[0]) turn.scan.echoes[0].ranges[7] = 0;
+  std::size_t beams = 0;
+  for (auto& turn : lasers[1]) {
+    beams += turn.scan.echoes[0].ranges.size();
+    std::ranges::fill(turn.scan.echoes[0].ranges, 0.0F);
+  }
+  const auto report = align(lasers, SimulatedPlate{}.readings(4, 5)).report;
+  EXPECT_EQ(report.counts.at("laser1: beams without echo"), lasers[0].size());
+  EXPECT_EQ(report.counts.at("laser2: beams without echo"), beams);
+  EXPECT_THAT(report.warnings,
+              ElementsAre(HasSubstr("laser2: none of its " + std::to_string(beams) + " beams")));
 }
 
 TEST(ClockDamage, NamesADeviceThatIsMissing) {
