@@ -24,7 +24,8 @@ Error no_capture(const std::filesystem::path& path, std::string_view begin) {
 
 }  // namespace
 
-CaptureFile::CaptureFile(const std::filesystem::path& path) : file_(path) {
+CaptureFile::CaptureFile(const std::filesystem::path& path, std::function<bool()> interrupted)
+    : file_(path, std::move(interrupted)) {
   constexpr std::size_t kTelling = 8;  // bytes
   const auto begin = file_.peek(kTelling);
   if (begin.empty()) throw Error(path.string() + " is empty", "capture it again");

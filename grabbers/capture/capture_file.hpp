@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <variant>
 
@@ -17,8 +18,9 @@ namespace crisp {
 /// single stamp that is too early would bend the clock of its device, where one that is late does nothing.
 class CaptureFile {
  public:
+  /// @param interrupted  as ByteStream's
   /// @throws Error if the file cannot be read or is no capture
-  explicit CaptureFile(const std::filesystem::path& path);
+  explicit CaptureFile(const std::filesystem::path& path, std::function<bool()> interrupted = {});
 
   /// The next packet, valid until the next call; nullptr at the end of the file.
   const Packet* next();

@@ -25,8 +25,11 @@ constexpr std::string_view kPlateMark = "$PPLT,";
 
 struct CaptureReader::Traffic {
   Traffic(const std::filesystem::path& path, Devices all, const CaptureSettings& how)
-      : file(path), devices(std::move(all)), settings(how) {}
+      : file(path, [this, stop = how.interrupted] { return interrupted || (stop && stop()); }),
+        devices(std::move(all)),
+        settings(how) {}
 
+  std::atomic<bool> interrupted = false;
   CaptureFile file;
   Devices devices;
   CaptureSettings settings;
@@ -39,7 +42,6 @@ struct CaptureReader::Traffic {
   std::map<std::uint32_t, std::uint64_t> link_types;  ///< packets
   std::int64_t newest_ns = 0, given_ns = 0;
   bool ended = false;
-  std::atomic<bool> interrupted = false;
 
   bool read_packet();
   void take_ip(const IpPacket& ip, std::int64_t time_ns);

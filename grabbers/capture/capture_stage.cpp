@@ -88,7 +88,9 @@ Error CaptureStage::nothing_left() const {
 CaptureStatistics CaptureStage::read(const std::filesystem::path& file, double done, double share,
                                      Outputs& out, Context& context) {
   context.reads(file);
-  CaptureReader reader(file, context.rig(), settings_);
+  CaptureSettings settings = settings_;
+  settings.interrupted = [&context] { return context.interrupted(); };
+  CaptureReader reader(file, context.rig(), settings);
   std::optional<ReadAhead> ahead;
   if (context.threads() > 1) ahead.emplace(reader);
   while (true) {

@@ -16,7 +16,8 @@ namespace crisp {
 /// How the bytes of a capture are understood.
 struct CaptureSettings {
   EncoderWidths encoder_widths = EncoderWidths::Position32;
-  double longest_wait = 5;  ///< [s] of capture time that a lost TCP segment is waited for
+  double longest_wait = 5;                 ///< [s] of capture time that a lost TCP segment is waited for
+  std::function<bool()> interrupted = {};  ///< asked while a capture is read from a pipe: whether to give up
 };
 
 /// One direction of one conversation between two ends: finds out what it carries, and hands telegrams and

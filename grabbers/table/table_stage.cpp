@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <fstream>
+#include <istream>
 #include <utility>
 
 #include "pipeline/data/all_errors.hpp"
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/byte_stream.hpp"
 
 namespace crisp {
 namespace {
@@ -166,8 +167,10 @@ void TableStage::process(const Inputs&, Outputs& out, Context& context) {
   if (std::filesystem::is_directory(file_)) {
     throw Error(file_.string() + " is a folder, not a table", "name the file in it");
   }
-  std::ifstream in(file_);
-  if (!in) throw Error("cannot read " + file_.string(), "is it there, and may it be read?");
+  ByteStream stream(file_, [&context] { return context.interrupted(); });
+  ByteStreamBuffer buffer(stream);
+  std::istream in(&buffer);
+  in.exceptions(std::ios::badbit);
   context.reads(file_);
   TableReader reader(in, file_.string(), format_);
   TableItems items(format_, settings_, context.rig());

@@ -4,23 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
+#include <istream>
 
 #include "grabbers/capture/device_log.hpp"
 #include "grabbers/capture/framing_losses.hpp"
 #include "grabbers/capture/loss_warnings.hpp"
 #include "grabbers/telegrams/telegram_list.hpp"
+#include "pipeline/files/byte_stream.hpp"
 
 namespace crisp {
 namespace {
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), {});
-  if (!in || in.bad()) throw Error("cannot read " + file.string(), "is it there, and may it be read?");
-  return text;
-}
 
 /// Which laser of the rig is meant; nothing if there is none of that name.
 std::optional<std::size_t> laser_named(const std::string& name, const Rig& rig) {
@@ -52,10 +45,12 @@ void TelegramsStage::check(const RunSettings& run) const {
 }
 
 void TelegramsStage::process(const Inputs&, Outputs& out, Context& context) {
-  const std::string text = text_of(file_);
+  ByteStream stream(file_, [&context] { return context.interrupted(); });
+  ByteStreamBuffer buffer(stream);
+  std::istream text(&buffer);
+  text.exceptions(std::ios::badbit);
   context.reads(file_);
   Counts losses;
-  const auto telegrams = read_telegram_list(text, file_.string(), losses);
   const std::size_t laser = *laser_named(laser_, context.rig());
   const RigLaser& own = context.rig().lasers.at(laser);
   DeviceLog log(DeviceKind::Laser, own.name, own.address, static_cast<std::uint16_t>(laser));
@@ -63,13 +58,13 @@ void TelegramsStage::process(const Inputs&, Outputs& out, Context& context) {
   const auto take = [&](const ColaFrame& frame) {
     if (auto scan = log.take(frame, EncoderWidths::Position32)) out.give(std::move(scan));
   };
-  for (std::size_t k = 0; k < telegrams.size(); ++k) {
-    framer.feed(telegrams[k].bytes, telegrams[k].time_ns, take);
-    constexpr std::size_t kTellEvery = 1000;
-    if (k % kTellEvery != 0) continue;
-    if (context.interrupted()) return;
-    context.progress(static_cast<double>(k) / static_cast<double>(telegrams.size()), "reading telegrams");
-  }
+  std::uint64_t telegrams = 0;
+  read_telegram_list(text, file_.string(), losses, [&](const ListedTelegram& telegram) {
+    framer.feed(telegram.bytes, telegram.time_ns, take);
+    constexpr std::uint64_t kTellEvery = 1000;
+    if (telegrams++ % kTellEvery == 0)
+      context.progress(Progress{static_cast<double>(telegrams), 0, "telegrams", "reading telegrams"});
+  });
   framer.gap(take);
   note_framing(framer.counts(), log);
   const DeviceStatistics statistics = log.statistics();
@@ -79,8 +74,8 @@ void TelegramsStage::process(const Inputs&, Outputs& out, Context& context) {
   for (const auto& [what, n] : losses.all()) context.count(what, n);
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
   for (const auto& [what, n] : statistics.notes.all()) context.count(what, n);
-  context.report({{"telegrams", telegrams.size()}, {"scans", statistics.items}});
-  context.say(fmt::format("{} scans of {} in {} telegrams", statistics.items, own.name, telegrams.size()));
+  context.report({{"telegrams", telegrams}, {"scans", statistics.items}});
+  context.say(fmt::format("{} scans of {} in {} telegrams", statistics.items, own.name, telegrams));
   if (statistics.items == 0) {
     throw Error(file_.string() + " holds no scan", "are LMDscandata telegrams of a laser in it?");
   }

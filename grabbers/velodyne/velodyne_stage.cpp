@@ -83,7 +83,7 @@ void VelodyneStage::take(const VelodynePacket& packet, std::int64_t receipt_ns, 
 
 void VelodyneStage::process(const Inputs&, Outputs& out, Context& context) {
   context.reads(file_);
-  CaptureFile capture(file_);
+  CaptureFile capture(file_, [&context] { return context.interrupted(); });
   std::uint64_t packets = 0;
   while (const Packet* packet = capture.next()) {
     if (context.interrupted()) return;

@@ -9,13 +9,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <chrono>
 #include <optional>
 #include <set>
 #include <sstream>
 
+#include "pipeline/data/interrupted.hpp"
+#include "pipeline/files/byte_stream.hpp"
 #include "pipeline/files/control_characters.hpp"
 
 namespace crisp {
@@ -268,14 +268,24 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t limit)
   const auto fail = [&](const std::string& why) -> Error {
     return Error("cannot read " + file.string() + ": " + why);
   };
-  if (std::filesystem::is_directory(file)) throw fail("it is a folder");
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw fail(std::strerror(errno));
+  std::error_code missing;  // is said by reading
+  if (std::filesystem::is_directory(file, missing)) throw fail("it is a folder");
+  constexpr auto kPatience = std::chrono::seconds(10);
+  auto give_up = std::chrono::steady_clock::now() + kPatience;
+  ByteStream stream(file, [&] { return std::chrono::steady_clock::now() > give_up; });
   std::string text(limit + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad()) throw fail(std::strerror(errno));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+  std::size_t end = 0;
+  try {
+    while (end < text.size()) {
+      const std::size_t got = stream.read(text.data() + end, text.size() - end);
+      if (got == 0) break;
+      end += got;
+      give_up = std::chrono::steady_clock::now() + kPatience;
+    }
+  } catch (const Interrupted&) {
+    throw fail("it is a pipe into which nothing was written for 10 s");
+  }
+  text.resize(end);
   if (text.size() > limit) throw fail(fmt::format("it is longer than {} bytes", limit));
   return text;
 }

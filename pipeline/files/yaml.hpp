@@ -53,7 +53,9 @@ YamlNode parse_yaml(std::string_view text, const std::string& file);
 /// Reads a file of at most 4 MiB and parses it.
 YamlNode read_yaml(const std::filesystem::path& file);
 
-/// @throws Error if the file cannot be read or is longer than `limit` bytes
+/// @throws Error if the file cannot be read or is longer than `limit` bytes, or if it is a pipe into which
+/// nothing is
+///         written for 10 s
 std::string read_text_file(const std::filesystem::path& file, std::size_t limit);
 
 }  // namespace crisp

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
@@ -77,6 +78,19 @@ class ProgramTest : public testing::Test {
     for (const auto out = folder_ / "out";; std::this_thread::yield()) {
       const std::filesystem::directory_iterator entries(out, not_yet);
       if (std::any_of(begin(entries), end(entries), is_part)) return;
+    }
+  }
+
+  /// Until the process handles a signal, or has ended.
+  static void wait_for_handler(pid_t process, int signal) {
+    const auto file = "/proc/" + std::to_string(process) + "/status";
+    for (;; std::this_thread::yield()) {
+      std::ifstream status(file);
+      for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("State:") && line.find('Z') != std::string::npos) return;
+        if (!line.starts_with("SigCgt:")) continue;
+        if ((std::stoull(line.substr(7), nullptr, 16) >> (signal - 1) & 1) != 0) return;
+      }
     }
   }
 

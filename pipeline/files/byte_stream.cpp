@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/files/byte_stream.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/data/interrupted.hpp"
+
+namespace crisp {
+namespace {
+
+Error cannot_read_bytes(const std::filesystem::path& path, int error) {
+  return Error(fmt::format("cannot read {}: {}", path.string(), std::strerror(error)));
+}
+
+}  // namespace
+
+ByteStream::ByteStream(std::filesystem::path path, std::function<bool()> interrupted)
+    : path_(std::move(path)),
+      interrupted_(std::move(interrupted)),
+      // Opening a pipe without O_NONBLOCK waits for somebody who writes into it, and cannot be told to give
+      // up.
+      descriptor_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+  struct stat status {};
+  const bool opened = descriptor_ >= 0 && ::fstat(descriptor_, &status) == 0;
+  if (!opened || S_ISDIR(status.st_mode)) {
+    const int error = opened ? EISDIR : errno;
+    if (descriptor_ >= 0) ::close(descriptor_);
+    throw cannot_read_bytes(path_, error);
+  }
+  is_file_ = S_ISREG(status.st_mode);
+  if (is_file_) size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+ByteStream::~ByteStream() { ::close(descriptor_); }
+
+/// Of a pipe, until there is something to read or all that wrote into it have closed it.
+void ByteStream::wait_for_bytes() const {
+  constexpr int kAskEvery = 50;  // [ms]
+  pollfd source{.fd = descriptor_, .events = POLLIN, .revents = 0};
+  do {
+    if (interrupted_ && interrupted_()) throw Interrupted();
+  } while (!is_file_ && ::poll(&source, 1, kAskEvery) <= 0);
+}
+
+std::size_t ByteStream::read(void* to, std::size_t most) {
+  while (true) {
+    wait_for_bytes();
+    const auto got = ::read(descriptor_, to, most);
+    if (got >= 0) return static_cast<std::size_t>(got);
+    if (errno != EINTR && errno != EAGAIN) throw cannot_read_bytes(path_, errno);
+  }
+}
+
+ByteStreamBuffer::int_type ByteStreamBuffer::underflow() {
+  const std::size_t got = stream_.read(buffer_.data(), buffer_.size());
+  if (got == 0) return traits_type::eof();
+  setg(buffer_.data(), buffer_.data(), buffer_.data() + got);
+  return traits_type::to_int_type(*gptr());
+}
+
+}  // namespace crisp

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <streambuf>
+#include <vector>
+
+namespace crisp {
+
+/// The bytes of a file or a pipe from front to back. A pipe into which nobody writes (yet) is waited for, but
+/// not longer than `interrupted` says.
+class ByteStream {
+ public:
+  /// @param interrupted  asked now and then, from the thread that reads: whether to give up; may be empty
+  /// @throws Error if the file cannot be opened, or is a folder
+  explicit ByteStream(std::filesystem::path path, std::function<bool()> interrupted = {});
+  ~ByteStream();
+  ByteStream(const ByteStream&) = delete;
+  ByteStream& operator=(const ByteStream&) = delete;
+
+  /// Reads at least one byte and at most `most`. Returns how many; 0 at the end.
+  /// @throws Error        if the disk fails
+  /// @throws Interrupted  when told to give up
+  std::size_t read(void* to, std::size_t most);
+
+  std::uint64_t size() const { return size_; }  ///< [bytes] of the file when it was opened; 0 for a pipe
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  void wait_for_bytes() const;
+
+  std::filesystem::path path_;
+  std::function<bool()> interrupted_;
+  int descriptor_ = -1;
+  bool is_file_ = false;
+  std::uint64_t size_ = 0;
+};
+
+/// The same as what std::istream reads. Let the stream throw: exceptions(std::ios::badbit).
+class ByteStreamBuffer final : public std::streambuf {
+ public:
+  explicit ByteStreamBuffer(ByteStream& stream) : stream_(stream), buffer_(1 << 16) {}
+
+ protected:
+  int_type underflow() override;
+
+ private:
+  ByteStream& stream_;
+  std::vector<char> buffer_;
+};
+
+}  // namespace crisp
