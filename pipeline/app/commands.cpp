@@ -162,6 +162,7 @@ void list_plugins(const PluginLoader& loader) {
     }
     std::cout << fmt::format("  {} {}\n", plugin.name, plugin.version);
     if (!plugin.skipped.empty()) std::cout << fmt::format("  skipped: it is used from {}\n", plugin.skipped);
+    if (!plugin.warning.empty()) std::cout << fmt::format("  warning: {}\n", plugin.warning);
     for (const auto& what : plugin.brings) std::cout << fmt::format("  {}\n", what);
   }
 }

@@ -65,6 +65,16 @@ std::string trouble_with(const PluginRecord& plugin) {
          "; load only one of the two, or name them differently in CRISP_PLUGIN";
 }
 
+/// A plugin runs with all rights of the user: whoever may change its file has these, too.
+void print_warnings(const PluginLoader& loader) {
+  for (const auto& plugin : loader.tried()) {
+    if (plugin.warning.empty()) continue;
+    std::cerr
+        << "warning: the plugin " << plugin.file.string() << ": " << plugin.warning
+        << ", and thereby have it do anything with your rights; take that right from others (chmod o-w)\n";
+  }
+}
+
 /// The plugins that are installed, those of the environment, then those of the command line, of which a
 /// refused one is an error.
 bool load_plugins(const CommandLine& line, PluginLoader& loader) {
@@ -101,6 +111,7 @@ ExitStatus run_program(const CommandLine& line) {
   PluginLoader loader(registrar);
   const bool all_loaded = load_plugins(line, loader);
   if (line.plugins_app->parsed()) list_plugins(loader);
+  print_warnings(loader);
   if (!all_loaded) return ExitStatus::misused;
   if (line.plugins_app->parsed()) return ExitStatus::done;
   if (line.run_app->parsed()) return run_command(line.run, registrar);
@@ -184,6 +195,9 @@ int main(int count, char** words) {
     return after_output(crisp::guarded_main(count, words));
   } catch (const crisp::Error& error) {
     crisp::print_errors(error);
+  } catch (const std::filesystem::filesystem_error& error) {
+    crisp::print_errors(crisp::Error(error.path1().string() + ": " + error.code().message(),
+                                     "check the path and its permissions"));
   } catch (const std::exception& error) {
     std::cerr << "error: " << error.what() << "\n";
   } catch (...) {

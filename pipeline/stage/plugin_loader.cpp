@@ -5,11 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
 #include <system_error>
 
 #include "pipeline/stage/plugin.hpp"
-#include "pipeline/stage/whole_file.hpp"
+#include "pipeline/stage/shared_object.hpp"
 
 namespace crisp {
 namespace {
@@ -74,11 +75,17 @@ std::vector<fs::path> plugin_files(const fs::path& file_or_folder) {
   return files;
 }
 
+/// Whether every text of a descriptor can be read.
+std::size_t length_of_texts(const PluginDescriptor& descriptor) {
+  std::size_t length = 0;
+  for (const char* text : {descriptor.abi_key, descriptor.name, descriptor.version})
+    length += std::strlen(text);
+  return length;
+}
+
 /// Opens a plugin without calling anything of it.
 /// @return its descriptor; nullptr, and why in `refusal`, if it cannot be used
-const PluginDescriptor* open_plugin(const fs::path& file, std::string& refusal) {
-  refusal = what_is_cut_off(file);
-  if (!refusal.empty()) return nullptr;
+const PluginDescriptor* open_sound_plugin(const fs::path& file, std::string& refusal) {
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (!handle) {
     refusal = last_error();
@@ -87,6 +94,22 @@ const PluginDescriptor* open_plugin(const fs::path& file, std::string& refusal) 
   const auto* descriptor = static_cast<const PluginDescriptor*>(dlsym(handle, "crisp_plugin"));
   refusal = descriptor ? refusal_of(*descriptor) : "it has no symbol crisp_plugin: it is no plugin of crisp";
   return refusal.empty() ? descriptor : nullptr;
+}
+
+/// The same of any file, be it damaged: it is loaded, and has registered what it brings, in a process of its
+/// own first.
+const PluginDescriptor* open_plugin(const fs::path& file, Registrar& registrar, std::string& refusal) {
+  refusal = fault_of_object(file);
+  if (!refusal.empty()) return nullptr;
+  const std::string crash = crash_of([&] {
+    std::string ignored;
+    const auto* descriptor = open_sound_plugin(file, ignored);
+    if (!descriptor || length_of_texts(*descriptor) == 0) return;
+    what_is_wrong_with([&] { descriptor->register_all(registrar); });
+  });
+  if (crash.empty()) return open_sound_plugin(file, refusal);
+  refusal = "it is damaged: a process that loads it ends " + crash + "; copy or build it anew";
+  return nullptr;
 }
 
 bool is_same_file(const fs::path& one, const fs::path& other) {
@@ -99,7 +122,8 @@ bool is_same_file(const fs::path& one, const fs::path& other) {
 void PluginLoader::prefer(const fs::path& file_or_folder) {
   for (const auto& file : plugin_files(file_or_folder)) {
     std::string refusal;
-    if (const auto* descriptor = open_plugin(file, refusal)) preferred_.try_emplace(descriptor->name, file);
+    if (const auto* descriptor = open_plugin(file, registrar_, refusal))
+      preferred_.try_emplace(descriptor->name, file);
   }
 }
 
@@ -109,10 +133,11 @@ void PluginLoader::load(const fs::path& file_or_folder) {
 
 void PluginLoader::load_file(const fs::path& file) {
   PluginRecord record{.file = file};
-  if (const auto* descriptor = open_plugin(file, record.refusal)) {
+  if (const auto* descriptor = open_plugin(file, registrar_, record.refusal)) {
     record.name = descriptor->name;
     record.version = descriptor->version;
     judge_name(record);
+    if (record.is_loaded()) record.warning = exposure_of(file);
     if (record.is_loaded()) register_all(record, *descriptor);
   }
   tried_.push_back(std::move(record));

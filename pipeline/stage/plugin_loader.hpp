@@ -18,6 +18,7 @@ struct PluginRecord {
   std::string name;                 ///< empty if it was not found out
   std::string version;              ///< the plugin's own
   std::string refusal;              ///< why it cannot be used; empty if it can
+  std::string warning;              ///< what makes it unsafe to load, though it was; empty if nothing does
   std::string skipped;              ///< which file is used in its place; empty if none is
   std::vector<std::string> brings;  ///< "stage filter.near", "term range.drift"
 
@@ -26,10 +27,11 @@ struct PluginRecord {
 
 /// Loads plugins for as long as the program runs: they are never unloaded.
 ///
-/// A file is refused, with the reason in its record, if it is no shared object or not all of one, has no
-/// `crisp_plugin`, was built with another compiler, C++ library, alignment or version of crisp (told by
-/// constants, before any function of it is called), or if what it registers is refused. A plugin whose name
-/// came before is the same once more, and skipped.
+/// A file is refused, with the reason in its record, if it is no shared object or not all of one, crashes the
+/// system's loader (it is tried in a process of its own first), has no `crisp_plugin`, was built with another
+/// compiler, C++ library, alignment or version of crisp (told by constants, before any function of it is
+/// called), or if what it registers is refused. A plugin whose name came before is the same once more, and
+/// skipped.
 class PluginLoader {
  public:
   explicit PluginLoader(Registrar& registrar) : registrar_(registrar) {}

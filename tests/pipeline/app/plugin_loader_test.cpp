@@ -2,10 +2,16 @@
 #include "pipeline/stage/plugin_loader.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
 
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/stage/plugin.hpp"
 #include "tests/pipeline/stage/toy_stages.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace crisp {
 namespace {
@@ -91,7 +97,7 @@ TEST(PluginLoader, SaysWhyAFileIsNoPlugin) {
   loader.load(text);
   loader.load("libm.so.6");
   EXPECT_THAT(loader.tried()[0].refusal, HasSubstr("No such file"));
-  EXPECT_THAT(loader.tried()[1].refusal, HasSubstr("file too short"));
+  EXPECT_THAT(loader.tried()[1].refusal, HasSubstr("it is no shared object for this machine"));
   EXPECT_FALSE(loader.tried()[2].is_loaded());  // looked for here, and not in the system's folders
   fs::remove(text);
 }
@@ -116,6 +122,98 @@ TEST(PluginLoader, RefusesAPluginThatWasCutShortWhereverThatIs) {
                 HasSubstr("reach beyond its " + std::to_string(bytes) + " bytes; copy or build it anew"));
     fs::remove(cut);
   }
+}
+
+TEST(PluginLoader, RefusesWhatIsNoFileWithoutOpeningIt) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe.so").c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", folder / "zeros.so");
+  Registrar registrar;
+  PluginLoader loader(registrar);
+  loader.load(folder.path());
+  ASSERT_EQ(loader.tried().size(), 2U);
+  for (const auto& plugin : loader.tried())
+    EXPECT_EQ(plugin.refusal, "it is no file, but a pipe, a device or a folder");
+}
+
+TEST(PluginLoader, RefusesAPluginForAnotherMachineAndAProgram) {
+  const test::TemporaryFolder folder;
+  std::string other = test::bytes_of(TOY_PLUGIN);
+  other[18] = '\x28';  // e_machine
+  test::put_bytes(folder / "other.so", other);
+  Registrar registrar;
+  PluginLoader loader(registrar);
+  loader.load(folder / "other.so");
+  EXPECT_EQ(loader.tried().at(0).refusal, "it is no shared object for this machine");
+  std::string object = test::bytes_of(TOY_PLUGIN);
+  object[16] = 1;  // e_type: a part of a program that is not linked yet
+  test::put_bytes(folder / "object.so", object);
+  loader.load(folder / "object.so");
+  EXPECT_EQ(loader.tried().at(1).refusal, "it is no shared object, but a program or a part of one");
+}
+
+/// Each damaged plugin is loaded in a process of its own, which must come to its end.
+TEST(PluginLoader, SurvivesAPluginWhoseHeadersAreDamaged) {
+  const test::TemporaryFolder folder;
+  const std::string sound = test::bytes_of(TOY_PLUGIN);
+  constexpr std::size_t kHeaders = 64 + 10 * 56;  // [bytes] ELF's own, and those of ten segments
+  for (std::size_t bit = 3; bit < 8 * kHeaders; bit += 37) {
+    std::string damaged = sound;
+    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
+    test::put_bytes(folder / "damaged.so", damaged);
+    const pid_t child = fork();
+    if (child == 0) {
+      Registrar registrar;
+      PluginLoader loader(registrar);
+      loader.load(folder / "damaged.so");
+      _exit(loader.tried().size() == 1 ? 0 : 1);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0)
+        << "bit " << bit << ", signal " << WTERMSIG(status);
+  }
+}
+
+TEST(PluginLoader, RefusesAPluginThatCrashesTheSystemsLoader) {
+  const test::TemporaryFolder folder;
+  std::string damaged = test::bytes_of(TOY_PLUGIN);
+  // The dynamic section, from which the loader takes the addresses of all its tables.
+  std::uint64_t begin = 0;
+  std::uint64_t bytes = 0;
+  for (std::size_t header = 64; bytes == 0; header += 56) {
+    std::uint32_t type = 0;
+    std::memcpy(&type, &damaged[header], sizeof type);
+    if (type != 2) continue;  // PT_DYNAMIC
+    std::memcpy(&begin, &damaged[header + 8], sizeof begin);
+    std::memcpy(&bytes, &damaged[header + 32], sizeof bytes);
+  }
+  for (std::size_t entry = begin; entry < begin + bytes; entry += 16) damaged[entry + 14] = '\x7f';
+  test::put_bytes(folder / "damaged.so", damaged);
+  Registrar registrar;
+  PluginLoader loader(registrar);
+  loader.load(folder / "damaged.so");
+  EXPECT_THAT(loader.tried().at(0).refusal, HasSubstr("it is damaged: a process that loads it ends "));
+}
+
+TEST(PluginLoader, WarnsOfAPluginThatEveryoneMayChange) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder / "toy.so";
+  fs::copy_file(TOY_PLUGIN, file);
+  const auto warning = [&] {
+    Registrar registrar;
+    PluginLoader loader(registrar);
+    loader.load(file);
+    EXPECT_TRUE(loader.tried().at(0).is_loaded());
+    return loader.tried().at(0).warning;
+  };
+  EXPECT_EQ(warning(), "");
+  fs::permissions(folder.path(), fs::perms::all);
+  EXPECT_EQ(warning(), "everyone may write to its folder, " + folder.path().string());
+  fs::permissions(folder.path(), fs::perms::all | fs::perms::sticky_bit);
+  EXPECT_EQ(warning(), "");
+  fs::permissions(file, fs::perms::others_write, fs::perm_options::add);
+  EXPECT_EQ(warning(), "everyone may write to it");
 }
 
 TEST(PluginLoader, SkipsAPluginThatIsMetAgain) {

@@ -13,6 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST_F(ProgramTest, TellsAllOfAStage) {
   const auto outcome = crisp({"stages", "toy.write"});
@@ -83,6 +84,19 @@ TEST_F(ProgramTest, OnlyListsWhatIsWrongInAFolderOfPluginsThatItWasNotAskedFor) 
   EXPECT_THAT(list.out, HasSubstr(path("plugins/cut.so") + "\n  refused: it is cut short"));
   EXPECT_THAT(list.out, HasSubstr(path("plugins/old_toy.so") +
                                   "\n  toy 1.5\n  skipped: it is used from " TOY_PLUGIN "\n"));
+}
+
+TEST_F(ProgramTest, WarnsOfAFolderOfPluginsThatEveryoneMayWriteTo) {
+  fs::create_directories(folder_ / "plugins");
+  fs::copy_file(FOREIGN_PLUGIN, folder_ / "plugins/foreign.so");
+  fs::copy_file(CLASHING_PLUGIN, folder_ / "plugins/clashing.so");
+  fs::permissions(folder_ / "plugins", fs::perms::all);
+  setenv("CRISP_PLUGINS", path("plugins").c_str(), 1);
+  const auto run = crisp({"run", path("sum.yaml"), "-o", path("out")});
+  unsetenv("CRISP_PLUGINS");
+  EXPECT_THAT(run.error, HasSubstr("warning: the plugin " + path("plugins/clashing.so") +
+                                   ": everyone may write to its folder, " + path("plugins")));
+  EXPECT_THAT(run.error, Not(HasSubstr("foreign.so"))) << "nothing of it runs";
 }
 
 TEST_F(ProgramTest, RefusesTwoFilesOfOnePluginThatItWasBothAskedFor) {
