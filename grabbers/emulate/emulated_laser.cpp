@@ -59,12 +59,15 @@ class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
   }
 
   bool open() const { return socket_.is_open(); }
+  /// When it last sent something or took what was sent to it.
+  std::chrono::steady_clock::time_point active() const { return active_; }
   bool wants_scans() const { return open() && responder_.wants_scans(); }
   ColaLanguage language() const { return responder_.language(); }
   std::size_t waiting_bytes() const { return waiting_bytes_; }
 
  private:
   void take(std::size_t bytes) {
+    active_ = std::chrono::steady_clock::now();
     framer_.feed(ByteView(buffer_).first(bytes), 0, [this](const ColaFrame& frame) {
       const auto request = parse_cola(frame.payload, frame.language);
       if (request) send(responder_.answer(*request));
@@ -92,6 +95,7 @@ class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
   }
 
   void has_written(std::size_t bytes) {
+    active_ = std::chrono::steady_clock::now();
     written_ += bytes;
     if (written_ < waiting_.front().size()) return write();
     waiting_bytes_ -= written_;
@@ -110,11 +114,12 @@ class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
   std::deque<Bytes> waiting_;
   std::size_t waiting_bytes_ = 0;
   std::size_t written_ = 0;  ///< [bytes] of the first that waits
+  std::chrono::steady_clock::time_point active_ = std::chrono::steady_clock::now();
 };
 
 EmulatedLaser::EmulatedLaser(asio::io_context& context, const Address& address, FaultDice dice,
-                             const EmulatedClock& clock)
-    : acceptor_(context), dice_(std::move(dice)), clock_(clock) {
+                             const EmulatedClock& clock, std::chrono::milliseconds longest_idle)
+    : acceptor_(context), dice_(std::move(dice)), clock_(clock), longest_idle_(longest_idle) {
   error_code failure;
   const auto ip = asio::ip::make_address(address.ip, failure);
   const tcp::endpoint at(ip, address.port);
@@ -137,6 +142,7 @@ void EmulatedLaser::accept() {
   acceptor_.async_accept([this](const error_code& failure, tcp::socket socket) {
     if (failure == asio::error::operation_aborted) return;
     std::erase_if(sessions_, [](const auto& session) { return !session->open(); });
+    if (sessions_.size() == kMostSessions) close_idle();
     if (!failure && sessions_.size() < kMostSessions) {
       error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
@@ -144,6 +150,16 @@ void EmulatedLaser::accept() {
       sessions_.back()->read();
     }
     if (acceptor_.is_open()) accept();
+  });
+}
+
+/// Clients that neither say nor take anything must not keep others out.
+void EmulatedLaser::close_idle() {
+  const auto active_after = std::chrono::steady_clock::now() - longest_idle_;
+  std::erase_if(sessions_, [&](const auto& session) {
+    if (session->active() > active_after) return false;
+    session->close();
+    return true;
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -21,9 +22,12 @@ class EmulatedLaser {
  public:
   /// Listens from now on, but answers only once the io_context runs.
   /// @param address  of this machine; port 0: any that is free
+  /// @param longest_idle  clients that have neither sent nor taken anything for so long give way where there
+  /// are too
+  ///                      many (16)
   /// @throws Error if it cannot be listened at
   EmulatedLaser(boost::asio::io_context& context, const Address& address, FaultDice dice,
-                const EmulatedClock& clock);
+                const EmulatedClock& clock, std::chrono::milliseconds longest_idle = std::chrono::seconds(5));
   ~EmulatedLaser();
   EmulatedLaser(const EmulatedLaser&) = delete;
   EmulatedLaser& operator=(const EmulatedLaser&) = delete;
@@ -44,6 +48,7 @@ class EmulatedLaser {
  private:
   class Session;
   void accept();
+  void close_idle();
   void restart();
   void send(Session& session, const ScanData& scan);
 
@@ -52,6 +57,7 @@ class EmulatedLaser {
   EmulatedDevice device_;
   FaultDice dice_;
   EmulatedClock clock_;
+  std::chrono::milliseconds longest_idle_;
   EmulatedLedger ledger_;
   std::vector<std::shared_ptr<Session>> sessions_;
 };

@@ -16,6 +16,7 @@
 #include "pipeline/app/status_board.hpp"
 #include "pipeline/app/summary.hpp"
 #include "pipeline/data/all_errors.hpp"
+#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/folder_lock.hpp"
 #include "pipeline/files/utc_now.hpp"
 #include "pipeline/pcd/parts.hpp"
@@ -31,8 +32,11 @@ double seconds_now() {
 
 /// What was cut into several files is called by the name that they come of.
 void check_input(const std::optional<fs::path>& input) {
-  if (input && !fs::exists(*input) && !fs::exists(part_path(*input, 1)))
-    throw Error("there is no input " + input->string());
+  if (!input) return;
+  std::error_code failure;
+  if (fs::exists(*input, failure)) return;
+  if (failure) throw Error("the input " + input->string() + " cannot be read: " + failure.message());
+  if (!fs::exists(part_path(*input, 1), failure)) throw Error("there is no input " + input->string());
 }
 
 RunRecord begin_record(const LoadedPipeline& loaded, const RunSettings& run) {
@@ -169,7 +173,10 @@ ExitStatus run_command(const RunRequest& request, const Registrar& registrar) {
                                   : load_pipeline(request.text, request.file, request.arguments, run);
     check_input(request.arguments.input);
     // Finds out before the work, and not after it, that nothing can be written there.
-    if (!run.output.empty()) lock = std::make_unique<FolderLock>(run.output);
+    if (!run.output.empty()) {
+      lock = std::make_unique<FolderLock>(run.output);
+      remove_left_over_parts(run.output);
+    }
     print_warnings(loaded->pipeline);
   } catch (const Error& error) {
     print_errors(error);

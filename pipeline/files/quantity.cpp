@@ -21,28 +21,29 @@ struct Unit {
   std::string_view name;
   std::string_view si;
   double factor;
+  double divisor = 1;  ///< powers of ten below 1 are none of a double, which their reciprocals are
 };
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-// Every spelling that is understood, with what one of it is in the SI unit.
+// Every spelling that is understood, with what one of it is in the SI unit: factor / divisor.
 constexpr std::array kUnits = {
     Unit{"m", "m", 1},
-    Unit{"um", "m", 1e-6},
-    Unit{"µm", "m", 1e-6},
-    Unit{"mm", "m", 1e-3},
-    Unit{"cm", "m", 1e-2},
+    Unit{"um", "m", 1, 1e6},
+    Unit{"µm", "m", 1, 1e6},
+    Unit{"mm", "m", 1, 1e3},
+    Unit{"cm", "m", 1, 1e2},
     Unit{"km", "m", 1e3},
     Unit{"rad", "rad", 1},
-    Unit{"mrad", "rad", 1e-3},
+    Unit{"mrad", "rad", 1, 1e3},
     Unit{"deg", "rad", kDegree},
     Unit{"°", "rad", kDegree},
     Unit{"turn", "rad", kTurn},
     Unit{"s", "s", 1},
-    Unit{"ns", "s", 1e-9},
-    Unit{"us", "s", 1e-6},
-    Unit{"µs", "s", 1e-6},
-    Unit{"ms", "s", 1e-3},
+    Unit{"ns", "s", 1, 1e9},
+    Unit{"us", "s", 1, 1e6},
+    Unit{"µs", "s", 1, 1e6},
+    Unit{"ms", "s", 1, 1e3},
     Unit{"min", "s", 60},
     Unit{"h", "s", 3600},
     Unit{"Hz", "Hz", 1},
@@ -52,10 +53,10 @@ constexpr std::array kUnits = {
     Unit{"turn/s", "rad/s", kTurn},
     Unit{"rpm", "rad/s", kTurn / 60},
     Unit{"m/s", "m/s", 1},
-    Unit{"mm/s", "m/s", 1e-3},
-    Unit{"km/h", "m/s", 1 / 3.6},
-    Unit{"%", "1", 1e-2},
-    Unit{"ppm", "1", 1e-6},
+    Unit{"mm/s", "m/s", 1, 1e3},
+    Unit{"km/h", "m/s", 1, 3.6},
+    Unit{"%", "1", 1, 1e2},
+    Unit{"ppm", "1", 1, 1e6},
 };
 
 Complaint complain(std::string_view text, std::string_view why) {
@@ -127,7 +128,7 @@ std::variant<double, Complaint> parse_quantity(std::string_view text, std::strin
   const std::string spelt = with_micro_sign(given);
   for (const auto& known : kUnits) {
     if (known.name != spelt || known.si != unit) continue;
-    const double value = parts->number * known.factor;
+    const double value = parts->number * known.factor / known.divisor;
     if (!std::isfinite(value)) return complain(text, "is not a finite number");
     return value;
   }

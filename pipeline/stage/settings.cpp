@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "pipeline/files/control_characters.hpp"
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/stage/option_yaml.hpp"
 #include "pipeline/stage/unknown_names.hpp"
@@ -52,7 +53,12 @@ std::string meant(const std::string& name, const std::vector<StageSpec>& specs, 
 Settings::Settings(const std::vector<std::string>& texts, std::vector<Error>& errors) {
   for (const auto& text : texts) {
     const auto equals = text.find('=');
-    if (equals == std::string::npos || equals == 0) {
+    const auto control = find_control_character(text);
+    const auto wrong = std::min(control, text.find('\n'));
+    if (wrong != std::string::npos) {
+      errors.emplace_back("a setting is one line of text, but " + control_character_in_words(text[wrong]),
+                          "write it in one line, without that character", place_of(shown(text)));
+    } else if (equals == std::string::npos || equals == 0) {
       errors.emplace_back("a setting needs a name and a value", "write --set tag.option=value",
                           place_of(text));
     } else {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program as people run it, with toy stages from a plugin.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
 #include <iterator>
+#include <set>
 #include <thread>
 
 #include "tests/pipeline/app/program_fixture.hpp"
@@ -274,6 +276,22 @@ TEST_F(ProgramTest, StopsInGoodOrderOnSignals) {
   }
 }
 
+TEST_F(ProgramTest, IsInterruptedWhileItReadsAPipeIntoWhichNobodyWrites) {
+  mkfifo((folder_ / "pipe").c_str(), 0600);
+  const std::vector<std::string> grabbers = {
+      "grabber.capture, with: {file: pipe}", "grabber.telegrams, with: {file: pipe}",
+      "grabber.table, with: {file: pipe, time_column: 1, angle_column: 2, range_column: 3, laser_column: 4, "
+      "angle_step: 1deg}"};
+  for (const auto& grabber : grabbers) {
+    write_file(folder_ / "pipe.yaml",
+               "crisp: 1\npipeline:\n  - {stage: " + grabber + "}\n  - {stage: " + grabber + "}\n");
+    const pid_t child = start({"run", path("pipe.yaml"), "-o", path("out"), "--threads", "2"});
+    wait_for_handler(child, SIGTERM);
+    kill(child, SIGTERM);
+    EXPECT_EQ(wait_for(child).status, 143) << grabber << content("stderr");
+  }
+}
+
 TEST_F(ProgramTest, LeavesNoPartsOfFilesWhenItIsEndedAtOnce) {
   write_file(folder_ / "hang.yaml",
              "crisp: 1\npipeline:\n  - {stage: toy.hang, with: {file: ${output}/x.txt}}\n");
@@ -287,6 +305,21 @@ TEST_F(ProgramTest, LeavesNoPartsOfFilesWhenItIsEndedAtOnce) {
     EXPECT_TRUE(fs::is_empty(folder_ / "out"));
     fs::remove(folder_ / "out");
   }
+}
+
+TEST_F(ProgramTest, RemovesThePartsThatARunWhichWasKilledLeft) {
+  write_file(folder_ / "wait.yaml",
+             "crisp: 1\npipeline:\n  - {stage: toy.wait, with: {file: ${output}/x.txt}}\n");
+  const pid_t killed = start({"run", path("wait.yaml"), "-o", path("out")});
+  wait_for_part();
+  kill(killed, SIGKILL);
+  wait_for(killed);
+  write_file(folder_ / "out/.mine.part", "of another program");
+  EXPECT_EQ(crisp({"run", path("sum.yaml"), "-o", path("out")}).status, 0);
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder_ / "out")) names.insert(entry.path().filename());
+  EXPECT_THAT(names,
+              testing::ElementsAre(".mine.part", "sum.txt", "sum.txt.provenance.json", "summary.json"));
 }
 
 TEST_F(ProgramTest, IsInterruptedWhateverAStageComplainsOfThen) {

@@ -105,6 +105,43 @@ TEST_F(ProgramTest, TakesOverTheFolderOfARunThatWasKilled) {
   EXPECT_EQ(content("out/sum.txt"), "10\n");
 }
 
+TEST_F(ProgramTest, RefusesAnInputThatLiesWhereTheRunWrites) {
+  fs::create_directory(folder_ / "out");
+  write_file(folder_ / "out/summary.json", "kept");
+  fs::create_symlink("out/summary.json", folder_ / "link.json");
+  for (const std::string input : {"out/summary.json", "link.json"}) {
+    const auto outcome = crisp({"run", path("sum.yaml"), "-i", path(input), "-o", path("out")});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.error, HasSubstr("this run: it would overwrite " + path("out/summary.json") +
+                                         ", which this run reads; "));
+  }
+  EXPECT_EQ(content("out/summary.json"), "kept");
+  const std::string pipeline = content("sum.yaml");
+  for (const std::string name : {"out/summary.json", "out/sum.txt", "out/sum.txt.provenance.json"}) {
+    write_file(folder_ / name, pipeline);
+    const auto outcome = crisp({"run", path(name), "-o", path("out")});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.error, HasSubstr("it would overwrite " + path(name) + ", which this run reads; "));
+    EXPECT_EQ(content(name), pipeline);
+    fs::remove(folder_ / name);
+  }
+}
+
+TEST_F(ProgramTest, ReplacesLinksAndLeavesTheFilesThatTheyLeadToAlone) {
+  fs::create_directory(folder_ / "out");
+  const std::vector<std::string> names = {"sum.txt", "sum.txt.provenance.json", "summary.json"};
+  for (const auto& name : names) {
+    write_file(folder_ / ("precious " + name), "precious");
+    fs::create_symlink(folder_ / ("precious " + name), folder_ / "out" / name);
+  }
+  EXPECT_EQ(crisp({"run", path("sum.yaml"), "-o", path("out")}).status, 0);
+  EXPECT_EQ(content("out/sum.txt"), "10\n");
+  for (const auto& name : names) {
+    EXPECT_FALSE(fs::is_symlink(folder_ / "out" / name)) << name;
+    EXPECT_EQ(content("precious " + name), "precious");
+  }
+}
+
 TEST_F(ProgramTest, RefusesToOverwriteWhatComesOfAnotherStagesFile) {
   const auto error_of = [&](const std::string& one, const std::string& other) {
     write_file(folder_ / "files.yaml",
@@ -195,6 +232,32 @@ TEST_F(ProgramTest, RefusesAFolderThatHoldsNoPlugin) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.error,
             "error: the folder " + path("none") + " holds no plugin; plugins are files NAME.so\n");
+}
+
+TEST_F(ProgramTest, SaysInASentenceThatAnInputCannotBeRead) {
+  fs::create_symlink("b", folder_ / "a");
+  fs::create_symlink("a", folder_ / "b");
+  const auto loop = crisp({"run", path("sum.yaml"), "-i", path("a"), "-o", path("out")});
+  EXPECT_EQ(loop.status, 2);
+  EXPECT_EQ(loop.error,
+            "error: the input " + path("a") + " cannot be read: Too many levels of symbolic links\n");
+  fs::create_directory(folder_ / "folder");
+  write_file(folder_ / "list.yaml",
+             "crisp: 1\npipeline:\n  - {stage: grabber.telegrams, with: {file: folder}}\n");
+  const auto folder = crisp({"run", path("list.yaml"), "-o", path("out")});
+  EXPECT_EQ(folder.status, 1);
+  EXPECT_THAT(folder.error,
+              HasSubstr("grabber.telegrams: cannot read " + path("folder") + ": Is a directory"));
+}
+
+TEST_F(ProgramTest, RefusesALineBreakInASetting) {
+  for (const std::string character : {"\n", "\x1b"}) {
+    const auto outcome = crisp({"run", path("sum.yaml"), "-o", path("out"), "--set",
+                                "toy.write.file=" + path("a") + character + "b"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.error, HasSubstr("a setting is one line of text, but there is a control character"));
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+  }
 }
 
 TEST_F(ProgramTest, SaysHowAStageIsWritten) {

@@ -38,6 +38,15 @@ TEST(Quantity, ConvertsUnitsToSi) {
   EXPECT_DOUBLE_EQ(value("3 kg", "kg"), 3);
 }
 
+TEST(Quantity, IsTheSameNumberInWhicheverUnitItIsWritten) {
+  EXPECT_EQ(value("100us", "s"), 1e-4);
+  EXPECT_EQ(value("0.1ms", "s"), 1e-4);
+  EXPECT_EQ(value("7um", "m"), 7e-6);
+  EXPECT_EQ(value("3ns", "s"), 3e-9);
+  EXPECT_EQ(value("7ppm", "1"), 7e-6);
+  EXPECT_EQ(value("29mm", "m"), 0.029);
+}
+
 TEST(Quantity, TakesAPlainNumberAsSi) {
   EXPECT_EQ(value("0.05", "m"), 0.05);
   EXPECT_EQ(value("+.5", "s"), 0.5);
