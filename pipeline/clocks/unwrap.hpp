@@ -22,6 +22,7 @@ class CounterUnwrapper {
   /// @return how far it has come: the possible number nearest to `expected`, negative for one that is late
   std::int64_t advance(std::uint16_t raw, double expected) const;
   void accept(std::uint16_t raw) { last_ = raw; }
+  std::uint16_t last() const { return last_; }
 
  private:
   std::uint16_t last_ = 0;

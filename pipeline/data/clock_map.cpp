@@ -2,8 +2,40 @@
 #include "pipeline/data/clock_map.hpp"
 
 #include <algorithm>
+#include <iterator>
+
+#include "pipeline/data/error.hpp"
 
 namespace crisp {
+namespace {
+
+void require_ascending(const ClockPiece& before, const ClockPiece& next) {
+  if (!(next.device_begin > before.device_begin)) {
+    throw Error("the pieces of a clock map must ascend in device time");
+  }
+}
+
+}  // namespace
+
+ClockPieces::ClockPieces(const ClockPiece& first, const std::vector<ClockPiece>& others) : pieces_{first} {
+  for (const ClockPiece& piece : others) append(piece);
+}
+
+void ClockPieces::append(const ClockPiece& piece) {
+  require_ascending(pieces_.back(), piece);
+  pieces_.push_back(piece);
+}
+
+void ClockPieces::replace_last(const ClockPiece& piece) {
+  if (pieces_.size() > 1) require_ascending(pieces_.end()[-2], piece);
+  pieces_.back() = piece;
+}
+
+bool ClockPieces::drop_last() {
+  if (pieces_.size() < 2) return false;
+  pieces_.pop_back();
+  return true;
+}
 
 double ClockMap::to_hub(double device_time) const {
   auto next = std::upper_bound(pieces.begin(), pieces.end(), device_time,

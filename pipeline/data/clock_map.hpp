@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,16 +15,41 @@ struct ClockPiece {
   double rate_std_error = 0;  ///< standard error of the rate
 };
 
+/// The pieces of a clock map, ascending in device_begin. There is always one: a clock of which nothing is
+/// known has no map.
+class ClockPieces {
+ public:
+  explicit ClockPieces(const ClockPiece& first) : pieces_{first} {}
+  /// @throws Error unless they ascend
+  ClockPieces(const ClockPiece& first, const std::vector<ClockPiece>& others);
+
+  /// @throws Error unless it begins after the last one
+  void append(const ClockPiece& piece);
+  void replace_last(const ClockPiece& piece);
+  /// Takes back the last piece. @return whether there was another one before it; the first stays
+  bool drop_last();
+
+  const ClockPiece& front() const { return pieces_.front(); }
+  const ClockPiece& back() const { return pieces_.back(); }
+  const ClockPiece& operator[](std::size_t i) const { return pieces_[i]; }
+  std::size_t size() const { return pieces_.size(); }
+  auto begin() const { return pieces_.begin(); }
+  auto end() const { return pieces_.end(); }
+
+ private:
+  std::vector<ClockPiece> pieces_;
+};
+
 /// device time → hub time of one device: continuous and piecewise linear between resets of the device.
 struct ClockMap {
-  std::string device;              ///< the rig's name of it, "laser1" or "plate"
-  std::vector<ClockPiece> pieces;  ///< ascending in device_begin
-  double device_end = 0;           ///< [s] unwrapped device time of the last stamp
-  double skew_std_error = 0;       ///< standard error of the mean skew, as a ratio
-  double std_error = 0;            ///< [s] standard error of the hub times, in the mean over the recording
-  double residual_median = 0;      ///< [s] median delay of the stamps above the line
-  double residual_95 = 0;          ///< [s] 95 % quantile of it
-  std::size_t stamps = 0;          ///< pairs (device time, receipt time) that the map is fitted to
+  std::string device;          ///< the rig's name of it, "laser1" or "plate"
+  ClockPieces pieces;          ///< at least one
+  double device_end = 0;       ///< [s] unwrapped device time of the last stamp
+  double skew_std_error = 0;   ///< standard error of the mean skew, as a ratio
+  double std_error = 0;        ///< [s] standard error of the hub times, in the mean over the recording
+  double residual_median = 0;  ///< [s] median delay of the stamps above the line
+  double residual_95 = 0;      ///< [s] 95 % quantile of it
+  std::size_t stamps = 0;      ///< pairs (device time, receipt time) that the map is fitted to
 
   /// @param device_time [s] unwrapped device time; outside the pieces the first or last is extended
   /// @return [s since the run's epoch]

@@ -72,7 +72,7 @@ void RefineStage::check(const RunSettings& run) const {
 }
 
 void RefineStage::process(const Inputs& in, Outputs&, Context& context) {
-  if (const auto* clock = in.find<ClockMap>()) clocks_[clock->device] = *clock;
+  if (const auto* clock = in.find<ClockMap>()) clocks_.insert_or_assign(clock->device, *clock);
   if (!in.find<Measurements>()) return;
   start_ = in.share<Calibration>();
   collected_.add(in.share<Measurements>(),

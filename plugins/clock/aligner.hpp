@@ -88,8 +88,9 @@ class HubTracks {
   std::int64_t epoch_ns() const { return epoch_ns_; }
   double now() const { return now_; }  ///< [s since the epoch] latest receipt
 
-  bool has_scans() const;     ///< of any laser
-  bool has_readings() const;  ///< of the plate
+  std::uint64_t scans_received() const;  ///< of use or not
+  bool has_scans() const;                ///< of any laser
+  bool has_readings() const;             ///< of the plate, two or more
   /// @throws Error as Aligner::finish()
   void refuse_if_missing() const;
   void finish_clocks();
@@ -104,6 +105,7 @@ class HubTracks {
   Pool<Measurements> measurements_;
   std::int64_t epoch_ns_ = 0;
   bool begun_ = false;
+  std::optional<double> begin_;  ///< [s since the epoch] of the present recording
   double now_ = 0;
   std::uint64_t unknown_lasers_ = 0;
   std::uint64_t back_in_time_ = 0;

@@ -12,11 +12,11 @@ namespace {
 constexpr double kFar = 1e-3;  // [s] a plate at 1 Hz turns by 0.36° in that time: not to be trusted
 
 void count_losses(const DeviceReport& device, std::map<std::string, std::uint64_t>& counts) {
-  const auto count = [&](const char* what, std::uint64_t n) {
-    counts[device.clock.device + ": " + what] = n;
-  };
+  const auto count = [&](const char* what, std::uint64_t n) { counts[device.device + ": " + what] = n; };
   count("telegrams lost", device.lost);
-  count("telegrams repeated or out of order", device.repeated);
+  count("telegrams that came twice", device.repeated);
+  count("telegrams that came after later ones", device.late);
+  count("telegrams with the stamp of the one before", device.standing);
   count("telegrams with impossible times", device.damaged);
   count("clock resets", device.resets);
   count("silences of a second or more", device.silences.size());
@@ -33,7 +33,7 @@ void warn_of_steps(const std::string& device, const char* what, const std::vecto
 }
 
 void warn_of_device(const DeviceReport& device, std::vector<std::string>& warnings) {
-  const std::string& name = device.clock.device;
+  const std::string& name = device.device;
   if (device.received == 0) {
     warnings.push_back(name + ": nothing came from it");
     return;
@@ -54,14 +54,55 @@ void warn_of_device(const DeviceReport& device, std::vector<std::string>& warnin
   warn_of_steps(name, "its shortest delay changed", device.delay_steps, warnings);
 }
 
+std::string about(std::uint64_t n, std::uint64_t all) {
+  return fmt::format("{} of {} telegrams ({:.1f} %)", n, all,
+                     100 * static_cast<double>(n) / static_cast<double>(all));
+}
+
+/// Why telegrams of a device are left out, the commonest reason alone.
+std::string reason_of(const DeviceReport& device) {
+  constexpr double kStands = 0.25;  // [s] a clock that ticks more coarsely is of no use either
+  if (device.standing >= std::max(device.late, device.damaged)) {
+    const std::string same = about(device.standing, device.received) + " carry the stamp of the one before";
+    if (device.standstill < kStands) return "its clock ticks too coarsely: " + same;
+    return fmt::format("its clock stands still (for {:.1f} s): {}", device.standstill, same);
+  }
+  if (device.late >= device.damaged) {
+    return about(device.late, device.received) + " came after later ones, by their stamps";
+  }
+  return about(device.damaged, device.received) + " have times that fit none before or after";
+}
+
+/// Says of which device more than a few telegrams are left out: a doubt where hardly any is of use. What came
+/// twice is no loss.
+void tell_losses(const DeviceReport& device, AlignmentReport& report) {
+  constexpr double kFew = 0.03;
+  constexpr double kNearlyAll = 0.95;
+  const auto lost = static_cast<double>(device.late + device.standing + device.damaged);
+  const double share =
+      lost / static_cast<double>(std::max<std::uint64_t>(1, device.received - device.repeated));
+  if (device.by_receipt) {
+    report.warnings.push_back(
+        fmt::format("{}: its clock stands still; {} of {} telegrams are placed by their receipt",
+                    device.device, device.received - device.left_out(), device.received));
+    return;
+  }
+  if (share <= kFew) return;
+  (share < kNearlyAll ? report.warnings : report.doubts)
+      .push_back(fmt::format("{}: {}; they are left out. {}", device.device, reason_of(device),
+                             device.standing > 0 ? "Switch on its time stamps or update its firmware; "
+                                                   "clock.receipt places by receipt times instead"
+                                                 : "Check the device and the order of the recording"));
+}
+
 /// A line that is as steep as any may be fits stamps that have no clock in common. Few stamps, or close ones,
 /// can make it steep by chance; but then they are not far from it.
 std::string doubt_of(const DeviceReport& device) {
-  if (device.clock.stamps == 0 || device.clock.residual_median < kFar) return {};
-  if (std::abs(device.clock.skew_ppm()) < 0.99e6 * kMostSkew) return {};
+  if (!device.clock || device.clock->residual_median < kFar) return {};
+  if (std::abs(device.clock->skew_ppm()) < 0.99e6 * kMostSkew) return {};
   return fmt::format(
       "{}: its stamps fit no steady clock (skew beyond {:.0f} ppm; half of them more than {:.1f} ms from it)",
-      device.clock.device, 1e6 * kMostSkew, 1e3 * device.clock.residual_median);
+      device.device, 1e6 * kMostSkew, 1e3 * device.clock->residual_median);
 }
 
 /// How far a clock may be from its line [s] at the ends of half a minute about its middle; a longer recording
@@ -69,7 +110,6 @@ std::string doubt_of(const DeviceReport& device) {
 /// in without waiting, stamps lie far from the line but for a few, and its slope is the work of these.
 double error_of_clock(const ClockMap& clock) {
   constexpr double kLong = 30;  // [s]
-  if (clock.pieces.empty()) return 0;
   const double span = clock.device_end - clock.pieces.front().device_begin;
   return clock.skew_std_error * std::min(kLong, 0.5 * span);
 }
@@ -110,10 +150,11 @@ AlignmentReport HubTracks::report() const {
   for (const auto& device : report.devices) {
     count_losses(device, report.counts);
     warn_of_device(device, report.warnings);
+    tell_losses(device, report);
     if (auto doubt = doubt_of(device); !doubt.empty()) report.doubts.push_back(std::move(doubt));
-    tell_error_of_clock(device.clock, report);
+    if (device.clock) tell_error_of_clock(*device.clock, report);
   }
-  const std::string& plate = report.devices.back().clock.device;
+  const std::string& plate = report.devices.back().device;
   report.counts[plate + ": readings after its zero was lost"] = plate_.after_lost_zero();
   report.counts[plate + ": readings with an impossible angle"] = plate_.impossible();
   report.counts[plate + ": readings at one hub time"] = plate_.simultaneous();

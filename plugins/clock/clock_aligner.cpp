@@ -68,9 +68,7 @@ bool ClockAligner::is_too_short() const {
   if (settings_.window || length_ >= kLongestWindow) return false;
   const double drift =
       settings_.drift * length_ * length_ / 8;  // of a line through the window from its clock
-  const auto doubtful = [&](const auto& track) {
-    return track.clock().doubt(begin_, begin_ + length_) > drift;
-  };
+  const auto doubtful = [&](const auto& track) { return track.clock().doubt(begin_ + length_) > drift; };
   return doubtful(tracks_.plate()) || std::ranges::any_of(tracks_.lasers(), doubtful);
 }
 
@@ -115,7 +113,8 @@ void ClockAligner::end_recording() {
     hand_out(std::numeric_limits<double>::infinity());
     report_.append(tracks_.report());
   } else {
-    ++report_.counts["recordings without any scan, or without any reading of the plate"];
+    ++report_.counts["recordings without any scan, or without two readings of the plate"];
+    report_.counts["scans of recordings without two readings of the plate"] += tracks_.scans_received();
   }
   tracks_.begin_anew();
   length_ = settings_.window.value_or(kWindow);

@@ -20,16 +20,21 @@ nlohmann::json to_json(const DeviceReport& device) {
     for (const StampStep& step : steps) list.push_back({{"at", step.at}, {"by", step.by}});
     return list;
   };
-  return {{"device", device.clock.device},
+  const auto of_clock = [&](auto value) {
+    return device.clock ? nlohmann::json(value(*device.clock)) : nlohmann::json();
+  };
+  return {{"device", device.device},
           {"received", device.received},
-          {"stamps", device.clock.stamps},
-          {"skew_ppm", device.clock.stamps > 0 ? nlohmann::json(device.clock.skew_ppm()) : nlohmann::json()},
-          {"skew_std_error_ppm", 1e6 * device.clock.skew_std_error},
-          {"delay_median", device.clock.residual_median},
-          {"delay_95", device.clock.residual_95},
-          {"lines", device.clock.pieces.size()},
+          {"stamps", device.stamps},
+          {"skew_ppm", of_clock([](const ClockMap& clock) { return clock.skew_ppm(); })},
+          {"skew_std_error_ppm", of_clock([](const ClockMap& clock) { return 1e6 * clock.skew_std_error; })},
+          {"delay_median", of_clock([](const ClockMap& clock) { return clock.residual_median; })},
+          {"delay_95", of_clock([](const ClockMap& clock) { return clock.residual_95; })},
+          {"lines", device.clock ? device.clock->pieces.size() : 0},
           {"lost", device.lost},
           {"repeated", device.repeated},
+          {"late", device.late},
+          {"standing", device.standing},
           {"damaged", device.damaged},
           {"resets", device.resets},
           {"silences", silences},
@@ -40,18 +45,18 @@ nlohmann::json to_json(const DeviceReport& device) {
 std::string table_of(const std::vector<DeviceReport>& devices) {
   std::string text = fmt::format("{:10} {:>9} {:>9} {:>8} {:>11} {:>11} {:>6} {:>6}", "device", "stamps",
                                  "skew/ppm", "+-", "median/us", "95 %/us", "lost", "resets");
-  const auto recordings = std::ranges::count(devices, devices.front().clock.device,
-                                             [](const auto& device) { return device.clock.device; });
+  const auto recordings =
+      std::ranges::count(devices, devices.front().device, [](const auto& device) { return device.device; });
   int recording = 0;
   for (const auto& device : devices) {
-    const auto& clock = device.clock;
-    if (recordings > 1 && clock.device == devices.front().clock.device) {
+    if (recordings > 1 && device.device == devices.front().device) {
       text += fmt::format("\nrecording {} of {}", ++recording, recordings);
     }
-    if (clock.stamps == 0) {
-      text += fmt::format("\n{:10} {:>9}", clock.device, 0);
+    if (!device.clock) {
+      text += fmt::format("\n{:10} {:>9}", device.device, 0);
       continue;
     }
+    const ClockMap& clock = *device.clock;
     text += fmt::format("\n{:10} {:>9} {:>9.3f} {:>8.3f} {:>11.1f} {:>11.1f} {:>6} {:>6}", clock.device,
                         clock.stamps, clock.skew_ppm(), 1e6 * clock.skew_std_error,
                         1e6 * clock.residual_median, 1e6 * clock.residual_95, device.lost, device.resets);
@@ -194,10 +199,10 @@ void OnlineStage::tell(Context& context) {
   told_ = aligner.now();
   StageStatus status{.line = "skew"};
   for (const DeviceReport& device : aligner.devices()) {
-    const double skew = device.clock.pieces.empty() ? 0 : 1e6 * (device.clock.pieces.back().rate - 1);
+    const double skew = device.clock ? 1e6 * (device.clock->pieces.back().rate - 1) : 0;
     status.line += fmt::format(" {:+.1f}", skew);
-    status.gauges.push_back({"clock_skew_ppm", skew, device.clock.device});
-    status.gauges.push_back({"clock_resets_total", static_cast<double>(device.resets), device.clock.device});
+    status.gauges.push_back({"clock_skew_ppm", skew, device.device});
+    status.gauges.push_back({"clock_resets_total", static_cast<double>(device.resets), device.device});
   }
   status.line += fmt::format(" ppm, {} scans wait for the plate", aligner.waiting());
   status.gauges.push_back({"scans_waiting", static_cast<double>(aligner.waiting())});
@@ -257,7 +262,7 @@ void AlignStage::finish(Outputs& out, Context& context) {
   context.report({{"devices", devices}});
   context.say(table_of(report.devices));
   for (const auto& device : report.devices) {
-    if (device.clock.stamps > 0) out.give(device.clock);
+    if (device.clock) out.give(*device.clock);
   }
 }
 

@@ -3,21 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace crisp {
 namespace {
 
 constexpr double kSilence = 1;            // [s]
 constexpr std::size_t kMostNoted = 1000;  // silences, and steps
+constexpr std::uint64_t kStanding = 5;    // stamps in a row that are the same: the clock stands still
 
 }  // namespace
 
-DeviceStamps::DeviceStamps(std::string device, FittedClock clock, double period)
-    : time_(std::move(device)), clock_(std::move(clock)), period_(period) {}
+DeviceStamps::DeviceStamps(std::string device, FittedClock clock, double period, StandingClock standing)
+    : standing_(standing), time_(std::move(device)), clock_(std::move(clock)), period_(period) {}
 
 DeviceStamps::Arrival DeviceStamps::accept(std::uint16_t counter, std::uint32_t raw_us,
                                            std::int64_t receipt_ns, double hub, std::int64_t handover_us) {
   ++report_.received;
+  note_silence(hub);
+  if (report_.by_receipt) raw_us = static_cast<std::uint32_t>(receipt_ns / 1000);
   std::int64_t steps = 1;
   std::optional<double> counted_s;
   if (any_) {
@@ -25,15 +29,19 @@ DeviceStamps::Arrival DeviceStamps::accept(std::uint16_t counter, std::uint32_t 
     steps = last_.counter.advance(counter, period_ > 0 ? hub_s / period_ : 1);
     if (period_ > 0) counted_s = static_cast<double>(steps) * period_;
   }
-  const auto [kind, device_us] = time_.add(raw_us, receipt_ns, counted_s);
-  Last now{.receipt_ns = receipt_ns, .device_us = device_us, .handover_us = handover_us};
+  auto [kind, device_us] = time_.add(raw_us, receipt_ns, counted_s);
+  Last now{.raw_us = raw_us, .receipt_ns = receipt_ns, .device_us = device_us, .handover_us = handover_us};
   now.counter.accept(counter);
   switch (kind) {
     case StampKind::repeated:
-      ++report_.repeated;
+      count_useless(counter, raw_us, hub);
       return {kind, device_us, steps};
     case StampKind::reset:
-      ++report_.resets;
+      if (std::exchange(receipts_begin_, false)) {
+        kind = StampKind::next;  // the device went on
+      } else {
+        ++report_.resets;
+      }
       before_reset_ = last_;
       clock_.cut();
       counted_.begin_anew();
@@ -54,7 +62,7 @@ DeviceStamps::Arrival DeviceStamps::accept(std::uint16_t counter, std::uint32_t 
       now.even_us = even(now);
       if (any_) steps = count_steps(steps, now.even_us);
   }
-  note_silence(hub);
+  moved_hub_ = hub;
   if (counted_.is_sure() && (!any_ || now.even_us > last_.even_us)) clock_.add(now.even_us, hub);
   any_ = true;
   last_ = now;
@@ -101,16 +109,43 @@ std::int64_t DeviceStamps::count_steps(std::int64_t steps, std::int64_t even_us)
   return steps;
 }
 
+void DeviceStamps::count_useless(std::uint16_t counter, std::uint32_t raw_us, double hub) {
+  if (raw_us != last_.raw_us) {
+    ++report_.late;
+  } else if (numbered_ && counter == last_.counter.last()) {
+    ++report_.repeated;
+  } else {
+    ++report_.standing;
+    report_.standstill = std::max(report_.standstill, hub - moved_hub_);
+    report_.by_receipt = standing_ == StandingClock::by_receipt && report_.standing >= kStanding;
+    receipts_begin_ = report_.by_receipt;
+  }
+}
+
 void DeviceStamps::note_silence(double hub) {
-  if (any_ && hub - last_hub_ >= kSilence && report_.silences.size() < kMostNoted) {
+  if (report_.received == 1) first_hub_ = last_hub_ = hub;
+  if (hub - last_hub_ >= kSilence && report_.silences.size() < kMostNoted) {
     report_.silences.push_back({.begin = last_hub_, .duration = hub - last_hub_});
   }
   last_hub_ = std::max(last_hub_, hub);
 }
 
+DeviceReport DeviceStamps::report(double begin, double end) const {
+  DeviceReport report = this->report();
+  if (report.received == 0) return report;
+  auto& silences = report.silences;
+  if (first_hub_ - begin >= kSilence) {
+    silences.insert(silences.begin(), {.begin = begin, .duration = first_hub_ - begin});
+  }
+  if (end - last_hub_ >= kSilence) silences.push_back({.begin = last_hub_, .duration = end - last_hub_});
+  return report;
+}
+
 DeviceReport DeviceStamps::report() const {
   DeviceReport report = report_;
+  report.device = clock_.device();
   report.clock = clock_.map();
+  report.stamps = clock_.stamps();
   report.delay_steps = clock_.delay_steps();
   if (numbered_ && smallest_step_ > 0) {
     report.lost =

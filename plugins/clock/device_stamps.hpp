@@ -21,15 +21,30 @@ struct SilentTime {
 
 /// What became of one device's telegrams or readings.
 struct DeviceReport {
-  ClockMap clock;
+  std::string device;             ///< the rig's name of it
+  std::optional<ClockMap> clock;  ///< nothing where no stamp was of use
+  std::size_t stamps = 0;         ///< that its clock is fitted to
   std::uint64_t received = 0;
   std::uint64_t lost = 0;      ///< by the gaps of its counter; 0 where it has none
-  std::uint64_t repeated = 0;  ///< came twice or out of order: left out
+  std::uint64_t repeated = 0;  ///< came twice: left out
+  std::uint64_t late = 0;      ///< came after later ones: left out
+  std::uint64_t standing = 0;  ///< carry the stamp of the one before, but another count: left out
   std::uint64_t damaged = 0;   ///< with times that fit nothing before or after: left out
   std::uint64_t resets = 0;    ///< of its clock
+  double standstill = 0;       ///< [s] for how long at most its clock stood still
+  bool by_receipt = false;     ///< its clock stands still: receipts count instead
   std::vector<SilentTime> silences;
   std::vector<StampStep> clock_steps;  ///< by how much its clock jumped: forwards
   std::vector<StampStep> delay_steps;  ///< by how much its shortest delay grew
+
+  /// Of those received, how many were of no use.
+  std::uint64_t left_out() const { return repeated + late + standing + damaged; }
+};
+
+/// What is done with a device whose clock stands still.
+enum class StandingClock {
+  leave_out,   ///< what carries the stamp of the one before is of no use
+  by_receipt,  ///< the receipts take the place of its clock
 };
 
 /// Takes in the stamps of one device: unwraps its counter and its clock, fits the clock, and counts what is
@@ -43,7 +58,8 @@ class DeviceStamps {
   };
 
   /// @param period [s] nominal time between two counts; 0 if it is not known
-  DeviceStamps(std::string device, FittedClock clock, double period);
+  DeviceStamps(std::string device, FittedClock clock, double period,
+               StandingClock standing = StandingClock::leave_out);
 
   /// @param hub         [s since the epoch] receipt
   /// @param handover_us [µs] by how much later than what is counted, and comes evenly, it was sent
@@ -55,13 +71,20 @@ class DeviceStamps {
 
   FittedClock& clock() { return clock_; }
   const FittedClock& clock() const { return clock_; }
-  const ClockMap& map() const { return clock_.map(); }
-  void count_damaged() { ++report_.damaged; }
+  const std::optional<ClockMap>& map() const { return clock_.map(); }
+  /// An item came that is of no use, as its times contradict each other.
+  void count_damaged() {
+    ++report_.received;
+    ++report_.damaged;
+  }
   void trust_counter(bool numbered) { numbered_ = numbered_ && numbered; }  ///< of what is accepted next
   DeviceReport report() const;
+  /// With the silences before the first and after the last item of a recording [s since the epoch].
+  DeviceReport report(double begin, double end) const;
 
  private:
   struct Last {
+    std::uint32_t raw_us = 0;
     std::int64_t receipt_ns = 0;
     std::int64_t device_us = 0;  // by its clock, steps and all
     std::int64_t handover_us = 0;
@@ -74,17 +97,22 @@ class DeviceStamps {
   /// The steps of the counter or, where they contradict the device's time, those that its time makes likely.
   std::int64_t plausible_steps(std::int64_t steps, double device_s) const;
   std::int64_t count_steps(std::int64_t steps, std::int64_t even_us);
+  void count_useless(std::uint16_t counter, std::uint32_t raw_us, double hub);
   void note_silence(double hub);
 
+  StandingClock standing_;
   TimeUnwrapper time_;
   CountedTime counted_;
   FittedClock clock_;
   DeviceReport report_;
   bool any_ = false;
+  bool receipts_begin_ = false;  ///< with the next item they take the place of its clock
   bool numbered_ = true;  ///< all of them by the device itself
   Last last_;
   Last before_reset_;
+  double first_hub_ = 0;
   double last_hub_ = 0;
+  double moved_hub_ = 0;   ///< [s since the epoch] when its clock was last seen to move
   double stepped_at_ = 0;  ///< [s since the epoch] where its clock may have stepped
   double period_;          ///< [s] between two counts, as far as it is known
   double counted_time_ = 0;

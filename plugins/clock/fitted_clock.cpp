@@ -43,9 +43,7 @@ double mean_device(std::span<const Stamp> stamps) {
 }  // namespace
 
 FittedClock::FittedClock(std::string device, LineFinder find, double bend)
-    : find_(std::move(find)), bend_(bend) {
-  map_.device = std::move(device);
-}
+    : device_(std::move(device)), find_(std::move(find)), bend_(bend) {}
 
 void FittedClock::add(std::int64_t device_us, double hub) {
   if (cut_) {
@@ -58,7 +56,7 @@ void FittedClock::add(std::int64_t device_us, double hub) {
   segment.hull.add(stamp);
   segment.stamps.push_back(stamp);
   segment.last_device = device;
-  ++map_.stamps;
+  ++stamps_;
 }
 
 void FittedClock::drop_last() {
@@ -68,7 +66,7 @@ void FittedClock::drop_last() {
   segment.stamps.pop_back();
   segment.last_device = segment.stamps.back().device;
   make_hull_anew(segment, first);
-  --map_.stamps;
+  --stamps_;
 }
 
 void FittedClock::drop_last_segment() {
@@ -76,8 +74,8 @@ void FittedClock::drop_last_segment() {
     cut();
     return;
   }
-  map_.stamps -= segments_.back().stamps.size();
-  if (segments_.back().followed) map_.pieces.pop_back();
+  stamps_ -= segments_.back().stamps.size();
+  if (segments_.back().followed && map_ && !map_->pieces.drop_last()) map_.reset();
   segments_.pop_back();
 }
 
@@ -86,15 +84,20 @@ void FittedClock::follow(double window) {
   Segment& segment = segments_.back();
   forget_before(segment, segment.last_device - window);
   const ClockLine line = line_of(segment);
-  if (segment.followed) map_.pieces.pop_back();
+  const bool is_first = !map_ || (segment.followed && map_->pieces.size() == 1);
   const double first = segment.device(0);
-  const double begin = map_.pieces.empty() ? first : first - 0.75e-6 * kResetGap_us;  // as in carry_on()
-  map_.pieces.push_back({.device_begin = begin,
+  const double begin = is_first ? first : first - 0.75e-6 * kResetGap_us;  // as in carry_on()
+  const ClockPiece piece{.device_begin = begin,
                          .hub_begin = segment.first_hub + (begin - first) + line.lead(begin - first),
                          .rate = 1 + line.slope,
-                         .rate_std_error = kMostSkew});
+                         .rate_std_error = kMostSkew};
+  if (segment.followed) {
+    map_->pieces.replace_last(piece);
+  } else {
+    append_piece(piece);
+  }
   segment.followed = true;
-  map_.device_end = segment.device(segment.last_device);
+  map_->device_end = segment.device(segment.last_device);
   const Stamp& latest = segment.stamps.back();
   delays_.add(std::abs(latest.lead - line.lead(latest.device)));
 }
@@ -122,12 +125,10 @@ ClockLine FittedClock::line_of(const Segment& segment) const {
   return find_(vertices, 0.5 * (vertices.front().device + segment.last_device));
 }
 
-std::optional<FittedClock::WindowFit> FittedClock::fit(const Segment& segment, double begin,
-                                                       double end) const {
+std::optional<FittedClock::WindowFit> FittedClock::fit(const Segment& segment, double end) const {
   WindowFit fit;
   for (const auto& stamp : segment.stamps) {
-    const double hub = segment.hub(stamp);
-    if (hub >= begin && hub < end) fit.stamps.push_back(stamp);
+    if (segment.hub(stamp) < end) fit.stamps.push_back(stamp);
   }
   if (fit.stamps.empty()) return std::nullopt;
   fit.line = find_(with_bounds(fit.stamps, segment.hull.vertices(), bend_), mean_device(fit.stamps));
@@ -176,10 +177,10 @@ void FittedClock::make_hull_anew(Segment& segment, double first) const {
   segment.hull = std::move(hull);
 }
 
-double FittedClock::doubt(double begin, double end) const {
+double FittedClock::doubt(double end) const {
   double doubt = 0;
   for (const auto& segment : segments_) {
-    const auto window = fit(segment, begin, end);
+    const auto window = fit(segment, end);
     if (window && window->stamps.size() >= kEnoughStamps) doubt = std::max(doubt, window->errors.at_center);
   }
   return doubt;
@@ -195,7 +196,7 @@ void FittedClock::settle(double begin, double end) {
 }
 
 void FittedClock::settle(Segment& segment, double begin, double end) {
-  const auto window = fit(segment, begin, end);
+  const auto window = fit(segment, end);
   if (!window) return;
   const auto& [stamps, line, errors] = *window;
   for (const auto& stamp : stamps) delays_.add(std::abs(stamp.lead - line.lead(stamp.device)));
@@ -209,23 +210,31 @@ void FittedClock::settle(Segment& segment, double begin, double end) {
   segment.hull.forget_before(end - segment.first_hub - kWindowsBack * (end - begin));
 }
 
+void FittedClock::append_piece(const ClockPiece& piece) {
+  if (!map_) {
+    map_.emplace(ClockMap{.device = device_, .pieces = ClockPieces(piece)});
+  } else if (piece.device_begin > map_->pieces.back().device_begin) {
+    map_->pieces.append(piece);
+  }
+}
+
 void FittedClock::carry_on(Segment& segment, const Knot& knot) {
   if (!segment.first_knot) {
     // A scan's own stamp is earlier than its transmission's, which began the segment.
-    const double begin = segment.device(0) - (map_.pieces.empty() ? 0 : 0.75e-6 * kResetGap_us);
-    map_.pieces.push_back({.device_begin = begin,
-                           .hub_begin = knot.hub - knot.rate * (knot.device - begin),
-                           .rate = knot.rate,
-                           .rate_std_error = knot.errors.slope});
+    const double begin = segment.device(0) - (map_ ? 0.75e-6 * kResetGap_us : 0);
+    append_piece({.device_begin = begin,
+                  .hub_begin = knot.hub - knot.rate * (knot.device - begin),
+                  .rate = knot.rate,
+                  .rate_std_error = knot.errors.slope});
     segment.first_knot = knot;
   } else {
     const Knot& before = *segment.last_knot;
     const double span = knot.device - before.device;
-    map_.pieces.push_back(
-        {.device_begin = before.device,
-         .hub_begin = before.hub,
-         .rate = (knot.hub - before.hub) / span,
-         .rate_std_error = std::hypot(before.errors.at_center, knot.errors.at_center) / span});
+    if (!(span > 0)) return;  // receipts that went back in time
+    append_piece({.device_begin = before.device,
+                  .hub_begin = before.hub,
+                  .rate = (knot.hub - before.hub) / span,
+                  .rate_std_error = std::hypot(before.errors.at_center, knot.errors.at_center) / span});
   }
   segment.last_knot = knot;
   squared_offsets_ += knot.errors.at_center * knot.errors.at_center;
@@ -238,13 +247,13 @@ void FittedClock::close(Segment& segment) {
   const Knot& last = *segment.last_knot;
   double skew_error = last.errors.slope;
   if (last.device > first.device) {
-    map_.pieces.push_back({.device_begin = last.device,
-                           .hub_begin = last.hub,
-                           .rate = last.rate,
-                           .rate_std_error = last.errors.slope});
+    append_piece({.device_begin = last.device,
+                  .hub_begin = last.hub,
+                  .rate = last.rate,
+                  .rate_std_error = last.errors.slope});
     skew_error = std::hypot(first.errors.at_center, last.errors.at_center) / (last.device - first.device);
   }
-  map_.device_end = segment.device(segment.last_device);
+  map_->device_end = segment.device(segment.last_device);
   fitted_time_ += segment.last_device;
   squared_errors_ += std::pow(skew_error * segment.last_device, 2);
 }
@@ -255,21 +264,25 @@ bool FittedClock::idle() const {
 
 void FittedClock::finish() {
   std::optional<double> followed_error;
-  if (!segments_.empty() && segments_.back().followed) {
+  if (map_ && !segments_.empty() && segments_.back().followed) {
     const LineErrors errors = errors_of_line(segments_.back().stamps, line_of(segments_.back()));
     followed_error = errors.slope;
-    map_.pieces.back().rate_std_error = *followed_error;
-    map_.std_error = std::hypot(errors.at_center, errors.bias);  // a clock that is followed lies on its line
+    ClockPiece last = map_->pieces.back();
+    last.rate_std_error = *followed_error;
+    map_->pieces.replace_last(last);
+    map_->std_error = std::hypot(errors.at_center, errors.bias);  // a clock that is followed lies on its line
   }
   for (auto& segment : segments_) close(segment);
   segments_.clear();
   cut_ = true;
-  map_.skew_std_error = followed_error     ? *followed_error
-                        : fitted_time_ > 0 ? std::sqrt(squared_errors_) / fitted_time_
-                                           : kMostSkew;
-  if (knots_ > 0) map_.std_error = std::sqrt(squared_offsets_) / static_cast<double>(knots_);
-  map_.residual_median = delays_.quantile(0.5);
-  map_.residual_95 = delays_.quantile(0.95);
+  if (!map_) return;
+  map_->skew_std_error = followed_error     ? *followed_error
+                         : fitted_time_ > 0 ? std::sqrt(squared_errors_) / fitted_time_
+                                            : kMostSkew;
+  if (knots_ > 0) map_->std_error = std::sqrt(squared_offsets_) / static_cast<double>(knots_);
+  map_->residual_median = delays_.quantile(0.5);
+  map_->residual_95 = delays_.quantile(0.95);
+  map_->stamps = stamps_;
 }
 
 }  // namespace crisp

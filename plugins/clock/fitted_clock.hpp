@@ -55,10 +55,11 @@ class FittedClock {
   void take_out_steps();
   const std::vector<StampStep>& delay_steps() const { return delay_steps_; }
 
-  /// How far the line of a window is from being known [s]; 0 if there are too few stamps to say.
-  double doubt(double begin, double end) const;
-  /// Fits the window of the stamps received from `begin` to before `end` [s since the epoch], forgets what no
-  /// later window needs, and carries the map on to the window's middle.
+  /// How far the line of the window that ends at `end` [s since the epoch] is from being known [s]; 0 if
+  /// there are too few stamps to say.
+  double doubt(double end) const;
+  /// Fits the window of all stamps received before `end` [s since the epoch] that are not settled, forgets
+  /// what no later window needs, and carries the map on to the middle between `begin` and `end`.
   void settle(double begin, double end);
   /// No stamps come any more: carries the map on to its end.
   void finish();
@@ -72,8 +73,11 @@ class FittedClock {
 
   /// Whether all stamps so far are settled.
   bool idle() const;
-  /// What is settled so far.
-  const ClockMap& map() const { return map_; }
+  /// What is settled so far; nothing before the first line.
+  const std::optional<ClockMap>& map() const { return map_; }
+  const std::string& device() const { return device_; }
+  /// How many stamps it was given, less those that were taken back.
+  std::size_t stamps() const { return stamps_; }
 
  private:
   struct Knot {
@@ -107,16 +111,19 @@ class FittedClock {
   static void forget_before(Segment& segment, double device);
   void take_out(Segment& segment, const DelayStep& step);
   void make_hull_anew(Segment& segment, double first) const;
-  std::optional<WindowFit> fit(const Segment& segment, double begin, double end) const;
+  std::optional<WindowFit> fit(const Segment& segment, double end) const;
   void settle(Segment& segment, double begin, double end);
   void carry_on(Segment& segment, const Knot& knot);
+  void append_piece(const ClockPiece& piece);
   void close(Segment& segment);
 
+  std::string device_;
   LineFinder find_;
   double bend_;
   bool cut_ = true;
   std::deque<Segment> segments_;
-  ClockMap map_;
+  std::size_t stamps_ = 0;
+  std::optional<ClockMap> map_;
   DelayHistogram delays_;
   std::vector<StampStep> delay_steps_;
   double fitted_time_ = 0;      ///< [s] spans of the closed segments

@@ -8,7 +8,9 @@ namespace crisp {
 namespace {
 
 DeviceStamps stamps_of(const std::string& device, const AlignmentSettings& settings) {
-  return {device, FittedClock(device, settings.find, settings.drift), 0};
+  const auto standing =
+      settings.source == TimeSource::receipt ? StandingClock::by_receipt : StandingClock::leave_out;
+  return {device, FittedClock(device, settings.find, settings.drift), 0, standing};
 }
 
 std::vector<LaserTrack> tracks_of(const Rig& rig, const AlignmentSettings& settings) {
@@ -39,12 +41,14 @@ void HubTracks::begin_anew() {
   if (before) plate_.follow_on(*before);
   unknown_lasers_ = 0;
   back_in_time_ = 0;
+  begin_.reset();
 }
 
 double HubTracks::arrive(std::int64_t receipt_ns) {
   if (!begun_) epoch_ns_ = epoch_of_run(receipt_ns);
   const double hub = 1e-9 * static_cast<double>(receipt_ns - epoch_ns_);
   if (!begun_) now_ = hub;
+  if (!begin_) begin_ = hub;
   begun_ = true;
   if (hub < now_ - 1) ++back_in_time_;
   now_ = std::max(now_, hub);
@@ -64,19 +68,37 @@ std::shared_ptr<const Measurements> HubTracks::measurements_of(const TimedScan& 
   return measurements;
 }
 
-bool HubTracks::has_scans() const {
-  return std::ranges::any_of(lasers_, [](const auto& l) { return l.report().clock.stamps > 0; });
+std::uint64_t HubTracks::scans_received() const {
+  std::uint64_t n = unknown_lasers_;
+  for (const auto& laser : lasers_) n += laser.report().received + laser.without_ranges();
+  return n;
 }
 
-bool HubTracks::has_readings() const { return plate_.report().clock.stamps > 0; }
+bool HubTracks::has_scans() const {
+  return std::ranges::any_of(lasers_, [](const auto& laser) { return laser.clock().stamps() > 0; });
+}
+
+bool HubTracks::has_readings() const { return plate_.clock().stamps() > 1; }
 
 void HubTracks::refuse_if_missing() const {
   if (!has_scans()) {
     throw Error("there is no scan of any laser of the rig",
                 "check the addresses in the rig, or what was recorded");
   }
+  const DeviceReport plate = plate_.report(begin_.value_or(now_), now_);
+  if (!has_readings() && plate.standing > 0) {
+    throw Error(plate.device + ": its clock stands still: " + std::to_string(plate.standing) + " of " +
+                    std::to_string(plate.received) +
+                    " readings carry the stamp of the one before, so that none can be placed in time",
+                "let the encoder's sentences carry its own running microseconds; clock.receipt places by "
+                "receipt times instead");
+  }
+  if (plate.stamps == 1) {
+    throw Error("there is a single reading of the plate (" + plate.device + ")",
+                "check what was recorded: between two readings only the plate's angle is known");
+  }
   if (!has_readings()) {
-    throw Error("there is no reading of the plate (" + plate_.report().clock.device + ")",
+    throw Error("there is no reading of the plate (" + plate_.clock().device() + ")",
                 "check the plate's address in the rig, or what was recorded: without its angle nothing can "
                 "be placed");
   }
@@ -89,8 +111,9 @@ void HubTracks::finish_clocks() {
 
 std::vector<DeviceReport> HubTracks::reports() const {
   std::vector<DeviceReport> reports;
-  for (const auto& laser : lasers_) reports.push_back(laser.report());
-  reports.push_back(plate_.report());
+  const double begin = begin_.value_or(now_);
+  for (const auto& laser : lasers_) reports.push_back(laser.report(begin, now_));
+  reports.push_back(plate_.report(begin, now_));
   return reports;
 }
 

@@ -49,7 +49,7 @@ bool LaserTrack::add(std::shared_ptr<const Scan> scan, double hub) {
 
 double LaserTrack::base(const Pending& scan, double device_time) const {
   if (source_ == TimeSource::receipt) return scan.stamp_receipt;
-  return stamps_.map().to_hub(device_time);
+  return stamps_.map()->to_hub(device_time);
 }
 
 std::size_t LaserTrack::count_before(double limit) const {
@@ -59,7 +59,7 @@ std::size_t LaserTrack::count_before(double limit) const {
 }
 
 void LaserTrack::take_before(double limit, std::vector<TimedScan>& out) {
-  if (stamps_.map().pieces.empty()) return;
+  if (!stamps_.map()) return;
   const std::size_t due = count_before(limit + kAhead);
   const std::size_t seen = std::min(due + kNeighbours, pending_.size());
   std::vector<MirrorStamp> stamps = taken_;
@@ -70,7 +70,7 @@ void LaserTrack::take_before(double limit, std::vector<TimedScan>& out) {
   for (; n < due; ++n) {
     const MirrorTurn& turn = turns[taken_.size() + n];
     const double hub = base(pending_[n], turn.time);
-    const double period = stamps_.map().to_hub(turn.time + turn.period) - stamps_.map().to_hub(turn.time);
+    const double period = stamps_.map()->to_hub(turn.time + turn.period) - stamps_.map()->to_hub(turn.time);
     const double begin = hub + laser_.time_offset + laser_.period_offset * period;
     if (begin >= limit) break;
     out.push_back({.scan = std::move(pending_[n].scan), .begin = begin, .period = period});
@@ -83,6 +83,8 @@ void LaserTrack::take_before(double limit, std::vector<TimedScan>& out) {
 }
 
 std::string LaserTrack::stamp_warning() const {
+  const DeviceReport report = stamps_.report();
+  if (report.by_receipt || 2 * report.standing > report.received) return {};  // stamps that never move
   const double handover = handovers_.quantile(0.5);
   const double period = stamps_.period();
   if (laser_.period_offset != 0 || period <= 0 || handover >= kLeastHandover * period) return {};

@@ -40,6 +40,8 @@ class LaserTrack {
   const FittedClock& clock() const { return stamps_.clock(); }
   const RigLaser& laser() const { return laser_; }
   DeviceReport report() const { return stamps_.report(); }
+  /// With the silences before its first and after its last scan [s since the epoch].
+  DeviceReport report(double begin, double end) const { return stamps_.report(begin, end); }
   std::uint64_t without_ranges() const { return without_ranges_; }
   /// Notes of a scan how many beams it has, and how many of them came back.
   void count_beams(std::size_t beams, std::size_t came_back) {

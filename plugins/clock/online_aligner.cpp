@@ -82,6 +82,9 @@ void OnlineAligner::hand_out(const TimedScan& scan) {
 
 AlignmentReport OnlineAligner::finish() {
   tracks_.refuse_if_missing();
+  std::vector<TimedScan> young;  // of clocks that were not warm yet
+  for (auto& laser : tracks_.lasers()) laser.take_before(kForever, young);
+  for (auto& one : young) waiting_.push_back(std::move(one));
   for (const auto& scan : std::exchange(waiting_, {})) hand_out(scan);
   tracks_.finish_clocks();
   AlignmentReport report = tracks_.report();

@@ -124,17 +124,17 @@ bool PlateTrack::has_lost_zero(const PlateReading& reading, double hub) const {
 }
 
 double PlateTrack::time(const Reading& reading) const {
-  return source_ == TimeSource::receipt ? reading.receipt : stamps_.map().to_hub(reading.device);
+  return source_ == TimeSource::receipt ? reading.receipt : stamps_.map()->to_hub(reading.device);
 }
 
 std::optional<double> PlateTrack::latest() const {
-  if (readings_.empty() || stamps_.map().pieces.empty()) return {};
+  if (readings_.empty() || !stamps_.map()) return {};
   return time(readings_.back());
 }
 
 PlateTrajectory PlateTrack::piece(double begin, double end, std::int64_t epoch_ns,
                                   const PlateMotionSettings& settings) {
-  if (readings_.empty() || stamps_.map().pieces.empty()) return {};
+  if (readings_.empty() || !stamps_.map()) return {};
   const auto is_before = [&](double limit) {
     return [&, limit](const Reading& r) { return time(r) < limit; };
   };

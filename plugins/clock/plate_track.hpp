@@ -48,7 +48,8 @@ class PlateTrack {
   bool idle() const { return readings_.empty(); }
   FittedClock& clock() { return stamps_.clock(); }
   const FittedClock& clock() const { return stamps_.clock(); }
-  DeviceReport report() const { return stamps_.report(); }
+  /// With the silences before its first and after its last reading [s since the epoch].
+  DeviceReport report(double begin, double end) const { return stamps_.report(begin, end); }
   /// Readings that came after the encoder had lost its zero: of no use, the angles have nothing in common.
   std::uint64_t after_lost_zero() const { return after_lost_zero_; }
   /// Readings whose angle the plate cannot have reached since the one before them.

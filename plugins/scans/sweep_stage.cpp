@@ -184,13 +184,13 @@ void DiagnoseSweepStage::process(const Inputs& in, Outputs&, Context& context) {
     ScanSeries& laser = lasers_.at(scan->laser);
     laser.add(std::move(scan));
   }
-  if (const auto* clock = in.find<ClockMap>()) clocks_[clock->device] = *clock;
+  if (const auto* clock = in.find<ClockMap>()) clocks_.insert_or_assign(clock->device, *clock);
 }
 
 void DiagnoseSweepStage::diagnose(std::size_t index, Findings& findings, Context& context) {
   const std::string& name = context.rig().lasers[index].name;
   const auto clock = clocks_.find(name);
-  if (clock == clocks_.end() || clock->second.pieces.empty()) return;
+  if (clock == clocks_.end()) return;
   const ScanSeries& series = lasers_[index];
   const Sweep sweep(series, series.actuator(context.rig().plate));
   const auto stamps = series.stamped(clock->second);

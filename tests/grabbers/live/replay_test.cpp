@@ -104,7 +104,7 @@ TEST_P(Replay, OfATim781sKeepsItsSkewAndJitter) {
     expect_same(*live[i], *offline[i]);
     EXPECT_EQ(live[i]->receipt_ns, offline[i]->receipt_ns);
   }
-  EXPECT_NEAR(align(live).clock.skew_ppm(), 4.1, 0.5) << "by the packet that completes a telegram";
+  EXPECT_NEAR(align(live).clock->skew_ppm(), 4.1, 0.5) << "by the packet that completes a telegram";
 }
 
 /// The scans as received with the first packet of each telegram: an independent reader's table.
@@ -130,9 +130,9 @@ TEST_P(Replay, OfATim781sHasTheClockThatWasFoundIndependently) {
   std::ifstream table(shared_data() / "clocks/sick_tim781_tcp.csv");
   if (!fs::exists(path) || !table) GTEST_SKIP() << "no shared data: " << path.filename();
   const DeviceReport report = align(replay(stamped_by_first_packet(read_offline(path), table), GetParam()));
-  EXPECT_NEAR(report.clock.skew_ppm(), 4.5, 0.25);
-  EXPECT_NEAR(report.clock.residual_median, 72e-6, 5e-6);
-  EXPECT_NEAR(report.clock.residual_95, 271e-6, 10e-6);
+  EXPECT_NEAR(report.clock->skew_ppm(), 4.5, 0.25);
+  EXPECT_NEAR(report.clock->residual_median, 72e-6, 5e-6);
+  EXPECT_NEAR(report.clock->residual_95, 271e-6, 10e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, Replay, testing::Values(ColaLanguage::A, ColaLanguage::B),

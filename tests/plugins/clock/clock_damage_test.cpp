@@ -160,6 +160,97 @@ TEST(ClockDamage, NamesADeviceThatIsMissing) {
   EXPECT_THROW(align({{}}, SimulatedPlate{}.readings(1, 2)), Error);
 }
 
+TEST(ClockDamage, PlacesALaserThatIsHeardInTheFirstHalfSecondOnly) {
+  // The epoch is a whole second, and the first telegrams come before it.
+  for (const double until : {0.1, 0.45}) {
+    SimulatedLaser early;
+    early.is_lost = [=](double t) { return t > until; };
+    const auto turns = early.turns(4, 0, 8);
+    auto readings = SimulatedPlate{}.readings(4, 8);
+    std::vector<Turns> lasers{turns, three_lasers(4)[1].turns(4, 1, 8)};
+    for (auto& laser : lasers) {
+      for (auto& turn : laser) turn.scan.receipt_ns += 300'000'000;
+    }
+    for (auto& reading : readings) reading.receipt_ns += 300'000'000;
+    for (const auto& aligned : {align(lasers, readings), align_online(lasers, readings)}) {
+      EXPECT_EQ(aligned.of_laser(0).size(), turns.size());
+      EXPECT_TRUE(aligned.report.devices[0].clock);
+      EXPECT_THAT(aligned.report.warnings, Contains(HasSubstr("laser1: silent 1 time(s)")));
+    }
+  }
+}
+
+TEST(ClockDamage, PlacesWhatAPlateCoversThatIsHeardInTheFirstHalfSecondOnly) {
+  SimulatedPlate early;
+  early.is_lost = [](double t) { return t > 0.2; };
+  const auto turns = SimulatedLaser{}.turns(4, 0, 8);
+  auto readings = early.readings(4, 8);
+  const auto aligned = align({turns}, readings);
+  EXPECT_EQ(aligned.of_laser(0).size(), turns.size());
+  EXPECT_EQ(aligned.stretches.front().plate.size(), readings.size());
+  EXPECT_THAT(aligned.report.warnings, Contains(HasSubstr("plate: silent 1 time(s)")));
+}
+
+TEST(ClockDamage, RefusesAPlateWhoseClockStandsStill) {
+  auto readings = SimulatedPlate{}.readings(4, 5);
+  for (auto& reading : readings) reading.device_us = 77;
+  const auto turns = SimulatedLaser{}.turns(4, 0, 5);
+  for (const bool online : {false, true}) {
+    try {
+      online ? align_online({turns}, readings) : align({turns}, readings);
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("plate: its clock stands still: 2499 of 2500 readings"));
+    }
+  }
+}
+
+TEST(ClockDamage, PlacesByReceiptsWhereAskedToAndAClockStandsStill) {
+  auto readings = SimulatedPlate{}.readings(4, 5);
+  for (auto& reading : readings) reading.device_us = 77;
+  auto turns = SimulatedLaser{}.turns(4, 0, 5);
+  for (auto& turn : turns) turn.scan.scan_time_us = turn.scan.transmission_time_us = 0;
+  const auto aligned = align({turns}, readings, {.source = TimeSource::receipt});
+  EXPECT_EQ(aligned.of_laser(0).size(), turns.size() - 5) << "it takes five to see that it stands";
+  EXPECT_EQ(aligned.stretches.front().plate.size(), readings.size() - 5);
+  EXPECT_THAT(aligned.report.warnings, Contains(HasSubstr("laser1: its clock stands still")));
+  EXPECT_THAT(aligned.report.warnings, Contains(HasSubstr("plate: its clock stands still")));
+  EXPECT_THAT(aligned.report.warnings, ::testing::Not(Contains(HasSubstr("reset"))));
+  EXPECT_THAT(aligned.report.doubts, ::testing::IsEmpty());
+}
+
+TEST(ClockDamage, DoubtsALaserWhoseClockStandsStill) {
+  auto lasers = std::vector{SimulatedLaser{}.turns(4, 0, 5), SimulatedLaser{}.turns(5, 1, 5)};
+  for (auto& turn : lasers[1]) turn.scan.scan_time_us = turn.scan.transmission_time_us = 0;
+  const auto aligned = align(lasers, SimulatedPlate{}.readings(4, 5));
+  EXPECT_THAT(aligned.report.doubts,
+              ::testing::ElementsAre(HasSubstr("laser2: its clock stands still (for 5.0 s): 248 of 249")));
+  EXPECT_EQ(aligned.report.devices[1].standing, lasers[1].size() - 1);
+  EXPECT_EQ(aligned.report.devices[1].repeated, 0U) << "none came twice";
+  EXPECT_EQ(aligned.of_laser(0).size(), lasers[0].size());
+}
+
+TEST(ClockDamage, WarnsOfALaserOfWhichMoreThanAFewScansAreOfNoUse) {
+  const auto report_with = [](std::size_t every) {
+    auto turns = SimulatedLaser{}.turns(4, 0, 5);
+    for (std::size_t i = every; i < turns.size(); i += every) {
+      turns[i].scan.transmission_time_us = turns[i].scan.scan_time_us - 300'000;
+    }
+    return align({turns}, SimulatedPlate{}.readings(4, 5)).report;
+  };
+  EXPECT_THAT(report_with(50).warnings, ::testing::IsEmpty());
+  const auto report = report_with(10);
+  EXPECT_THAT(report.warnings, Contains(HasSubstr("laser1: 24 of 249 telegrams (9.6 %) have times that fit")));
+  EXPECT_THAT(report.doubts, ::testing::IsEmpty());
+}
+
+TEST(ClockDamage, NamesAClockThatTicksTooCoarsely) {
+  auto readings = SimulatedPlate{}.readings(4, 5);
+  for (auto& reading : readings) reading.device_us -= reading.device_us % 10'000;
+  const auto report = align({SimulatedLaser{}.turns(4, 0, 5)}, readings).report;
+  EXPECT_THAT(report.warnings, Contains(HasSubstr("plate: its clock ticks too coarsely: 2000 of 2500")));
+}
+
 TEST(ClockDamage, SurvivesNonsense) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Random random(seed);

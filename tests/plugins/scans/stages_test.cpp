@@ -89,7 +89,9 @@ TEST(DiagnoseRestStage, LeavesScansThatAreAlikeAsTheyAre) {
 }
 
 ClockMap even_clock() {
-  return {.device = "laser1", .pieces = {{.device_begin = 0, .hub_begin = 17, .rate = 1}}, .stamps = 2};
+  return {.device = "laser1",
+          .pieces = ClockPieces({.device_begin = 0, .hub_begin = 17, .rate = 1}),
+          .stamps = 2};
 }
 
 TEST(DiagnoseSweepStage, NamesBurstsAndCallsACommonLagUnobservable) {
