@@ -37,6 +37,7 @@ nlohmann::json to_json(const DeviceStatistics& device) {
                            {"items", device.items},
                            {"rate", device.rate()},
                            {"telegrams", to_json(device.telegrams)},
+                           {"standing", device.standing},
                            {"losses", to_json(device.losses)},
                            {"notes", to_json(device.notes)},
                            {"first", seconds(device.first_ns)},
@@ -82,6 +83,10 @@ std::string details(const DeviceStatistics& device) {
   for (const auto number : device.serial_numbers) text += fmt::format(", serial number {}", number);
   if (device.skew)
     text += fmt::format("\n  clock: {:+.1f} ppm against the hub's, at a first look", 1e6 * *device.skew);
+  if (2 * device.standing > device.items) {
+    text += fmt::format("\n  clock: stands still: {} of {} items carry the stamp of the one before",
+                        device.standing, device.items);
+  }
   if (device.counted_up + device.counted_down > 0) {
     text += fmt::format("\n  encoder: counted {} up and {} down", device.counted_up, device.counted_down);
   }

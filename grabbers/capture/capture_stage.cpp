@@ -137,6 +137,7 @@ std::uint64_t CaptureStage::report(const CaptureStatistics& statistics, const st
   context.say(device_table(statistics));
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
   for (auto& warning : loss_warnings(statistics, file.filename().string())) context.warn(std::move(warning));
+  for (auto& caveat : lost_devices(statistics)) context.distrust(std::move(caveat));
   for (auto& caveat : address_conflicts(statistics)) context.distrust(std::move(caveat));
   std::uint64_t found = 0;
   for (const auto& device : statistics.devices) {

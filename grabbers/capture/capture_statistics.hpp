@@ -33,6 +33,8 @@ struct DeviceStatistics {
   std::string name;                           ///< as the rig calls it; empty if the rig does not know it
   Address address;                            ///< from where its packets came
   std::uint64_t items = 0;                    ///< different scans or readings
+  std::uint64_t unreadable = 0;               ///< scan telegrams of which no scan could be made
+  std::uint64_t standing = 0;                 ///< items with the stamp of the one before
   Counts telegrams;                           ///< all that it sent, by kind
   Counts losses;                              ///< what is missing, by reason
   Counts notes;                               ///< what was out of the ordinary without loss

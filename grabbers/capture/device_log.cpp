@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace crisp {
 
@@ -31,9 +32,12 @@ DeviceLog::DeviceLog(DeviceKind kind, std::string name, Address address, std::ui
 DeviceStatistics DeviceLog::statistics() const {
   auto statistics = statistics_;
   const bool laser = statistics.kind == DeviceKind::Laser;
-  statistics.losses.add(
-      laser ? "telegrams that never came, by their counter" : "readings that never came, by their sequence",
-      tracker_.lost());
+  const auto missing = static_cast<std::int64_t>(tracker_.lost());
+  statistics.losses.add(laser ? kTelegramsNeverCame : kReadingsNeverCame,
+                        static_cast<std::uint64_t>(std::max<std::int64_t>(0, missing - unasked_)));
+  if (unasked_ > 0) {
+    statistics.notes.add("scans between those that a client asked for", static_cast<std::uint64_t>(unasked_));
+  }
   statistics.median_handover = handover_.value();
   statistics.period = period_.value();
   statistics.skew = clock_.skew();
@@ -60,21 +64,25 @@ void DeviceLog::note_pause(std::uint32_t device_us, std::int64_t time_ns) {
   last_scan_.reset();
 }
 
-bool DeviceLog::is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns) {
+bool DeviceLog::is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns, bool polled) {
   if (clock_.take(device_us, time_ns)) {
     note("restarts of the device's clock");
     tracker_.restart();
     last_scan_.reset();
   }
   note_pause(device_us, time_ns);
+  const auto missing = static_cast<std::int64_t>(tracker_.lost());
   const auto verdict = tracker_.take(counter, device_us, time_ns);
+  if (polled) unasked_ += static_cast<std::int64_t>(tracker_.lost()) - missing;
   if (verdict == SequenceTracker::Verdict::Late) note("items that came late");
-  if (verdict == SequenceTracker::Verdict::Duplicate) note("items that came twice");
-  return verdict != SequenceTracker::Verdict::Duplicate;
+  const bool twice = verdict == SequenceTracker::Verdict::Duplicate;
+  if (twice) note(polled ? "scans that a client read twice" : "items that came twice");
+  return !twice;
 }
 
-void DeviceLog::note_time(std::int64_t time_ns) {
+void DeviceLog::note_time(std::uint32_t device_us, std::int64_t time_ns) {
   auto& s = statistics_;
+  if (device_us == std::exchange(last_stamp_us_, device_us)) ++s.standing;
   if (s.items++ == 0) {
     s.first_ns = s.last_ns = time_ns;
     return;
@@ -105,11 +113,16 @@ std::shared_ptr<const Scan> DeviceLog::take(const ColaFrame& frame, EncoderWidth
   return scan ? take_scan(*telegram, frame.completed_ns, widths) : nullptr;
 }
 
+void DeviceLog::lose_scan(std::string_view why) {
+  lose(why);
+  ++statistics_.unreadable;
+}
+
 std::shared_ptr<const Scan> DeviceLog::take_scan(const ColaTelegram& telegram, std::int64_t time_ns,
                                                  EncoderWidths widths) {
   const auto failure = decode_scan_data(telegram, widths, data_);
   if (failure != FieldFailure::None) {
-    lose(fmt::format("scan telegrams that cannot be read: {}", to_string(failure)));
+    lose_scan(fmt::format("scan telegrams that cannot be read: {}", to_string(failure)));
     return {};
   }
   if (data_.appended > 0) note("scan telegrams with unknown fields at their end");
@@ -122,11 +135,13 @@ std::shared_ptr<const Scan> DeviceLog::take_scan(const ColaTelegram& telegram, s
   auto scan = scans_.get();
   const auto refusal = to_scan(data_, laser_, time_ns, *scan);
   if (refusal != ScanFailure::None) {
-    lose(fmt::format("scan telegrams that hold no scan: {}", to_string(refusal)));
+    lose_scan(fmt::format("scan telegrams that hold no scan: {}", to_string(refusal)));
     return {};
   }
-  if (!is_new(scan->telegram_counter, scan->transmission_time_us, time_ns)) return {};
-  note_time(time_ns);
+  const bool polled = telegram.command == "sRA";
+  if (!is_new(scan->telegram_counter, scan->transmission_time_us, time_ns, polled)) return {};
+  if (polled) scan->numbered = false;
+  note_time(scan->transmission_time_us, time_ns);
   note_scan(*scan);
   return scan;
 }
@@ -144,7 +159,7 @@ void DeviceLog::note_scan(const Scan& scan) {
   if (last_scan_) {
     const auto turns = static_cast<std::uint16_t>(scan.scan_counter - last_scan_->first);
     const auto elapsed = static_cast<std::uint32_t>(scan.scan_time_us - last_scan_->second);
-    if (turns > 0 && turns < 100) period_.add(1e-6 * elapsed / turns);
+    if (turns > 0 && turns < 100 && elapsed > 0) period_.add(1e-6 * elapsed / turns);
   }
   last_scan_ = {scan.scan_counter, scan.scan_time_us};
   s.nominal_frequency = scan.scan_frequency;
@@ -156,7 +171,7 @@ void DeviceLog::note_scan(const Scan& scan) {
 std::optional<PlateReading> DeviceLog::take(const PlateReading& reading) {
   count_telegram("PPLT");
   if (!is_new(reading.sequence, reading.device_us, reading.receipt_ns)) return {};
-  note_time(reading.receipt_ns);
+  note_time(reading.device_us, reading.receipt_ns);
   const auto steps = static_cast<std::int32_t>(reading.count - last_count_.value_or(reading.count));
   (steps > 0 ? statistics_.counted_up : statistics_.counted_down) += std::abs(std::int64_t{steps});
   last_count_ = reading.count;

@@ -41,10 +41,11 @@ class DeviceLog {
  private:
   std::shared_ptr<const Scan> take_scan(const ColaTelegram& telegram, std::int64_t time_ns,
                                         EncoderWidths widths);
-  bool is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns);
+  bool is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns, bool polled = false);
+  void lose_scan(std::string_view why);
   void note_pause(std::uint32_t device_us, std::int64_t time_ns);
   void count_telegram(std::string_view kind);
-  void note_time(std::int64_t time_ns);
+  void note_time(std::uint32_t device_us, std::int64_t time_ns);
   void note_scan(const Scan& scan);
 
   DeviceStatistics statistics_;
@@ -54,6 +55,8 @@ class DeviceLog {
   Pool<Scan> scans_;
   std::string kind_;  ///< of a telegram: here to keep its memory
   SequenceTracker tracker_;
+  std::int64_t unasked_ = 0;  ///< of what the tracker misses: a client that polls did not ask for them
+  std::optional<std::uint32_t> last_stamp_us_;
   RoughClock clock_;
   RunningMedian handover_, period_;
   std::optional<std::pair<std::uint16_t, std::uint32_t>> last_scan_;  ///< its counter and time

@@ -11,9 +11,29 @@ namespace crisp {
 namespace {
 
 constexpr double kTolerable = 0.01;  // share lost of which nobody needs to be told
+constexpr double kNearlyAll = 0.95;  // with so much lost, a laser is lost
 
 double share(std::uint64_t lost, std::uint64_t all) {
   return all == 0 ? 0 : static_cast<double>(lost) / static_cast<double>(all);
+}
+
+/// What of a laser's scan telegrams could not be read, if that is more than one share of them and less than
+/// another.
+std::string unreadable(const DeviceStatistics& device, double above, double up_to) {
+  const auto all = device.items + device.unreadable;
+  const double part = share(device.unreadable, all);
+  if (device.name.empty() || part <= above || part > up_to) return {};
+  std::string_view why;
+  std::uint64_t most = 0;
+  for (const auto& [what, n] : device.losses.all()) {
+    if (!what.starts_with("scan telegrams that ") || n <= most) continue;
+    why = what;
+    most = n;
+  }
+  return fmt::format(
+      "{:.1f} % of the scans of {} ({} of {}) cannot be used: {} {}. Set its output format "
+      "anew, alike for all of its channels",
+      100 * part, title(device), device.unreadable, all, most, why);
 }
 
 }  // namespace
@@ -33,6 +53,7 @@ std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, cons
                      100 * part, skipped));
   }
   for (const auto& device : statistics.devices) {
+    if (auto what = unreadable(device, kTolerable, kNearlyAll); !what.empty()) warn(what);
     const auto lost = never_came(device);
     const auto sent = device.items + lost;
     if (device.name.empty() || share(lost, sent) <= kTolerable) continue;
@@ -43,6 +64,14 @@ std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, cons
                     100 * share(lost, sent), title(device), lost, sent, laser ? "scans" : "readings"));
   }
   return warnings;
+}
+
+std::vector<std::string> lost_devices(const CaptureStatistics& statistics) {
+  std::vector<std::string> caveats;
+  for (const auto& device : statistics.devices) {
+    if (auto what = unreadable(device, kNearlyAll, 1); !what.empty()) caveats.push_back(std::move(what));
+  }
+  return caveats;
 }
 
 std::vector<std::string> address_conflicts(const CaptureStatistics& statistics) {

@@ -205,6 +205,7 @@ void LiveStage<devices>::report(const CaptureStatistics& statistics, Context& co
   context.say(device_table(statistics));
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
   for (auto& warning : loss_warnings(statistics)) context.warn(std::move(warning));
+  for (auto& caveat : lost_devices(statistics)) context.distrust(std::move(caveat));
   for (const auto& device : statistics.devices) {
     for (const auto& [what, n] : device.losses.all()) context.count(device.name + ": " + what, n);
     for (const auto& [what, n] : device.notes.all()) context.count(device.name + ": " + what, n);

@@ -68,6 +68,7 @@ void TelegramsStage::process(const Inputs&, Outputs& out, Context& context) {
   framer.gap(take);
   note_framing(framer.counts(), log);
   const DeviceStatistics statistics = log.statistics();
+  for (auto& caveat : lost_devices({.devices = {statistics}})) context.distrust(std::move(caveat));
   for (auto& warning : loss_warnings({.devices = {statistics}}, file_.filename().string())) {
     context.warn(std::move(warning));
   }

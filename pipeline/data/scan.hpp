@@ -34,7 +34,7 @@ struct Scan {
   double angle_step = 0;                   ///< [rad] exact fraction where the telegram rounds
   std::vector<Echo> echoes;                ///< DIST1/RSSI1, DIST2/RSSI2, …
   std::vector<ScanEncoder> encoders;
-  bool numbered = true;  ///< by the device: else nobody counted what was lost
+  bool numbered = true;  ///< by the device, and each asked for: else a gap of its numbers is no loss
   bool timed = true;  ///< by the device's clock: else its times are its number times the nominal period, or
                       ///< its receipt
 };

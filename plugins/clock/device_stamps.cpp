@@ -112,7 +112,7 @@ std::int64_t DeviceStamps::count_steps(std::int64_t steps, std::int64_t even_us)
 void DeviceStamps::count_useless(std::uint16_t counter, std::uint32_t raw_us, double hub) {
   if (raw_us != last_.raw_us) {
     ++report_.late;
-  } else if (numbered_ && counter == last_.counter.last()) {
+  } else if (counter == last_.counter.last()) {
     ++report_.repeated;
   } else {
     ++report_.standing;

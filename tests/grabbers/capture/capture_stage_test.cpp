@@ -151,6 +151,25 @@ TEST_F(CaptureStageTest, DoubtsTwoLasersThatHaveOneAddress) {
       Contains(HasSubstr("laser1: 2 units (serial numbers 1000, 1001) send in turn from 192.168.0.1")));
 }
 
+TEST_F(CaptureStageTest, NamesALaserOfWhichScansCannotBeRead) {
+  scenario_.scans = 200;
+  const auto run_with = [&](std::size_t of_100) {
+    scenario_.is_unreadable = [=](std::size_t k) { return k % 100 < of_100; };
+    write_file(folder_ / "hub.pcap", pcap_file(scenario_.frames()));
+    return run(file()).report;
+  };
+  EXPECT_THAT(run_with(1).warnings, testing::Not(Contains(HasSubstr("laser2"))));
+  const auto half = run_with(50);
+  EXPECT_THAT(
+      half.warnings,
+      Contains(HasSubstr("hub.pcap: 50.0 % of the scans of laser2 (192.168.0.2) (100 of 200) cannot be used: "
+                         "100 scan telegrams that hold no scan: channels with different angles")));
+  EXPECT_THAT(half.warnings, testing::Not(Contains(HasSubstr("scans of laser1"))));
+  EXPECT_TRUE(half.doubts.empty());
+  const auto nearly_all = run_with(99);
+  EXPECT_THAT(nearly_all.doubts, testing::ElementsAre(HasSubstr("99.0 % of the scans of laser2")));
+}
+
 TEST_F(CaptureStageTest, SaysWhatIsLeftOfACaptureThatIsShorterThanBegin) {
   EXPECT_THAT(complaint(file() + ", begin: 100s"),
               testing::AllOf(HasSubstr("begin and duration leave nothing of " +

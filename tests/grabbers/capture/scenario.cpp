@@ -51,6 +51,9 @@ std::vector<Frame> Scenario::frames() const {
     for (std::size_t laser = 0; laser < 2; ++laser) {
       ScanData scan = scan_of(laser, k, beams);
       if (same_address && laser == 1) scan.telegram_counter += 1000;
+      if (laser == 1 && is_unreadable && is_unreadable(k)) {
+        scan.channels16.push_back({.name = "DIST2", .start_angle = 0, .raw = {1}});
+      }
       lasers[laser].send(TcpSide::Server, encode_scan_data(scan, language), scan_time(laser, k));
     }
     for (std::size_t j = 10 * k; j < 10 * k + 10; ++j) {

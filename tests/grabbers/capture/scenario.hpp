@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
+
 #include "grabbers/capture/capture_reader.hpp"
 #include "tests/grabbers/capture/capture_bytes.hpp"
 
@@ -14,7 +16,8 @@ struct Scenario {
   ColaLanguage language = ColaLanguage::B;
   TcpSettings tcp;
   bool handshake = true;
-  bool same_address = false;  ///< the second laser has the first one's
+  bool same_address = false;                         ///< the second laser has the first one's
+  std::function<bool(std::size_t k)> is_unreadable;  ///< scan k of the second laser, by its channels
 
   std::vector<Frame> frames() const;   ///< what tcpdump would have captured
   std::vector<HubItem> items() const;  ///< what a reader is to find, in order
