@@ -91,8 +91,8 @@ std::optional<LockOwner> parse_lock_owner(const std::string& text) try {
 
 LockFile::LockFile(const fs::path& folder, const std::string& prefix)
     : owner_{this_process(), utc_now(), command_of_this_process()},
-      path_(folder / (prefix + "." + unique_name())) {
-  descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      path_(folder / (prefix + "." + unique_name())),
+      descriptor_(open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0) fail_to_lock(folder, errno);
   at_signal_.emplace(path_.string());
   if (const int code = write(); code != 0) {
