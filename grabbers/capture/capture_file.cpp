@@ -38,7 +38,26 @@ CaptureFile::CaptureFile(const std::filesystem::path& path, std::function<bool()
   }
 }
 
+CaptureFile::CaptureFile(const std::filesystem::path& path, const Place& from, std::uint64_t end,
+                         std::function<bool()> interrupted)
+    : CaptureFile(path, std::move(interrupted)) {
+  end_ = end;
+  if (from.offset == 0) return;
+  file_.move_to(from.offset);
+  auto* pcapng = std::get_if<PcapngBlocks>(&records_);
+  if (pcapng != nullptr && from.section) pcapng->go_on(*from.section);
+}
+
+CaptureFile::Place CaptureFile::place() const {
+  const auto* pcapng = std::get_if<PcapngBlocks>(&records_);
+  return {.offset = current_.offset,
+          .section = pcapng == nullptr ? std::nullopt : std::optional(pcapng->section())};
+}
+
 void CaptureFile::load(Slot& slot) {
+  slot.full = false;
+  slot.offset = file_.offset();
+  if (slot.offset >= end_) return;
   if (auto* pcap = std::get_if<PcapRecords>(&records_)) slot.full = pcap->next(slot.packet);
   if (auto* pcapng = std::get_if<PcapngBlocks>(&records_)) slot.full = pcapng->next(slot.packet);
   if (!slot.full) return;
@@ -67,11 +86,11 @@ const Packet* CaptureFile::next() {
     std::swap(current_, ahead_);
     if (!current_.full) return nullptr;
     load(ahead_);
-    if (!stamp_is_damaged()) break;
+    if (keeps_all_ || !stamp_is_damaged()) break;
     losses_.add(file_loss::kDamagedStamps);
   }
   const auto time = current_.packet.time_ns;
-  current_.packet.time_ns = earliest_receipt();
+  if (!keeps_all_) current_.packet.time_ns = earliest_receipt();
   if (current_.packet.time_ns != time) notes_.add(file_loss::kBeforeItsTime);
   before_ns_ = time;
   return &current_.packet;

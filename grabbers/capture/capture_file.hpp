@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <variant>
 
@@ -18,12 +20,27 @@ namespace crisp {
 /// single stamp that is too early would bend the clock of its device, where one that is late does nothing.
 class CaptureFile {
  public:
+  /// From where a capture can be read on.
+  struct Place {
+    std::uint64_t offset = 0;  ///< [bytes]
+    std::optional<PcapngBlocks::Section> section = {};
+  };
+
   /// @param interrupted  as ByteStream's
   /// @throws Error if the file cannot be read or is no capture
   explicit CaptureFile(const std::filesystem::path& path, std::function<bool()> interrupted = {});
+  /// A part of it: from a place to before another one [bytes].
+  CaptureFile(const std::filesystem::path& path, const Place& from, std::uint64_t end,
+              std::function<bool()> interrupted = {});
+
+  /// From now on no stamp is taken for damaged: those of several clocks are told apart elsewhere.
+  void keep_all_stamps() { keeps_all_ = true; }
 
   /// The next packet, valid until the next call; nullptr at the end of the file.
   const Packet* next();
+
+  /// Where the packet begins that next() gave.
+  Place place() const;
 
   const Counts& losses() const { return losses_; }
   const Counts& notes() const { return notes_; }
@@ -34,6 +51,7 @@ class CaptureFile {
   struct Slot {  ///< a packet with bytes of its own
     Packet packet;
     Bytes bytes;
+    std::uint64_t offset = 0;  ///< [bytes] in the file
     bool full = false;
   };
 
@@ -46,7 +64,9 @@ class CaptureFile {
   Counts notes_;
   std::variant<std::monostate, PcapRecords, PcapngBlocks> records_;
   Slot current_, ahead_;
+  std::uint64_t end_ = std::numeric_limits<std::uint64_t>::max();  ///< [bytes] in the file
   bool begun_ = false;
+  bool keeps_all_ = false;
   std::optional<std::int64_t> before_ns_;  ///< time of the packet before the current one
 };
 

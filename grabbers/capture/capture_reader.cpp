@@ -7,17 +7,15 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "grabbers/capture/capture_file.hpp"
 #include "grabbers/capture/dissect.hpp"
 #include "grabbers/capture/fragments.hpp"
 #include "grabbers/capture/item_merge.hpp"
+#include "grabbers/capture/ordered_capture.hpp"
 #include "pipeline/data/robust.hpp"
 
 namespace crisp {
 namespace {
 
-// Captures of several interfaces are slightly out of order.
-constexpr std::int64_t kDisorder = 100'000'000;
 constexpr std::size_t kMostFlows = 4096;
 constexpr std::string_view kPlateMark = "$PPLT,";
 
@@ -30,7 +28,7 @@ struct CaptureReader::Traffic {
         settings(how) {}
 
   std::atomic<bool> interrupted = false;
-  CaptureFile file;
+  OrderedCapture file;
   Devices devices;
   CaptureSettings settings;
   FragmentAssembler fragments;
@@ -56,23 +54,25 @@ struct CaptureReader::Traffic {
 bool CaptureReader::Traffic::read_packet() {
   const auto* packet = file.next();
   if (packet == nullptr) return false;
-  newest_ns = totals.packets == 0 ? packet->time_ns : std::max(newest_ns, packet->time_ns);
-  totals.first_ns = totals.packets == 0 ? packet->time_ns : std::min(totals.first_ns, packet->time_ns);
+  const auto found = dissect_ip(*packet);
+  const auto* sent = std::get_if<IpPacket>(&found);
+  const std::int64_t time_ns = packet->time_ns + (sent == nullptr ? 0 : file.shift_of(sent->from));
+  newest_ns = totals.packets == 0 ? time_ns : std::max(newest_ns, time_ns);
+  totals.first_ns = totals.packets == 0 ? time_ns : std::min(totals.first_ns, time_ns);
   totals.last_ns = newest_ns;
   ++totals.packets;
   totals.bytes += packet->bytes.size();
   ++link_types[packet->link_type];
-  const auto found = dissect_ip(*packet);
   if (const auto* reason = std::get_if<NoIp>(&found)) {
     if (*reason == NoIp::Damaged) totals.losses.add("packets with damaged headers");
     if (*reason == NoIp::UnknownLinkType) totals.losses.add("packets of link types that are not understood");
     return true;
   }
-  const auto& ip = std::get<IpPacket>(found);
+  const IpPacket& ip = *sent;
   if (!ip.is_fragment()) {
-    take_ip(ip, packet->time_ns);
-  } else if (const auto whole = fragments.take(ip, packet->time_ns)) {
-    take_ip(*whole, packet->time_ns);
+    take_ip(ip, time_ns);
+  } else if (const auto whole = fragments.take(ip, time_ns)) {
+    take_ip(*whole, time_ns);
   }
   return true;
 }
@@ -178,6 +178,7 @@ CaptureStatistics CaptureReader::statistics() const {
   auto statistics = traffic_->totals;
   for (const auto& [type, n] : traffic_->link_types) statistics.link_types.add(link_type_name(type), n);
   statistics.file_bytes = traffic_->file.offset();
+  statistics.remarks = traffic_->file.remarks();
   statistics.losses.add(traffic_->file.losses());
   statistics.notes.add(traffic_->file.notes());
   statistics.losses.add(traffic_->fragments.losses());

@@ -132,6 +132,7 @@ nlohmann::json to_json(const CaptureStatistics& statistics) {
           {"link_types", to_json(statistics.link_types)},
           {"losses", to_json(statistics.losses)},
           {"notes", to_json(statistics.notes)},
+          {"remarks", statistics.remarks},
           {"devices", devices}};
 }
 
@@ -154,6 +155,7 @@ std::string to_text(const CaptureStatistics& statistics) {
                         seconds(statistics.last_ns - statistics.first_ns), fmt::gmtime(first));
   }
   for (const auto& [link_type, n] : statistics.link_types.all()) text += fmt::format(", {}", link_type);
+  for (const auto& remark : statistics.remarks) text += "\n  " + remark;
   if (statistics.pauses > 0) {
     text += fmt::format(
         "\n  {} recordings, one after the other: nothing came for {:.1f} s in all between them (pauses of "

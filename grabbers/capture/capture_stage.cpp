@@ -120,7 +120,7 @@ void CaptureStage::refuse_overlap(std::int64_t first_ns, const std::filesystem::
 
 void CaptureStage::give(const HubItem& item, Outputs& out, Context& context) {
   const double since_begin = 1e-9 * static_cast<double>(receipt_ns(item) - *first_ns_) - begin_;
-  if (since_begin < 0 || (duration_ && since_begin >= *duration_)) {
+  if ((begin_ > 0 && since_begin < 0) || (duration_ && since_begin >= *duration_)) {
     context.count("items left out because of begin and duration");
     return;
   }

@@ -71,6 +71,7 @@ struct CaptureStatistics {
   Counts link_types;                       ///< packets by link type
   Counts losses;                           ///< what the file or the network lost, not attributed to a device
   Counts notes;
+  std::vector<std::string> remarks;  ///< on the order of the packets
   std::vector<DeviceStatistics>
       devices;  ///< the rig's in its order, then the unknown ones in order of address
 };

@@ -32,6 +32,12 @@ void FileWindow::skip(std::uint64_t n) {
   }
 }
 
+void FileWindow::move_to(std::uint64_t offset) {
+  if (::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0) throw cannot_read(path_, errno);
+  offset_ = offset;
+  begin_ = end_ = 0;
+}
+
 void FileWindow::fill(std::size_t wanted) {
   std::copy(buffer_.get() + begin_, buffer_.get() + end_, buffer_.get());
   end_ -= begin_;

@@ -29,6 +29,9 @@ class FileWindow {
   /// Moves on by n bytes, or to the end. What peek() gave stays valid if n does not lead beyond it.
   void skip(std::uint64_t n);
 
+  /// Goes on at a place [bytes] of a file that is no pipe. @throws Error if the disk fails
+  void move_to(std::uint64_t offset);
+
   std::uint64_t offset() const { return offset_; }  ///< [bytes] from the file's begin
   std::uint64_t size() const {
     return stream_.size();

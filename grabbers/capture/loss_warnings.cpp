@@ -43,6 +43,7 @@ std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, cons
   const auto warn = [&](const std::string& what) {
     warnings.push_back(source.empty() ? what : source + ": " + what);
   };
+  for (const auto& remark : statistics.remarks) warn(remark);
   if (const auto cut_off = statistics.losses.of(file_loss::kCutOff); cut_off > 0) {
     warn(fmt::format("the file ends {} bytes into a record: the recording or the copy was cut short",
                      cut_off));

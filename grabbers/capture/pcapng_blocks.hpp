@@ -24,14 +24,24 @@ class PcapngBlocks {
 
   bool next(Packet& packet);  ///< false at the end of the file
 
- private:
   struct Interface {
     std::uint32_t link_type = 0;
     std::uint8_t resolution = 6;  ///< if_tsresol: 10^-n s, or with the highest bit 2^-n s
     std::int64_t offset_s = 0;    ///< if_tsoffset
     std::uint64_t dropped = 0;    ///< isb_ifdrop, as last reported
   };
+  /// What the blocks so far say of those that follow.
+  struct Section {
+    ByteOrder order = ByteOrder::Little;
+    std::vector<Interface> interfaces = {};
+  };
+  Section section() const { return {order_, interfaces_}; }
+  void go_on(const Section& section) {
+    order_ = section.order;
+    interfaces_ = section.interfaces;
+  }
 
+ private:
   std::uint32_t u32(ByteView bytes, std::size_t at) const {
     return number_at<std::uint32_t>(bytes, at, order_);
   }

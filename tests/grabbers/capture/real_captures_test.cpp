@@ -10,13 +10,13 @@
 namespace crisp {
 namespace {
 
-struct Reading {
+struct RealReading {
   std::vector<Scan> scans;
   CaptureStatistics statistics;
 };
 
-Reading read(const std::filesystem::path& path) {
-  Reading reading;
+RealReading read(const std::filesystem::path& path) {
+  RealReading reading;
   CaptureReader reader(path, default_rig());
   while (auto item = reader.next()) reading.scans.push_back(*std::get<std::shared_ptr<const Scan>>(*item));
   reading.statistics = reader.statistics();

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/capture/capture_order.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <utility>
+
+#include "grabbers/capture/dissect.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::size_t kMostStretches = 1000;  // that are merged
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+double to_seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+/// Divides packets where their times go back.
+class OrderWatch {
+ public:
+  /// @return whether a stretch begins with a packet of this time
+  bool take(std::int64_t time_ns) {
+    const bool begins = !newest_ns_ || time_ns < *newest_ns_ - kDisorder;
+    newest_ns_ = begins ? time_ns : std::max(*newest_ns_, time_ns);
+    return begins;
+  }
+  std::int64_t newest_ns() const { return *newest_ns_; }
+
+ private:
+  std::optional<std::int64_t> newest_ns_;
+};
+
+struct Stretches {
+  std::vector<CaptureStretch> all;     ///< in the file's order, the first kMostStretches
+  std::vector<std::uint64_t> packets;  ///< of each
+  std::size_t count = 0;
+  std::uint64_t damaged = 0;  ///< stamps
+};
+
+Stretches find_stretches(const std::filesystem::path& path, const std::function<bool()>& interrupted) {
+  Stretches found;
+  OrderWatch watch;
+  CaptureFile file(path, interrupted);
+  while (const Packet* packet = file.next()) {
+    const bool begins = watch.take(packet->time_ns);
+    if (begins && ++found.count <= kMostStretches) {
+      const CaptureFile::Place place = file.place();
+      if (!found.all.empty()) found.all.back().end = place.offset;
+      found.all.push_back({.begin = place, .first_ns = packet->time_ns});
+      found.packets.push_back(0);
+    }
+    if (found.count > kMostStretches) continue;
+    CaptureStretch& last = found.all.back();
+    last.first_ns = std::min(last.first_ns, packet->time_ns);
+    last.last_ns = watch.newest_ns();
+    ++found.packets.back();
+  }
+  found.damaged = file.losses().of(file_loss::kDamagedStamps);
+  return found;
+}
+
+/// By how much the times of one sender are ahead of another's, by who was before whom.
+struct Offset {
+  std::int64_t least = -kNever, most = kNever;  // [ns]
+
+  bool is_constant() const { return least > -kNever && most < kNever && least <= most + kDisorder; }
+  std::int64_t value() const { return least / 2 + most / 2; }
+};
+
+/// What the packets of a capture tell of why their times go back.
+class SenderSurvey {
+ public:
+  /// @param file is read from its begin to its end
+  explicit SenderSurvey(CaptureFile& file) {
+    OrderWatch watch;
+    while (const Packet* packet = file.next()) {
+      if (watch.take(packet->time_ns)) ++stretch_;
+      const auto ip = dissect_ip(*packet);
+      if (const auto* found = std::get_if<IpPacket>(&ip)) take(*found, packet->time_ns);
+    }
+  }
+
+  /// Whether what was sent goes on over the end of a stretch: more connections do than do not.
+  bool goes_on_after(std::size_t stretch) const {
+    const auto found = connections_.find(stretch);
+    return found != connections_.end() && found->second > 0;
+  }
+
+  /// [ns] What senders' times are ahead of those of most others, if each sender's own times ascend.
+  std::map<IpAddress, std::int64_t> offsets() const {
+    std::map<IpAddress, std::int64_t> best;
+    std::size_t least_apart = senders_.size();
+    for (const auto& [reference, sender] : senders_) {
+      if (sender.went_back) return {};
+      std::map<IpAddress, std::int64_t> apart = offsets_from(reference);
+      if (apart.size() >= least_apart) continue;
+      least_apart = apart.size();
+      best = std::move(apart);
+    }
+    return best;
+  }
+
+ private:
+  struct Sender {
+    OrderWatch watch;
+    std::uint64_t packets = 0;
+    bool went_back = false;
+  };
+  struct Connection {
+    std::uint32_t next = 0;  // sequence number
+    std::size_t stretch = 0;
+  };
+
+  void take(const IpPacket& ip, std::int64_t time_ns) {
+    constexpr std::size_t kMost = 32;
+    if (senders_.size() < kMost || senders_.contains(ip.from)) {
+      Sender& sender = senders_[ip.from];
+      const bool first = sender.packets++ == 0;
+      if (sender.watch.take(time_ns) && !first) sender.went_back = true;
+      compare(ip.from, time_ns);
+    }
+    bool damaged = false;
+    const auto packet = dissect_transport(ip, damaged);
+    if (packet && packet->key.transport == Transport::Tcp && !packet->payload.empty()) follow(*packet);
+  }
+
+  /// [ns] Of the senders that are far from this one's time.
+  std::map<IpAddress, std::int64_t> offsets_from(const IpAddress& reference) const {
+    constexpr std::int64_t kFar = 2'000'000'000;  // programs write what they buffered for up to a second
+    std::map<IpAddress, std::int64_t> apart;
+    for (const auto& [ip, sender] : senders_) {
+      const auto offset = offsets_.find({ip, reference});
+      if (offset == offsets_.end() || !offset->second.is_constant()) continue;
+      if (std::abs(offset->second.value()) >= kFar) apart[ip] = offset->second.value();
+    }
+    return apart;
+  }
+
+  /// What stands before a packet arrived before it.
+  void compare(const IpAddress& from, std::int64_t time_ns) {
+    for (const auto& [other, sender] : senders_) {
+      if (other == from) continue;
+      const std::int64_t ahead = time_ns - sender.watch.newest_ns();
+      Offset& of_this = offsets_[{from, other}];
+      of_this.most = std::min(of_this.most, ahead);
+      Offset& of_other = offsets_[{other, from}];
+      of_other.least = std::max(of_other.least, -ahead);
+    }
+  }
+
+  void follow(const TransportPacket& packet) {
+    constexpr std::int32_t kNear = 1 << 20;  // [bytes] that may be missing
+    const auto [found, is_new] = flows_.try_emplace(packet.key);
+    Connection& connection = found->second;
+    const auto ahead = static_cast<std::int32_t>(packet.sequence - connection.next);
+    if (!is_new && connection.stretch + 1 == stretch_) {
+      connections_[connection.stretch] += ahead >= 0 && ahead < kNear ? 1 : -1;
+    }
+    connection = {
+        .next = packet.sequence + static_cast<std::uint32_t>(packet.payload.size()) + packet.missing,
+        .stretch = stretch_};
+  }
+
+  std::size_t stretch_ = 0;  // the present one, from 1
+  std::map<IpAddress, Sender> senders_;
+  std::map<std::pair<IpAddress, IpAddress>, Offset> offsets_;
+  std::map<FlowKey, Connection> flows_;
+  std::map<std::size_t, int> connections_;  // that go on after a stretch, less those that do not
+};
+
+/// [ns] From one packet of a stretch to the next, on the average.
+std::int64_t interval_of(const CaptureStretch& stretch, std::uint64_t packets) {
+  constexpr std::int64_t kMost = 10'000'000;
+  const auto intervals = static_cast<std::int64_t>(std::max<std::uint64_t>(1, packets - 1));
+  return std::clamp<std::int64_t>((stretch.last_ns - stretch.first_ns) / intervals, 0, kMost);
+}
+
+/// Lets time go on where the hub's clock was set back.
+void continue_time(Stretches& found, const SenderSurvey& senders, CaptureOrder& order) {
+  std::int64_t largest = 0;
+  std::size_t times = 0;
+  for (std::size_t i = 1; i < found.all.size(); ++i) {
+    if (!senders.goes_on_after(i)) continue;
+    const CaptureStretch& before = found.all[i - 1];
+    CaptureStretch& next = found.all[i];
+    const std::int64_t back = before.last_ns - before.shift_ns - next.first_ns;
+    next.shift_ns = before.last_ns + interval_of(before, found.packets[i - 1]) - next.first_ns;
+    next.first_ns += next.shift_ns;
+    next.last_ns += next.shift_ns;
+    largest = std::max(largest, back);
+    ++times;
+  }
+  if (times == 0) return;
+  order.remarks.push_back(
+      fmt::format("the hub's clock was set back {} time(s) while it captured, by up to {:.3f} s: connections "
+                  "go on there. Times "
+                  "are continued. Let the hub set its clock before it captures",
+                  times, to_seconds(largest)));
+}
+
+void sort_by_time(Stretches& found, CaptureOrder& order) {
+  constexpr std::int64_t kWorthAWord = 1'000'000'000;  // less is usual where several interfaces are captured
+  const auto out_of_order = std::ranges::adjacent_find(
+      found.all, [](const auto& a, const auto& b) { return b.first_ns < a.last_ns - kWorthAWord; });
+  if (out_of_order != found.all.end()) {
+    order.remarks.push_back(
+        fmt::format("its packets are not in the order of their times ({} parts, each in order): they are "
+                    "read in the order of "
+                    "their times",
+                    found.all.size()));
+  }
+  std::ranges::stable_sort(found.all, {}, &CaptureStretch::first_ns);
+  order.stretches = std::move(found.all);
+}
+
+/// Whether the senders' clocks differ, each by a constant: then the file's order is right, and their times
+/// are corrected.
+bool join_clocks(const SenderSurvey& senders, CaptureOrder& order) {
+  for (const auto& [ip, offset] : senders.offsets()) {
+    order.shift_ns[ip] = -offset;
+    order.remarks.push_back(fmt::format(
+        "packets of {} are stamped {:+.3f} s off those of the others between which they stand: the capture's "
+        "interfaces have different clocks (TAI is 37 s ahead of UTC). This offset is taken out, to within "
+        "some "
+        "milliseconds, which a calibration finds as eta. Let all interfaces be stamped by one clock",
+        to_string(ip), to_seconds(offset)));
+  }
+  return !order.shift_ns.empty();
+}
+
+}  // namespace
+
+CaptureOrder survey_capture(const std::filesystem::path& path, const std::function<bool()>& interrupted) {
+  constexpr std::size_t kInterleaved = 10;  // stretches: senders that take turns
+  CaptureOrder order;
+  Stretches found = find_stretches(path, interrupted);
+  if (found.count + found.damaged >= kInterleaved) {
+    CaptureFile file(path, interrupted);
+    file.keep_all_stamps();  // one of another clock between two would be taken for damaged
+    if (join_clocks(SenderSurvey(file), order)) return order;
+  }
+  if (found.count < 2) return order;
+  if (found.count > kMostStretches) {
+    order.remarks.push_back(
+        fmt::format("the times of its packets go back {} times, too often to sort them: what comes out of "
+                    "order is lost. Sort it "
+                    "with reordercap",
+                    found.count - 1));
+    return order;
+  }
+  CaptureFile file(path, interrupted);
+  continue_time(found, SenderSurvey(file), order);
+  sort_by_time(found, order);
+  return order;
+}
+
+}  // namespace crisp

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "grabbers/capture/capture_file.hpp"
+#include "grabbers/capture/network.hpp"
+
+namespace crisp {
+
+/// Packets of a capture are in order if none is earlier by more than this than one before it [ns]: captures
+/// of several interfaces are slightly out of order.
+inline constexpr std::int64_t kDisorder = 100'000'000;
+
+/// A part of a capture file whose packets are in order.
+struct CaptureStretch {
+  CaptureFile::Place begin = {};
+  std::uint64_t end = std::numeric_limits<std::uint64_t>::max();     ///< [bytes] in the file
+  std::int64_t first_ns = std::numeric_limits<std::int64_t>::min();  ///< of its packets, with the shift
+  std::int64_t last_ns = std::numeric_limits<std::int64_t>::max();
+  std::int64_t shift_ns = 0;  ///< what is added to the time of its packets
+};
+
+/// How the packets of a capture come into the order in which they arrived.
+struct CaptureOrder {
+  std::vector<CaptureStretch> stretches = {CaptureStretch{}};  ///< ascending in first_ns; they may overlap
+  std::map<IpAddress, std::int64_t> shift_ns = {};  ///< added to the times of what these senders sent
+  std::vector<std::string> remarks = {};            ///< what is out of order, and what is made of it
+};
+
+/// Reads the times of all packets; where they go back, the packets themselves, too.
+///
+/// Where the times go back, TCP tells two cases apart: connections that go on there, byte for byte, mean that
+/// the hub's clock was set back (or its 32 bits of seconds wrapped), and time goes on; otherwise the file's
+/// parts are in another order than that of their times. Where each sender's times ascend but for a constant
+/// offset, interfaces have clocks of their own, such as TAI beside UTC.
+///
+/// @param interrupted  as ByteStream's
+/// @throws Error if the file cannot be read or is no capture
+CaptureOrder survey_capture(const std::filesystem::path& path, const std::function<bool()>& interrupted = {});
+
+}  // namespace crisp
