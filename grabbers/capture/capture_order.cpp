@@ -234,7 +234,7 @@ bool join_clocks(const SenderSurvey& senders, CaptureOrder& order) {
 }  // namespace
 
 CaptureOrder survey_capture(const std::filesystem::path& path, const std::function<bool()>& interrupted) {
-  constexpr std::size_t kInterleaved = 10;  // stretches: senders that take turns
+  constexpr std::size_t kInterleaved = 3;  // stretches: senders that take turns
   CaptureOrder order;
   Stretches found = find_stretches(path, interrupted);
   if (found.count + found.damaged >= kInterleaved) {

@@ -36,7 +36,9 @@ struct AlignmentReport {
       devices;  ///< the lasers in the order of the rig, then the plate; of each recording
   std::map<std::string, std::uint64_t> counts;
   std::vector<std::string> warnings;
-  std::vector<std::string> doubts;  ///< why the times cannot be trusted
+  std::vector<std::string> doubts;   ///< why the times cannot be trusted
+  std::vector<StampStep> hub_steps;  ///< by how much the hub's clock was set: forwards
+  double hub_deviation = 0;          ///< [s] by how much at most it deviated from a steady one
 
   /// Adds what was done of another recording.
   void append(AlignmentReport other);

@@ -132,6 +132,8 @@ void AlignmentReport::append(AlignmentReport other) {
   devices.insert(devices.end(), other.devices.begin(), other.devices.end());
   for (const auto& [what, n] : other.counts) counts[what] += n;
   for (auto& warning : other.warnings) warnings.push_back(std::move(warning));
+  hub_steps.insert(hub_steps.end(), other.hub_steps.begin(), other.hub_steps.end());
+  hub_deviation = std::max(hub_deviation, other.hub_deviation);
   for (auto& doubt : other.doubts) doubts.push_back(std::move(doubt));
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/clock/clock_aligner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +15,24 @@ namespace {
 constexpr double kWindow = 60;          // [s]
 constexpr double kLongestWindow = 240;  // [s] bounds the memory
 constexpr double kLate = 30;            // [s] a scan may come in so long after it was swept
+
+/// Of what is taken out there is one word, and not one for each device.
+void warn_of_hub_clock(AlignmentReport& report) {
+  if (report.hub_deviation <= 0) return;
+  std::string steps;
+  if (!report.hub_steps.empty()) {
+    const StampStep& largest = *std::ranges::max_element(
+        report.hub_steps, {}, [](const StampStep& step) { return std::abs(step.by); });
+    steps =
+        fmt::format(" (set {} time(s), by {:+.3f} ms at {:.2f} s{})", report.hub_steps.size(),
+                    1e3 * largest.by, largest.at, report.hub_steps.size() > 1 ? ", and less elsewhere" : "");
+  }
+  report.warnings.push_back(
+      fmt::format("the hub's clock deviates by up to {:.3f} ms from those of all devices alike{}: it was set "
+                  "or slewed, as NTP "
+                  "does, or the hub was busy. This is taken out",
+                  1e3 * report.hub_deviation, steps));
+}
 
 }  // namespace
 
@@ -59,7 +79,21 @@ void ClockAligner::advance_windows() {
   }
 }
 
+/// What all devices' clocks tell alike is the hub's.
+void ClockAligner::take_out_hub_deviation() {
+  std::vector<std::vector<ReceivedStamp>> stamps;
+  for (const auto& laser : tracks_.lasers()) stamps.push_back(laser.clock().unsettled());
+  stamps.push_back(tracks_.plate().clock().unsettled());
+  const auto deviation = find_hub_deviation(stamps);
+  if (!deviation) return;
+  for (auto& laser : tracks_.lasers()) laser.clock().take_out(*deviation);
+  tracks_.plate().clock().take_out(*deviation);
+  for (const auto& step : deviation->steps()) report_.hub_steps.push_back({.at = step.at, .by = step.by});
+  report_.hub_deviation = std::max(report_.hub_deviation, deviation->largest());
+}
+
 void ClockAligner::take_out_steps() {
+  take_out_hub_deviation();
   for (auto& laser : tracks_.lasers()) laser.clock().take_out_steps();
   tracks_.plate().clock().take_out_steps();
 }
@@ -124,6 +158,7 @@ void ClockAligner::end_recording() {
 AlignmentReport ClockAligner::finish() {
   if (report_.devices.empty()) tracks_.refuse_if_missing();
   end_recording();
+  warn_of_hub_clock(report_);
   return report_;
 }
 

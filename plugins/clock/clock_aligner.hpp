@@ -28,6 +28,7 @@ class ClockAligner final : public Aligner {
   double arrive(std::int64_t receipt_ns);
   void end_recording();
   void advance_windows();
+  void take_out_hub_deviation();
   void take_out_steps();
   bool is_too_short() const;
   void settle(double begin, double end);
@@ -37,7 +38,7 @@ class ClockAligner final : public Aligner {
   AlignmentSettings settings_;
   AlignmentSink sink_;
   HubTracks tracks_;
-  AlignmentReport report_;  ///< of recordings that have ended
+  AlignmentReport report_;  ///< of recordings that have ended, and the hub's clock
   double begin_ = 0;        ///< [s since the epoch] of the window that is being filled
   double length_;           ///< [s] of it
 };

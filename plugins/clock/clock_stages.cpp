@@ -10,16 +10,17 @@ namespace {
 
 constexpr double kPpmPerHour = 1e-6 / 3600;  // [1/s]
 
+nlohmann::json to_json(const std::vector<StampStep>& steps) {
+  auto list = nlohmann::json::array();
+  for (const StampStep& step : steps) list.push_back({{"at", step.at}, {"by", step.by}});
+  return list;
+}
+
 nlohmann::json to_json(const DeviceReport& device) {
   auto silences = nlohmann::json::array();
   for (const auto& silence : device.silences) {
     silences.push_back({{"begin", silence.begin}, {"duration", silence.duration}});
   }
-  const auto all = [](const std::vector<StampStep>& steps) {
-    auto list = nlohmann::json::array();
-    for (const StampStep& step : steps) list.push_back({{"at", step.at}, {"by", step.by}});
-    return list;
-  };
   const auto of_clock = [&](auto value) {
     return device.clock ? nlohmann::json(value(*device.clock)) : nlohmann::json();
   };
@@ -38,8 +39,8 @@ nlohmann::json to_json(const DeviceReport& device) {
           {"damaged", device.damaged},
           {"resets", device.resets},
           {"silences", silences},
-          {"clock_steps", all(device.clock_steps)},
-          {"delay_steps", all(device.delay_steps)}};
+          {"clock_steps", to_json(device.clock_steps)},
+          {"delay_steps", to_json(device.delay_steps)}};
 }
 
 std::string table_of(const std::vector<DeviceReport>& devices) {
@@ -259,7 +260,9 @@ void AlignStage::finish(Outputs& out, Context& context) {
   for (const auto& [what, n] : report.counts) context.count(what, n);
   for (const auto& warning : report.warnings) context.warn(warning);
   for (const auto& doubt : report.doubts) context.distrust(doubt);
-  context.report({{"devices", devices}});
+  context.report(
+      {{"devices", devices},
+       {"hub_clock", {{"deviation", report.hub_deviation}, {"steps", to_json(report.hub_steps)}}}});
   context.say(table_of(report.devices));
   for (const auto& device : report.devices) {
     if (device.clock) out.give(*device.clock);

@@ -107,7 +107,7 @@ class DeviceStamps {
   DeviceReport report_;
   bool any_ = false;
   bool receipts_begin_ = false;  ///< with the next item they take the place of its clock
-  bool numbered_ = true;  ///< all of them by the device itself
+  bool numbered_ = true;         ///< all of them by the device itself
   Last last_;
   Last before_reset_;
   double first_hub_ = 0;

@@ -46,6 +46,7 @@ FittedClock::FittedClock(std::string device, LineFinder find, double bend)
     : device_(std::move(device)), find_(std::move(find)), bend_(bend) {}
 
 void FittedClock::add(std::int64_t device_us, double hub) {
+  hub -= hub_ahead_;
   if (cut_) {
     segments_.push_back({.first_us = device_us, .first_hub = hub, .hull = LowerHull(bend_)});
     cut_ = false;
@@ -137,6 +138,34 @@ std::optional<FittedClock::WindowFit> FittedClock::fit(const Segment& segment, d
   fit.errors.at_center = std::hypot(fit.errors.at_center, segment.later_error);
   if (span > 0) fit.errors.slope = std::hypot(fit.errors.slope, segment.later_error / span);
   return fit;
+}
+
+std::vector<ReceivedStamp> FittedClock::unsettled() const {
+  std::vector<ReceivedStamp> stamps;
+  const auto longest =
+      std::ranges::max_element(segments_, {}, [](const Segment& segment) { return segment.stamps.size(); });
+  if (longest == segments_.end()) return stamps;
+  for (const Stamp& stamp : longest->stamps)
+    stamps.push_back({.hub = longest->hub(stamp), .lead = stamp.lead});
+  return stamps;
+}
+
+void FittedClock::take_out(const HubDeviation& deviation) {
+  for (Segment& segment : segments_) {
+    if (segment.stamps.empty()) continue;
+    const double first = segment.stamps.front().device;
+    std::vector<Stamp> kept;
+    for (Stamp stamp : segment.stamps) {
+      const double hub = segment.hub(stamp);
+      stamp.lead -= deviation.at(hub);
+      if (!deviation.is_unsure(hub)) kept.push_back(stamp);
+    }
+    constexpr std::size_t kFewest = 4;  // a stretch that is all unsure is kept as it is
+    if (kept.size() < std::min(kFewest, segment.stamps.size())) continue;
+    segment.stamps = std::move(kept);
+    make_hull_anew(segment, first);
+  }
+  hub_ahead_ += deviation.at_end();
 }
 
 void FittedClock::take_out_steps() {

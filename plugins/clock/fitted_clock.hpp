@@ -11,6 +11,7 @@
 
 #include "pipeline/clocks/clock_line.hpp"
 #include "pipeline/clocks/delay_step.hpp"
+#include "pipeline/clocks/hub_deviation.hpp"
 #include "pipeline/clocks/lower_hull.hpp"
 #include "pipeline/data/clock_map.hpp"
 #include "plugins/clock/delay_histogram.hpp"
@@ -54,6 +55,11 @@ class FittedClock {
   /// Takes out the steps of the shortest delay among the stamps that are not settled.
   void take_out_steps();
   const std::vector<StampStep>& delay_steps() const { return delay_steps_; }
+
+  /// The stamps that are not settled, of the longest stretch without a reset.
+  std::vector<ReceivedStamp> unsettled() const;
+  /// Takes the hub's deviation out of those stamps, and what it is at its end out of all that come later.
+  void take_out(const HubDeviation& deviation);
 
   /// How far the line of the window that ends at `end` [s since the epoch] is from being known [s]; 0 if
   /// there are too few stamps to say.
@@ -123,6 +129,7 @@ class FittedClock {
   bool cut_ = true;
   std::deque<Segment> segments_;
   std::size_t stamps_ = 0;
+  double hub_ahead_ = 0;  ///< [s] of the hub's clock, of a steady one: taken out of what comes
   std::optional<ClockMap> map_;
   DelayHistogram delays_;
   std::vector<StampStep> delay_steps_;

@@ -98,11 +98,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace crisp;  // NOLINT(google-build-using-namespace)
   const ItemSequence items = ItemScript({data, size}).items();
   align(items, batch({}));
-  align(items, batch({.find = line_by_linear_program, .window = 5}));
-  align(items, batch({.source = TimeSource::receipt}));
+  align(items, batch({.find = line_by_linear_program, .window = 5, .plate = {.smoothing = 0}}));
+  align(items, batch({.source = TimeSource::receipt, .plate = {.smoothing = 0}}));
   align(items, [](const Rig& rig, AlignmentSink sink) {
-    return std::make_unique<OnlineAligner>(rig, AlignmentSettings{.mirror_half_width = kOnlineMirror},
-                                           OnlineSettings{}, std::move(sink));
+    return std::make_unique<OnlineAligner>(
+        rig, AlignmentSettings{.plate = {.smoothing = 0}, .mirror_half_width = kOnlineMirror},
+        OnlineSettings{}, std::move(sink));
   });
   return 0;
 }
