@@ -24,6 +24,9 @@ void CaptureStage::describe(StageDescription<CaptureStage>& d) {
       "A folder stands for all captures in it, one after the other in the order of their first packets: of "
       "one "
       "scanner in several places, or of one recording in several files.\n\n"
+      "Where the times of a file's packets go back, its parts are read in the order of their times, or time "
+      "is "
+      "continued if the hub's clock was set back there.\n\n"
       "What is damaged, lost, repeated or unknown is counted by name; it never ends the reading. Memory does "
       "not "
       "depend on the size of the capture.");
