@@ -24,8 +24,9 @@ Error no_capture(const std::filesystem::path& path, std::string_view begin) {
 
 }  // namespace
 
-CaptureFile::CaptureFile(const std::filesystem::path& path, std::function<bool()> interrupted)
-    : file_(path, std::move(interrupted)) {
+CaptureFile::CaptureFile(const std::filesystem::path& path, const Place& from, std::uint64_t end,
+                         std::function<bool()> interrupted)
+    : file_(path, std::move(interrupted)), end_(end) {
   constexpr std::size_t kTelling = 8;  // bytes
   const auto begin = file_.peek(kTelling);
   if (begin.empty()) throw Error(path.string() + " is empty", "capture it again");
@@ -36,12 +37,6 @@ CaptureFile::CaptureFile(const std::filesystem::path& path, std::function<bool()
   } else {
     throw no_capture(path, as_text(begin));
   }
-}
-
-CaptureFile::CaptureFile(const std::filesystem::path& path, const Place& from, std::uint64_t end,
-                         std::function<bool()> interrupted)
-    : CaptureFile(path, std::move(interrupted)) {
-  end_ = end;
   if (from.offset == 0) return;
   file_.move_to(from.offset);
   auto* pcapng = std::get_if<PcapngBlocks>(&records_);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include "grabbers/capture/pcap_records.hpp"
@@ -28,10 +29,12 @@ class CaptureFile {
 
   /// @param interrupted  as ByteStream's
   /// @throws Error if the file cannot be read or is no capture
-  explicit CaptureFile(const std::filesystem::path& path, std::function<bool()> interrupted = {});
+  explicit CaptureFile(const std::filesystem::path& path, std::function<bool()> interrupted = {})
+      : CaptureFile(path, {}, kToTheEnd, std::move(interrupted)) {}
   /// A part of it: from a place to before another one [bytes].
   CaptureFile(const std::filesystem::path& path, const Place& from, std::uint64_t end,
               std::function<bool()> interrupted = {});
+  static constexpr std::uint64_t kToTheEnd = std::numeric_limits<std::uint64_t>::max();
 
   /// From now on no stamp is taken for damaged: those of several clocks are told apart elsewhere.
   void keep_all_stamps() { keeps_all_ = true; }
@@ -64,7 +67,7 @@ class CaptureFile {
   Counts notes_;
   std::variant<std::monostate, PcapRecords, PcapngBlocks> records_;
   Slot current_, ahead_;
-  std::uint64_t end_ = std::numeric_limits<std::uint64_t>::max();  ///< [bytes] in the file
+  std::uint64_t end_;  ///< [bytes] in the file
   bool begun_ = false;
   bool keeps_all_ = false;
   std::optional<std::int64_t> before_ns_;  ///< time of the packet before the current one

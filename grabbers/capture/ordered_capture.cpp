@@ -19,7 +19,6 @@ OrderedCapture::OrderedCapture(const std::filesystem::path& path, std::function<
       interrupted_(std::move(interrupted)),
       order_(is_regular(path) ? survey_capture(path, interrupted_) : CaptureOrder{}) {
   open_what_is_due();
-  given_ = parts_.size();
   if (is_regular(path)) size_ = std::filesystem::file_size(path);
 }
 
@@ -58,11 +57,11 @@ void OrderedCapture::close_what_is_over() {
 }
 
 const Packet* OrderedCapture::next() {
-  if (given_ < parts_.size()) load(parts_[given_]);
+  if (given_) load(parts_[*given_]);
   close_what_is_over();
   open_what_is_due();
   close_what_is_over();
-  given_ = 0;
+  given_.reset();
   if (parts_.empty()) return nullptr;
   const auto first =
       std::ranges::min_element(parts_, {}, [](const Part& part) { return part.packet.time_ns; });

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,18 +43,18 @@ class OrderedCapture {
   };
 
   void open_what_is_due();
-  void load(Part& part);
+  static void load(Part& part);
   void close_what_is_over();
 
   std::filesystem::path path_;
   std::function<bool()> interrupted_;
   std::uint64_t size_ = 0;
   CaptureOrder order_;
-  std::size_t opened_ = 0;   // of the order's stretches
-  std::vector<Part> parts_;  // that are open
-  std::size_t given_ = 0;    // the part whose packet was given last; their number if there is none
-  Counts losses_, notes_;    // of those that are over
-  std::uint64_t read_ = 0;   // [bytes] of those that are over
+  std::size_t opened_ = 0;            // of the order's stretches
+  std::vector<Part> parts_;           // that are open
+  std::optional<std::size_t> given_;  // the part whose packet was given last
+  Counts losses_, notes_;             // of those that are over
+  std::uint64_t read_ = 0;            // [bytes] of those that are over
 };
 
 }  // namespace crisp

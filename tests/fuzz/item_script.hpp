@@ -47,10 +47,10 @@ class ItemScript {
     std::uint16_t count = 65'500;
     std::uint8_t kind = 0;
   };
-  void operate(unsigned operation, std::size_t device, std::uint8_t argument);
+  void operate(unsigned operation, std::size_t index, std::uint8_t argument);
   void send_for(double seconds);
-  void send(std::size_t device, double now);
-  void send_odd(std::size_t device, std::uint8_t seed);
+  void send(std::size_t index, double now);
+  void send_odd(std::size_t index, std::uint8_t seed);
   std::uint32_t stamp(Device& device, double now) const;
   std::int64_t receipt_ns(const Device& device, double now) const;
 

@@ -8,7 +8,6 @@ namespace crisp {
 namespace {
 
 using namespace testing;  // NOLINT(google-build-using-namespace)
-using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
