@@ -33,7 +33,7 @@ void FileWindow::skip(std::uint64_t n) {
 }
 
 void FileWindow::move_to(std::uint64_t offset) {
-  if (::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0) throw cannot_read(path_, errno);
+  stream_.move_to(offset);
   offset_ = offset;
   begin_ = end_ = 0;
 }

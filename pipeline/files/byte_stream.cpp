@@ -60,6 +60,10 @@ std::size_t ByteStream::read(void* to, std::size_t most) {
   }
 }
 
+void ByteStream::move_to(std::uint64_t offset) {
+  if (::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0) throw cannot_read_bytes(path_, errno);
+}
+
 ByteStreamBuffer::int_type ByteStreamBuffer::underflow() {
   const std::size_t got = stream_.read(buffer_.data(), buffer_.size());
   if (got == 0) return traits_type::eof();

@@ -26,6 +26,9 @@ class ByteStream {
   /// @throws Interrupted  when told to give up
   std::size_t read(void* to, std::size_t most);
 
+  /// Goes on at a place [bytes] of a file that is no pipe. @throws Error if the disk fails
+  void move_to(std::uint64_t offset);
+
   std::uint64_t size() const { return size_; }  ///< [bytes] of the file when it was opened; 0 for a pipe
   const std::filesystem::path& path() const { return path_; }
 

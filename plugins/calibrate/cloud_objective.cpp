@@ -9,8 +9,9 @@ namespace {
 
 Vectors as_arrays(const Placed& placed, const Sample& sample) {
   if (placed.index.size() != sample.beams.size()) {
-    throw Error("an eta moved some beams out of the time that the encoder readings cover",
-                "check the rig's eta, the clock stages, and whether the encoder was recorded from begin to end");
+    throw Error(
+        "an eta moved some beams out of the time that the encoder readings cover",
+        "check the rig's eta, the clock stages, and whether the encoder was recorded from begin to end");
   }
   Vectors arrays;
   arrays.assign(placed.index.size(), 0);

@@ -8,6 +8,7 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/shown_unit.hpp"
 #include "pipeline/estimate/base_slots.hpp"
 #include "pipeline/estimate/can_be_told.hpp"
 #include "pipeline/estimate/observability.hpp"
@@ -15,6 +16,7 @@
 #include "pipeline/statistics/dense_solvers.hpp"
 #include "plugins/calibrate/deepest_valley.hpp"
 #include "plugins/calibrate/optimum_scatter.hpp"
+#include "plugins/calibrate/report.hpp"
 
 namespace crisp {
 namespace {
@@ -76,7 +78,7 @@ class RqeCalibration {
   Outcome run() {
     in_plane();
     Sample used = crisp::in_plane(sample_, settings_.in_plane.half_width, Half::kBoth);
-    if (settings_.full_field) used = full_field();
+    if (settings_.full_field) used = full_field_from_each_minimum();
     refuse_a_lag_without_end();
     tell(0.8, "standard errors");
     Eigen::MatrixXd covariance = scatter(used);
@@ -168,6 +170,36 @@ class RqeCalibration {
     return thin;
   }
 
+  /// Minimizes over the full field from the optimum in the plate's plane and from each other minimum that was
+  /// about as deep there, and leaves the model at the best: lines in one plane can fit by chance where the
+  /// plate hardly changes its rate, all beams hardly ever.
+  Sample full_field_from_each_minimum() {
+    const SensorModel in_plane_optimum = model_;
+    std::erase_if(rivals_, [](const Rival& rival) { return rival.height > kClearlyDeeper; });
+    Sample used = full_field();
+    for (Rival& rival : rivals_) {
+      const SensorModel best = model_;
+      model_ = with_one(in_plane_optimum, rival.parameter, rival.at);
+      std::vector<std::size_t> others = parameters_.free;  // lags as they were found
+      std::erase_if(others, [&](std::size_t parameter) {
+        return parameter == rival.parameter || model_.names()[parameter].ends_with(".eta");
+      });
+      tell(0.25, fmt::format("another minimum, of {}", model_.names()[rival.parameter]));
+      calibrate_in_plane(model_, others, sample_, measure_, settings_.in_plane);
+      Sample own = full_field();
+      const auto quality = crispness_of({best, model_}, sample_, {.sigma = settings_.sigma_to}, measure_);
+      const auto place = static_cast<Eigen::Index>(rival.parameter);
+      rival.height = std::abs(quality[1] - quality[0]);
+      rival.at = quality[1] < quality[0] ? best.values()[place] : model_.values()[place];
+      if (quality[1] < quality[0]) {
+        used = std::move(own);
+      } else {
+        model_ = best;
+      }
+    }
+    return used;
+  }
+
   Eigen::MatrixXd scatter(const Sample& used) {
     const double sigma = settings_.full_field ? settings_.sigma_to : settings_.in_plane.sigma_to;
     return optimum_scatter(model_, used, parameters_.free, measure_,
@@ -179,19 +211,37 @@ class RqeCalibration {
   }
 
   std::vector<std::string> doubts() const {
-    if (sees_single_spots(sample_, settings_.in_plane)) return {kSingleSpots};
-    return {};
+    std::vector<std::string> found;
+    if (sees_single_spots(sample_, settings_.in_plane)) found.emplace_back(kSingleSpots);
+    for (const Rival& rival : rivals_) {
+      if (is_indistinct(rival)) found.push_back(in_words(rival));
+    }
+    return found;
   }
 
   std::vector<std::string> other_minima() const {
     std::vector<std::string> found;
     for (const Rival& rival : rivals_) {
-      if (rival.height > kClearlyDeeper) continue;
-      found.push_back(fmt::format(
-          "{} at {:.4g} makes the cloud of the beams in the plate's plane as crisp, to {:.3f} nat",
-          model_.names()[rival.parameter], rival.at, rival.height));
+      if (!is_indistinct(rival) && rival.height <= kClearlyDeeper) found.push_back(in_words(rival));
     }
     return found;
+  }
+
+  /// Whether all beams together do not separate two minima: no refinement of the one does, either.
+  bool is_indistinct(const Rival& rival) const {
+    constexpr double kIndistinct = 0.02;  // [nat]
+    return settings_.full_field && rival.height <= kIndistinct;
+  }
+
+  std::string in_words(const Rival& rival) const {
+    const std::string& name = model_.names()[rival.parameter];
+    const ShownUnit unit = shown_unit(name.ends_with(".eta") ? "s" : "rad");
+    const double here = model_.values()[static_cast<Eigen::Index>(rival.parameter)];
+    return fmt::format(
+        "{} has another minimum at {:.4g} {} beside {:.4g} {}, where the cloud{} is as crisp to {:.3f} nat: "
+        "change the plate's rate more, record longer, or give {} with its sd in the rig",
+        name, rival.at * unit.factor, unit.name, here * unit.factor, unit.name,
+        settings_.full_field ? "" : " of the beams in the plate's plane", rival.height, name);
   }
 
   RqeCalibrationSettings settings_;

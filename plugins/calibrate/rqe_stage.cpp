@@ -113,6 +113,10 @@ Calibration RqeStage::compared_with_rig(Calibration calibration, Context& contex
         "nothing shows which way the encoder counts, as the mirror image agrees with the rig's nominal "
         "values as well: the cloud may be the mirror image of the scene. Set plate.direction in the rig");
     context.distrust(calibration.doubts.back());
+  } else if (!check.knows_direction && !start_) {
+    context.say(
+        "plate.direction is known from the rig only: the mirror image agrees with the nominal values as "
+        "well");
   }
   for (const auto& caveat : check.caveats) context.distrust(caveat);
   return calibration;

@@ -120,7 +120,7 @@ TEST(CalibrateByRqe, IsNotSureInARoomThatLooksTheSameFromBehind) {
   start.lasers[1].lambda.value += 70 * kDegree;
   const Outcome outcome = calibrate_by_rqe(SensorModel(start), sample_of(recording), *measure, settings);
   ASSERT_EQ(outcome.other_minima.size(), 1U);
-  EXPECT_THAT(outcome.other_minima[0], testing::StartsWith("laser2.lambda at "));
+  EXPECT_THAT(outcome.other_minima[0], testing::StartsWith("laser2.lambda has another minimum at "));
 }
 
 TEST(CalibrateByRqe, TheNominalLambdaTellsWhichOfTwoPlacesIsMeant) {
