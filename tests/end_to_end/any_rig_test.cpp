@@ -54,6 +54,15 @@ TEST_F(AnyRig, ACoarseEncoderCountsInTheStandardErrors) {
 
 TEST_F(AnyRig, InACorridorTheNominalLambdaTellsWhichWayRound) { is_right_and_trusted(160); }
 
+TEST_F(AnyRig, ALagAtWhichLinesFitByChanceIsNotTaken) {
+  const auto outcome = calibrate(581, {"fault=none"});
+  EXPECT_THAT(outcome.told, HasSubstr("left.eta has another minimum at 99.93 ms"));
+  for (const auto& parameter : drawn_->compare(read_calibration(workshop_ / "out/calibration.yaml"))) {
+    EXPECT_FALSE(parameter.is_wrong())
+        << parameter.name << " " << parameter.error << " ± " << parameter.std_error;
+  }
+}
+
 TEST_F(AnyRig, DelaysThatThinOutTowardsTheLeastLeaveEtaHonest) { is_right_and_trusted(25, {}); }
 
 TEST_F(AnyRig, ADirectionThatNothingShowsIsNotGuessed) {
