@@ -45,6 +45,7 @@ CommandLine::CommandLine() {
   app.failure_message(
       [](const CLI::App* asked, const CLI::Error& error) { return usage_error(*asked, error); });
   add_run();
+  add_batch();
   add_record();
   add_emulate();
   add_bound();
@@ -93,6 +94,78 @@ void CommandLine::add_run() {
   run_app->add_option("pipeline", run.file, "The pipeline's YAML file")->required()->type_name("FILE");
   add_arguments(run_app, run.arguments);
   add_run_options(run_app, "--threads", run);
+}
+
+void CommandLine::add_batch() {
+  batch_app = command(
+      "batch", "Run a pipeline over many recordings, each in a process of its own; go on where it stopped");
+  batch_app->add_option("pipeline", batch.run.file, "The pipeline's YAML file")->type_name("FILE");
+  add_batch_inputs();
+  add_batch_limits();
+  add_run_options(batch_app, "--threads", batch.run);
+  batch.run.threads = 1;
+  batch_app->get_option("--threads")->description("How many threads each job may use")->capture_default_str();
+  add_batch_verbs();
+}
+
+void CommandLine::add_batch_inputs() {
+  batch_app
+      ->add_option(
+          "-i,--input", batch.inputs,
+          "Recordings: files, folders, quoted patterns ('captures/**/*.pcap'), a list NAME.txt, or - for "
+          "a list on the standard input (may be repeated)")
+      ->type_name("PATH");
+  batch_app->add_option("-o,--output", batch.output, "The folder for the results, a folder in it a recording")
+      ->type_name("FOLDER");
+  batch_app
+      ->add_option("--each", batch.each, "What is one recording: each file, or the captures of each folder")
+      ->check(CLI::IsMember({"file", "folder"}))
+      ->capture_default_str();
+  batch_app->add_option("--base", batch.base, "The folder that the names of the results are relative to")
+      ->type_name("FOLDER");
+  batch_app
+      ->add_option(
+          "--rig", batch.rig,
+          "The rig, instead of the one that the pipeline names; {folder}, {stem} and {name} are those of "
+          "the recording: '{folder}/rig.yaml'")
+      ->type_name("FILE");
+  add_set(batch_app, batch.run.arguments);
+}
+
+void CommandLine::add_batch_limits() {
+  batch.jobs = std::max(1U, std::thread::hardware_concurrency());
+  batch_app->add_option("--jobs", batch.jobs, "How many recordings to process at once")
+      ->check(whole_number(1, 4096))
+      ->capture_default_str();
+  batch_app->add_option("--shard", batch.shard, "Only the i-th of n parts of the recordings")
+      ->type_name("i/n");
+  batch_app->add_option("--timeout", batch.timeout, "End a job that takes longer: 90s, 10min")
+      ->type_name("TIME");
+  batch_app
+      ->add_option(
+          "--memory", batch.memory,
+          "Run no more jobs at once than fit into so much memory, by what they were seen to take: 8GB")
+      ->transform(CLI::AsSizeValue(true))
+      ->type_name("SIZE");
+}
+
+void CommandLine::add_batch_verbs() {
+  const auto verb = [this](const std::string& name, const std::string& help, std::filesystem::path& folder) {
+    CLI::App* made = batch_app->add_subcommand(name, help);
+    made->add_option("folder", folder, "The batch's output folder")->required()->type_name("FOLDER");
+    made->fallthrough();
+    return made;
+  };
+  batch_status_app = verb("status", "Print what is done, running, failed, and why", batch_status.folder);
+  batch_status_app->add_flag("--watch", batch_status.watch, "Again every two seconds until nothing is due");
+  batch_status_app->add_flag("--json", batch_status.json, "For programs");
+  batch_table_app =
+      verb("table", "Write and print the table, a row a recording, from all manifests", batch_table.folder);
+  batch_table_app->add_flag("--json", batch_table.json, "As JSON");
+  batch_retry_app = verb("retry", "Run the batch again, with what failed before", batch_retry.folder);
+  batch_retry_app->add_option("--match", batch_retry.match, "Only recordings of such names: 'site3/*'")
+      ->type_name("PATTERN");
+  batch_retry_app->add_flag("--mark", batch_retry.mark, "Leave them to the next crisp batch");
 }
 
 void CommandLine::add_run_options(CLI::App* to, const std::string& threads, RunRequest& request) {

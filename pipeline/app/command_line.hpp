@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/app/batch_commands.hpp"
 #include "pipeline/app/commands.hpp"
 
 namespace crisp {
@@ -20,6 +21,10 @@ struct CommandLine {
   CLI::App app{"Turns what lasers on a spinning plate measured into one crisp cloud.", "crisp"};
   std::vector<std::string> plugins;
   RunRequest run;
+  BatchRequest batch;
+  BatchStatusRequest batch_status;
+  BatchTableRequest batch_table;
+  BatchRetryRequest batch_retry;
   RunRequest basin;
   std::uint64_t basin_starts = 1000;
   RunRequest bound;
@@ -36,6 +41,10 @@ struct CommandLine {
   InfoRequest info;
   std::string shell;
   CLI::App* run_app = nullptr;
+  CLI::App* batch_app = nullptr;
+  CLI::App* batch_status_app = nullptr;
+  CLI::App* batch_table_app = nullptr;
+  CLI::App* batch_retry_app = nullptr;
   CLI::App* basin_app = nullptr;
   CLI::App* bound_app = nullptr;
   CLI::App* figures_app = nullptr;
@@ -58,6 +67,10 @@ struct CommandLine {
   static void add_rig(CLI::App* to, PipelineArguments& arguments);
   static void add_set(CLI::App* to, PipelineArguments& arguments);
   void add_run();
+  void add_batch();
+  void add_batch_inputs();
+  void add_batch_limits();
+  void add_batch_verbs();
   /// How a pipeline is run; the result does not depend on it, but for the seed.
   static void add_run_options(CLI::App* to, const std::string& threads, RunRequest& request);
   /// A pipeline that comes with the program.

@@ -105,6 +105,19 @@ bool load_plugins(const CommandLine& line, PluginLoader& loader) {
   return all_loaded;
 }
 
+ExitStatus run_batch_command(const CommandLine& line, const Registrar& registrar) {
+  if (line.batch_status_app->parsed()) return batch_status_command(line.batch_status);
+  if (line.batch_table_app->parsed()) return batch_table_command(line.batch_table);
+  if (line.batch_retry_app->parsed()) return batch_retry_command(line.batch_retry, line.batch, registrar);
+  const char* missing = line.batch.run.file.empty() ? "pipeline" : line.batch.inputs.empty() ? "-i" : "-o";
+  if (line.batch.run.file.empty() || line.batch.inputs.empty() || line.batch.output.empty()) {
+    print_errors(Error(std::string("crisp batch: ") + missing + " is missing",
+                       "crisp batch PIPELINE -i RECORDINGS -o FOLDER, or status, table or retry"));
+    return ExitStatus::misused;
+  }
+  return batch_command(line.batch, registrar);
+}
+
 ExitStatus run_program(const CommandLine& line) {
   Builtin builtin;
   Registrar& registrar = builtin.registrar();
@@ -115,6 +128,7 @@ ExitStatus run_program(const CommandLine& line) {
   if (!all_loaded) return ExitStatus::misused;
   if (line.plugins_app->parsed()) return ExitStatus::done;
   if (line.run_app->parsed()) return run_command(line.run, registrar);
+  if (line.batch_app->parsed()) return run_batch_command(line, registrar);
   if (line.basin_app->parsed()) return run_command(basin_request(line), registrar);
   if (line.bound_app->parsed()) return run_command(line.bound, registrar);
   if (line.record_app->parsed()) return run_command(line.record, registrar);

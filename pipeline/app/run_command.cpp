@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <csignal>
 #include <iostream>
 
@@ -15,20 +13,18 @@
 #include "pipeline/app/signals.hpp"
 #include "pipeline/app/status_board.hpp"
 #include "pipeline/app/summary.hpp"
+#include "pipeline/app/terminal.hpp"
 #include "pipeline/data/all_errors.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/folder_lock.hpp"
 #include "pipeline/files/utc_now.hpp"
 #include "pipeline/pcd/parts.hpp"
+#include "pipeline/stage/reference.hpp"
 
 namespace crisp {
 namespace {
 
 namespace fs = std::filesystem;
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// What was cut into several files is called by the name that they come of.
 void check_input(const std::optional<fs::path>& input) {
@@ -54,12 +50,6 @@ std::vector<std::string> tags_of(const Pipeline& pipeline) {
   std::vector<std::string> tags;
   for (const auto& node : pipeline.nodes) tags.push_back(node.tag);
   return tags;
-}
-
-/// Columns of the terminal; 0 if there is none.
-std::size_t terminal_width() {
-  winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
 /// The pipeline is gone when this returns or throws, and with it what is left of files that are not complete:

@@ -10,7 +10,6 @@
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/stage/files_written.hpp"
-#include "pipeline/stage/reference.hpp"
 
 namespace crisp {
 namespace {
@@ -86,12 +85,6 @@ bool RunRecord::is_trusted() const {
 bool RunRecord::wrote_any() const {
   return std::any_of(nodes.begin(), nodes.end(),
                      [](const auto& node) { return !node.report.written.empty(); });
-}
-
-Json effective_options(const PipelineNode& node) {
-  auto options = Json::object();
-  for (const auto& option : node.type->options) options[option.name] = to_json(node.value(option));
-  return options;
 }
 
 std::vector<InputRecord> hash_inputs(const RunRecord& record) {

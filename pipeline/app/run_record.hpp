@@ -36,9 +36,6 @@ struct RunRecord {
   bool wrote_any() const;   ///< whether a stage wrote a file
 };
 
-/// The effective options of a stage: all of them, with the values that it runs with, in SI.
-nlohmann::ordered_json effective_options(const PipelineNode& node);
-
 /// Hashes what the run read; to be called when it is over. Devices and folders are left out.
 std::vector<InputRecord> hash_inputs(const RunRecord& record);
 

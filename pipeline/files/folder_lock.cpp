@@ -103,4 +103,15 @@ FolderLock::FolderLock(const fs::path& folder, const FolderLockSettings& setting
 
 FolderLock::~FolderLock() = default;
 
+std::optional<std::string> FolderLock::holder_of(const fs::path& folder, const FolderLockSettings& settings) {
+  std::error_code none;
+  if (!fs::is_directory(folder, none)) return std::nullopt;
+  for (const auto& lock :
+       living_locks(folder, kLockPrefix, fs::file_time_type::clock::now(), settings.lease)) {
+    if (lock.owner && lock.owner->holds)
+      return fmt::format("process {} on {}", lock.owner->process.number, lock.owner->process.host);
+  }
+  return std::nullopt;
+}
+
 }  // namespace crisp

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -39,6 +40,11 @@ class FolderLock {
   /// Whether another process has taken the lock over, because this one gave no sign of life for the lease (it
   /// was stopped, or its file server could not be reached).
   bool is_lost() const { return lost_; }
+
+  /// The process that has a folder's lock, in words: "process 12 on host"; nothing if none has, or the folder
+  /// is not there. Removes the locks of the dead.
+  static std::optional<std::string> holder_of(const std::filesystem::path& folder,
+                                              const FolderLockSettings& settings = {});
 
  private:
   std::unique_ptr<LockFile> file_;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace crisp {
 
@@ -15,5 +16,8 @@ struct FileDigest {
 
 /// @throws Error if the file cannot be read to its end
 FileDigest digest_of(const std::filesystem::path& file);
+
+/// SHA-256 of a text, 64 hexadecimal digits.
+std::string sha256_of(std::string_view text);
 
 }  // namespace crisp

@@ -60,6 +60,22 @@ class PlanReader {
     };
     set("input", arguments_.input, "give it with -i");
     set("output", arguments_.output, "give it with -o");
+    set_name();
+  }
+
+  /// ${stem} is the name of the input's file without its ending, ${name} that of a batch's recording.
+  void set_name() {
+    const fs::path given = arguments_.input.value_or(fs::path());
+    const fs::path input = given.has_filename() ? given : given.parent_path();
+    std::error_code none;
+    const std::string stem = (fs::is_directory(input, none) ? input.filename() : input.stem()).string();
+    for (const char* variable : {"stem", "name"}) {
+      if (arguments_.only_validate || !stem.empty())
+        variables_.set(variable, stem.empty() ? "input" : stem);
+      else
+        variables_.set_missing(variable, "give an input with -i");
+    }
+    if (arguments_.name) variables_.set("name", *arguments_.name);
   }
 
   void read_variables(const YamlNode& node) {

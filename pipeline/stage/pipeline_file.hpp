@@ -17,8 +17,9 @@ struct PipelineArguments {
   std::optional<std::filesystem::path> input = {};   ///< what ${input} stands for
   std::optional<std::filesystem::path> output = {};  ///< what ${output} stands for, a folder
   std::optional<std::filesystem::path> rig = {};
-  std::vector<std::string> set = {};  ///< "tag.option=value", or "variable=value" for one of `vars:`
-  bool only_validate = false;         ///< ${input} and ${output} need no value
+  std::optional<std::string> name = {};  ///< what ${name} stands for; otherwise it is as ${stem}
+  std::vector<std::string> set = {};     ///< "tag.option=value", or "variable=value" for one of `vars:`
+  bool only_validate = false;            ///< ${input} and ${output} need no value
 };
 
 /// A pipeline as its file describes it.

@@ -113,4 +113,10 @@ nlohmann::json to_json(const OptionValue& value) {
   return array;
 }
 
+nlohmann::ordered_json effective_options(const PipelineNode& node) {
+  auto options = nlohmann::ordered_json::object();
+  for (const auto& option : node.type->options) options[option.name] = to_json(node.value(option));
+  return options;
+}
+
 }  // namespace crisp

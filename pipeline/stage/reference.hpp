@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "pipeline/stage/pipeline.hpp"
 #include "pipeline/stage/registry.hpp"
 
 namespace crisp {
@@ -22,5 +23,8 @@ nlohmann::ordered_json pipeline_schema(const StageRegistry& stages);
 
 /// An option's value for programs: numbers in SI, lists as arrays, maps as objects, "auto".
 nlohmann::json to_json(const OptionValue& value);
+
+/// The effective options of a stage: all of them, with the values that it runs with, in SI.
+nlohmann::ordered_json effective_options(const PipelineNode& node);
 
 }  // namespace crisp

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/app/batch_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <ostream>
+
+#include "pipeline/batch/output_name.hpp"
+#include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/json_text.hpp"
+
+namespace crisp {
+
+void BatchTally::add(const std::map<JobStatus, std::size_t>& kept) {
+  for (const auto& [status, count] : kept) {
+    if (status == JobStatus::done)
+      done += count;
+    else if (status == JobStatus::untrusted)
+      untrusted += count;
+    else
+      failed += count;
+  }
+}
+
+ExitStatus BatchTally::exit_status() const {
+  if (failed > 0 || open > 0) return ExitStatus::failed;
+  return untrusted > 0 ? ExitStatus::not_trusted : ExitStatus::done;
+}
+
+BatchTally tally_of(const BatchRows& rows) {
+  return {.done = rows.count("done"),
+          .untrusted = rows.count("untrusted"),
+          .failed = rows.count("failed") + rows.count("interrupted"),
+          .open = rows.count("due") + rows.count("running")};
+}
+
+std::string in_words(const BatchTally& tally) {
+  std::string text =
+      fmt::format("{} done, {} untrusted, {} failed", tally.done, tally.untrusted, tally.failed);
+  return tally.open > 0 ? fmt::format("{}, {} running or due", text, tally.open) : text;
+}
+
+std::string trouble_text(const BatchRows& rows) {
+  constexpr std::size_t kMost = 20;
+  std::string text;
+  std::size_t count = 0;
+  for (const auto& row : rows.rows) {
+    if (row.status == "done" || row.status == "running" || ++count > kMost) continue;
+    text += fmt::format("  {} {}: {}\n", row.status, row.name, fmt::join(row.reasons, "; "));
+  }
+  if (count > kMost) text += fmt::format("  and {} more, see {}\n", count - kMost, kBatchTable);
+  return text;
+}
+
+BatchRows write_tables(const std::filesystem::path& output, std::ostream* out) {
+  auto rows = read_rows(output);
+  write_file(output / kBatchTable, rows_csv(rows));
+  write_file(output / kBatchSummary, json_text(rows_json(rows), 1) + "\n");
+  if (out) {
+    *out << fmt::format("{}\n{}wrote {}\n", in_words(tally_of(rows)), trouble_text(rows),
+                        (output / kBatchTable).string());
+  }
+  return rows;
+}
+
+}  // namespace crisp

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <iosfwd>
+#include <map>
+#include <string>
+
+#include "pipeline/app/commands.hpp"
+#include "pipeline/batch/table.hpp"
+
+namespace crisp {
+
+/// How many recordings ended in which way.
+struct BatchTally {
+  std::size_t done = 0;
+  std::size_t untrusted = 0;
+  std::size_t failed = 0;  ///< or were killed
+  std::size_t open = 0;    ///< are due or run
+
+  void add(const std::map<JobStatus, std::size_t>& kept);
+  /// 1: some failed or did not run; 3: some cannot be trusted; 0 otherwise.
+  ExitStatus exit_status() const;
+};
+
+BatchTally tally_of(const BatchRows& rows);
+
+/// "198 done, 1 untrusted, 1 failed".
+std::string in_words(const BatchTally& tally);
+
+/// Why recordings are not done, a line each, the first of many.
+std::string trouble_text(const BatchRows& rows);
+
+/// Reads the manifests and writes table.csv and batch.json.
+/// @param out  where a summary is printed; nullptr: nowhere
+BatchRows write_tables(const std::filesystem::path& output, std::ostream* out);
+
+}  // namespace crisp

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/app/batch_request.hpp"
+
+#include <system_error>
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+void replace_all(std::string& text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+}
+
+}  // namespace
+
+nlohmann::ordered_json arguments_json(const BatchRequest& request) {
+  return {{"folder", fs::current_path().string()},
+          {"pipeline", request.run.file.string()},
+          {"inputs", request.inputs},
+          {"each", request.each},
+          {"base", request.base.string()},
+          {"rig", request.rig},
+          {"set", request.run.arguments.set},
+          {"seed", request.run.seed}};
+}
+
+void set_arguments(const nlohmann::ordered_json& arguments, BatchRequest& request) {
+  request.run.file = arguments.at("pipeline").get<std::string>();
+  request.inputs = arguments.at("inputs").get<std::vector<std::string>>();
+  request.each = arguments.at("each");
+  request.base = arguments.at("base").get<std::string>();
+  request.rig = arguments.at("rig");
+  request.run.arguments.set = arguments.at("set").get<std::vector<std::string>>();
+  request.run.seed = arguments.at("seed");
+}
+
+fs::path rig_path(const std::string& pattern, const BatchInput& input) {
+  std::error_code none;
+  const bool is_folder = fs::is_directory(input.path, none);
+  std::string path = pattern;
+  replace_all(path, "{folder}", (is_folder ? input.path : input.path.parent_path()).string());
+  replace_all(path, "{stem}", (is_folder ? input.path.filename() : input.path.stem()).string());
+  replace_all(path, "{name}", input.name);
+  return fs::absolute(path).lexically_normal();
+}
+
+bool has_rig_each(const BatchRequest& request) { return request.rig.find('{') != std::string::npos; }
+
+}  // namespace crisp

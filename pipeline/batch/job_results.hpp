@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace crisp {
+
+/// What a job left in its output folder, as a table needs it.
+struct JobResults {
+  /// What is known of: `error`, `reasons` (why it cannot be trusted), `begin` (of the recording, [s since the
+  /// Unix epoch]), `points`, `quality` by name, `parameters` by name, each with `value`, `std_error` and
+  /// `unit`, and `causes`, those that were accepted.
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  std::map<std::string, std::string> sha256;  ///< of the content of the files that it read, by path
+};
+
+/// Reads summary.json, and the calibration and the diagnosis that it names. What cannot be read is named in
+/// `reasons`.
+JobResults read_results(const std::filesystem::path& output);
+
+/// Removes what a job that was killed left of files that were not complete, and the summary of an earlier
+/// one, which must not be taken for that of the next.
+void remove_leftovers(const std::filesystem::path& output);
+
+}  // namespace crisp

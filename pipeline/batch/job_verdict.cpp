@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/batch/job_verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+#include "pipeline/files/folder_lock.hpp"
+
+namespace crisp {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Statuses by which `crisp run` says that it was told to stop, by SIGHUP, SIGINT or SIGTERM.
+bool is_interrupted(int exit_status) {
+  constexpr std::array kInterrupted = {129, 130, 143};
+  return std::ranges::find(kInterrupted, exit_status) != kInterrupted.end();
+}
+
+/// Signals that come from people and from a system without memory, not from a mistake in the program.
+bool comes_from_outside(int signal) {
+  constexpr std::array kOutside = {SIGHUP, SIGINT, SIGTERM, SIGKILL};
+  return std::ranges::find(kOutside, signal) != kOutside.end();
+}
+
+std::string trimmed(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  return text;
+}
+
+std::string failure_by_signal(const JobEnd& end) {
+  std::string text = fmt::format("signal {} ({}) ended it", end.signal, strsignal(end.signal));
+  if (end.signal == SIGKILL)
+    text += "; if the machine was short of memory, bound it with --memory or run fewer --jobs";
+  else if (!comes_from_outside(end.signal))
+    text += "; run it by itself with crisp run to see where";
+  const std::string printed = trimmed(end.error);
+  return printed.empty() ? text : text + "; before it printed: " + printed;
+}
+
+/// Who holds the folder, if that may be why `crisp run` refused it.
+std::optional<std::string> locked_by(const JobEnd& end, const std::filesystem::path& output) {
+  constexpr int kRefused = 2;
+  return end.exit_status == kRefused ? FolderLock::holder_of(output) : std::nullopt;
+}
+
+void judge(const JobEnd& end, const JobCircumstances& circumstances, const std::filesystem::path& output,
+           const Json& results, JobVerdict& verdict) {
+  const bool was_ended = comes_from_outside(end.signal) || is_interrupted(end.exit_status);
+  if (circumstances.timeout && was_ended) {
+    verdict.status = JobStatus::failed;
+    verdict.failure = fmt::format("it took longer than {:g} s, and was ended; raise --timeout or drop it",
+                                  *circumstances.timeout);
+  } else if (circumstances.stopping && was_ended) {
+    verdict.status = JobStatus::interrupted;
+    verdict.failure = "the batch was stopped";
+  } else if (end.signal != 0) {
+    verdict.status = comes_from_outside(end.signal) ? JobStatus::interrupted : JobStatus::failed;
+    verdict.failure = failure_by_signal(end);
+  } else if (is_interrupted(end.exit_status)) {
+    verdict.status = JobStatus::interrupted;
+    verdict.failure = fmt::format("signal {} from outside ended it", end.exit_status - 128);
+  } else if (const auto holder = locked_by(end, output)) {
+    verdict.status = JobStatus::interrupted;
+    verdict.failure =
+        "its output folder is in use by " + *holder + "; run the batch again when that has ended";
+  } else if (end.exit_status == 3) {
+    verdict.status = JobStatus::untrusted;
+  } else if (end.exit_status != 0) {
+    verdict.status = JobStatus::failed;
+    verdict.failure = results.contains("error") ? results["error"].get<std::string>() : trimmed(end.error);
+    if (verdict.failure.empty())
+      verdict.failure =
+          fmt::format("it ended with the exit status {} and without a message", end.exit_status);
+  }
+}
+
+void judge_disk(JobVerdict& verdict) {
+  if (verdict.status != JobStatus::failed || !speaks_of_full_disk(verdict.failure)) return;
+  verdict.full_disk = verdict.failure;
+  verdict.status = JobStatus::interrupted;
+}
+
+/// What was read is not what is there now, or is of both.
+void judge_input(const DueRecording& recording, const std::vector<InputFile>& files, JobVerdict& verdict) {
+  std::string change;
+  try {
+    if (!is_untouched(files, input_files(recording.input, recording.rig))) change = "it changed";
+  } catch (const Error& error) {
+    change = error.what();
+  }
+  if (change.empty()) return;
+  verdict.status = JobStatus::interrupted;
+  verdict.failure = "the input was not the same to the end: " + change + "; run the batch again";
+}
+
+/// The files with the content that the job saw.
+Json input_json(const DueRecording& recording, std::vector<InputFile> files,
+                const std::map<std::string, std::string>& sha256) {
+  for (const auto& [path, digest] : sha256) {
+    const std::filesystem::path read(path);
+    const bool own =
+        read == recording.input.path || read.parent_path() == recording.input.path || read == recording.rig;
+    const auto file = std::ranges::find(files, read.filename().string(), &InputFile::file);
+    if (own && file != files.end()) file->sha256 = digest;
+  }
+  return to_json(files);
+}
+
+}  // namespace
+
+bool speaks_of_full_disk(std::string_view message) {
+  return std::ranges::any_of(std::array{ENOSPC, EDQUOT}, [&](int code) {
+    return message.find(std::strerror(code)) != std::string_view::npos;
+  });
+}
+
+JobVerdict judge_job(const JobEnd& end, const JobCircumstances& circumstances, const DueRecording& recording,
+                     const std::vector<InputFile>& files, const std::filesystem::path& output) {
+  JobVerdict verdict;
+  JobResults results = read_results(output);
+  judge(end, circumstances, output, results.json, verdict);
+  judge_disk(verdict);
+  if (verdict.status != JobStatus::interrupted) judge_input(recording, files, verdict);
+  if (!verdict.failure.empty()) results.json["error"] = verdict.failure;
+  verdict.event = {{"exit", end.exit_status},
+                   {"signal", end.signal},
+                   {"seconds", end.seconds},
+                   {"cpu", end.cpu_seconds},
+                   {"memory", end.memory},
+                   {"input", input_json(recording, files, results.sha256)},
+                   {"results", std::move(results.json)}};
+  return verdict;
+}
+
+JobVerdict refused_input(const Error& error) {
+  JobVerdict verdict{.status = JobStatus::failed, .failure = error.what()};
+  verdict.event = {{"results", {{"error", error.what()}}}};
+  return verdict;
+}
+
+}  // namespace crisp

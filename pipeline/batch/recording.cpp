@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/batch/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <set>
+#include <system_error>
+
+#include "pipeline/batch/glob.hpp"
+#include "pipeline/batch/output_name.hpp"
+#include "pipeline/data/all_errors.hpp"
+#include "pipeline/files/folder.hpp"
+
+namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path absolute_of(const fs::path& path) {
+  const fs::path absolute = fs::absolute(path).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();  // "captures/" is "captures"
+}
+
+bool is_inside(const fs::path& path, const fs::path& folder) {
+  const fs::path relative = path.lexically_relative(folder);
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+class Finder {
+ public:
+  explicit Finder(const BatchInputs& inputs) : inputs_(inputs), output_(absolute_of(inputs.output)) {}
+
+  std::vector<BatchInput> find() {
+    AllErrors errors;
+    for (const auto& given : inputs_.given) errors.keep_of([&] { add_given(given); });
+    errors.throw_any();
+    std::vector<BatchInput> recordings;
+    for (auto& [path, recording] : found_) recordings.push_back(std::move(recording));
+    std::ranges::sort(recordings, {}, &BatchInput::name);
+    return recordings;
+  }
+
+ private:
+  void add_given(const std::string& given) {
+    std::error_code none;
+    if (given == "-") return add_list(std::cin, fs::current_path());
+    if (fs::is_directory(given, none)) return add(absolute_of(given), absolute_of(given));
+    if (fs::exists(given, none) && is_list(given)) return add_list_file(given);
+    if (fs::exists(given, none)) return add(absolute_of(given), absolute_of(given).parent_path());
+    if (!is_pattern(given)) throw Error("there is no input " + given, "check the name after -i");
+    const auto matches = match_pattern(given);
+    if (matches.empty())
+      throw Error("no file matches " + given,
+                  "check the pattern, and quote it: the shell changes it otherwise");
+    for (const auto& match : matches) {
+      const fs::path path = absolute_of(match);
+      if (!is_output(path)) add(path, absolute_of(fixed_part(given)));
+    }
+  }
+
+  bool is_list(const fs::path& file) const {
+    return file.extension() == ".txt" && !has_extension(file, inputs_.extensions);
+  }
+
+  bool is_output(const fs::path& path) const { return path == output_ || is_inside(path, output_); }
+
+  void add_list_file(const fs::path& file) {
+    std::ifstream list(file);
+    if (!list) throw Error("cannot read the list " + file.string(), "check its rights");
+    add_list(list, absolute_of(file).parent_path());
+  }
+
+  /// @param folder  that relative paths are relative to
+  void add_list(std::istream& list, const fs::path& folder) {
+    for (std::string line; std::getline(list, line);) {
+      while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+      if (line.empty() || line.front() == '#') continue;
+      const fs::path path = absolute_of(folder / line);
+      std::error_code none;
+      const bool exists = fs::exists(path, none);
+      add(path, is_inside(path, folder) ? folder : path.parent_path(), exists ? "" : "there is no such file");
+    }
+  }
+
+  void add(const fs::path& path, const fs::path& base, const std::string& unreadable = {}) {
+    std::error_code none;
+    const bool is_folder = fs::is_directory(path, none);
+    if (is_folder) return add_folder(path, base, {});
+    if (inputs_.unit == BatchUnit::folder && unreadable.empty())
+      return add_recording(path.parent_path(), base, {});
+    add_recording(path, base, unreadable);
+  }
+
+  /// @param above  the folders that it lies in, links followed: a link to one of them leads nowhere new
+  void add_folder(const fs::path& folder, const fs::path& base, std::set<fs::path> above) {
+    std::error_code failure;
+    if (!above.insert(fs::canonical(folder, failure)).second) return;
+    std::vector<fs::path> entries;
+    fs::directory_iterator entry(folder, failure);
+    for (; !failure && entry != fs::directory_iterator(); entry.increment(failure))
+      entries.push_back(entry->path());
+    if (failure) return add_recording(folder, base, "the folder cannot be read: " + failure.message());
+    bool holds_recordings = false;
+    for (const auto& path : entries) {
+      if (path.filename().string().starts_with(".") || is_output(path)) continue;
+      std::error_code none;
+      if (fs::is_directory(path, none)) {
+        add_folder(path, base, above);
+      } else if (has_extension(path, inputs_.extensions)) {
+        holds_recordings = true;
+        if (inputs_.unit == BatchUnit::file) add_recording(path, base, {});
+      }
+    }
+    if (holds_recordings && inputs_.unit == BatchUnit::folder) add_recording(folder, base, {});
+  }
+
+  void add_recording(const fs::path& path, const fs::path& base, const std::string& unreadable) {
+    const fs::path top = inputs_.base.empty() ? base : absolute_of(inputs_.base);
+    fs::path relative = path.lexically_relative(top);
+    if (relative == ".") relative = path.filename();
+    if (relative.empty() || *relative.begin() == "..")
+      throw Error(path.string() + " does not lie in " + top.string(), "give a folder above it as --base");
+    std::error_code none;
+    if (!fs::is_directory(path, none)) relative.replace_extension();
+    found_.try_emplace(path, BatchInput{output_name(relative.string()), path, unreadable});
+  }
+
+  const BatchInputs& inputs_;
+  fs::path output_;
+  std::map<fs::path, BatchInput> found_;  ///< by path: what is given twice is one
+};
+
+/// @param recordings  sorted by name
+void refuse_shared_outputs(const std::vector<BatchInput>& recordings) {
+  constexpr std::size_t kMost = 10;  // that are named
+  std::vector<Error> errors;
+  std::map<std::string, const BatchInput*> by_name;
+  for (const auto& recording : recordings) {
+    const BatchInput* other = nullptr;
+    for (std::size_t end = recording.name.find('/'); end != std::string::npos && !other;
+         end = recording.name.find('/', end + 1)) {
+      const auto found = by_name.find(recording.name.substr(0, end));
+      if (found != by_name.end()) other = found->second;
+    }
+    const auto [same, is_new] = by_name.try_emplace(recording.name, &recording);
+    if (!is_new) other = same->second;
+    if (other && errors.size() < kMost) {
+      errors.emplace_back(
+          fmt::format("{} and {} would share the output {}", other->path.string(), recording.path.string(),
+                      other->name),
+          "give the folder above both as --base, give one of them another name, or, if they are captures of "
+          "one scanner, use --each folder");
+    }
+    if (is_reserved_output(recording.name)) {
+      errors.emplace_back(fmt::format("{} would have the output {}, which belongs to the batch itself",
+                                      recording.path.string(), recording.name),
+                          "give it another name, or the folder above it as --base");
+    }
+  }
+  if (!errors.empty()) throw Errors(std::move(errors));
+}
+
+}  // namespace
+
+std::vector<BatchInput> find_recordings(const BatchInputs& inputs) {
+  auto recordings = Finder(inputs).find();
+  refuse_shared_outputs(recordings);
+  return recordings;
+}
+
+}  // namespace crisp

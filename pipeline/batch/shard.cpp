@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/batch/shard.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+/// FNV-1a, 64 bits (Fowler, Noll, Vo), with the finalizer of MurmurHash3, since remainders use the low bits.
+std::uint64_t hash_of(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  hash = (hash ^ (hash >> 33)) * 0xff51afd7ed558ccd;
+  hash = (hash ^ (hash >> 33)) * 0xc4ceb9fe1a85ec53;
+  return hash ^ (hash >> 33);
+}
+
+std::optional<std::uint64_t> whole(std::string_view text) {
+  std::uint64_t number = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (failure != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::optional<std::uint64_t> whole(const char* text) {
+  return text ? whole(std::string_view(text)) : std::nullopt;
+}
+
+}  // namespace
+
+bool Shard::has(std::string_view name) const { return hash_of(name) % count == number - 1; }
+
+std::string Shard::text() const { return fmt::format("{}/{}", number, count); }
+
+Shard parse_shard(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  if (slash != std::string::npos) {
+    const auto number = whole(std::string_view(text).substr(0, slash));
+    const auto count = whole(std::string_view(text).substr(slash + 1));
+    if (number && count && *number >= 1 && *number <= *count) return {*number, *count};
+  }
+  throw Error("--shard: '" + text + "' is no part of a batch", "write the third of 64 as 3/64");
+}
+
+std::optional<Shard> shard_of_slurm(const char* (*variable)(const char* name)) {
+  const auto id = whole(variable("SLURM_ARRAY_TASK_ID"));
+  if (!id) return std::nullopt;
+  const std::uint64_t least = whole(variable("SLURM_ARRAY_TASK_MIN")).value_or(*id);
+  const std::uint64_t step = whole(variable("SLURM_ARRAY_TASK_STEP")).value_or(1);
+  const std::uint64_t count = whole(variable("SLURM_ARRAY_TASK_COUNT")).value_or(1);
+  const Shard shard{.number = (*id - least) / std::max<std::uint64_t>(step, 1) + 1, .count = count};
+  if (*id >= least && shard.number <= count) return shard;
+  throw Error(fmt::format("task {} of the Slurm array cannot be told which part of the batch is its own: the "
+                          "array begins at {} and has {} tasks",
+                          *id, least, count),
+              "use an array without gaps, or give --shard i/n");
+}
+
+}  // namespace crisp

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace crisp {
+
+/// One part of a batch: each recording belongs to one of `count` parts by a hash of its name, so that adding
+/// recordings moves none of the others.
+struct Shard {
+  std::uint64_t number = 1;  ///< from 1
+  std::uint64_t count = 1;
+
+  bool is_whole() const { return count == 1; }
+  bool has(std::string_view name) const;
+  std::string text() const;  ///< "3/64"
+};
+
+/// @throws Error if it is not "i/n" with 1 ≤ i ≤ n
+Shard parse_shard(const std::string& text);
+
+/// The shard of this task of a Slurm array, by SLURM_ARRAY_TASK_ID, _MIN, _COUNT and _STEP; nothing outside
+/// of one.
+/// @param variable  the value of a variable of the environment, or nullptr
+/// @throws Error if the array has gaps, so that its tasks cannot be numbered
+std::optional<Shard> shard_of_slurm(const char* (*variable)(const char* name));
+
+}  // namespace crisp
