@@ -116,8 +116,8 @@ Json settings_of(const BatchRequest& request, const std::vector<BatchInput>& rec
 void print_plan(const BatchPlan& plan, const Json& before, const Json& settings, std::ostream& out) {
   for (const auto& [reason, count] : plan.reasons) {
     if (reason == DueReason::fresh) continue;
-    out << fmt::format("{} {}, as {}\n", counted(count, "recording"), in_words(reason),
-                       plan.examples.at(reason));
+    out << fmt::format("due again, as {}: {} ({}{})\n", in_words(reason), counted(count, "recording"),
+                       plan.examples.at(reason), count > 1 ? ", …" : "");
     if (reason == DueReason::settings && before.contains("effective"))
       out << fmt::format("  {}\n", fmt::join(changes_of_settings(before["effective"], settings), "\n  "));
   }

@@ -46,7 +46,8 @@ std::string trouble_text(const BatchRows& rows) {
   std::string text;
   std::size_t count = 0;
   for (const auto& row : rows.rows) {
-    if (row.status == "done" || row.status == "running" || ++count > kMost) continue;
+    const bool is_fine = row.status == "done" || row.status == "running" || row.status == "due";
+    if (is_fine || ++count > kMost) continue;
     text += fmt::format("  {} {}: {}\n", row.status, row.name, fmt::join(row.reasons, "; "));
   }
   if (count > kMost) text += fmt::format("  and {} more, see {}\n", count - kMost, kBatchTable);

@@ -47,21 +47,21 @@ BatchPlan plan_batch(std::vector<BatchInput> inputs, const BatchLedger& ledger, 
 std::string in_words(DueReason reason) {
   switch (reason) {
     case DueReason::fresh:
-      return "were not processed before";
+      return "they are new";
     case DueReason::half_done:
-      return "were half done when the batch ended";
+      return "the batch ended before they did";
     case DueReason::interrupted:
-      return "were stopped or killed from outside";
+      return "they were stopped or killed from outside";
     case DueReason::retry:
-      return "are to be tried again";
+      return "a retry was asked for";
     case DueReason::settings:
-      return "were processed with other settings";
+      return "the settings changed";
     case DueReason::input:
-      return "have another input than before";
+      return "the input changed";
     case DueReason::none:
       break;
   }
-  return "are not due";
+  return "nothing changed";
 }
 
 }  // namespace crisp

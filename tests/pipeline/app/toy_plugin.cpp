@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tests' toy stages as a plugin, and some that a run of the program needs to be tested.
+#include <cerrno>
 #include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <thread>
 
 #include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/yaml.hpp"
 #include "pipeline/stage/plugin.hpp"
 #include "tests/pipeline/stage/toy_stages.hpp"
 
@@ -145,6 +150,40 @@ class ComplainStage final : public Stage {
   std::filesystem::path file_;
 };
 
+/// Does what its input says in one word: `done`, `doubt`, `fail`, `abort`, `hang` or `full`. Before, it adds
+/// a line to the journal, which tells how often it was called for which input.
+class PerformStage final : public Stage {
+ public:
+  static void describe(StageDescription<PerformStage>& d) {
+    d.name("toy.perform").summary("does what its input says").gives<Word>();
+    d.option("file", &PerformStage::file_, "the input").required();
+    d.option("result", &PerformStage::result_, "what it writes").writes().required();
+    d.option("journal", &PerformStage::journal_, "to which it adds a line");
+    d.option("text", &PerformStage::text_, "what it writes besides");
+  }
+  void process(const Inputs&, Outputs&, Context& context) override {
+    if (!journal_.empty()) std::ofstream(journal_, std::ios::app) << file_.filename().string() + "\n";
+    const std::string what = read_text_file(file_, 100);
+    context.reads(file_);
+    AtomicFile result(result_);
+    if (what == "fail") throw Error("it was told to fail", "tell it something else");
+    if (what == "full") throw Error("cannot write x: " + std::string(std::strerror(ENOSPC)));
+    if (what == "abort") std::abort();
+    while (what == "hang" || (what == "wait" && !context.interrupted()))
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (what == "doubt") context.distrust("it was told to doubt");
+    result.write(what + text_ + "\n");
+    result.commit();
+    context.wrote(result_);
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::filesystem::path result_;
+  std::string journal_;
+  std::string text_;
+};
+
 void register_all(Registrar& registrar) {
   register_toys(registrar);
   registrar.stage<WriteStage>();
@@ -154,6 +193,7 @@ void register_all(Registrar& registrar) {
   registrar.stage<EndBadlyStage>();
   registrar.stage<InTheWayStage>();
   registrar.stage<ComplainStage>();
+  registrar.stage<PerformStage>();
 }
 
 }  // namespace crisp::toy
