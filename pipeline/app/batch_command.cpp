@@ -113,12 +113,14 @@ Json settings_of(const BatchRequest& request, const std::vector<BatchInput>& rec
   return settings;
 }
 
-void print_plan(const BatchPlan& plan, const Json& before, const Json& settings, std::ostream& out) {
+void print_plan(const fs::path& output, const BatchPlan& plan, const Json& settings, std::ostream& out) {
   for (const auto& [reason, count] : plan.reasons) {
     if (reason == DueReason::fresh) continue;
     out << fmt::format("due again, as {}: {} ({}{})\n", in_words(reason), counted(count, "recording"),
                        plan.examples.at(reason), count > 1 ? ", …" : "");
-    if (reason == DueReason::settings && before.contains("effective"))
+    if (reason != DueReason::settings) continue;
+    const Json before = last_batch(output);
+    if (before.contains("effective"))
       out << fmt::format("  {}\n", fmt::join(changes_of_settings(before["effective"], settings), "\n  "));
   }
   std::size_t kept = 0;
@@ -148,6 +150,11 @@ struct PreparedBatch {
   Json settings;
   std::string digest;
   BatchPlan plan;
+
+  /// Whether there is nothing to do and nothing to write.
+  bool is_over(const fs::path& output) const {
+    return plan.due.empty() && plan.touched.empty() && (!shard.is_whole() || are_tables_current(output));
+  }
 };
 
 /// All that can be found wrong before the output folder is touched.
@@ -185,7 +192,7 @@ void plan(const BatchRequest& request, PreparedBatch& batch) {
   };
   batch.plan = plan_batch(std::move(batch.recordings), ledger, batch.digest, rig_of);
   if (request.run.quiet) return;
-  print_plan(batch.plan, last_batch(request.output), batch.settings, std::cerr);
+  print_plan(request.output, batch.plan, batch.settings, std::cerr);
   if (ledger.damaged_lines() > 0)
     std::cerr << fmt::format("warning: {} of the manifests are damaged and were passed over\n",
                              counted(ledger.damaged_lines(), "line"));
@@ -207,6 +214,13 @@ void begin(const BatchRequest& request, const PreparedBatch& batch, ManifestWrit
   for (const auto& touched : batch.plan.touched)
     manifest.append(BatchEventKind::same, {{"name", touched.name}, {"input", to_json(touched.files)}});
   manifest.sync();
+}
+
+ExitStatus report_nothing_due(const BatchRequest& request, const PreparedBatch& batch) {
+  BatchTally tally;
+  tally.add(batch.plan.kept);
+  if (!request.run.quiet) std::cout << "nothing is due: " << in_words(tally) << "\n";
+  return tally.exit_status();
 }
 
 ExitStatus status_of_stop() {
@@ -278,6 +292,7 @@ ExitStatus batch_command(const BatchRequest& request, const Registrar& registrar
     batch = check(request, shard, registrar);
     lock_task(task, shard, lock);
     plan(request, *batch);
+    if (batch->is_over(request.output)) return report_nothing_due(request, *batch);
     manifest.emplace(task / kManifestFile);
     begin(request, *batch, *manifest);
   } catch (const Error& error) {

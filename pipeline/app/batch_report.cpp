@@ -5,12 +5,18 @@
 #include <fmt/ranges.h>
 
 #include <ostream>
+#include <system_error>
 
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/json_text.hpp"
 
 namespace crisp {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
 
 void BatchTally::add(const std::map<JobStatus, std::size_t>& kept) {
   for (const auto& [status, count] : kept) {
@@ -54,7 +60,19 @@ std::string trouble_text(const BatchRows& rows) {
   return text;
 }
 
-BatchRows write_tables(const std::filesystem::path& output, std::ostream* out) {
+bool are_tables_current(const fs::path& output) {
+  std::error_code missing;
+  for (const char* name : {kBatchTable, kBatchSummary}) {
+    const auto written = fs::last_write_time(output / name, missing);
+    if (missing) return false;
+    for (const auto& manifest : manifests_of(output)) {
+      if (fs::last_write_time(manifest) > written) return false;
+    }
+  }
+  return true;
+}
+
+BatchRows write_tables(const fs::path& output, std::ostream* out) {
   auto rows = read_rows(output);
   write_file(output / kBatchTable, rows_csv(rows));
   write_file(output / kBatchSummary, json_text(rows_json(rows), 1) + "\n");

@@ -32,6 +32,9 @@ std::string in_words(const BatchTally& tally);
 /// Why recordings are not done, a line each, the first of many.
 std::string trouble_text(const BatchRows& rows);
 
+/// Whether the tables were written after the last event of every manifest.
+bool are_tables_current(const std::filesystem::path& output);
+
 /// Reads the manifests and writes table.csv and batch.json.
 /// @param out  where a summary is printed; nullptr: nowhere
 BatchRows write_tables(const std::filesystem::path& output, std::ostream* out);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/app/batch_request.hpp"
 
-#include <system_error>
-
 namespace crisp {
 namespace {
 
@@ -37,11 +35,9 @@ void set_arguments(const nlohmann::ordered_json& arguments, BatchRequest& reques
 }
 
 fs::path rig_path(const std::string& pattern, const BatchInput& input) {
-  std::error_code none;
-  const bool is_folder = fs::is_directory(input.path, none);
   std::string path = pattern;
-  replace_all(path, "{folder}", (is_folder ? input.path : input.path.parent_path()).string());
-  replace_all(path, "{stem}", (is_folder ? input.path.filename() : input.path.stem()).string());
+  replace_all(path, "{folder}", (input.is_folder ? input.path : input.path.parent_path()).string());
+  replace_all(path, "{stem}", (input.is_folder ? input.path.filename() : input.path.stem()).string());
   replace_all(path, "{name}", input.name);
   return fs::absolute(path).lexically_normal();
 }

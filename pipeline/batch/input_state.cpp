@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <system_error>
 
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/data/error.hpp"
@@ -20,8 +19,7 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> paths_of(const BatchInput& input, const fs::path& rig) {
   std::vector<fs::path> paths;
-  std::error_code none;
-  if (fs::is_directory(input.path, none))
+  if (input.is_folder)
     paths = files_in(input.path);
   else
     paths = {input.path};

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <system_error>
+#include <unordered_map>
 
 #include "pipeline/batch/glob.hpp"
 #include "pipeline/batch/output_name.hpp"
@@ -91,7 +92,7 @@ class Finder {
     const bool is_folder = fs::is_directory(path, none);
     if (is_folder) return add_folder(path, base, {});
     if (inputs_.unit == BatchUnit::folder && unreadable.empty())
-      return add_recording(path.parent_path(), base, {});
+      return add_recording(path.parent_path(), base, {}, true);
     add_recording(path, base, unreadable);
   }
 
@@ -99,39 +100,41 @@ class Finder {
   void add_folder(const fs::path& folder, const fs::path& base, std::set<fs::path> above) {
     std::error_code failure;
     if (!above.insert(fs::canonical(folder, failure)).second) return;
-    std::vector<fs::path> entries;
-    fs::directory_iterator entry(folder, failure);
-    for (; !failure && entry != fs::directory_iterator(); entry.increment(failure))
-      entries.push_back(entry->path());
-    if (failure) return add_recording(folder, base, "the folder cannot be read: " + failure.message());
     bool holds_recordings = false;
-    for (const auto& path : entries) {
-      if (path.filename().string().starts_with(".") || is_output(path)) continue;
+    fs::directory_iterator entry(folder, failure);
+    for (; !failure && entry != fs::directory_iterator(); entry.increment(failure)) {
+      const fs::path& path = entry->path();
       std::error_code none;
-      if (fs::is_directory(path, none)) {
+      const bool is_folder = entry->is_directory(none);
+      if (path.filename().native().starts_with(".") || (is_folder && path == output_)) continue;
+      if (is_folder) {
         add_folder(path, base, above);
       } else if (has_extension(path, inputs_.extensions)) {
         holds_recordings = true;
         if (inputs_.unit == BatchUnit::file) add_recording(path, base, {});
       }
     }
-    if (holds_recordings && inputs_.unit == BatchUnit::folder) add_recording(folder, base, {});
+    if (failure)
+      add_recording(folder, base, "the folder cannot be read: " + failure.message(), true);
+    else if (holds_recordings && inputs_.unit == BatchUnit::folder)
+      add_recording(folder, base, {}, true);
   }
 
-  void add_recording(const fs::path& path, const fs::path& base, const std::string& unreadable) {
+  void add_recording(const fs::path& path, const fs::path& base, const std::string& unreadable,
+                     bool is_folder = false) {
     const fs::path top = inputs_.base.empty() ? base : absolute_of(inputs_.base);
     fs::path relative = path.lexically_relative(top);
     if (relative == ".") relative = path.filename();
     if (relative.empty() || *relative.begin() == "..")
       throw Error(path.string() + " does not lie in " + top.string(), "give a folder above it as --base");
-    std::error_code none;
-    if (!fs::is_directory(path, none)) relative.replace_extension();
-    found_.try_emplace(path, BatchInput{output_name(relative.string()), path, unreadable});
+    if (!is_folder) relative.replace_extension();
+    found_.try_emplace(path.string(),
+                       BatchInput{output_name(relative.string()), path, is_folder, unreadable});
   }
 
   const BatchInputs& inputs_;
   fs::path output_;
-  std::map<fs::path, BatchInput> found_;  ///< by path: what is given twice is one
+  std::unordered_map<std::string, BatchInput> found_;  ///< by path: what is given twice is one
 };
 
 /// @param recordings  sorted by name

@@ -11,6 +11,7 @@ namespace crisp {
 struct BatchInput {
   std::string name;             ///< the relative path without its ending: where its results lie
   std::filesystem::path path;   ///< absolute
+  bool is_folder = false;       ///< of captures of one scanner
   std::string unreadable = {};  ///< why it cannot be read; empty where nothing is known against it
 };
 
