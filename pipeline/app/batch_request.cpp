@@ -35,9 +35,10 @@ void set_arguments(const nlohmann::ordered_json& arguments, BatchRequest& reques
 }
 
 fs::path rig_path(const std::string& pattern, const BatchInput& input) {
+  const fs::path recording(input.path);
   std::string path = pattern;
-  replace_all(path, "{folder}", (input.is_folder ? input.path : input.path.parent_path()).string());
-  replace_all(path, "{stem}", (input.is_folder ? input.path.filename() : input.path.stem()).string());
+  replace_all(path, "{folder}", (input.is_folder ? recording : recording.parent_path()).string());
+  replace_all(path, "{stem}", (input.is_folder ? recording.filename() : recording.stem()).string());
   replace_all(path, "{name}", input.name);
   return fs::absolute(path).lexically_normal();
 }

@@ -47,7 +47,7 @@ bool all_equal(const std::vector<InputFile>& before, const std::vector<InputFile
 }  // namespace
 
 std::vector<InputFile> input_files(const BatchInput& input, const fs::path& rig) {
-  if (!input.unreadable.empty()) throw Error(input.path.string() + ": " + input.unreadable);
+  if (!input.unreadable.empty()) throw Error(input.path + ": " + input.unreadable);
   std::vector<InputFile> files;
   for (const auto& path : paths_of(input, rig)) files.push_back(state_of(path));
   return files;

@@ -12,7 +12,7 @@ namespace crisp {
 
 nlohmann::ordered_json last_batch(const std::filesystem::path& output) {
   std::string last;
-  std::string time;
+  std::int64_t time = 0;
   for (const auto& manifest : manifests_of(output)) {
     std::ifstream stream(manifest, std::ios::binary);
     if (!stream) throw Error("cannot read " + manifest.string(), "check its rights");

@@ -10,7 +10,7 @@ BatchLedger BatchLedger::read(const std::filesystem::path& output,
                               const std::function<bool(std::string_view name)>& wanted) {
   BatchLedger ledger;
   for (const auto& file : manifests_of(output)) {
-    const auto task = file.parent_path();
+    const std::string task = file.parent_path().string();
     ledger.damaged_lines_ += read_manifest(file, [&](BatchEvent&& event, std::string_view) {
       if (!event.name.empty() && (!wanted || wanted(event.name))) ledger.add(std::move(event), task);
     });
@@ -18,15 +18,20 @@ BatchLedger BatchLedger::read(const std::filesystem::path& output,
   return ledger;
 }
 
-void BatchLedger::add(BatchEvent event, const std::filesystem::path& task) {
+std::string_view BatchLedger::shared(std::string_view text) {
+  const auto known = texts_.find(text);
+  return known != texts_.end() ? *known : *texts_.emplace(text).first;
+}
+
+void BatchLedger::add(BatchEvent event, std::string_view task) {
   RecordingState& state = states_[event.name];
   switch (event.kind) {
     case BatchEventKind::batch:
       break;
     case BatchEventKind::start:
       if (event.time < state.started) break;
-      state.started = std::move(event.time);
-      state.started_by = task;
+      state.started = event.time;
+      state.started_by = shared(task);
       break;
     case BatchEventKind::retry:
       state.retry_asked = std::max(state.retry_asked, event.time);
@@ -36,9 +41,9 @@ void BatchLedger::add(BatchEvent event, const std::filesystem::path& task) {
       break;
     case BatchEventKind::end:
       if (event.time < state.ended) break;
-      state.ended = std::move(event.time);
+      state.ended = event.time;
       state.status = event.status;
-      state.settings = std::move(event.settings);
+      state.settings = shared(event.settings);
       state.input = std::move(event.input);
       break;
   }

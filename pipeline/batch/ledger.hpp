@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -13,17 +15,18 @@
 
 namespace crisp {
 
-/// What the manifests say of one recording.
+/// What the manifests say of one recording. There may be a million of them: texts that many share are views
+/// of the ledger's.
 struct RecordingState {
-  std::string started = {};      ///< time of the last `start`; empty: none
-  std::string ended = {};        ///< time of the last `end`; empty: none
-  std::string retry_asked = {};  ///< time of the last `retry`; empty: none
+  std::int64_t started = 0;      ///< [ms since the Unix epoch] time of the last `start`; 0: none
+  std::int64_t ended = 0;        ///< of the last `end`
+  std::int64_t retry_asked = 0;  ///< of the last `retry`
   JobStatus status = JobStatus::interrupted;
-  std::string settings = {};
+  std::string_view settings = {};
+  std::string_view started_by = {};  ///< folder of the task of the last `start`
   std::vector<InputFile> input = {};
-  std::filesystem::path started_by = {};  ///< folder of the task of the last `start`
 
-  bool has_ended() const { return !ended.empty(); }
+  bool has_ended() const { return ended > 0; }
   bool is_half_done() const { return started > ended; }
   bool is_retry_asked() const { return retry_asked > ended; }
 };
@@ -41,7 +44,7 @@ class BatchLedger {
                           const std::function<bool(std::string_view name)>& wanted = {});
 
   /// @param task  folder of the task whose event it is
-  void add(BatchEvent event, const std::filesystem::path& task);
+  void add(BatchEvent event, std::string_view task);
 
   /// nullptr: no event speaks of it.
   const RecordingState* find(const std::string& name) const;
@@ -49,7 +52,10 @@ class BatchLedger {
   std::size_t damaged_lines() const { return damaged_lines_; }
 
  private:
+  std::string_view shared(std::string_view text);
+
   std::unordered_map<std::string, RecordingState> states_;
+  std::set<std::string, std::less<>> texts_;  ///< that states view; they stay where they are
   std::size_t damaged_lines_ = 0;
 };
 

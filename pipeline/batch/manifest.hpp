@@ -35,8 +35,8 @@ std::string_view name_of(JobStatus status);
 /// One line of a manifest, without what only a table needs.
 struct BatchEvent {
   BatchEventKind kind = BatchEventKind::start;
-  std::string time;  ///< ISO 8601, UTC, with milliseconds
-  std::string name;  ///< of the recording; empty: of the batch
+  std::int64_t time = 0;  ///< [ms since the Unix epoch]
+  std::string name;       ///< of the recording; empty: of the batch
   JobStatus status = JobStatus::done;
   std::string settings;          ///< digest of what it was processed with
   std::vector<InputFile> input;  ///< what it was processed of

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <limits>
 #include <string>
 
@@ -10,6 +11,25 @@ namespace crisp {
 namespace {
 
 constexpr std::array kKinds = {"batch", "start", "end", "same", "retry"};
+
+/// [ms since the Unix epoch] of "2026-01-31T12:00:00.123Z"; 0 if it is no such time.
+std::int64_t milliseconds_of(std::string_view text) {
+  constexpr std::string_view kForm = "dddd-dd-ddTdd:dd:dd.dddZ";
+  const auto fits = [](char c, char form) { return form == 'd' ? c >= '0' && c <= '9' : c == form; };
+  if (text.size() != kForm.size() || !std::ranges::equal(text, kForm, fits)) return 0;
+  const auto number = [text](std::size_t at, std::size_t digits) {
+    int value = 0;
+    for (const char c : text.substr(at, digits)) value = 10 * value + (c - '0');
+    return value;
+  };
+  using namespace std::chrono;
+  const year_month_day date(year(number(0, 4)), month(static_cast<unsigned>(number(5, 2))),
+                            day(static_cast<unsigned>(number(8, 2))));
+  if (!date.ok()) return 0;
+  const auto time = sys_days(date) + hours(number(11, 2)) + minutes(number(14, 2)) + seconds(number(17, 2)) +
+                    milliseconds(number(20, 3));
+  return duration_cast<milliseconds>(time.time_since_epoch()).count();
+}
 
 /// What nlohmann's parser calls: fills an event, and stops at the results.
 class EventReader : public nlohmann::json_sax<nlohmann::json> {
@@ -72,7 +92,8 @@ class EventReader : public nlohmann::json_sax<nlohmann::json> {
       is_event = kind != kKinds.end();
       if (is_event) event.kind = static_cast<BatchEventKind>(kind - kKinds.begin());
     } else if (key_ == "time") {
-      event.time = std::move(text);
+      event.time = milliseconds_of(text);
+      is_event = is_event && event.time > 0;
     } else if (key_ == "name") {
       event.name = std::move(text);
     } else if (key_ == "settings") {

@@ -9,7 +9,6 @@
 #include <map>
 #include <set>
 #include <system_error>
-#include <unordered_map>
 
 #include "pipeline/batch/glob.hpp"
 #include "pipeline/batch/output_name.hpp"
@@ -39,10 +38,12 @@ class Finder {
     AllErrors errors;
     for (const auto& given : inputs_.given) errors.keep_of([&] { add_given(given); });
     errors.throw_any();
-    std::vector<BatchInput> recordings;
-    for (auto& [path, recording] : found_) recordings.push_back(std::move(recording));
-    std::ranges::sort(recordings, {}, &BatchInput::name);
-    return recordings;
+    // What is given twice is one, and has the name that it was found by first.
+    std::ranges::stable_sort(found_, {}, &BatchInput::path);
+    const auto twice = std::ranges::unique(found_, {}, &BatchInput::path);
+    found_.erase(twice.begin(), twice.end());
+    std::ranges::sort(found_, {}, &BatchInput::name);
+    return std::move(found_);
   }
 
  private:
@@ -122,19 +123,34 @@ class Finder {
 
   void add_recording(const fs::path& path, const fs::path& base, const std::string& unreadable,
                      bool is_folder = false) {
-    const fs::path top = inputs_.base.empty() ? base : absolute_of(inputs_.base);
-    fs::path relative = path.lexically_relative(top);
-    if (relative == ".") relative = path.filename();
-    if (relative.empty() || *relative.begin() == "..")
-      throw Error(path.string() + " does not lie in " + top.string(), "give a folder above it as --base");
-    if (!is_folder) relative.replace_extension();
-    found_.try_emplace(path.string(),
-                       BatchInput{output_name(relative.string()), path, is_folder, unreadable});
+    const std::string folder = path.parent_path().string();
+    if (folder != folder_ || base != base_) set_folder(folder, base);
+    const bool is_top = path == top_;
+    if (is_outside_ && !is_top)
+      throw Error(path.string() + " does not lie in " + top_.string(), "give a folder above it as --base");
+    std::string name = (is_top ? "" : relative_) + path.filename().string();
+    if (!is_folder) name.resize(name.size() - path.extension().native().size());
+    found_.push_back({output_name(name), path.string(), is_folder, unreadable});
+  }
+
+  /// Where names of what lies in a folder begin: found once for all of them.
+  void set_folder(const std::string& folder, const fs::path& base) {
+    folder_ = folder;
+    base_ = base;
+    top_ = inputs_.base.empty() ? base : absolute_of(inputs_.base);
+    const fs::path relative = fs::path(folder).lexically_relative(top_);
+    is_outside_ = relative.empty() || *relative.begin() == "..";
+    relative_ = relative == "." ? "" : relative.string() + "/";
   }
 
   const BatchInputs& inputs_;
   fs::path output_;
-  std::unordered_map<std::string, BatchInput> found_;  ///< by path: what is given twice is one
+  std::vector<BatchInput> found_;
+  std::string folder_;  ///< of the recording that was found last …
+  fs::path base_;
+  fs::path top_;
+  std::string relative_;  ///< … relative to `top_`, with a slash at its end
+  bool is_outside_ = false;
 };
 
 /// @param recordings  sorted by name
@@ -153,14 +169,13 @@ void refuse_shared_outputs(const std::vector<BatchInput>& recordings) {
     if (!is_new) other = same->second;
     if (other && errors.size() < kMost) {
       errors.emplace_back(
-          fmt::format("{} and {} would share the output {}", other->path.string(), recording.path.string(),
-                      other->name),
+          fmt::format("{} and {} would share the output {}", other->path, recording.path, other->name),
           "give the folder above both as --base, give one of them another name, or, if they are captures of "
           "one scanner, use --each folder");
     }
     if (is_reserved_output(recording.name)) {
       errors.emplace_back(fmt::format("{} would have the output {}, which belongs to the batch itself",
-                                      recording.path.string(), recording.name),
+                                      recording.path, recording.name),
                           "give it another name, or the folder above it as --base");
     }
   }

@@ -10,7 +10,7 @@ namespace crisp {
 /// What a batch processes by one job: a file, or a folder of captures of one scanner.
 struct BatchInput {
   std::string name;             ///< the relative path without its ending: where its results lie
-  std::filesystem::path path;   ///< absolute
+  std::string path;             ///< absolute
   bool is_folder = false;       ///< of captures of one scanner
   std::string unreadable = {};  ///< why it cannot be read; empty where nothing is known against it
 };

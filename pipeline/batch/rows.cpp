@@ -60,7 +60,7 @@ class RowReader {
   void read(const fs::path& manifest) {
     rows_.damaged_lines += read_manifest(manifest, [&](BatchEvent&& event, std::string_view line) {
       try {
-        take(std::move(event), line, manifest.parent_path());
+        take(std::move(event), line, manifest.parent_path().native());
       } catch (const Json::exception&) {  // the rest of the line is none that a batch writes
         ++rows_.damaged_lines;
       }
@@ -87,13 +87,13 @@ class RowReader {
 
  private:
   /// Whether the task has its lock.
-  bool is_running(const fs::path& task) {
+  bool is_running(std::string_view task) {
     const auto [known, is_new] = running_.try_emplace(task);
     if (is_new) known->second = FolderLock::holder_of(task).has_value();
     return known->second;
   }
 
-  void take(BatchEvent&& event, std::string_view line, const fs::path& task) {
+  void take(BatchEvent&& event, std::string_view line, std::string_view task) {
     if (event.kind == BatchEventKind::batch) {
       if (event.time < last_batch_) return;
       last_batch_ = event.time;
@@ -114,8 +114,8 @@ class RowReader {
 
   BatchLedger ledger_;
   std::unordered_map<std::string, BatchRow> ends_;
-  std::map<fs::path, bool> running_;  ///< by the task's folder
-  std::string last_batch_;
+  std::map<std::string_view, bool> running_;  ///< by the task's folder
+  std::int64_t last_batch_ = 0;
   BatchRows rows_;
 };
 
