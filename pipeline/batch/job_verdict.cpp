@@ -128,12 +128,12 @@ JobVerdict judge_job(const JobEnd& end, const JobCircumstances& circumstances, c
   judge_disk(verdict);
   if (verdict.status != JobStatus::interrupted) judge_input(recording, files, verdict);
   if (!verdict.failure.empty()) results.json["error"] = verdict.failure;
-  verdict.event = {{"exit", end.exit_status},
+  verdict.event = {{"input", input_json(recording, files, results.sha256)},
+                   {"exit", end.exit_status},
                    {"signal", end.signal},
                    {"seconds", end.seconds},
                    {"cpu", end.cpu_seconds},
                    {"memory", end.memory},
-                   {"input", input_json(recording, files, results.sha256)},
                    {"results", std::move(results.json)}};
   return verdict;
 }

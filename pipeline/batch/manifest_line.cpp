@@ -31,15 +31,15 @@ std::int64_t milliseconds_of(std::string_view text) {
   return duration_cast<milliseconds>(time.time_since_epoch()).count();
 }
 
-/// What nlohmann's parser calls: fills an event, and stops at the results.
+/// What nlohmann's parser calls: fills an event, and stops at what only a table needs.
 class EventReader : public nlohmann::json_sax<nlohmann::json> {
  public:
   BatchEvent event;
   bool is_event = false;
-  bool stopped = false;  ///< at the results
+  bool stopped = false;  ///< where only a table reads on
 
   bool key(string_t& key) override {
-    stopped = depth_ == 1 && key == "results";
+    stopped = depth_ == 1 && (key == "exit" || key == "results");
     if (depth_ == 1) top_ = key;
     key_ = std::move(key);
     return !stopped;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <set>
 #include <system_error>
 
@@ -153,31 +152,40 @@ class Finder {
   bool is_outside_ = false;
 };
 
-/// @param recordings  sorted by name
-void refuse_shared_outputs(const std::vector<BatchInput>& recordings) {
+/// The recording whose output is a folder above that of this name; nullptr if there is none.
+const BatchInput* recording_above(const std::vector<BatchInput>& sorted, std::string_view name) {
+  for (std::size_t end = name.find('/'); end != std::string_view::npos; end = name.find('/', end + 1)) {
+    const auto above = name.substr(0, end);
+    const auto found = std::ranges::lower_bound(sorted, above, {}, &BatchInput::name);
+    if (found != sorted.end() && found->name == above) return &*found;
+  }
+  return nullptr;
+}
+
+Error shared_output(const BatchInput& one, const BatchInput& other) {
+  return Error(
+      fmt::format("{} and {} would share the output {}", one.path, other.path, one.name),
+      "give the folder above both as --base, give one of them another name, or, if they are captures of "
+      "one scanner, use --each folder");
+}
+
+/// @param sorted  by name
+void refuse_shared_outputs(const std::vector<BatchInput>& sorted) {
   constexpr std::size_t kMost = 10;  // that are named
   std::vector<Error> errors;
-  std::map<std::string, const BatchInput*> by_name;
-  for (const auto& recording : recordings) {
-    const BatchInput* other = nullptr;
-    for (std::size_t end = recording.name.find('/'); end != std::string::npos && !other;
-         end = recording.name.find('/', end + 1)) {
-      const auto found = by_name.find(recording.name.substr(0, end));
-      if (found != by_name.end()) other = found->second;
-    }
-    const auto [same, is_new] = by_name.try_emplace(recording.name, &recording);
-    if (!is_new) other = same->second;
-    if (other && errors.size() < kMost) {
+  std::string_view folder;  // of the recording before, which has no recording above it
+  for (std::size_t i = 0; i < sorted.size() && errors.size() < kMost; ++i) {
+    const BatchInput& recording = sorted[i];
+    const std::string_view name = recording.name;
+    const std::string_view own_folder = name.substr(0, name.find_last_of('/') + 1);
+    const BatchInput* above = own_folder == folder ? nullptr : recording_above(sorted, name);
+    if (!above) folder = own_folder;
+    if (i > 0 && sorted[i - 1].name == name) above = &sorted[i - 1];
+    if (above) errors.push_back(shared_output(*above, recording));
+    if (is_reserved_output(name))
       errors.emplace_back(
-          fmt::format("{} and {} would share the output {}", other->path, recording.path, other->name),
-          "give the folder above both as --base, give one of them another name, or, if they are captures of "
-          "one scanner, use --each folder");
-    }
-    if (is_reserved_output(recording.name)) {
-      errors.emplace_back(fmt::format("{} would have the output {}, which belongs to the batch itself",
-                                      recording.path, recording.name),
-                          "give it another name, or the folder above it as --base");
-    }
+          fmt::format("{} would have the output {}, which belongs to the batch itself", recording.path, name),
+          "give it another name, or the folder above it as --base");
   }
   if (!errors.empty()) throw Errors(std::move(errors));
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <set>
 
 namespace crisp {
@@ -19,9 +20,12 @@ std::string field(const std::string& text) {
   return quoted + "\"";
 }
 
+/// Empty where it is no number.
+std::string field(double number) { return std::isfinite(number) ? fmt::format("{}", number) : std::string(); }
+
 template <class Number>
 std::string field(const std::optional<Number>& number) {
-  return number ? fmt::format("{}", *number) : std::string();
+  return number ? field(static_cast<double>(*number)) : std::string();
 }
 
 std::string field(const std::vector<std::string>& texts) {
@@ -54,12 +58,12 @@ std::string line_of(const BatchRow& row, const std::set<std::string>& qualities,
                                      field(row.stands_out)};
   for (const auto& name : qualities) {
     const auto found = row.quality.find(name);
-    fields.push_back(found == row.quality.end() ? "" : fmt::format("{}", found->second));
+    fields.push_back(found == row.quality.end() ? "" : field(found->second));
   }
   for (const auto& name : parameters) {
     const auto found = row.parameters.find(name);
     const bool known = found != row.parameters.end();
-    fields.push_back(known ? fmt::format("{}", found->second.value) : "");
+    fields.push_back(known ? field(found->second.value) : "");
     fields.push_back(known ? field(found->second.std_error) : "");
   }
   return fmt::format("{}\n", fmt::join(fields, ","));
