@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "pipeline/batch/output_name.hpp"
+#include "pipeline/batch/trend.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/json_text.hpp"
 
@@ -72,12 +73,38 @@ bool are_tables_current(const fs::path& output) {
   return true;
 }
 
+std::string trend_text(const BatchRows& rows) {
+  constexpr std::size_t kMost = 20;
+  std::string text;
+  std::size_t count = 0;
+  for (const auto& row : rows.rows) {
+    if (row.stands_out.empty() || ++count > kMost) continue;
+    text += fmt::format("  {} stands out from the others in {}\n", row.name, fmt::join(row.stands_out, ", "));
+  }
+  if (2 * count > rows.count("done"))
+    return fmt::format(
+        "  {} calibrations differ by more than their errors: they are of several scanners, or the "
+        "errors are too small\n",
+        count);
+  if (count > kMost) text += fmt::format("  and {} more, see {}\n", count - kMost, kBatchTable);
+  return text;
+}
+
 BatchRows write_tables(const fs::path& output, std::ostream* out) {
   auto rows = read_rows(output);
+  const auto trends = batch_trend(rows.rows);
+  mark_outstanding(trends, rows.rows);
+  std::error_code none;
+  if (trends.empty())
+    fs::remove(output / kBatchTrend, none);  // of an earlier batch
+  else
+    write_file(output / kBatchTrend, trend_svg(trends));
+  auto json = rows_json(rows);
+  json["trend"] = trend_json(trends);
   write_file(output / kBatchTable, rows_csv(rows));
-  write_file(output / kBatchSummary, json_text(rows_json(rows), 1) + "\n");
+  write_file(output / kBatchSummary, json_text(json, 1) + "\n");
   if (out) {
-    *out << fmt::format("{}\n{}wrote {}\n", in_words(tally_of(rows)), trouble_text(rows),
+    *out << fmt::format("{}\n{}{}wrote {}\n", in_words(tally_of(rows)), trouble_text(rows), trend_text(rows),
                         (output / kBatchTable).string());
   }
   return rows;

@@ -32,10 +32,13 @@ std::string in_words(const BatchTally& tally);
 /// Why recordings are not done, a line each, the first of many.
 std::string trouble_text(const BatchRows& rows);
 
+/// Which recordings stand out in which parameters, a line each, the first of many.
+std::string trend_text(const BatchRows& rows);
+
 /// Whether the tables were written after the last event of every manifest.
 bool are_tables_current(const std::filesystem::path& output);
 
-/// Reads the manifests and writes table.csv and batch.json.
+/// Reads the manifests and writes table.csv, batch.json and, where there are calibrations, trend.svg.
 /// @param out  where a summary is printed; nullptr: nowhere
 BatchRows write_tables(const std::filesystem::path& output, std::ostream* out);
 
