@@ -45,6 +45,13 @@ RunRequest run_of(const BatchRequest& request, const Job& job) {
   return run;
 }
 
+/// A job of a batch that was killed a moment ago may still be about to end.
+void wait_for_the_dying(const fs::path& output) {
+  constexpr std::chrono::milliseconds kAskEvery{20};
+  constexpr int kTurns = 100;
+  for (int i = 0; i < kTurns && FolderLock::holder_of(output); ++i) std::this_thread::sleep_for(kAskEvery);
+}
+
 std::optional<double> timeout_of(const BatchRequest& request) {
   if (request.timeout.empty()) return std::nullopt;
   const auto read = parse_quantity(request.timeout, "s");

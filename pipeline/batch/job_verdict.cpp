@@ -43,14 +43,9 @@ std::string failure_by_signal(const JobEnd& end) {
   return printed.empty() ? text : text + "; before it printed: " + printed;
 }
 
-/// Who holds the folder, if that may be why `crisp run` refused it.
-std::optional<std::string> locked_by(const JobEnd& end, const std::filesystem::path& output) {
-  constexpr int kRefused = 2;
-  return end.exit_status == kRefused ? FolderLock::holder_of(output) : std::nullopt;
-}
-
-void judge(const JobEnd& end, const JobCircumstances& circumstances, const std::filesystem::path& output,
-           const Json& results, JobVerdict& verdict) {
+void judge(const JobEnd& end, const JobCircumstances& circumstances, const Json& results,
+           JobVerdict& verdict) {
+  constexpr int kRefused = 2;  // before anything ran
   const bool was_ended = comes_from_outside(end.signal) || is_interrupted(end.exit_status);
   if (circumstances.timeout && was_ended) {
     verdict.status = JobStatus::failed;
@@ -65,10 +60,9 @@ void judge(const JobEnd& end, const JobCircumstances& circumstances, const std::
   } else if (is_interrupted(end.exit_status)) {
     verdict.status = JobStatus::interrupted;
     verdict.failure = fmt::format("signal {} from outside ended it", end.exit_status - 128);
-  } else if (const auto holder = locked_by(end, output)) {
+  } else if (end.exit_status == kRefused && FolderLock::is_refusal(end.error)) {
     verdict.status = JobStatus::interrupted;
-    verdict.failure =
-        "its output folder is in use by " + *holder + "; run the batch again when that has ended";
+    verdict.failure = trimmed(end.error);
   } else if (end.exit_status == 3) {
     verdict.status = JobStatus::untrusted;
   } else if (end.exit_status != 0) {
@@ -124,7 +118,7 @@ JobVerdict judge_job(const JobEnd& end, const JobCircumstances& circumstances, c
                      const std::vector<InputFile>& files, const std::filesystem::path& output) {
   JobVerdict verdict;
   JobResults results = read_results(output);
-  judge(end, circumstances, output, results.json, verdict);
+  judge(end, circumstances, results.json, verdict);
   judge_disk(verdict);
   if (verdict.status != JobStatus::interrupted) judge_input(recording, files, verdict);
   if (!verdict.failure.empty()) results.json["error"] = verdict.failure;

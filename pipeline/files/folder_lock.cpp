@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kInUse = " is in use: ";
 constexpr const char* kLockPrefix = ".crisp-lock";
 constexpr auto kListAgain = std::chrono::milliseconds(10);
 
@@ -27,7 +28,7 @@ Error refusal_by(const fs::path& folder, const FoundLock& lock, std::chrono::mil
                                lock.owner->process.host, lock.owner->since, lock.owner->command)
                  : "another process is about to lock it";
   const bool is_elsewhere = !lock.owner || liveness_of(lock.owner->process) == Liveness::unknown;
-  return Error("the folder " + folder.string() + " is in use: " + who,
+  return Error("the folder " + folder.string() + kInUse + who,
                is_elsewhere
                    ? fmt::format("wait for its end, or give another folder; if it was killed, its lock {} "
                                  "counts no more {} s after its last sign of life",
@@ -102,6 +103,10 @@ FolderLock::FolderLock(const fs::path& folder, const FolderLockSettings& setting
       }) {}
 
 FolderLock::~FolderLock() = default;
+
+bool FolderLock::is_refusal(std::string_view message) {
+  return message.find(kInUse) != std::string_view::npos;
+}
 
 std::optional<std::string> FolderLock::holder_of(const fs::path& folder, const FolderLockSettings& settings) {
   std::error_code none;

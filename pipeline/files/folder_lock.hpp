@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 
 namespace crisp {
@@ -40,6 +41,9 @@ class FolderLock {
   /// Whether another process has taken the lock over, because this one gave no sign of life for the lease (it
   /// was stopped, or its file server could not be reached).
   bool is_lost() const { return lost_; }
+
+  /// Whether a message is that by which the constructor refuses a folder that is in use.
+  static bool is_refusal(std::string_view message);
 
   /// The process that has a folder's lock, in words: "process 12 on host"; nothing if none has, or the folder
   /// is not there. Removes the locks of the dead.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `crisp batch` as people run it.
 #include <gmock/gmock.h>
-#include <sys/stat.h>
 
 #include <filesystem>
+#include <random>
 
 #include "pipeline/files/folder_lock.hpp"
 #include "tests/pipeline/app/batch_fixture.hpp"
@@ -221,7 +221,7 @@ TEST_F(BatchTest, LeavesARecordingThatAnotherRunIsWriting) {
     const FolderLock lock(folder_ / "out/a");
     EXPECT_EQ(batch().status, 1);
     EXPECT_EQ(field("a", "status"), "interrupted");
-    EXPECT_THAT(field("a", "reasons"), HasSubstr("in use by process " + std::to_string(getpid())));
+    EXPECT_THAT(field("a", "reasons"), HasSubstr("is in use: process " + std::to_string(getpid())));
   }
   EXPECT_EQ(batch().status, 0);
 }
@@ -266,6 +266,51 @@ TEST_F(BatchTest, DividesTheRecordingsAmongShards) {
   const auto whole = batch();
   EXPECT_THAT(whole.error, HasSubstr("20 recordings done before and unchanged"));
   EXPECT_THAT(calls(), called) << "what shards did counts for all";
+}
+
+/// The processes that a process started.
+std::vector<pid_t> children_of(pid_t process) {
+  const std::string number = std::to_string(process);
+  std::ifstream list("/proc/" + number + "/task/" + number + "/children");
+  std::vector<pid_t> children;
+  for (pid_t child = 0; list >> child;) children.push_back(child);
+  return children;
+}
+
+/// Each round ends with the batch dead; in every other one a job was killed before.
+TEST_F(BatchTest, DoesEachRecordingOnceWhateverIsKilledInWhichMoment) {
+  constexpr int kRecordings = 40;
+  constexpr int kRounds = 30;
+  for (int i = 0; i < kRecordings; ++i) put("r" + std::to_string(i) + ".pcap", "done");
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> milliseconds(0, 60);
+  const auto pause = [&] { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds(random))); };
+  for (int round = 0; round < kRounds; ++round) {
+    const pid_t child = start(words({"--jobs", "2"}));
+    pause();
+    if (round % 2 == 1) {
+      for (const pid_t launcher : children_of(child)) {
+        for (const pid_t job : children_of(launcher)) kill(job, SIGKILL);
+      }
+      pause();
+    }
+    kill(child, SIGKILL);
+    wait_for(child);
+  }
+  EXPECT_EQ(batch().status, 0);
+  std::map<std::string, int> done;
+  std::istringstream events(content("out/manifest/batch/events.jsonl"));
+  for (std::string line; std::getline(events, line);) {
+    const auto event = nlohmann::json::parse(line);
+    if (event["event"] == "end" && event["status"] == "done") ++done[event["name"]];
+  }
+  EXPECT_EQ(done.size(), static_cast<std::size_t>(kRecordings));
+  for (const auto& [name, times] : done) {
+    EXPECT_EQ(times, 1) << name;
+    EXPECT_EQ(content("out/" + name + "/" + name + ".txt"), "done\n");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out" / name), {}), 3)
+        << "nothing is left of kills";
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <csignal>
 
 #include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/folder_lock.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {
@@ -61,6 +62,18 @@ TEST_F(VerdictTest, TakesAFullDiskForNoFaultOfTheRecording) {
   const auto full = judge({.exit_status = 1, .error = "error: cannot write x: No space left on device\n"});
   EXPECT_EQ(full.status, JobStatus::interrupted);
   EXPECT_THAT(full.full_disk, HasSubstr("No space left"));
+}
+
+TEST_F(VerdictTest, LeavesARecordingWhoseFolderIsInUseForLater) {
+  const FolderLock lock(folder_ / "out");
+  std::string refusal;
+  try {
+    const FolderLock second(folder_ / "out");
+  } catch (const Error& error) {
+    refusal = error.what();
+  }
+  EXPECT_EQ(judge({.exit_status = 2, .error = refusal}).status, JobStatus::interrupted);
+  EXPECT_EQ(judge({.exit_status = 2, .error = "error: another\n"}).status, JobStatus::failed);
 }
 
 TEST_F(VerdictTest, DoesNotTrustAnInputThatChangedMeanwhile) {
