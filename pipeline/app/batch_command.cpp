@@ -288,8 +288,10 @@ ExitStatus run_prepared(const BatchRequest& request, const PreparedBatch& batch,
 ExitStatus batch_command(const BatchRequest& request, const Registrar& registrar) {
   std::signal(SIGPIPE, SIG_IGN);  // as crisp run does
   // First of all, while the process is small and has one thread.
-  JobLauncher launcher(
-      [&](const Job& job) { return static_cast<int>(run_command(run_of(request, job), registrar)); });
+  JobLauncher launcher([&](const Job& job) {
+    wait_for_the_dying(job.output);
+    return static_cast<int>(run_command(run_of(request, job), registrar));
+  });
   std::optional<PreparedBatch> batch;
   std::optional<FolderLock> lock;
   std::optional<ManifestWriter> manifest;

@@ -10,12 +10,17 @@
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/batch/trend.hpp"
 #include "pipeline/files/atomic_file.hpp"
-#include "pipeline/files/json_text.hpp"
 
 namespace crisp {
 namespace {
 
 namespace fs = std::filesystem;
+
+nlohmann::ordered_json batch_summary(const BatchRows& rows, const std::vector<ParameterTrend>& trends) {
+  auto json = head_json(rows);
+  json["trend"] = trend_json(trends);
+  return json;
+}
 
 }  // namespace
 
@@ -99,10 +104,12 @@ BatchRows write_tables(const fs::path& output, std::ostream* out) {
     fs::remove(output / kBatchTrend, none);  // of an earlier batch
   else
     write_file(output / kBatchTrend, trend_svg(trends));
-  auto json = rows_json(rows);
-  json["trend"] = trend_json(trends);
-  write_file(output / kBatchTable, rows_csv(rows));
-  write_file(output / kBatchSummary, json_text(json, 1) + "\n");
+  AtomicFile table(output / kBatchTable);
+  print_csv(rows, [&](std::string_view piece) { table.write(piece); });
+  table.commit();
+  AtomicFile summary(output / kBatchSummary);
+  print_json(rows, batch_summary(rows, trends), [&](std::string_view piece) { summary.write(piece); });
+  summary.commit();
   if (out) {
     *out << fmt::format("{}\n{}{}wrote {}\n", in_words(tally_of(rows)), trouble_text(rows), trend_text(rows),
                         (output / kBatchTable).string());

@@ -22,9 +22,7 @@ namespace fs = std::filesystem;
 
 void print_status(const BatchRows& rows, bool json) {
   if (json) {
-    auto status = rows_json(rows);
-    status.erase("rows");
-    std::cout << json_text(status, 1) << "\n" << std::flush;
+    std::cout << json_text(head_json(rows), 1) << "\n" << std::flush;
     return;
   }
   const BatchTally tally = tally_of(rows);
@@ -71,7 +69,11 @@ ExitStatus batch_status_command(const BatchStatusRequest& request) {
 
 ExitStatus batch_table_command(const BatchTableRequest& request) {
   const auto rows = write_tables(request.folder, nullptr);
-  std::cout << (request.json ? json_text(rows_json(rows), 1) + "\n" : rows_csv(rows));
+  const auto sink = [](std::string_view piece) { std::cout << piece; };
+  if (request.json)
+    print_json(rows, head_json(rows), sink);
+  else
+    print_csv(rows, sink);
   return tally_of(rows).exit_status();
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "pipeline/files/json_text.hpp"
+
 namespace crisp {
 namespace {
 
@@ -92,29 +94,36 @@ Json row_json(const BatchRow& row) {
 
 }  // namespace
 
-std::string rows_csv(const BatchRows& rows) {
+void print_csv(const BatchRows& rows, const TextSink& sink) {
   const auto qualities = names_of(rows, &BatchRow::quality);
   const auto parameters = names_of(rows, &BatchRow::parameters);
-  std::string csv =
+  std::string names =
       "name,status,reasons,ended,seconds,cpu_seconds,memory,input_bytes,begin,points,causes,stands_out";
-  for (const auto& name : qualities) csv += "," + field(name);
-  for (const auto& name : parameters) csv += "," + field(name) + "," + field(name + ".std_error");
-  csv += "\n";
-  for (const auto& row : rows.rows) csv += line_of(row, qualities, parameters);
-  return csv;
+  for (const auto& name : qualities) names += "," + field(name);
+  for (const auto& name : parameters) names += "," + field(name) + "," + field(name + ".std_error");
+  sink(names + "\n");
+  for (const auto& row : rows.rows) sink(line_of(row, qualities, parameters));
 }
 
-Json rows_json(const BatchRows& rows) {
+Json head_json(const BatchRows& rows) {
   Json json = {{"crisp", rows.batch.value("crisp", "")},
                {"pipeline", rows.batch.value("pipeline", "")},
                {"settings", rows.settings},
                {"recordings", rows.recordings},
-               {"counts", Json::object()},
-               {"rows", Json::array()}};
+               {"counts", Json::object()}};
   for (const char* status : {"done", "untrusted", "failed", "interrupted", "running", "due"})
     json["counts"][status] = rows.count(status);
-  for (const auto& row : rows.rows) json["rows"].push_back(row_json(row));
   return json;
+}
+
+void print_json(const BatchRows& rows, const Json& head, const TextSink& sink) {
+  std::string begin = json_text(head, 1);
+  begin.resize(begin.find_last_of('}'));  // which follows the rows
+  while (begin.back() == '\n' || begin.back() == ' ') begin.pop_back();
+  sink(begin + ",\n \"rows\": [");
+  for (const auto& row : rows.rows)
+    sink((&row == &rows.rows.front() ? "\n  " : ",\n  ") + json_text(row_json(row)));
+  sink("\n ]\n}\n");
 }
 
 }  // namespace crisp

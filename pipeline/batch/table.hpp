@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -53,11 +54,17 @@ struct BatchRows {
 /// @throws Error if there is none, or one cannot be read
 BatchRows read_rows(const std::filesystem::path& output);
 
+/// Takes a text piece by piece: that of a million rows is never in memory as a whole.
+using TextSink = std::function<void(std::string_view piece)>;
+
 /// As CSV: a line of names, then a line a recording; parameters in SI, each with its standard error in a
 /// column of its own. What is not known is empty.
-std::string rows_csv(const BatchRows& rows);
+void print_csv(const BatchRows& rows, const TextSink& sink);
 
-/// As JSON, with what was run.
-nlohmann::ordered_json rows_json(const BatchRows& rows);
+/// What was run, and how many recordings ended in which way.
+nlohmann::ordered_json head_json(const BatchRows& rows);
+
+/// As JSON: this head, with the rows as its last key, a line a recording.
+void print_json(const BatchRows& rows, const nlohmann::ordered_json& head, const TextSink& sink);
 
 }  // namespace crisp

@@ -18,6 +18,13 @@ void put_lines(const fs::path& output, const std::string& task, const std::strin
   std::ofstream(task_folder(output, task) / kManifestFile) << lines;
 }
 
+template <class Print>
+std::string printed(Print print) {
+  std::string text;
+  print([&](std::string_view piece) { text += piece; });
+  return text;
+}
+
 constexpr const char* kBatch =
     R"({"event":"batch","time":"2026-01-01T00:00:00.000Z","settings":"s","crisp":"1","pipeline":"p","recordings":3})"
     "\n";
@@ -39,12 +46,13 @@ TEST(Table, HasARowARecordingWithItsLastResults) {
   EXPECT_EQ(rows.recordings, 3U);
   EXPECT_EQ(rows.count("done"), 1U);
   EXPECT_EQ(
-      rows_csv(rows),
+      printed([&](const TextSink& sink) { print_csv(rows, sink); }),
       "name,status,reasons,ended,seconds,cpu_seconds,memory,input_bytes,begin,points,causes,stands_out,chi2,"
       "l.eta,l.eta.std_error,l.tau,l.tau.std_error\n"
       "a,failed,\"x, \"\"y\"\"\",2026-01-01T00:00:01.000Z,0,0,0,0,,,,,,,,,\n"
       "b,done,,2026-01-01T00:00:03.000Z,1.5,1.25,1000,5,7.5,12,mirror.cone of l,,0.5,,,0.25,0.125\n");
-  const auto json = rows_json(rows);
+  const auto json =
+      nlohmann::json::parse(printed([&](const TextSink& sink) { print_json(rows, head_json(rows), sink); }));
   EXPECT_EQ(json["rows"][1]["parameters"]["l.tau"]["std_error"], 0.125);
   EXPECT_EQ(json["counts"]["failed"], 1);
 }
