@@ -91,14 +91,25 @@ std::optional<LockOwner> parse_lock_owner(const std::string& text) try {
 
 LockFile::LockFile(const fs::path& folder, const std::string& prefix)
     : owner_{this_process(), utc_now(), command_of_this_process()},
-      path_(folder / (prefix + "." + unique_name())),
-      descriptor_(open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
-  if (descriptor_ < 0) fail_to_lock(folder, errno);
+      path_(folder / (prefix + "." + unique_name())) {
   at_signal_.emplace(path_.string());
+  if (make_with_content(folder)) return;
+  descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail_to_lock(folder, errno);
   if (const int code = write(); code != 0) {
     remove();
     fail_to_lock(folder, code);
   }
+}
+
+bool LockFile::make_with_content(const fs::path& folder) {
+  descriptor_ = open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) return false;
+  const std::string nameless = fmt::format("/proc/self/fd/{}", descriptor_);
+  if (write() == 0 && linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, path_.c_str(), AT_SYMLINK_FOLLOW) == 0)
+    return true;
+  close(descriptor_);
+  return false;
 }
 
 LockFile::~LockFile() { remove(); }

@@ -49,6 +49,10 @@ class LockFile {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  /// Makes the file with its content at once: a process that is killed meanwhile leaves no file without an
+  /// owner, which would count until its lease is over. False where the file system has no files without
+  /// names.
+  bool make_with_content(const std::filesystem::path& folder);
   int write() const;  ///< returns the system's error number, or 0
   void remove() const;
 
