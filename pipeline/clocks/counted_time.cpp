@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kKept = 16;   // intervals that foretell the next one
 constexpr std::size_t kEnough = 8;  // of them to say how much they differ
+constexpr std::size_t kMany = 128;  // intervals that say so together: sixteen may be even by chance
 constexpr std::size_t kSure = 4;    // even intervals after a jump
 constexpr double kLeast = 0.25e-3;  // [s] real mirrors' stamps are up to 0.17 ms off what foretells them
 constexpr double kManyTimes = 12;   // what intervals differ by (median)
@@ -31,7 +32,8 @@ void CountedTime::add(double seconds, std::int64_t steps, double hub) {
 
 void CountedTime::begin_anew() {
   latest_.clear();
-  next_ = 0;
+  spread_.clear();
+  next_ = next_spread_ = 0;
   trial_.reset();
 }
 
@@ -53,9 +55,8 @@ std::optional<double> CountedTime::excess(double seconds, std::int64_t steps, do
   if (std::abs(seconds - n * usual_) < n * kLeast / 2) return std::nullopt;  // as nearly all
   std::vector<double> values = latest_;
   const double usual = middle_of(values);
-  for (double& value : values) value = std::abs(value - usual);
   const double excess = seconds - n * usual;
-  if (std::abs(excess) < n * std::max(kLeast, kManyTimes * middle_of(values))) return std::nullopt;
+  if (std::abs(excess) < n * std::max(kLeast, kManyTimes * usual_deviation(usual))) return std::nullopt;
   // Where receipts go with the device's clock the interval was such: nothing was sent for a while, and not
   // counted either, or what is counted does not come evenly.
   constexpr double kAgree = 0.25;
@@ -67,7 +68,21 @@ std::optional<double> CountedTime::excess(double seconds, std::int64_t steps, do
   return excess;
 }
 
+/// [s] The median deviation of the latest intervals, or of many, whichever is larger.
+double CountedTime::usual_deviation(double usual) const {
+  std::vector<double> latest = latest_;
+  for (double& value : latest) value = std::abs(value - usual);
+  std::vector<double> many = spread_;
+  return std::max(middle_of(latest), many.empty() ? 0 : middle_of(many));
+}
+
 void CountedTime::remember(double step) {
+  if (latest_.size() >= kEnough && spread_.size() < kMany) {
+    spread_.push_back(std::abs(step - usual_));
+  } else if (spread_.size() == kMany) {
+    spread_[next_spread_] = std::abs(step - usual_);
+    next_spread_ = (next_spread_ + 1) % kMany;
+  }
   if (latest_.size() < kKept) {
     latest_.push_back(step);
   } else {

@@ -38,11 +38,14 @@ class CountedTime {
   };
   std::optional<double> excess(double seconds, std::int64_t steps, double hub) const;
   void remember(double step);
+  double usual_deviation(double usual) const;
   void judge_trial(std::optional<double> jump);
 
-  std::vector<double> latest_;  // [s] a step, of the latest intervals
-  std::size_t next_ = 0;        // which of them is replaced next
-  double usual_ = 0;            // [s] their median, of some intervals ago
+  std::vector<double> latest_;   // [s] a step, of the latest intervals
+  std::size_t next_ = 0;         // which of them is replaced next
+  double usual_ = 0;             // [s] their median, of some intervals ago
+  std::vector<double> spread_;   // [s] by which many intervals were off the median then
+  std::size_t next_spread_ = 0;  // which of them is replaced next
   double jumped_ = 0;
   std::optional<Trial> trial_;
   std::optional<double> confirmed_;

@@ -14,8 +14,8 @@ constexpr double kPeriod = 0.0201;  // [s]
 
 /// What a counter makes of stamps at even times, each off by some jitter and then changed by `change`.
 template <class Change>
-std::vector<double> jumped_of(std::size_t n, double jitter, const Change& change) {
-  std::mt19937_64 random(7);
+std::vector<double> jumped_of(std::size_t n, double jitter, const Change& change, std::uint64_t seed = 7) {
+  std::mt19937_64 random(seed);
   std::normal_distribution<> off(0, jitter);
   CountedTime counted;
   std::vector<double> jumped;
@@ -35,6 +35,14 @@ TEST(CountedTime, FindsAJumpOfTheClockAndKeepsIt) {
     EXPECT_EQ(jumped[49], 0);
     EXPECT_NEAR(jumped[50], by, 4 * std::sqrt(2.0) * 20e-6);
     EXPECT_EQ(jumped.back(), jumped[50]) << "and nothing else is one";
+  }
+}
+
+TEST(CountedTime, TakesReadingsThatComeUnevenlyForNoJumps) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto jumped = jumped_of(
+        20'000, 0.2e-3, [](std::size_t) { return 0; }, seed);
+    EXPECT_EQ(jumped.back(), 0) << seed;
   }
 }
 
