@@ -97,7 +97,7 @@ fs::path any_rig(const BatchRequest& request, const std::vector<BatchInput>& rec
   if (!has_rig_each(request)) return {};
   std::error_code none;
   for (const auto& recording : recordings) {
-    const fs::path rig = rig_path(request.rig, recording);
+    fs::path rig = rig_path(request.rig, recording);
     if (fs::exists(rig, none)) return rig;
   }
   throw Error("no recording has a rig at " + request.rig, "check the pattern of --rig");

@@ -73,10 +73,10 @@ void add_changes(const std::string& at, const Json& before, const Json& now,
     if (now.contains(key))
       add_changes(below, value, now[key], changes);
     else
-      changes.push_back(below + ": " + kNotThere + " any more");
+      changes.push_back(fmt::format("{}: {} any more", below, kNotThere));
   }
   for (const auto& [key, value] : now.items()) {
-    if (!before.contains(key)) changes.push_back((at.empty() ? key : at + "." + key) + ": new");
+    if (!before.contains(key)) changes.push_back(fmt::format("{}{}{}: new", at, at.empty() ? "" : ".", key));
   }
 }
 

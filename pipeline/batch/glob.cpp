@@ -72,8 +72,7 @@ std::vector<fs::path> match_pattern(const std::string& pattern) {
   std::vector<fs::path> found;
   match(fixed, parts.begin(), parts.end(), found);
   std::ranges::sort(found);
-  const auto twice = std::ranges::unique(found);
-  found.erase(twice.begin(), twice.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }
 

@@ -106,7 +106,7 @@ JobLauncher::~JobLauncher() {
   while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) continue;
 }
 
-void JobLauncher::send(const std::string& message) {
+void JobLauncher::send(const std::string& message) const {
   if (message.size() > kLongestJobMessage) throw Error("the paths of a job are longer than 64 KiB");
   if (::send(socket_, message.data(), message.size(), MSG_NOSIGNAL) >= 0) return;
   throw Error(std::string("the process that starts the jobs is gone: ") + std::strerror(errno),

@@ -59,7 +59,7 @@ class JobLauncher {
   std::optional<JobEnd> wait(std::chrono::milliseconds limit);
 
  private:
-  void send(const std::string& message);
+  void send(const std::string& message) const;
 
   pid_t process_ = -1;
   int socket_ = -1;

@@ -34,8 +34,9 @@ using Json = nlohmann::ordered_json;
 }
 
 std::string utc_milliseconds() {
-  using namespace std::chrono;
-  const auto now = time_point_cast<milliseconds>(system_clock::now());
+  using std::chrono::milliseconds;
+  using std::chrono::system_clock;
+  const auto now = std::chrono::time_point_cast<milliseconds>(system_clock::now());
   return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(system_clock::to_time_t(now)),
                      now.time_since_epoch().count() % 1000);
 }

@@ -22,13 +22,14 @@ std::int64_t milliseconds_of(std::string_view text) {
     for (const char c : text.substr(at, digits)) value = 10 * value + (c - '0');
     return value;
   };
-  using namespace std::chrono;
-  const year_month_day date(year(number(0, 4)), month(static_cast<unsigned>(number(5, 2))),
-                            day(static_cast<unsigned>(number(8, 2))));
+  namespace chrono = std::chrono;
+  const chrono::year_month_day date(chrono::year(number(0, 4)),
+                                    chrono::month(static_cast<unsigned>(number(5, 2))),
+                                    chrono::day(static_cast<unsigned>(number(8, 2))));
   if (!date.ok()) return 0;
-  const auto time = sys_days(date) + hours(number(11, 2)) + minutes(number(14, 2)) + seconds(number(17, 2)) +
-                    milliseconds(number(20, 3));
-  return duration_cast<milliseconds>(time.time_since_epoch()).count();
+  const auto time = chrono::sys_days(date) + chrono::hours(number(11, 2)) + chrono::minutes(number(14, 2)) +
+                    chrono::seconds(number(17, 2)) + chrono::milliseconds(number(20, 3));
+  return chrono::duration_cast<chrono::milliseconds>(time.time_since_epoch()).count();
 }
 
 /// What nlohmann's parser calls: fills an event, and stops at what only a table needs.
@@ -46,8 +47,11 @@ class EventReader : public nlohmann::json_sax<nlohmann::json> {
   }
   bool string(string_t& text) override {
     if (in_input()) {
-      if (key_ == "file") file().file = std::move(text);
-      if (key_ == "sha256") file().sha256 = std::move(text);
+      if (key_ == "file") {
+        file().file = std::move(text);
+      } else if (key_ == "sha256") {
+        file().sha256 = std::move(text);
+      }
     } else if (depth_ == 1) {
       set(std::move(text));
     }

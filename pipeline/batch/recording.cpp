@@ -39,8 +39,8 @@ class Finder {
     errors.throw_any();
     // What is given twice is one, and has the name that it was found by first.
     std::ranges::stable_sort(found_, {}, &BatchInput::path);
-    const auto twice = std::ranges::unique(found_, {}, &BatchInput::path);
-    found_.erase(twice.begin(), twice.end());
+    const auto same_path = [](const BatchInput& a, const BatchInput& b) { return a.path == b.path; };
+    found_.erase(std::unique(found_.begin(), found_.end(), same_path), found_.end());
     std::ranges::sort(found_, {}, &BatchInput::name);
     return std::move(found_);
   }

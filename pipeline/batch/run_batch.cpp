@@ -104,10 +104,10 @@ class Batch {
                                          .stopping = is_stopping()};
     auto verdict = judge_job(end, circumstances, recording, running.files, output_ / recording.input.name);
     if (!verdict.full_disk.empty() && outcome_.full_disk.empty()) outcome_.full_disk = verdict.full_disk;
-    keep(recording, std::move(verdict));
+    keep(recording, verdict);
   }
 
-  void keep(const DueRecording& recording, JobVerdict verdict) {
+  void keep(const DueRecording& recording, const JobVerdict& verdict) {
     Json event = {
         {"name", recording.input.name}, {"status", name_of(verdict.status)}, {"settings", settings_}};
     event.update(verdict.event);

@@ -237,6 +237,18 @@ std::vector<EffectInfo> noises() {
        .details = "A comb in the distribution of ranges. Telegrams of LMS1xx have 1 mm."}};
 }
 
+std::vector<EffectInfo> encoders() {
+  return {
+      {.name = "encoder.slip",
+       .summary = "the encoder's count steps against the plate, for good",
+       .scope = Scope::kPlate,
+       .parameters = {},
+       .details =
+           "A coupling slips, or counts get lost or come twice: everything that is measured afterwards is "
+           "turned by the same angle. `diagnose.encoder` estimates by how much (`by`) and when (`at`); it is "
+           "not simulated."}};
+}
+
 std::vector<EffectInfo> scenes() {
   return {{.name = "scene.moving",
            .summary = "something moves while it is recorded",
@@ -254,6 +266,7 @@ const std::vector<EffectInfo>& effects_beyond_the_chain() {
     std::vector<EffectInfo> all = clocks_and_links();
     for (auto& effect : noises()) all.push_back(std::move(effect));
     for (auto& effect : mirrors()) all.push_back(std::move(effect));
+    for (auto& effect : encoders()) all.push_back(std::move(effect));
     for (auto& effect : scenes()) all.push_back(std::move(effect));
     return all;
   }();

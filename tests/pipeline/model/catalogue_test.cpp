@@ -27,6 +27,7 @@ TEST(Catalogue, HasEveryNameThatReportsAndProgramsUse) {
                                              "encoder.backlash",
                                              "encoder.eccentricity",
                                              "encoder.second_harmonic",
+                                             "encoder.slip",
                                              "encoder.speed_lag",
                                              "latency.bursts",
                                              "latency.jitter",
