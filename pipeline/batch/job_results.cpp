@@ -73,11 +73,6 @@ void read_summary(const Json& summary, JobResults& results) {
   }
 }
 
-/// Whether AtomicFile gave it this name.
-bool is_aside(const fs::path& file) {
-  return file.extension() == ".part" && file.filename().string().starts_with(".");
-}
-
 }  // namespace
 
 JobResults read_results(const fs::path& output) {
@@ -92,15 +87,9 @@ JobResults read_results(const fs::path& output) {
   return results;
 }
 
-void remove_leftovers(const fs::path& output) {
+void remove_summary(const fs::path& output) {
   std::error_code none;
   fs::remove(output / kSummary, none);
-  std::vector<fs::path> aside;
-  fs::directory_iterator entry(output, none);
-  for (; !none && entry != fs::directory_iterator(); entry.increment(none)) {
-    if (is_aside(entry->path())) aside.push_back(entry->path());
-  }
-  for (const auto& file : aside) fs::remove(file, none);
 }
 
 }  // namespace crisp

@@ -21,8 +21,7 @@ struct JobResults {
 /// `reasons`.
 JobResults read_results(const std::filesystem::path& output);
 
-/// Removes what a job that was killed left of files that were not complete, and the summary of an earlier
-/// one, which must not be taken for that of the next.
-void remove_leftovers(const std::filesystem::path& output);
+/// Removes the summary of an earlier job, which must not be taken for that of the next.
+void remove_summary(const std::filesystem::path& output);
 
 }  // namespace crisp

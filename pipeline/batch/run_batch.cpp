@@ -80,7 +80,7 @@ class Batch {
                   .input = recording.input.path,
                   .output = output_ / recording.input.name,
                   .rig = recording.rig};
-    remove_leftovers(job.output);
+    remove_summary(job.output);
     if (!write(BatchEventKind::start, {{"name", job.name}})) return;
     launcher_.start(job);
     running_.emplace(job.id, std::move(running));
