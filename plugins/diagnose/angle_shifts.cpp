@@ -18,10 +18,10 @@
 namespace crisp {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr std::size_t kBeams = 64;        // of a scan that are compared
-constexpr double kReach = 20 * kDegree;   // of the shifts that are tried
-constexpr double kStep = 0.25 * kDegree;  // between them
+constexpr double kFullTurn = 2 * std::numbers::pi;
+constexpr std::size_t kBeams = 64;             // of a scan that are compared
+constexpr double kReach = 20 * kDegree;        // of the shifts that are tried
+constexpr double kShiftStep = 0.25 * kDegree;  // between them
 constexpr std::size_t kShifts = 161;
 constexpr std::size_t kScans = 5;    // in a block
 constexpr double kGap = 2.5;         // [scan periods] between neighbouring scans, at most
@@ -137,7 +137,7 @@ class ScanLines {
   static constexpr std::size_t kBuckets = 180;
 
   static std::size_t bucket(double angle) {
-    const double turns = angle / kTurn;
+    const double turns = angle / kFullTurn;
     return static_cast<std::size_t>((turns - std::floor(turns)) * kBuckets) % kBuckets;
   }
 
@@ -147,7 +147,7 @@ class ScanLines {
       if (!(width < kReach) || lines_[j + 1].time - lines_[j].time > kGap * period_) continue;
       const double first = std::min(lines_[j].angle, lines_[j + 1].angle);
       std::size_t last = kBuckets;
-      for (double at = 0; at <= width; at += kTurn / kBuckets / 2) {
+      for (double at = 0; at <= width; at += kFullTurn / kBuckets / 2) {
         const std::size_t here = bucket(first + at);
         if (here != last) by_angle_[here].push_back(j);
         last = here;
@@ -175,7 +175,7 @@ void compare(const ScanLines& lines, std::size_t i, std::pair<std::size_t, std::
       return lines[sweep.first + static_cast<std::size_t>(m)];
     };
     for (std::size_t s = 0; s < kShifts; ++s) {
-      const double shift = -kReach + static_cast<double>(s) * kStep;
+      const double shift = -kReach + static_cast<double>(s) * kShiftStep;
       const double wanted = line.angles[k] + turns - shift;
       const auto lower = [&](std::ptrdiff_t m) { return scan(grows ? m : m + 1).angles[k]; };
       while (at >= 0 && at < count && lower(at) > wanted) at += grows ? -1 : 1;
@@ -210,7 +210,7 @@ std::optional<double> minimizer(const Cost& cost) {
   const double before = means[least - 1] - means[least];
   const double after = means[least + 1] - means[least];
   if (!std::isfinite(before + after) || !(before + after > 0)) return std::nullopt;
-  return -kReach + kStep * (static_cast<double>(least) + 0.5 * (before - after) / (before + after));
+  return -kReach + kShiftStep * (static_cast<double>(least) + 0.5 * (before - after) / (before + after));
 }
 
 std::vector<AngleShift> shifts_of(const Measurements& beams, const PlateTrajectory& plate,
@@ -236,7 +236,7 @@ std::vector<AngleShift> shifts_of(const Measurements& beams, const PlateTrajecto
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (i > 0 && block(lines[i].time) != block(lines[i - 1].time)) take();
     for (const std::size_t j : lines.earlier_passes(i)) {
-      const double turns = kTurn * std::round((lines[j].angle - lines[i].angle) / kTurn);
+      const double turns = kFullTurn * std::round((lines[j].angle - lines[i].angle) / kFullTurn);
       Cost& cost = costs[{block(lines[i].time), block(lines[j].time)}];
       cost.add(lines[i], lines[j]);
       compare(lines, i, lines.sweep_about(j, lines[i].time - lines.block()), turns, cost);

@@ -28,7 +28,7 @@ Finding finding_of(const EncoderSlip& slip, const EncoderSlips& all) {
                 .ci95 = all.ci95}},
       .accepted = true};
   finding.explained_fraction = finding.gain.front().explained();
-  if (!slip.is_in_readings) finding.confounded_with.push_back("base.motion");
+  if (!slip.is_in_readings) finding.confounded_with.emplace_back("base.motion");
   return finding;
 }
 
