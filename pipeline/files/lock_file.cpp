@@ -36,9 +36,12 @@ std::string command_of_this_process() {
               code == ENOSPC || code == EDQUOT || code == EFBIG ? "make room on the disk" : "");
 }
 
-std::string read_all(const fs::path& file) {
+std::string read_all(const fs::path& file) try {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
+} catch (const std::ios_base::failure& failure) {
+  throw Error("cannot read the lock " + file.string() + ": " + failure.code().message(),
+              "check the disk, or give another folder");
 }
 
 /// A file that is just being made has no owner yet: whoever makes it may be on any machine.
