@@ -19,6 +19,7 @@
 #include "pipeline/files/folder_lock.hpp"
 #include "pipeline/files/utc_now.hpp"
 #include "pipeline/pcd/parts.hpp"
+#include "pipeline/stage/files_written.hpp"
 #include "pipeline/stage/reference.hpp"
 
 namespace crisp {
@@ -166,6 +167,9 @@ ExitStatus run_command(const RunRequest& request, const Registrar& registrar) {
     if (!run.output.empty()) {
       lock = std::make_unique<FolderLock>(run.output);
       remove_left_over_parts(run.output);
+      // It speaks of what an earlier run wrote, and must not stay beside what this one writes.
+      std::error_code not_there;
+      fs::remove(run.output / kSummary, not_there);
     }
     print_warnings(loaded->pipeline);
   } catch (const Error& error) {

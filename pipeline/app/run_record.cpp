@@ -150,11 +150,7 @@ void write_provenance(const RunRecord& record) {
 
 void write_summary(const RunRecord& record, const fs::path& folder) {
   if (folder.empty()) return;
-  const fs::path summary = folder / kSummary;
-  std::error_code not_there;
-  // It speaks of what an earlier run wrote, and must not stay if what follows fails.
-  if (!writer_of(summary, record)) fs::remove(summary, not_there);
-  write_record(summary, summary_json(record), record);
+  write_record(folder / kSummary, summary_json(record), record);
 }
 
 }  // namespace crisp

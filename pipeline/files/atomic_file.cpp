@@ -93,6 +93,8 @@ void AtomicFile::commit() {
   const int code = errno;
   close(descriptor);
   if (synced != 0) fail(file_, code);
+  std::error_code not_there;
+  fs::remove(file_.string() + kProvenance, not_there);
   if (std::rename(aside_.c_str(), file_.c_str()) != 0) fail(file_, errno);
   at_signal_.reset();
   stream_.reset();

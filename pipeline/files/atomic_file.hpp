@@ -11,10 +11,14 @@
 
 namespace crisp {
 
+/// What stands behind the name of a file that a run wrote in the name of the record of its origin.
+inline constexpr const char* kProvenance = ".provenance.json";
+
 /// A file that is there whole or not at all: it is written aside, in the same folder, and takes its name when
 /// it is complete and on the disk. Left without commit() (an exception, an interruption), nothing remains of
 /// it, and a file of that name from before stays as it was. A symbolic link of that name is replaced, and the
-/// file that it leads to stays as it is.
+/// file that it leads to stays as it is. The record of the origin of the file that is replaced is removed
+/// just before: it never stands beside the new file, though the program be killed.
 ///
 /// Write through write(), or let a library write to aside() and then commit().
 class AtomicFile {

@@ -4,12 +4,11 @@
 #include <vector>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/stage/pipeline.hpp"
 
 namespace crisp {
 
-/// What stands behind the name of a file that a run wrote in the name of the record of its origin.
-inline constexpr const char* kProvenance = ".provenance.json";
 /// The record of the whole run, in the output folder.
 inline constexpr const char* kSummary = "summary.json";
 

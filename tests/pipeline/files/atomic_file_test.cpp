@@ -57,6 +57,19 @@ TEST_F(AtomicFileTest, LeavesNothingBehindWhenItIsGivenUp) {
   EXPECT_EQ(entries(), 1);
 }
 
+TEST_F(AtomicFileTest, LeavesNoRecordOfTheFileThatItReplaces) {
+  const fs::path file = folder_ / "x.txt";
+  const fs::path record = folder_ / "x.txt.provenance.json";
+  write_file(file, "old");
+  write_file(record, "{}");
+  AtomicFile out(file);
+  out.write("new");
+  EXPECT_TRUE(fs::exists(record)) << "the old file is still there";
+  out.commit();
+  EXPECT_EQ(content(file), "new");
+  EXPECT_FALSE(fs::exists(record));
+}
+
 TEST_F(AtomicFileTest, CommitsWhatALibraryWroteAside) {
   AtomicFile out(folder_ / "x.txt");
   fs::remove(out.aside());
