@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/folder.hpp"
 #include "pipeline/pcd/measurement_tables.hpp"
 
@@ -55,10 +56,18 @@ std::optional<std::size_t> number_of(const fs::path& candidate, const fs::path& 
 }
 
 /// The header of a PCD file; nothing if it is not one that crisp wrote.
+/// @throws Error  if the file is there and cannot be read: it may be of an earlier run
 std::optional<PcdHeader> own_header(const fs::path& file) {
   constexpr std::size_t kLongestHeader = 4096;  // [bytes] that crisp writes
   std::string head(kLongestHeader, '\0');
-  std::ifstream(file, std::ios::binary).read(head.data(), kLongestHeader);
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(head.data(), kLongestHeader);
+  std::error_code not_there;
+  const bool is_read = stream.is_open() && !stream.bad();
+  if (!is_read && fs::is_regular_file(file, not_there)) {
+    throw Error("cannot read " + file.string() + ", which may be of an earlier run",
+                "remove it, or write to another name");
+  }
   try {
     PcdHeader header = parse_pcd_header(head, file.string());
     return header.notes.empty() ? std::nullopt : std::optional(std::move(header));
@@ -85,10 +94,16 @@ void remove_old(const fs::path& file) {
               "remove it, or write to another name");
 }
 
+/// The record goes first: without its file nothing would remove it later.
+void remove_with_record(const fs::path& file) {
+  remove_old(file.string() + kProvenance);
+  remove_old(file);
+}
+
 /// A file that crisp wrote, and the plate's that lies beside it.
 void remove_own(const fs::path& file) {
-  if (own_header(plate_path(file))) remove_old(plate_path(file));
-  remove_old(file);
+  if (own_header(plate_path(file))) remove_with_record(plate_path(file));
+  remove_with_record(file);
 }
 
 }  // namespace

@@ -3,18 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <system_error>
-
-#include "pipeline/stage/files_written.hpp"
-
 namespace crisp {
 
 void tell_removed(const std::vector<std::filesystem::path>& files, Context& context) {
   if (files.empty()) return;
-  for (const auto& file : files) {
-    std::error_code not_there;
-    std::filesystem::remove(file.string() + kProvenance, not_there);
-  }
   context.say(fmt::format("removed {} of an earlier run: {}{}", files.size() == 1 ? "a file" : "files",
                           files.front().string(),
                           files.size() == 1 ? "" : " to " + files.back().filename().string()));

@@ -46,7 +46,7 @@ void describe_parts(StageDescription<S>& d, PartsOptions S::*options,
       .range(1e-3, 1e9);
 }
 
-/// Tells the run of files of an earlier one that were removed, and removes what said where those came from.
+/// Tells the run of files of an earlier one that were removed.
 void tell_removed(const std::vector<std::filesystem::path>& files, Context& context);
 
 /// Puts the files in their place, removes those of an earlier run under the same name, and tells the run of

@@ -60,6 +60,7 @@ void WritePictureStage::finish(Outputs&, Context& context) {
   if (!painter_) throw Error("no cloud came, so there is nothing to draw");
   if (drawn_ == 0) {
     std::error_code failure;
+    std::filesystem::remove(file_.string() + kProvenance, failure);
     if (std::filesystem::remove(file_, failure)) tell_removed({file_}, context);
     return context.warn(file_.string() + " is not written: no point lies in what it shows");
   }

@@ -74,6 +74,8 @@ TEST_F(Parts, OfAnEarlierRunAreRemovedWhenThisOnesAreComplete) {
   EXPECT_THAT(write(4), testing::IsEmpty());
   write_file(folder_ / "c_0009.pcd", "of another program");
   write_file(folder_ / "c_00004.pcd", "not a part's name");
+  for (const std::string name : {"c_0003.pcd", "c_0003.plate.pcd"})
+    write_file(folder_ / (name + kProvenance), "{}");
   EXPECT_THAT(write(2), testing::ElementsAre(folder_ / "c_0003.pcd", folder_ / "c_0004.pcd"));
   EXPECT_THAT(names(), testing::ElementsAre("c_00004.pcd", "c_0001.pcd", "c_0001.plate.pcd", "c_0002.pcd",
                                             "c_0002.plate.pcd", "c_0009.pcd"));
