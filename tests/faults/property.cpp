@@ -149,7 +149,9 @@ class Judge {
   }
 
   void check_kept(const std::string& name, const std::string& bytes, const Files& files) {
-    if (is_record(name) || !stage_.undisturbed().contains(name)) return;
+    const bool is_numbered =
+        name.find("_0") != std::string::npos;  // removed where they are beyond this run's
+    if (is_record(name) || is_numbered || !stage_.undisturbed().contains(name)) return;
     if (!files.contains(name)) violate(name + " of the earlier run is gone");
     if (name == stage_.scenario().grows && files.contains(name) && !files.at(name).starts_with(bytes))
       violate(name + " was shortened");
