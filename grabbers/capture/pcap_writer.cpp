@@ -126,6 +126,7 @@ PcapWriter::PcapWriter(std::filesystem::path path, PcapMode mode) : file_(std::m
   } else {
     f.path = std::move(path);
     f.lock.emplace(f.path);
+    remove_record_of(f.path);
   }
   const bool continued =
       !f.replaced && std::filesystem::exists(f.path) && std::filesystem::file_size(f.path) > 0;

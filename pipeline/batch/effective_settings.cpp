@@ -69,7 +69,7 @@ void add_changes(const std::string& at, const Json& before, const Json& now,
     return;
   }
   for (const auto& [key, value] : before.items()) {
-    const std::string below = at.empty() ? key : at + "." + key;
+    const std::string below = at.empty() ? key : fmt::format("{}.{}", at, key);
     if (now.contains(key))
       add_changes(below, value, now[key], changes);
     else

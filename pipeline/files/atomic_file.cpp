@@ -93,12 +93,16 @@ void AtomicFile::commit() {
   const int code = errno;
   close(descriptor);
   if (synced != 0) fail(file_, code);
-  std::error_code not_there;
-  fs::remove(file_.string() + kProvenance, not_there);
+  remove_record_of(file_);
   if (std::rename(aside_.c_str(), file_.c_str()) != 0) fail(file_, errno);
   at_signal_.reset();
   stream_.reset();
   sync_folder(file_.parent_path());
+}
+
+void remove_record_of(const fs::path& file) {
+  std::error_code not_there;
+  fs::remove(file.string() + kProvenance, not_there);
 }
 
 void remove_left_over_parts(const fs::path& folder) {

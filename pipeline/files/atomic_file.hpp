@@ -14,6 +14,9 @@ namespace crisp {
 /// What stands behind the name of a file that a run wrote in the name of the record of its origin.
 inline constexpr const char* kProvenance = ".provenance.json";
 
+/// Removes that record, before its file changes: afterwards it would be another file's.
+void remove_record_of(const std::filesystem::path& file);
+
 /// A file that is there whole or not at all: it is written aside, in the same folder, and takes its name when
 /// it is complete and on the disk. Left without commit() (an exception, an interruption), nothing remains of
 /// it, and a file of that name from before stays as it was. A symbolic link of that name is replaced, and the
