@@ -113,13 +113,13 @@ void JobLauncher::send(const std::string& message) const {
               "run the batch again: it goes on where it stopped");
 }
 
-void JobLauncher::start(const Job& job) { send(to_message(job)); }
+void JobLauncher::start(const Job& job) const { send(to_message(job)); }
 
-void JobLauncher::signal(std::uint64_t id, int signal) {
+void JobLauncher::signal(std::uint64_t id, int signal) const {
   send(join_fields({"signal", std::to_string(id), std::to_string(signal)}));
 }
 
-std::optional<JobEnd> JobLauncher::wait(std::chrono::milliseconds limit) {
+std::optional<JobEnd> JobLauncher::wait(std::chrono::milliseconds limit) const {
   pollfd polled{.fd = socket_, .events = POLLIN, .revents = 0};
   if (poll(&polled, 1, static_cast<int>(limit.count())) <= 0) return std::nullopt;
   if (const auto message = receive(socket_, MSG_DONTWAIT)) return job_end_of(split_fields(*message));

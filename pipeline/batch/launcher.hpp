@@ -51,12 +51,12 @@ class JobLauncher {
   JobLauncher& operator=(const JobLauncher&) = delete;
 
   /// @throws Error if the launcher's process is gone
-  void start(const Job& job);
+  void start(const Job& job) const;
   /// Sends a signal to a job's processes; nothing happens if it has ended.
-  void signal(std::uint64_t id, int signal);
+  void signal(std::uint64_t id, int signal) const;
   /// The next job that ends within this time; nothing if none does, or a signal interrupts the waiting.
   /// @throws Error if the launcher's process is gone
-  std::optional<JobEnd> wait(std::chrono::milliseconds limit);
+  std::optional<JobEnd> wait(std::chrono::milliseconds limit) const;
 
  private:
   void send(const std::string& message) const;

@@ -98,11 +98,11 @@ class Batch {
     if (node.empty()) return;
     const Running& running = node.mapped();
     const DueRecording& recording = *running.recording;
-    outcome_.cpu_seconds += end.cpu_seconds;
     largest_ = std::max(largest_, end.memory);
     const JobCircumstances circumstances{.timeout = running.timed_out ? limits_.timeout : std::nullopt,
                                          .stopping = is_stopping()};
-    auto verdict = judge_job(end, circumstances, recording, running.files, output_ / recording.input.name);
+    const auto verdict =
+        judge_job(end, circumstances, recording, running.files, output_ / recording.input.name);
     if (!verdict.full_disk.empty() && outcome_.full_disk.empty()) outcome_.full_disk = verdict.full_disk;
     keep(recording, verdict);
   }

@@ -51,8 +51,7 @@ struct BatchHooks {
 /// How a batch ended.
 struct BatchOutcome {
   BatchProgress progress;
-  std::string full_disk;   ///< the message that the disk is full, which ended the batch; empty: it is not
-  double cpu_seconds = 0;  ///< of the jobs
+  std::string full_disk;  ///< the message that the disk is full, which ended the batch; empty: it is not
 };
 
 /// Processes the recordings, several at once, and writes an event for each beginning and end.
