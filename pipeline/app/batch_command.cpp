@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <array>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <iostream>
 #include <thread>
 
 #include "pipeline/app/batch_commands.hpp"
+#include "pipeline/app/batch_preparation.hpp"
 #include "pipeline/app/batch_progress.hpp"
 #include "pipeline/app/batch_report.hpp"
 #include "pipeline/app/signals.hpp"
-#include "pipeline/batch/effective_settings.hpp"
-#include "pipeline/batch/last_batch.hpp"
 #include "pipeline/batch/output_name.hpp"
-#include "pipeline/batch/plan.hpp"
-#include "pipeline/batch/shard.hpp"
 #include "pipeline/data/counted.hpp"
 #include "pipeline/files/folder_lock.hpp"
-#include "pipeline/files/quantity.hpp"
-#include "pipeline/stage/inspector.hpp"
 
 namespace crisp {
 namespace {
@@ -30,112 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-RunRequest run_of(const BatchRequest& request, const Job& job) {
-  RunRequest run = request.run;
-  run.arguments.input = job.input;
-  run.arguments.output = job.output;
-  run.arguments.name = job.name;
-  if (!job.rig.empty())
-    run.arguments.rig = job.rig;
-  else if (!request.rig.empty())
-    run.arguments.rig = request.rig;
-  run.quiet = true;
-  run.verbose = false;
-  run.metrics.reset();
-  return run;
-}
-
 /// A job of a batch that was killed a moment ago may still be about to end.
 void wait_for_the_dying(const fs::path& output) {
   constexpr std::chrono::milliseconds kAskEvery{20};
   constexpr int kTurns = 100;
   for (int i = 0; i < kTurns && FolderLock::holder_of(output); ++i) std::this_thread::sleep_for(kAskEvery);
-}
-
-std::optional<double> timeout_of(const BatchRequest& request) {
-  if (request.timeout.empty()) return std::nullopt;
-  const auto read = parse_quantity(request.timeout, "s");
-  if (const auto* wrong = std::get_if<Complaint>(&read)) throw Error("--timeout: " + wrong->text);
-  const double seconds = std::get<double>(read);
-  if (seconds > 0) return seconds;
-  throw Error("--timeout: " + request.timeout + " is not above 0 s", "leave it away for no limit");
-}
-
-Shard shard_of(const BatchRequest& request) {
-  if (!request.shard.empty()) return parse_shard(request.shard);
-  const auto variable = [](const char* name) -> const char* { return std::getenv(name); };
-  return shard_of_slurm(variable).value_or(Shard{});
-}
-
-/// The extensions of files that are recordings, and not results of one.
-std::vector<std::string> recording_extensions(const Registrar& registrar) {
-  std::vector<std::string> extensions = {".csv"};
-  for (const auto& inspector : registrar.inspectors())
-    extensions.insert(extensions.end(), inspector.extensions.begin(), inspector.extensions.end());
-  return extensions;
-}
-
-std::vector<BatchInput> recordings_of(const BatchRequest& request, const Registrar& registrar) {
-  auto recordings = find_recordings({.given = request.inputs,
-                                     .unit = request.each == "folder" ? BatchUnit::folder : BatchUnit::file,
-                                     .base = request.base,
-                                     .output = request.output,
-                                     .extensions = recording_extensions(registrar)});
-  if (recordings.empty())
-    throw Error("there is no recording in what -i names", "captures end in .pcap or .pcapng, clouds in .pcd");
-  return recordings;
-}
-
-LoadedPipeline load_for(const BatchRequest& request, const Job& job, const Registrar& registrar) {
-  RunSettings run;
-  run.registrar = &registrar;
-  return load_pipeline(request.run.file, run_of(request, job).arguments, run);
-}
-
-/// The rig of the first recording that has one: what a pipeline is checked with before anything runs.
-fs::path any_rig(const BatchRequest& request, const std::vector<BatchInput>& recordings) {
-  if (!has_rig_each(request)) return {};
-  std::error_code none;
-  for (const auto& recording : recordings) {
-    fs::path rig = rig_path(request.rig, recording);
-    if (fs::exists(rig, none)) return rig;
-  }
-  throw Error("no recording has a rig at " + request.rig, "check the pattern of --rig");
-}
-
-/// Checks the pipeline, and finds all that the results depend on.
-Json settings_of(const BatchRequest& request, const std::vector<BatchInput>& recordings,
-                 const Registrar& registrar) {
-  const fs::path rig = any_rig(request, recordings);
-  auto one = load_for(request, {.name = "${name}", .input = "/${input}", .output = "/${output}", .rig = rig},
-                      registrar);
-  print_warnings(one.pipeline);
-  check_depends_on_recording(
-      one,
-      load_for(request, {.name = "name", .input = "/input", .output = "/output", .rig = rig}, registrar));
-  if (!has_rig_each(request)) return effective_settings(one, request.run.seed);
-  one.rig_file.clear();  // each recording's is part of its input
-  Json settings = effective_settings(one, request.run.seed);
-  settings["rig"] = request.rig;
-  return settings;
-}
-
-void print_plan(const fs::path& output, const BatchPlan& plan, const Json& settings, std::ostream& out) {
-  for (const auto& [reason, count] : plan.reasons) {
-    if (reason == DueReason::fresh) continue;
-    out << fmt::format("due again, as {}: {} ({}{})\n", in_words(reason), counted(count, "recording"),
-                       plan.examples.at(reason), count > 1 ? ", …" : "");
-    if (reason != DueReason::settings) continue;
-    const Json before = last_batch(output);
-    if (before.contains("effective"))
-      out << fmt::format("  {}\n", fmt::join(changes_of_settings(before["effective"], settings), "\n  "));
-  }
-  std::size_t kept = 0;
-  for (const auto& [status, count] : plan.kept) kept += count;
-  if (kept > 0) out << fmt::format("{} done before and unchanged\n", counted(kept, "recording"));
-  const auto failed = plan.kept.find(JobStatus::failed);
-  if (failed != plan.kept.end())
-    out << fmt::format("  {} of them failed; crisp batch retry tries them again\n", failed->second);
 }
 
 std::string host_name() {
@@ -146,33 +38,6 @@ std::string host_name() {
 
 std::string task_of(const Shard& shard) {
   return shard.is_whole() ? "batch" : fmt::format("shard-{}-of-{}", shard.number, shard.count);
-}
-
-/// What a batch needs once everything about it is known to be right.
-struct PreparedBatch {
-  Shard shard;
-  std::optional<double> timeout;
-  std::size_t total = 0;               ///< how many recordings there are in all shards
-  std::vector<BatchInput> recordings;  ///< of this shard, until they are planned
-  Json settings;
-  std::string digest;
-  BatchPlan plan;
-
-  /// Whether there is nothing to do and nothing to write.
-  bool is_over(const fs::path& output) const {
-    return plan.due.empty() && plan.touched.empty() && (!shard.is_whole() || are_tables_current(output));
-  }
-};
-
-/// All that can be found wrong before the output folder is touched.
-PreparedBatch check(const BatchRequest& request, const Shard& shard, const Registrar& registrar) {
-  PreparedBatch batch{.shard = shard, .timeout = timeout_of(request)};
-  batch.recordings = recordings_of(request, registrar);
-  batch.total = batch.recordings.size();
-  batch.settings = settings_of(request, batch.recordings, registrar);
-  batch.digest = digest_of_settings(batch.settings);
-  std::erase_if(batch.recordings, [&](const BatchInput& recording) { return !shard.has(recording.name); });
-  return batch;
 }
 
 /// A task that was requeued may come before the lease of the one that died on another machine is over.
@@ -188,21 +53,6 @@ void lock_task(const fs::path& task, const Shard& shard, std::optional<FolderLoc
       std::this_thread::sleep_for(kTryEvery);
     }
   }
-}
-
-/// To be called while no other process has the lock of the task.
-void plan(const BatchRequest& request, PreparedBatch& batch) {
-  const auto has = [&](std::string_view name) { return batch.shard.has(name); };
-  const auto ledger = BatchLedger::read(request.output, has);
-  const auto rig_of = [&](const BatchInput& input) {
-    return has_rig_each(request) ? rig_path(request.rig, input) : fs::path();
-  };
-  batch.plan = plan_batch(std::move(batch.recordings), ledger, batch.digest, rig_of);
-  if (request.run.quiet) return;
-  print_plan(request.output, batch.plan, batch.settings, std::cerr);
-  if (ledger.damaged_lines() > 0)
-    std::cerr << fmt::format("warning: {} of the manifests are damaged and were passed over\n",
-                             counted(ledger.damaged_lines(), "line"));
 }
 
 void begin(const BatchRequest& request, const PreparedBatch& batch, ManifestWriter& manifest) {
@@ -298,9 +148,9 @@ ExitStatus batch_command(const BatchRequest& request, const Registrar& registrar
   try {
     const Shard shard = shard_of(request);
     const fs::path task = task_folder(request.output, task_of(shard));
-    batch = check(request, shard, registrar);
+    batch = check_batch(request, shard, registrar);
     lock_task(task, shard, lock);
-    plan(request, *batch);
+    plan_due(request, *batch);
     if (batch->is_over(request.output)) return report_nothing_due(request, *batch);
     manifest.emplace(task / kManifestFile);
     begin(request, *batch, *manifest);

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/app/batch_request.hpp"
+#include "pipeline/app/commands.hpp"
+#include "pipeline/batch/plan.hpp"
+#include "pipeline/batch/shard.hpp"
+
+namespace crisp {
+
+/// What a batch needs once everything about it is known to be right.
+struct PreparedBatch {
+  Shard shard;
+  std::optional<double> timeout;
+  std::size_t total = 0;               ///< how many recordings there are in all shards
+  std::vector<BatchInput> recordings;  ///< of this shard, until they are planned
+  nlohmann::ordered_json settings;
+  std::string digest;
+  BatchPlan plan;
+
+  /// Whether there is nothing to do and nothing to write.
+  bool is_over(const std::filesystem::path& output) const;
+};
+
+/// How a recording is run by itself.
+RunRequest run_of(const BatchRequest& request, const Job& job);
+
+/// The shard that was asked for, or that of Slurm's array, or all.
+/// @throws Error
+Shard shard_of(const BatchRequest& request);
+
+/// All that can be found wrong before the output folder is touched.
+/// @throws Error or Errors
+PreparedBatch check_batch(const BatchRequest& request, const Shard& shard, const Registrar& registrar);
+
+/// Finds what is due, and prints why. To be called while no other process has the lock of the task.
+void plan_due(const BatchRequest& request, PreparedBatch& batch);
+
+}  // namespace crisp
