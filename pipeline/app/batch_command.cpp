@@ -114,7 +114,7 @@ ExitStatus run_prepared(const BatchRequest& request, const PreparedBatch& batch,
   }
   if (!outcome.full_disk.empty()) {
     print_errors(Error("the disk is full, so the batch stopped: " + outcome.full_disk,
-                       "make room and run the batch again: it goes on where it stopped"));
+                       "run the batch again then: it goes on where it stopped"));
     return ExitStatus::failed;
   }
   if (*StopOnSignal::flag()) {

@@ -74,9 +74,14 @@ void judge(const JobEnd& end, const JobCircumstances& circumstances, const Json&
   }
 }
 
-void judge_disk(JobVerdict& verdict) {
-  if (verdict.status != JobStatus::failed || !speaks_of_full_disk(verdict.failure)) return;
-  verdict.full_disk = verdict.failure;
+/// A run may fail on a full disk, or come to its end without what did not fit, and say so.
+void judge_disk(const Json& results, JobVerdict& verdict) {
+  std::vector<std::string> messages = {verdict.failure};
+  for (const auto& reason : results.value("reasons", Json::array())) messages.push_back(reason);
+  const auto full = std::ranges::find_if(messages, speaks_of_full_disk);
+  if (verdict.status == JobStatus::done || full == messages.end()) return;
+  verdict.full_disk = *full;
+  verdict.failure = *full;
   verdict.status = JobStatus::interrupted;
 }
 
@@ -119,7 +124,7 @@ JobVerdict judge_job(const JobEnd& end, const JobCircumstances& circumstances, c
   JobVerdict verdict;
   JobResults results = read_results(output);
   judge(end, circumstances, results.json, verdict);
-  judge_disk(verdict);
+  judge_disk(results.json, verdict);
   if (verdict.status != JobStatus::interrupted) judge_input(recording, files, verdict);
   if (!verdict.failure.empty()) results.json["error"] = verdict.failure;
   verdict.event = {{"input", input_json(recording, files, results.sha256)},

@@ -64,6 +64,14 @@ TEST_F(VerdictTest, TakesAFullDiskForNoFaultOfTheRecording) {
   EXPECT_THAT(full.full_disk, HasSubstr("No space left"));
 }
 
+TEST_F(VerdictTest, FindsAFullDiskAmongTheReasonsOfARunThatCameToItsEnd) {
+  write_file(folder_ / "out/summary.json", R"({"inputs":[],"stages":[{"tag":"a","stage":"write.clouds",
+    "outputs":[],"doubts":["no more clouds were written: No space left on device"],"report":{}}]})");
+  const auto full = judge({.exit_status = 3});
+  EXPECT_EQ(full.status, JobStatus::interrupted);
+  EXPECT_THAT(full.full_disk, HasSubstr("No space left"));
+}
+
 TEST_F(VerdictTest, LeavesARecordingWhoseFolderIsInUseForLater) {
   const FolderLock lock(folder_ / "out");
   std::string refusal;
