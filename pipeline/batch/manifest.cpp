@@ -18,6 +18,7 @@
 #include "pipeline/batch/manifest_line.hpp"
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/json_text.hpp"
 
 namespace crisp {
@@ -27,7 +28,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 [[noreturn]] void fail(const fs::path& file, int code) {
-  const char* advice = code == ENOSPC || code == EDQUOT || code == EFBIG
+  const char* advice = is_for_want_of_room(code)
                            ? "make room on the disk and run the batch again: it goes on where it stopped"
                            : "check the folder's rights";
   throw Error("cannot write " + file.string() + ": " + std::strerror(code), advice);

@@ -10,11 +10,7 @@ namespace crisp {
 PlateTrajectory reversed(const PlateTrajectory& plate) {
   std::vector<double> angles(plate.size());
   std::ranges::transform(plate.angles(), angles.begin(), std::negate<>());
-  return {plate.epoch_ns(),
-          {plate.times().begin(), plate.times().end()},
-          std::move(angles),
-          plate.max_gap(),
-          {plate.new_zeros().begin(), plate.new_zeros().end()}};
+  return plate.with_angles(std::move(angles));
 }
 
 std::shared_ptr<const PlateTrajectory> OrientedPlate::operator()(std::shared_ptr<const PlateTrajectory> plate,

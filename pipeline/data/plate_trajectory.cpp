@@ -61,6 +61,10 @@ PlateState PlateArc::at(double t) const {
           .acceleration = (2 * c[2] + u * 6 * c[3]) / (width * width)};
 }
 
+PlateTrajectory PlateTrajectory::with_angles(std::vector<double> angles) const {
+  return {epoch_ns_, times_, std::move(angles), max_gap_, new_zeros_};
+}
+
 std::optional<PlateArc> PlateTrajectory::arc(double t) const {
   const auto found = interval(t);
   if (!found) return std::nullopt;

@@ -54,6 +54,9 @@ class PlateTrajectory {
   /// The reading with which the arc of t begins, or nothing where the readings do not cover t.
   std::optional<std::size_t> interval(double t) const;
 
+  /// The same with other angles [rad], one a reading.
+  PlateTrajectory with_angles(std::vector<double> angles) const;
+
   std::int64_t epoch_ns() const { return epoch_ns_; }
   bool empty() const { return times_.empty(); }
   std::size_t size() const { return times_.size(); }

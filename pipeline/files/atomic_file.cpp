@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr const char* kPart = ".part";
 
 [[noreturn]] void fail(const fs::path& file, int code) {
-  const char* advice = code == ENOSPC || code == EDQUOT || code == EFBIG ? "make room on the disk" : "";
+  const char* advice = is_for_want_of_room(code) ? "make room on the disk" : "";
   throw Error("cannot write " + file.string() + ": " + std::strerror(code), advice);
 }
 
@@ -99,6 +99,8 @@ void AtomicFile::commit() {
   stream_.reset();
   sync_folder(file_.parent_path());
 }
+
+bool is_for_want_of_room(int code) { return code == ENOSPC || code == EDQUOT || code == EFBIG; }
 
 void remove_record_of(const fs::path& file) {
   std::error_code not_there;

@@ -17,11 +17,14 @@ inline constexpr const char* kProvenance = ".provenance.json";
 /// Removes that record, before its file changes: afterwards it would be another file's.
 void remove_record_of(const std::filesystem::path& file);
 
+/// Whether an error number of the system means that a disk, a quota or a file has no more room.
+bool is_for_want_of_room(int code);
+
 /// A file that is there whole or not at all: it is written aside, in the same folder, and takes its name when
 /// it is complete and on the disk. Left without commit() (an exception, an interruption), nothing remains of
 /// it, and a file of that name from before stays as it was. A symbolic link of that name is replaced, and the
 /// file that it leads to stays as it is. The record of the origin of the file that is replaced is removed
-/// just before: it never stands beside the new file, though the program be killed.
+/// just before: it never stands next to the new file, though the program be killed.
 ///
 /// Write through write(), or let a library write to aside() and then commit().
 class AtomicFile {

@@ -23,7 +23,7 @@ class ByteStream {
 
   /// Reads at least one byte and at most `most`. Returns how many; 0 at the end.
   /// @throws Error        if the disk fails
-  /// @throws Interrupted  when told to give up
+  /// @throws Interrupted  when `interrupted` returns true
   std::size_t read(void* to, std::size_t most);
 
   /// Goes on at a place [bytes] of a file that is no pipe. @throws Error if the disk fails

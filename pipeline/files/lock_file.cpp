@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/utc_now.hpp"
 
@@ -33,7 +34,7 @@ std::string command_of_this_process() {
 
 [[noreturn]] void fail_to_lock(const fs::path& folder, int code) {
   throw Error("cannot write into the folder " + folder.string() + ": " + std::strerror(code),
-              code == ENOSPC || code == EDQUOT || code == EFBIG ? "make room on the disk" : "");
+              is_for_want_of_room(code) ? "make room on the disk" : "");
 }
 
 std::string read_all(const fs::path& file) try {

@@ -68,9 +68,7 @@ class ChangedSample {
     const PlateTrajectory& plate = *sample.plate;
     std::vector<double> angles;
     for (const double angle : plate.angles()) angles.push_back(hypothesis.direction * angle);
-    plate_ =
-        PlateTrajectory(plate.epoch_ns(), {plate.times().begin(), plate.times().end()}, std::move(angles),
-                        plate.max_gap(), {plate.new_zeros().begin(), plate.new_zeros().end()});
+    plate_ = plate.with_angles(std::move(angles));
     sample_.plate = &plate_;
   }
   ChangedSample(const ChangedSample&) = delete;

@@ -162,10 +162,10 @@ class SlipSearch {
     while (found_.size() < kMostSlips) {
       const auto candidates = best_candidates(shifts_, model_, supported_, found_);
       if (candidates.empty()) break;
-      add({.at = candidates.front().time});
-      const EncoderSlip rough = found_.back();
-      remove(found_.size() - 1);
-      const EncoderSlip slip = located(candidates, rough.by, plate, angle_step_);
+      AngleShiftModel trial = model_;
+      trial.add(candidates.front().time);
+      const double size = trial.size(trial.steps() - 1);
+      const EncoderSlip slip = located(candidates, size, plate, angle_step_);
       if (is_near(found_, slip.at)) break;
       add(slip);
       if (is_significant(found_.back())) continue;
@@ -298,11 +298,7 @@ PlateTrajectory without_slips(const PlateTrajectory& plate, std::span<const Enco
       if (plate.times()[i] > slip.at) angles[i] -= slip.by;
     }
   }
-  return {plate.epoch_ns(),
-          {plate.times().begin(), plate.times().end()},
-          std::move(angles),
-          plate.max_gap(),
-          {plate.new_zeros().begin(), plate.new_zeros().end()}};
+  return plate.with_angles(std::move(angles));
 }
 
 }  // namespace crisp

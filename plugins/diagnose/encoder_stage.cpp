@@ -82,9 +82,14 @@ void DiagnoseEncoderStage::finish(Outputs& out, Context& context) {
   context.report({{"slips", found.slips.size()}, {"compared_passes", found.shifts}});
   findings_.append(own);
   out.give(std::move(findings_));
+  const bool corrects = correct_ && !found.slips.empty();
   const PlateTrajectory* last = nullptr;
   for (const auto& [plate, beams] : batches_) {
-    if (plate.get() != last) out.give(correct_ ? without_slips(*plate, found.slips) : *plate);
+    if (plate.get() != last && corrects) {
+      out.give(without_slips(*plate, found.slips));
+    } else if (plate.get() != last) {
+      out.give(plate);
+    }
     last = plate.get();
     out.give(beams);
   }

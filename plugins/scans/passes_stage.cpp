@@ -143,7 +143,7 @@ PlateTrajectory mended(const PlateTrajectory& plate, double shift) {
     // … but a reading that stands alone came from the one before
     moved[i] = angles[i] - (angles[i] > angles[i - 1] ? 1 : -1) * shift / 2;
   }
-  return {plate.epoch_ns(), {plate.times().begin(), plate.times().end()}, std::move(moved), plate.max_gap()};
+  return plate.with_angles(std::move(moved));
 }
 
 /// The shift, with two standard errors either way.
