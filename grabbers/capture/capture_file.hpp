@@ -36,7 +36,7 @@ class CaptureFile {
               std::function<bool()> interrupted = {});
   static constexpr std::uint64_t kToTheEnd = std::numeric_limits<std::uint64_t>::max();
 
-  /// From now on no stamp is taken for damaged: those of several clocks are told apart elsewhere.
+  /// From now on no stamp counts as damaged: survey_capture() separates those of several clocks.
   void keep_all_stamps() { keeps_all_ = true; }
 
   /// The next packet, valid until the next call; nullptr at the end of the file.

@@ -70,7 +70,7 @@ struct Offset {
   std::int64_t value() const { return least / 2 + most / 2; }
 };
 
-/// What the packets of a capture tell of why their times go back.
+/// Evidence from the packets of a capture for why their times go back.
 class SenderSurvey {
  public:
   /// @param file is read from its begin to its end

@@ -36,10 +36,10 @@ struct CaptureOrder {
 
 /// Reads the times of all packets; where they go back, the packets themselves, too.
 ///
-/// Where the times go back, TCP tells two cases apart: connections that go on there, byte for byte, mean that
-/// the hub's clock was set back (or its 32 bits of seconds wrapped), and time goes on; otherwise the file's
-/// parts are in another order than that of their times. Where each sender's times ascend but for a constant
-/// offset, interfaces have clocks of their own, such as TAI beside UTC.
+/// Where the times go back, TCP distinguishes two cases: connections that go on there, byte for byte, mean
+/// that the hub's clock was set back (or its 32 bits of seconds wrapped), and time goes on; otherwise the
+/// file's parts are in another order than that of their times. Where each sender's times ascend but for a
+/// constant offset, interfaces have clocks of their own, such as TAI and UTC.
 ///
 /// @param interrupted  as ByteStream's
 /// @throws Error if the file cannot be read or is no capture

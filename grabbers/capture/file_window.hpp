@@ -23,7 +23,7 @@ class FileWindow {
   /// The next n bytes without moving on; fewer at the end of the file. Valid until the next peek().
   /// @param n at most kLargestPeek
   /// @throws Error if the disk fails
-  /// @throws Interrupted  when told to give up
+  /// @throws Interrupted  when `interrupted` returns true
   ByteView peek(std::size_t n);
 
   /// Moves on by n bytes, or to the end. What peek() gave stays valid if n does not lead beyond it.

@@ -27,7 +27,7 @@ class FrameSorter {
   std::multimap<std::int64_t, Bytes> held_;
 };
 
-/// Who made a frame, as its hardware addresses tell.
+/// The maker of a frame, identified by its hardware addresses.
 enum class FrameOrigin : std::uint8_t {
   Recorded,   ///< crisp, of what a device sent
   Simulated,  ///< crisp, of what a simulated device sent

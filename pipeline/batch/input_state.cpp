@@ -39,11 +39,6 @@ InputFile state_of(const fs::path& path) {
           .mtime = now.st_mtim.tv_sec * kNanoseconds + now.st_mtim.tv_nsec};
 }
 
-template <class Equal>
-bool all_equal(const std::vector<InputFile>& before, const std::vector<InputFile>& now, Equal equal) {
-  return std::ranges::equal(before, now, equal);
-}
-
 }  // namespace
 
 std::vector<InputFile> input_files(const BatchInput& input, const fs::path& rig) {
@@ -54,14 +49,14 @@ std::vector<InputFile> input_files(const BatchInput& input, const fs::path& rig)
 }
 
 bool is_untouched(const std::vector<InputFile>& before, const std::vector<InputFile>& now) {
-  return all_equal(before, now, [](const InputFile& a, const InputFile& b) {
+  return std::ranges::equal(before, now, [](const InputFile& a, const InputFile& b) {
     return a.file == b.file && a.bytes == b.bytes && a.mtime == b.mtime;
   });
 }
 
 bool has_same_content(const std::vector<InputFile>& before, const std::vector<InputFile>& now,
                       const BatchInput& input, const fs::path& rig) {
-  const bool may_be = all_equal(before, now, [](const InputFile& a, const InputFile& b) {
+  const bool may_be = std::ranges::equal(before, now, [](const InputFile& a, const InputFile& b) {
     return a.file == b.file && a.bytes == b.bytes && (a.mtime == b.mtime || !a.sha256.empty());
   });
   if (!may_be) return false;

@@ -38,10 +38,10 @@ class HubDeviation {
 };
 
 /// The deviation that the clocks of several devices show alike: the least delays in short stretches of time
-/// move together, by more than 50 µs, and no device whose delays are even enough to tell does otherwise.
+/// move together, by more than 50 µs, and no device whose delays are even enough to show it does otherwise.
 ///
-/// Nothing where there is none, or where fewer than two devices tell: a deviation of one device is its own.
-/// What is common to all as a steady rate belongs to their skews.
+/// Nothing where there is none, or where fewer than two devices show it: a deviation of one device is its
+/// own. What is common to all as a steady rate belongs to their skews.
 ///
 /// @param devices the stamps of each, ascending in `hub` but for what its steps did
 std::optional<HubDeviation> find_hub_deviation(std::span<const std::vector<ReceivedStamp>> devices);

@@ -33,8 +33,9 @@ Vectors place_all(const SensorModel& model, const Measurements& beams, const Pla
     placed += run.x.size();
   });
   if (placed != beams.size()) {
-    throw Error("an eta moved some beams out of the time that the encoder readings cover",
-                "check the rig's eta, the clock stages, and whether the encoder was recorded from begin to end");
+    throw Error(
+        "an eta moved some beams out of the time that the encoder readings cover",
+        "check the rig's eta, the clock stages, and whether the encoder was recorded from begin to end");
   }
   return points;
 }

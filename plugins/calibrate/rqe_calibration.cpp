@@ -172,7 +172,7 @@ class RqeCalibration {
 
   /// Minimizes over the full field from the optimum in the plate's plane and from each other minimum that was
   /// about as deep there, and leaves the model at the best: lines in one plane can fit by chance where the
-  /// plate hardly changes its rate, all beams hardly ever.
+  /// plate hardly changes its rate; all beams together hardly ever do.
   Sample full_field_from_each_minimum() {
     const SensorModel in_plane_optimum = model_;
     std::erase_if(rivals_, [](const Rival& rival) { return rival.height > kClearlyDeeper; });
@@ -238,7 +238,8 @@ class RqeCalibration {
     const ShownUnit unit = shown_unit(name.ends_with(".eta") ? "s" : "rad");
     const double here = model_.values()[static_cast<Eigen::Index>(rival.parameter)];
     return fmt::format(
-        "{} has another minimum at {:.4g} {} beside {:.4g} {}, where the cloud{} is as crisp to {:.3f} nat: "
+        "{} has another minimum at {:.4g} {}, next to {:.4g} {}, where the cloud{} is as crisp to {:.3f} "
+        "nat: "
         "change the plate's rate more, record longer, or give {} with its sd in the rig",
         name, rival.at * unit.factor, unit.name, here * unit.factor, unit.name,
         settings_.full_field ? "" : " of the beams in the plate's plane", rival.height, name);

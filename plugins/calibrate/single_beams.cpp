@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 
+#include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 
 namespace crisp {
@@ -49,12 +49,12 @@ void refuse_single_beams(const Measurements& beams, const Calibration& lasers,
     if (own.beams == 0 || own.most - own.least > kSame || is_fixed(lasers.lasers[k].name + ".alpha"))
       continue;
     found.push_back(fmt::format("{} ({} beams at {:.3f} deg)", lasers.lasers[k].name, own.beams,
-                                180 / std::numbers::pi * static_cast<double>(own.least)));
+                                static_cast<double>(own.least) / kDegree));
   }
   if (found.empty()) return;
   throw Error(
       fmt::format("all beams have one and the same mirror angle, of {}: its alpha, lambda and tau cannot be "
-                  "told apart",
+                  "estimated separately",
                   fmt::join(found, ", ")),
       "record whole scans (the laser's output range), or leave them as they are: fixed: [alpha, tau]");
 }
