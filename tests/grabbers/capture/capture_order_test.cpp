@@ -101,7 +101,8 @@ TEST(CaptureOrder, ReadsPartsOfAPcapngFileWithItsSections) {
 
 TEST(CaptureOrder, MergesTwoInterfacesWhoseCapturesLieOneBehindTheOther) {
   auto all = frames();
-  std::ranges::stable_partition(all, [](const Frame& frame) { return frame.bytes[23] == 6; });  // TCP first
+  std::stable_partition(all.begin(), all.end(),
+                        [](const Frame& frame) { return frame.bytes[23] == 6; });  // TCP first
   const auto reading = read_capture(pcap_file(all));
   EXPECT_EQ(reading.items, items());
 }
