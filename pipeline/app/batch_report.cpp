@@ -36,21 +36,25 @@ void BatchTally::add(const std::map<JobStatus, std::size_t>& kept) {
 }
 
 ExitStatus BatchTally::exit_status() const {
-  if (failed > 0 || open > 0) return ExitStatus::failed;
+  if (failed > 0 || open > 0 || not_begun > 0) return ExitStatus::failed;
   return untrusted > 0 ? ExitStatus::not_trusted : ExitStatus::done;
 }
 
 BatchTally tally_of(const BatchRows& rows) {
+  const std::size_t begun = rows.rows.size();
   return {.done = rows.count("done"),
           .untrusted = rows.count("untrusted"),
           .failed = rows.count("failed") + rows.count("interrupted"),
-          .open = rows.count("due") + rows.count("running")};
+          .open = rows.count("due") + rows.count("running"),
+          .not_begun = rows.recordings > begun ? rows.recordings - begun : 0};
 }
 
 std::string in_words(const BatchTally& tally) {
   std::string text =
       fmt::format("{} done, {} untrusted, {} failed", tally.done, tally.untrusted, tally.failed);
-  return tally.open > 0 ? fmt::format("{}, {} running or due", text, tally.open) : text;
+  if (tally.open > 0) text += fmt::format(", {} running or due", tally.open);
+  if (tally.not_begun > 0) text += fmt::format(", {} not begun", tally.not_begun);
+  return text;
 }
 
 std::string trouble_text(const BatchRows& rows) {

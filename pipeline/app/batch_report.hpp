@@ -16,8 +16,9 @@ namespace crisp {
 struct BatchTally {
   std::size_t done = 0;
   std::size_t untrusted = 0;
-  std::size_t failed = 0;  ///< or were killed
-  std::size_t open = 0;    ///< are due or run
+  std::size_t failed = 0;     ///< or were killed
+  std::size_t open = 0;       ///< are due or run
+  std::size_t not_begun = 0;  ///< no task has spoken of them
 
   void add(const std::map<JobStatus, std::size_t>& kept);
   /// 1: some failed or did not run; 3: some cannot be trusted; 0 otherwise.

@@ -34,6 +34,25 @@ void set_arguments(const nlohmann::ordered_json& arguments, BatchRequest& reques
   request.run.seed = arguments.at("seed");
 }
 
+std::vector<std::string> batch_words(const BatchRequest& request) {
+  const BatchRequest defaults;
+  std::vector<std::string> words = {request.run.file.string()};
+  const auto add = [&](const char* option, const std::string& value) {
+    words.insert(words.end(), {option, value});
+  };
+  for (const auto& input : request.inputs) add("-i", input);
+  add("-o", request.output.string());
+  if (request.each != defaults.each) add("--each", request.each);
+  if (!request.base.empty()) add("--base", request.base.string());
+  if (!request.rig.empty()) add("--rig", request.rig);
+  for (const auto& set : request.run.arguments.set) add("--set", set);
+  if (!request.timeout.empty()) add("--timeout", request.timeout);
+  if (request.memory > 0) add("--memory", std::to_string(request.memory));
+  if (request.run.threads != defaults.run.threads) add("--threads", std::to_string(request.run.threads));
+  if (request.run.seed != defaults.run.seed) add("--seed", std::to_string(request.run.seed));
+  return words;
+}
+
 fs::path rig_path(const std::string& pattern, const BatchInput& input) {
   const fs::path recording(input.path);
   std::string path = pattern;

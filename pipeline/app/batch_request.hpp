@@ -32,6 +32,9 @@ nlohmann::ordered_json arguments_json(const BatchRequest& request);
 /// Sets what `arguments_json` gave, but not the output, nor what does not change the results.
 void set_arguments(const nlohmann::ordered_json& arguments, BatchRequest& request);
 
+/// The words behind `crisp batch` that give this request, without --jobs and --shard.
+std::vector<std::string> batch_words(const BatchRequest& request);
+
 /// The rig's file for a recording: its folder, its name without ending and the recording's name in the place
 /// of {folder}, {stem} and {name}.
 std::filesystem::path rig_path(const std::string& pattern, const BatchInput& input);

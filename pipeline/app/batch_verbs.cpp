@@ -26,10 +26,8 @@ void print_status(const BatchRows& rows, bool json) {
     return;
   }
   const BatchTally tally = tally_of(rows);
-  const std::size_t known = tally.done + tally.untrusted + tally.failed + tally.open;
-  std::cout << fmt::format("{}: {}", counted(std::max(rows.recordings, known), "recording"), in_words(tally));
-  if (rows.recordings > known) std::cout << fmt::format(", {} not begun", rows.recordings - known);
-  std::cout << "\n" << trouble_text(rows);
+  std::cout << fmt::format("{}: {}\n{}", counted(std::max(rows.recordings, rows.rows.size()), "recording"),
+                           in_words(tally), trouble_text(rows));
   for (const auto& row : rows.rows) {
     if (row.status == "running") std::cout << "  running " << row.name << "\n";
   }
@@ -61,7 +59,7 @@ ExitStatus batch_status_command(const BatchStatusRequest& request) {
     const auto rows = read_rows(request.folder);
     print_status(rows, request.json);
     const BatchTally tally = tally_of(rows);
-    const bool over = tally.open == 0 && tally.done + tally.untrusted + tally.failed >= rows.recordings;
+    const bool over = tally.open == 0 && tally.not_begun == 0;
     if (!request.watch || over) return ExitStatus::done;
     std::this_thread::sleep_for(kWatchEvery);
   }

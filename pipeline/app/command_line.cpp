@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
-#include <thread>
 
 #include "pipeline/app/own_pipelines.hpp"
+#include "pipeline/app/own_process.hpp"
 #include "pipeline/app/usage_error.hpp"
 
 namespace crisp {
@@ -21,6 +21,8 @@ constexpr const char* kFooter =
     "folders that CRISP_PLUGINS lists.";
 
 constexpr const char* kScenes = "What stands around: office, hall, street, workshop, garden, people or paper";
+
+constexpr const char* kJobThreads = "How many threads each job may use";
 
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   const std::string range = std::to_string(least) + " to " + std::to_string(most);
@@ -46,6 +48,7 @@ CommandLine::CommandLine() {
       [](const CLI::App* asked, const CLI::Error& error) { return usage_error(*asked, error); });
   add_run();
   add_batch();
+  add_cluster();
   add_record();
   add_emulate();
   add_bound();
@@ -100,53 +103,78 @@ void CommandLine::add_batch() {
   batch_app = command(
       "batch", "Run a pipeline over many recordings, each in a process of its own; go on where it stopped");
   batch_app->add_option("pipeline", batch.run.file, "The pipeline's YAML file")->type_name("FILE");
-  add_batch_inputs();
-  add_batch_limits();
-  add_run_options(batch_app, "--threads", batch.run);
-  batch.run.threads = 1;
-  batch_app->get_option("--threads")->description("How many threads each job may use")->capture_default_str();
-  add_batch_verbs();
-}
-
-void CommandLine::add_batch_inputs() {
-  batch_app
-      ->add_option(
-          "-i,--input", batch.inputs,
-          "Recordings: files, folders, quoted patterns ('captures/**/*.pcap'), a list NAME.txt, or - for "
-          "a list on the standard input (may be repeated)")
-      ->type_name("PATH");
-  batch_app->add_option("-o,--output", batch.output, "The folder for the results, a folder in it a recording")
-      ->type_name("FOLDER");
-  batch_app
-      ->add_option("--each", batch.each, "What is one recording: each file, or the captures of each folder")
-      ->check(CLI::IsMember({"file", "folder"}))
-      ->capture_default_str();
-  batch_app->add_option("--base", batch.base, "The folder that the names of the results are relative to")
-      ->type_name("FOLDER");
-  batch_app
-      ->add_option(
-          "--rig", batch.rig,
-          "The rig, instead of the one that the pipeline names; {folder}, {stem} and {name} are those of "
-          "the recording: '{folder}/rig.yaml'")
-      ->type_name("FILE");
-  add_set(batch_app, batch.run.arguments);
-}
-
-void CommandLine::add_batch_limits() {
-  batch.jobs = std::max(1U, std::thread::hardware_concurrency());
+  add_batch_inputs(batch_app, batch);
+  batch.jobs = own_cores();
   batch_app->add_option("--jobs", batch.jobs, "How many recordings to process at once")
       ->check(whole_number(1, 4096))
       ->capture_default_str();
   batch_app->add_option("--shard", batch.shard, "Only the i-th of n parts of the recordings")
       ->type_name("i/n");
-  batch_app->add_option("--timeout", batch.timeout, "End a job that takes longer: 90s, 10min")
-      ->type_name("TIME");
-  batch_app
-      ->add_option(
-          "--memory", batch.memory,
-          "Run no more jobs at once than fit into so much memory, by what they were seen to take: 8GB")
+  add_batch_limits(batch_app, batch);
+  add_run_options(batch_app, "--threads", batch.run);
+  batch.run.threads = 1;
+  batch_app->get_option("--threads")->description(kJobThreads)->capture_default_str();
+  add_batch_verbs();
+}
+
+void CommandLine::add_batch_inputs(CLI::App* to, BatchRequest& request) {
+  to->add_option(
+        "-i,--input", request.inputs,
+        "Recordings: files, folders, quoted patterns ('captures/**/*.pcap'), a list NAME.txt, or - for "
+        "a list on the standard input (may be repeated)")
+      ->type_name("PATH");
+  to->add_option("-o,--output", request.output, "The folder for the results, a folder in it a recording")
+      ->type_name("FOLDER");
+  to->add_option("--each", request.each, "What is one recording: each file, or the captures of each folder")
+      ->check(CLI::IsMember({"file", "folder"}))
+      ->capture_default_str();
+  to->add_option("--base", request.base, "The folder that the names of the results are relative to")
+      ->type_name("FOLDER");
+  to->add_option(
+        "--rig", request.rig,
+        "The rig, instead of the one that the pipeline names; {folder}, {stem} and {name} are those of "
+        "the recording: '{folder}/rig.yaml'")
+      ->type_name("FILE");
+  add_set(to, request.run.arguments);
+}
+
+void CommandLine::add_batch_limits(CLI::App* to, BatchRequest& request) {
+  to->add_option("--timeout", request.timeout, "End a job that takes longer: 90s, 10min")->type_name("TIME");
+  to->add_option("--memory", request.memory,
+                 "Run no more jobs at once than fit into so much memory, by what they were seen to take: 8GB")
       ->transform(CLI::AsSizeValue(true))
       ->type_name("SIZE");
+}
+
+void CommandLine::add_cluster() {
+  cluster_app = command("cluster", "Run a batch on a cluster, by its scheduler Slurm");
+  cluster_app->require_subcommand(1);
+  ClusterSubmitRequest& request = cluster_submit;
+  CLI::App* submit = cluster_app->add_subcommand(
+      "submit", "Submit a batch as an array of tasks, and a job after them that writes the table");
+  submit->fallthrough();
+  submit->add_option("pipeline", request.batch.run.file, "The pipeline's YAML file")
+      ->required()
+      ->type_name("FILE");
+  add_batch_inputs(submit, request.batch);
+  submit->get_option("--input")->required();
+  submit->get_option("--output")->required();
+  submit->add_option("--tasks", request.tasks, "Into how many parts; each should have minutes of work")
+      ->check(whole_number(1, 1000000))
+      ->required();
+  submit->add_option("--cpus", request.cpus, "Cores of each task, and so recordings at once")
+      ->check(whole_number(1, 4096))
+      ->capture_default_str();
+  add_batch_limits(submit, request.batch);
+  add_threads_and_seed(submit, "--threads", request.batch.run);
+  submit->get_option("--threads")->description(kJobThreads);
+  submit
+      ->add_option("--sbatch", request.sbatch,
+                   "Another option of sbatch, without dashes: partition=long (may be repeated)")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  submit->add_flag("--dry-run", request.dry_run, "Print the scripts and commands, and submit nothing");
+  submit->add_flag("--wait", request.wait, "Wait for the end, and have the exit status of the whole batch");
 }
 
 void CommandLine::add_batch_verbs() {
@@ -168,14 +196,18 @@ void CommandLine::add_batch_verbs() {
   batch_retry_app->add_flag("--mark", batch_retry.mark, "Leave them to the next crisp batch");
 }
 
-void CommandLine::add_run_options(CLI::App* to, const std::string& threads, RunRequest& request) {
-  request.threads = std::max(1U, std::thread::hardware_concurrency());
+void CommandLine::add_threads_and_seed(CLI::App* to, const std::string& threads, RunRequest& request) {
   to->add_option(threads, request.threads, "How many threads to use; the result does not depend on it")
       ->check(whole_number(1, 1024))
       ->capture_default_str();
   to->add_option("--seed", request.seed, "Seed of all that is drawn at random")
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str();
+}
+
+void CommandLine::add_run_options(CLI::App* to, const std::string& threads, RunRequest& request) {
+  request.threads = own_cores();
+  add_threads_and_seed(to, threads, request);
   to->add_option("--metrics", request.metrics,
                  "While it runs, tell how it is doing at http://127.0.0.1:PORT/metrics, for Prometheus")
       ->check(whole_number(1, 65535))

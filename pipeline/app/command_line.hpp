@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pipeline/app/batch_commands.hpp"
+#include "pipeline/app/cluster_command.hpp"
 #include "pipeline/app/commands.hpp"
 
 namespace crisp {
@@ -25,6 +26,7 @@ struct CommandLine {
   BatchStatusRequest batch_status;
   BatchTableRequest batch_table;
   BatchRetryRequest batch_retry;
+  ClusterSubmitRequest cluster_submit;
   RunRequest basin;
   std::uint64_t basin_starts = 1000;
   RunRequest bound;
@@ -45,6 +47,7 @@ struct CommandLine {
   CLI::App* batch_status_app = nullptr;
   CLI::App* batch_table_app = nullptr;
   CLI::App* batch_retry_app = nullptr;
+  CLI::App* cluster_app = nullptr;
   CLI::App* basin_app = nullptr;
   CLI::App* bound_app = nullptr;
   CLI::App* figures_app = nullptr;
@@ -68,9 +71,12 @@ struct CommandLine {
   static void add_set(CLI::App* to, PipelineArguments& arguments);
   void add_run();
   void add_batch();
-  void add_batch_inputs();
-  void add_batch_limits();
+  static void add_batch_inputs(CLI::App* to, BatchRequest& request);
+  /// What a batch allows each job.
+  static void add_batch_limits(CLI::App* to, BatchRequest& request);
   void add_batch_verbs();
+  void add_cluster();
+  static void add_threads_and_seed(CLI::App* to, const std::string& threads, RunRequest& request);
   /// How a pipeline is run; the result does not depend on it, but for the seed.
   static void add_run_options(CLI::App* to, const std::string& threads, RunRequest& request);
   /// A pipeline that comes with the program.

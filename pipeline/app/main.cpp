@@ -11,6 +11,7 @@
 #include "pipeline/app/builtin.hpp"
 #include "pipeline/app/command_line.hpp"
 #include "pipeline/app/completion.hpp"
+#include "pipeline/app/own_process.hpp"
 #include "pipeline/files/nearest.hpp"
 
 namespace crisp {
@@ -29,6 +30,12 @@ RunRequest monte_carlo_request(const CommandLine& line) {
   if (line.monte_carlo_only) request.seed = *line.monte_carlo_only;
   const std::uint64_t runs = line.monte_carlo_only ? 1 : line.monte_carlo_runs;
   request.arguments.set.push_back("runs=" + std::to_string(runs));
+  return request;
+}
+
+ClusterSubmitRequest cluster_submit_request(const CommandLine& line) {
+  ClusterSubmitRequest request = line.cluster_submit;
+  request.plugins = line.plugins;
   return request;
 }
 
@@ -51,11 +58,7 @@ std::vector<CommandWords> completion_words(const CommandLine& line) {
 }
 
 /// Where plugins are installed: beside the program's libraries, wherever the whole was put.
-fs::path plugin_folder() {
-  std::error_code unknown;
-  return (fs::read_symlink("/proc/self/exe", unknown).parent_path() / CRISP_PLUGINS_FROM_BIN)
-      .lexically_normal();
-}
+fs::path plugin_folder() { return (own_file().parent_path() / CRISP_PLUGINS_FROM_BIN).lexically_normal(); }
 
 /// Why a plugin that was asked for is not in use; empty if it is. Of two files of one
 /// plugin that were both asked for, neither counts more.
@@ -105,13 +108,19 @@ bool load_plugins(const CommandLine& line, PluginLoader& loader) {
   return all_loaded;
 }
 
+/// What of a batch has no default, and was not given; empty if all was.
+std::string missing_of(const BatchRequest& batch) {
+  if (batch.run.file.empty()) return "pipeline";
+  if (batch.inputs.empty()) return "-i";
+  return batch.output.empty() ? "-o" : "";
+}
+
 ExitStatus run_batch_command(const CommandLine& line, const Registrar& registrar) {
   if (line.batch_status_app->parsed()) return batch_status_command(line.batch_status);
   if (line.batch_table_app->parsed()) return batch_table_command(line.batch_table);
   if (line.batch_retry_app->parsed()) return batch_retry_command(line.batch_retry, line.batch, registrar);
-  const char* missing = line.batch.run.file.empty() ? "pipeline" : line.batch.inputs.empty() ? "-i" : "-o";
-  if (line.batch.run.file.empty() || line.batch.inputs.empty() || line.batch.output.empty()) {
-    print_errors(Error(std::string("crisp batch: ") + missing + " is missing",
+  if (const auto missing = missing_of(line.batch); !missing.empty()) {
+    print_errors(Error("crisp batch: " + missing + " is missing",
                        "crisp batch PIPELINE -i RECORDINGS -o FOLDER, or status, table or retry"));
     return ExitStatus::misused;
   }
@@ -129,6 +138,7 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.plugins_app->parsed()) return ExitStatus::done;
   if (line.run_app->parsed()) return run_command(line.run, registrar);
   if (line.batch_app->parsed()) return run_batch_command(line, registrar);
+  if (line.cluster_app->parsed()) return cluster_submit_command(cluster_submit_request(line), registrar);
   if (line.basin_app->parsed()) return run_command(basin_request(line), registrar);
   if (line.bound_app->parsed()) return run_command(line.bound, registrar);
   if (line.record_app->parsed()) return run_command(line.record, registrar);

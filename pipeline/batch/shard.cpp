@@ -26,10 +26,6 @@ std::optional<std::uint64_t> whole(std::string_view text) {
   return number;
 }
 
-std::optional<std::uint64_t> whole(const char* text) {
-  return text ? whole(std::string_view(text)) : std::nullopt;
-}
-
 }  // namespace
 
 bool Shard::has(std::string_view name) const { return hash_of(name) % count == number - 1; }
@@ -44,20 +40,6 @@ Shard parse_shard(const std::string& text) {
     if (number && count && *number >= 1 && *number <= *count) return {*number, *count};
   }
   throw Error("--shard: '" + text + "' is no part of a batch", "write the third of 64 as 3/64");
-}
-
-std::optional<Shard> shard_of_slurm(const char* (*variable)(const char* name)) {
-  const auto id = whole(variable("SLURM_ARRAY_TASK_ID"));
-  if (!id) return std::nullopt;
-  const std::uint64_t least = whole(variable("SLURM_ARRAY_TASK_MIN")).value_or(*id);
-  const std::uint64_t step = whole(variable("SLURM_ARRAY_TASK_STEP")).value_or(1);
-  const std::uint64_t count = whole(variable("SLURM_ARRAY_TASK_COUNT")).value_or(1);
-  const Shard shard{.number = (*id - least) / std::max<std::uint64_t>(step, 1) + 1, .count = count};
-  if (*id >= least && shard.number <= count) return shard;
-  throw Error(fmt::format("task {} of the Slurm array cannot be told which part of the batch is its own: the "
-                          "array begins at {} and has {} tasks",
-                          *id, least, count),
-              "use an array without gaps, or give --shard i/n");
 }
 
 }  // namespace crisp

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,11 +20,5 @@ struct Shard {
 
 /// @throws Error if it is not "i/n" with 1 ≤ i ≤ n
 Shard parse_shard(const std::string& text);
-
-/// The shard of this task of a Slurm array, by SLURM_ARRAY_TASK_ID, _MIN, _COUNT and _STEP; nothing outside
-/// of one.
-/// @param variable  the value of a variable of the environment, or nullptr
-/// @throws Error if the array has gaps, so that its tasks cannot be numbered
-std::optional<Shard> shard_of_slurm(const char* (*variable)(const char* name));
 
 }  // namespace crisp

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/batch/shard.hpp"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <map>
 
@@ -9,16 +9,6 @@
 
 namespace crisp {
 namespace {
-
-std::map<std::string, const char*> environment;
-
-std::optional<Shard> of_slurm(std::map<std::string, const char*> variables) {
-  environment = std::move(variables);
-  return shard_of_slurm([](const char* name) -> const char* {
-    const auto found = environment.find(name);
-    return found == environment.end() ? nullptr : found->second;
-  });
-}
 
 TEST(Shard, OfSeveralTakeEachNameOnceAndAboutAsMany) {
   constexpr std::uint64_t kCount = 7;
@@ -50,27 +40,6 @@ TEST(Shard, IsReadFromItsText) {
   EXPECT_EQ(parse_shard("3/64").text(), "3/64");
   for (const char* text : {"", "3", "0/4", "5/4", "-1/4", "1/0", "1/2/3", "a/b"})
     EXPECT_THROW(parse_shard(text), Error) << text;
-}
-
-TEST(Shard, OfASlurmArrayIsCountedFromItsFirstTask) {
-  EXPECT_FALSE(of_slurm({}));
-  const auto third = of_slurm({{"SLURM_ARRAY_TASK_ID", "12"},
-                               {"SLURM_ARRAY_TASK_MIN", "10"},
-                               {"SLURM_ARRAY_TASK_COUNT", "6"},
-                               {"SLURM_ARRAY_TASK_STEP", "1"}});
-  ASSERT_TRUE(third);
-  EXPECT_EQ(third->text(), "3/6");
-  const auto stepped = of_slurm({{"SLURM_ARRAY_TASK_ID", "20"},
-                                 {"SLURM_ARRAY_TASK_MIN", "0"},
-                                 {"SLURM_ARRAY_TASK_COUNT", "3"},
-                                 {"SLURM_ARRAY_TASK_STEP", "10"}});
-  ASSERT_TRUE(stepped);
-  EXPECT_EQ(stepped->text(), "3/3");
-  EXPECT_THROW(
-      of_slurm(
-          {{"SLURM_ARRAY_TASK_ID", "9"}, {"SLURM_ARRAY_TASK_MIN", "1"}, {"SLURM_ARRAY_TASK_COUNT", "3"}}),
-      Error)
-      << "an array with gaps";
 }
 
 }  // namespace

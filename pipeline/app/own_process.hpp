@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+namespace crisp {
+
+/// The file of this program; empty where the system does not name it.
+std::filesystem::path own_file();
+
+/// How many cores this process may use: those that Slurm allocated to it, or those of the machine.
+unsigned own_cores();
+
+}  // namespace crisp
