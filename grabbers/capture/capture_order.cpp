@@ -62,7 +62,7 @@ Stretches find_stretches(const std::filesystem::path& path, const std::function<
   return found;
 }
 
-/// By how much the times of one sender are ahead of another's, by who was before whom.
+/// By how much the times of one conversation are ahead of another's, by which packets stand before which.
 struct Offset {
   std::int64_t least = -kNever, most = kNever;  // [ns]
 
@@ -71,10 +71,10 @@ struct Offset {
 };
 
 /// Evidence from the packets of a capture for why their times go back.
-class SenderSurvey {
+class ConversationSurvey {
  public:
   /// @param file is read from its begin to its end
-  explicit SenderSurvey(CaptureFile& file) {
+  explicit ConversationSurvey(CaptureFile& file) {
     OrderWatch watch;
     while (const Packet* packet = file.next()) {
       if (watch.take(packet->time_ns)) ++stretch_;
@@ -89,13 +89,13 @@ class SenderSurvey {
     return found != connections_.end() && found->second > 0;
   }
 
-  /// [ns] What senders' times are ahead of those of most others, if each sender's own times ascend.
-  std::map<IpAddress, std::int64_t> offsets() const {
-    std::map<IpAddress, std::int64_t> best;
-    std::size_t least_apart = senders_.size();
-    for (const auto& [reference, sender] : senders_) {
-      if (sender.went_back) return {};
-      std::map<IpAddress, std::int64_t> apart = offsets_from(reference);
+  /// [ns] What conversations' times are ahead of those of most others, if each one's own times ascend.
+  std::map<IpPair, std::int64_t> offsets() const {
+    std::map<IpPair, std::int64_t> best;
+    std::size_t least_apart = conversations_.size();
+    for (const auto& [reference, conversation] : conversations_) {
+      if (conversation.went_back) return {};
+      std::map<IpPair, std::int64_t> apart = offsets_from(reference);
       if (apart.size() >= least_apart) continue;
       least_apart = apart.size();
       best = std::move(apart);
@@ -104,7 +104,7 @@ class SenderSurvey {
   }
 
  private:
-  struct Sender {
+  struct Conversation {
     OrderWatch watch;
     std::uint64_t packets = 0;
     bool went_back = false;
@@ -116,37 +116,38 @@ class SenderSurvey {
 
   void take(const IpPacket& ip, std::int64_t time_ns) {
     constexpr std::size_t kMost = 32;
-    if (senders_.size() < kMost || senders_.contains(ip.from)) {
-      Sender& sender = senders_[ip.from];
-      const bool first = sender.packets++ == 0;
-      if (sender.watch.take(time_ns) && !first) sender.went_back = true;
-      compare(ip.from, time_ns);
+    const IpPair pair = pair_of(ip);
+    if (conversations_.size() < kMost || conversations_.contains(pair)) {
+      Conversation& conversation = conversations_[pair];
+      const bool first = conversation.packets++ == 0;
+      if (conversation.watch.take(time_ns) && !first) conversation.went_back = true;
+      compare(pair, time_ns);
     }
     bool damaged = false;
     const auto packet = dissect_transport(ip, damaged);
     if (packet && packet->key.transport == Transport::Tcp && !packet->payload.empty()) follow(*packet);
   }
 
-  /// [ns] Of the senders that are far from this one's time.
-  std::map<IpAddress, std::int64_t> offsets_from(const IpAddress& reference) const {
+  /// [ns] Of the conversations that are far from this one's time.
+  std::map<IpPair, std::int64_t> offsets_from(const IpPair& reference) const {
     constexpr std::int64_t kFar = 2'000'000'000;  // programs write what they buffered for up to a second
-    std::map<IpAddress, std::int64_t> apart;
-    for (const auto& [ip, sender] : senders_) {
-      const auto offset = offsets_.find({ip, reference});
+    std::map<IpPair, std::int64_t> apart;
+    for (const auto& [pair, conversation] : conversations_) {
+      const auto offset = offsets_.find({pair, reference});
       if (offset == offsets_.end() || !offset->second.is_constant()) continue;
-      if (std::abs(offset->second.value()) >= kFar) apart[ip] = offset->second.value();
+      if (std::abs(offset->second.value()) >= kFar) apart[pair] = offset->second.value();
     }
     return apart;
   }
 
   /// What stands before a packet arrived before it.
-  void compare(const IpAddress& from, std::int64_t time_ns) {
-    for (const auto& [other, sender] : senders_) {
-      if (other == from) continue;
-      const std::int64_t ahead = time_ns - sender.watch.newest_ns();
-      Offset& of_this = offsets_[{from, other}];
+  void compare(const IpPair& pair, std::int64_t time_ns) {
+    for (const auto& [other, conversation] : conversations_) {
+      if (other == pair) continue;
+      const std::int64_t ahead = time_ns - conversation.watch.newest_ns();
+      Offset& of_this = offsets_[{pair, other}];
       of_this.most = std::min(of_this.most, ahead);
-      Offset& of_other = offsets_[{other, from}];
+      Offset& of_other = offsets_[{other, pair}];
       of_other.least = std::max(of_other.least, -ahead);
     }
   }
@@ -165,8 +166,8 @@ class SenderSurvey {
   }
 
   std::size_t stretch_ = 0;  // the present one, from 1
-  std::map<IpAddress, Sender> senders_;
-  std::map<std::pair<IpAddress, IpAddress>, Offset> offsets_;
+  std::map<IpPair, Conversation> conversations_;
+  std::map<std::pair<IpPair, IpPair>, Offset> offsets_;
   std::map<FlowKey, Connection> flows_;
   std::map<std::size_t, int> connections_;  // that go on after a stretch, less those that do not
 };
@@ -179,11 +180,11 @@ std::int64_t interval_of(const CaptureStretch& stretch, std::uint64_t packets) {
 }
 
 /// Lets time go on where the hub's clock was set back.
-void continue_time(Stretches& found, const SenderSurvey& senders, CaptureOrder& order) {
+void continue_time(Stretches& found, const ConversationSurvey& survey, CaptureOrder& order) {
   std::int64_t largest = 0;
   std::size_t times = 0;
   for (std::size_t i = 1; i < found.all.size(); ++i) {
-    if (!senders.goes_on_after(i)) continue;
+    if (!survey.goes_on_after(i)) continue;
     const CaptureStretch& before = found.all[i - 1];
     CaptureStretch& next = found.all[i];
     const std::int64_t back = before.last_ns - before.shift_ns - next.first_ns;
@@ -216,17 +217,18 @@ void sort_by_time(Stretches& found, CaptureOrder& order) {
   order.stretches = std::move(found.all);
 }
 
-/// Whether the senders' clocks differ, each by a constant: then the file's order is right, and their times
+/// Whether the interfaces' clocks differ, each by a constant: then the file's order is right, and their times
 /// are corrected.
-bool join_clocks(const SenderSurvey& senders, CaptureOrder& order) {
-  for (const auto& [ip, offset] : senders.offsets()) {
-    order.shift_ns[ip] = -offset;
+bool join_clocks(const ConversationSurvey& survey, CaptureOrder& order) {
+  for (const auto& [pair, offset] : survey.offsets()) {
+    order.shift_ns[pair] = -offset;
     order.remarks.push_back(fmt::format(
-        "packets of {} are stamped {:+.3f} s off those of the others between which they stand: the capture's "
+        "packets between {} and {} are stamped {:+.3f} s off those of the others between which they stand: "
+        "the capture's "
         "interfaces have different clocks (TAI is 37 s ahead of UTC). This offset is taken out, to within "
         "some "
         "milliseconds, which a calibration finds as eta. Let all interfaces be stamped by one clock",
-        to_string(ip), to_seconds(offset)));
+        to_string(pair.first), to_string(pair.second), to_seconds(offset)));
   }
   return !order.shift_ns.empty();
 }
@@ -234,13 +236,13 @@ bool join_clocks(const SenderSurvey& senders, CaptureOrder& order) {
 }  // namespace
 
 CaptureOrder survey_capture(const std::filesystem::path& path, const std::function<bool()>& interrupted) {
-  constexpr std::size_t kInterleaved = 3;  // stretches: senders that take turns
+  constexpr std::size_t kInterleaved = 3;  // stretches: interfaces that take turns
   CaptureOrder order;
   Stretches found = find_stretches(path, interrupted);
   if (found.count + found.damaged >= kInterleaved) {
     CaptureFile file(path, interrupted);
     file.keep_all_stamps();  // one of another clock between two would be taken for damaged
-    if (join_clocks(SenderSurvey(file), order)) return order;
+    if (join_clocks(ConversationSurvey(file), order)) return order;
   }
   if (found.count < 2) return order;
   if (found.count > kMostStretches) {
@@ -252,7 +254,7 @@ CaptureOrder survey_capture(const std::filesystem::path& path, const std::functi
     return order;
   }
   CaptureFile file(path, interrupted);
-  continue_time(found, SenderSurvey(file), order);
+  continue_time(found, ConversationSurvey(file), order);
   sort_by_time(found, order);
   return order;
 }

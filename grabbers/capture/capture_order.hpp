@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grabbers/capture/capture_file.hpp"
@@ -17,6 +19,10 @@ namespace crisp {
 /// Packets of a capture are in order if none is earlier by more than this than one before it [ns]: captures
 /// of several interfaces are slightly out of order.
 inline constexpr std::int64_t kDisorder = 100'000'000;
+
+/// Two addresses that talk to each other, the lesser first. One interface of the hub sees both directions.
+using IpPair = std::pair<IpAddress, IpAddress>;
+inline IpPair pair_of(const IpPacket& packet) { return std::minmax(packet.from, packet.to); }
 
 /// A part of a capture file whose packets are in order.
 struct CaptureStretch {
@@ -30,16 +36,16 @@ struct CaptureStretch {
 /// How the packets of a capture come into the order in which they arrived.
 struct CaptureOrder {
   std::vector<CaptureStretch> stretches = {CaptureStretch{}};  ///< ascending in first_ns; they may overlap
-  std::map<IpAddress, std::int64_t> shift_ns = {};  ///< added to the times of what these senders sent
-  std::vector<std::string> remarks = {};            ///< what is out of order, and what is made of it
+  std::map<IpPair, std::int64_t> shift_ns = {};  ///< added to the times of what these sent to each other
+  std::vector<std::string> remarks = {};         ///< what is out of order, and what is made of it
 };
 
 /// Reads the times of all packets; where they go back, the packets themselves, too.
 ///
 /// Where the times go back, TCP distinguishes two cases: connections that go on there, byte for byte, mean
 /// that the hub's clock was set back (or its 32 bits of seconds wrapped), and time goes on; otherwise the
-/// file's parts are in another order than that of their times. Where each sender's times ascend but for a
-/// constant offset, interfaces have clocks of their own, such as TAI and UTC.
+/// file's parts are in another order than that of their times. Where the times of each pair of addresses
+/// ascend but for a constant offset, interfaces have clocks of their own, such as TAI and UTC.
 ///
 /// @param interrupted  as ByteStream's
 /// @throws Error if the file cannot be read or is no capture

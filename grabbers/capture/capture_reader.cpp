@@ -56,7 +56,7 @@ bool CaptureReader::Traffic::read_packet() {
   if (packet == nullptr) return false;
   const auto found = dissect_ip(*packet);
   const auto* sent = std::get_if<IpPacket>(&found);
-  const std::int64_t time_ns = packet->time_ns + (sent == nullptr ? 0 : file.shift_of(sent->from));
+  const std::int64_t time_ns = packet->time_ns + (sent == nullptr ? 0 : file.shift_of(*sent));
   newest_ns = totals.packets == 0 ? time_ns : std::max(newest_ns, time_ns);
   totals.first_ns = totals.packets == 0 ? time_ns : std::min(totals.first_ns, time_ns);
   totals.last_ns = newest_ns;

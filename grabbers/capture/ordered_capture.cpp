@@ -69,8 +69,8 @@ const Packet* OrderedCapture::next() {
   return &first->packet;
 }
 
-std::int64_t OrderedCapture::shift_of(const IpAddress& sender) const {
-  const auto found = order_.shift_ns.find(sender);
+std::int64_t OrderedCapture::shift_of(const IpPacket& packet) const {
+  const auto found = order_.shift_ns.find(pair_of(packet));
   return found == order_.shift_ns.end() ? 0 : found->second;
 }
 

@@ -24,8 +24,8 @@ class OrderedCapture {
 
   /// The next packet, valid until the next call; nullptr at the end of the file.
   const Packet* next();
-  /// [ns] What is to be added to the times of a sender's packets.
-  std::int64_t shift_of(const IpAddress& sender) const;
+  /// [ns] What is to be added to the time of this packet.
+  std::int64_t shift_of(const IpPacket& packet) const;
 
   const std::vector<std::string>& remarks() const { return order_.remarks; }
   Counts losses() const;

@@ -1,32 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Captures: whatever the bytes are, either an Error, or scans and readings that make sense.
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <string>
 
 #include "grabbers/capture/capture_reader.hpp"
 #include "pipeline/data/error.hpp"
+#include "tests/fuzz/memory_file.hpp"
 
 namespace {
-
-/// A file in memory that holds the fuzzer's bytes.
-class Input {
- public:
-  Input(const std::uint8_t* data, std::size_t size) : descriptor_(memfd_create("capture", MFD_CLOEXEC)) {
-    if (::write(descriptor_, data, size) != static_cast<ssize_t>(size)) std::abort();
-  }
-  ~Input() { ::close(descriptor_); }
-  Input(const Input&) = delete;
-  Input& operator=(const Input&) = delete;
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-
- private:
-  int descriptor_;
-};
 
 void check(const crisp::Scan& scan) {
   if (!std::isfinite(scan.start_angle) || !std::isfinite(scan.angle_step) || scan.laser > 2) std::abort();
@@ -42,7 +24,7 @@ void check(const crisp::Scan& scan) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const Input input(data, size);
+  const crisp::MemoryFile input({data, size});
   try {
     crisp::CaptureReader reader(input.path(), crisp::default_rig());
     std::uint64_t items = 0;

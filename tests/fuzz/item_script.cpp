@@ -9,32 +9,33 @@ namespace crisp {
 namespace {
 
 constexpr std::size_t kMostItems = 1200;
-constexpr std::size_t kPlate = 3;
-constexpr double kStart = 1'700'000'000.3;  // [s since the Unix epoch]
+constexpr double kHubBegin = 1'700'000'000.3;  // [s since the Unix epoch]
 /// [s] From what delays hide to what counters wrap by; a leap second, TAI beside UTC, a wrap of the devices'
 /// clocks, and of 32 bits of seconds.
 constexpr std::array kJumps = {0.0, 1e-4, 1e-3, 0.02, 0.05,  0.25,   0.5,         1.0,
                                3.0, 6.0,  31.0, 37.0, 600.0, 3600.0, 4294.967296, 86400.0 * 400};
 
-double jump_of(std::uint8_t argument) {
-  return (argument % 2 == 0 ? 1 : -1) * kJumps[argument / 2 % kJumps.size()];
-}
-
-/// A scan of two beams, or what a damaged one may hold.
-void fill(Scan& scan, std::uint8_t kind) {
+/// A scan of some beams every other of which has an echo, or what a damaged one may hold.
+void fill(Scan& scan, std::uint8_t kind, std::size_t beams) {
   scan.scan_frequency = kind % 5 == 1 ? 0 : 25;
   scan.start_angle = -0.78;
-  scan.angle_step = kind % 5 == 2 ? 0 : 4.7;
+  scan.angle_step = kind % 5 == 2 ? 0 : 0.1;
   if (kind % 5 == 3) return;
   scan.echoes.resize(1);
-  scan.echoes[0].ranges = {2.0F, kind % 5 == 4 ? std::numeric_limits<float>::quiet_NaN() : 0.0F};
+  const float unseen = kind % 5 == 4 ? std::numeric_limits<float>::quiet_NaN() : 0.0F;
+  for (std::size_t i = 0; i < beams; ++i) scan.echoes[0].ranges.push_back(i % 2 == 0 ? 2.0F : unseen);
   if (kind >= 128) scan.numbered = false;
 }
 
 }  // namespace
 
+double jump_of(std::uint8_t argument) {
+  return (argument % 2 == 0 ? 1 : -1) * kJumps[argument / 2 % kJumps.size()];
+}
+
 ItemScript::ItemScript(std::span<const std::uint8_t> script) : script_(script) {
   for (std::size_t i = 0; i < devices_.size(); ++i) devices_[i].ahead = 100.0 * static_cast<double>(i);
+  devices_[kPlateDevice].every = 1;
 }
 
 ItemSequence ItemScript::items() {
@@ -46,7 +47,7 @@ ItemSequence ItemScript::items() {
 
 void ItemScript::operate(unsigned operation, std::size_t index, std::uint8_t argument) {
   Device& device = devices_[index];
-  switch (operation % 14) {
+  switch (operation) {
     case 0:
       return send_for(0.02 * (argument + 1));
     case 1:
@@ -85,21 +86,27 @@ void ItemScript::operate(unsigned operation, std::size_t index, std::uint8_t arg
       return;
     case 12:
       return send_odd(index, argument);
-    default:
+    case 13:
       device.copies = argument % 4;
+      return;
+    case 14:
+      device.every = 1U + argument % 50U;
+      return;
+    default:
+      device.beams = 1U + argument % 48U;
   }
 }
 
-/// 25 scans a second of each laser, and 100 readings.
+/// 25 scans a second of each laser, and 100 readings, where nothing else was said.
 void ItemScript::send_for(double seconds) {
-  constexpr int kReadingsAScan = 4;
   constexpr double kInterval = 0.01;
   const int n = static_cast<int>(std::lround(seconds / kInterval));
   for (int i = 0; i < n && items_.size() < kMostItems; ++i) {
     now_ += kInterval;
     hub_ahead_ += hub_rate_ * kInterval;
     for (std::size_t device = 0; device < devices_.size(); ++device) {
-      const bool is_due = device == kPlate || i % kReadingsAScan == static_cast<int>(device);
+      const std::size_t every = devices_[device].every;
+      const bool is_due = static_cast<std::size_t>(i) % every == device % every;
       if (is_due && (speaking_ >> device & 1U) != 0) send(device, now_);
     }
   }
@@ -112,14 +119,14 @@ std::uint32_t ItemScript::stamp(Device& device, double now) const {
 }
 
 std::int64_t ItemScript::receipt_ns(const Device& device, double now) const {
-  return std::llround(1e9 * (kStart + now + device.delay + device.off + hub_ahead_));
+  return std::llround(1e9 * (kHubBegin + now + device.delay + device.off + hub_ahead_));
 }
 
 void ItemScript::send(std::size_t index, double now) {
   Device& device = devices_[index];
   ++device.count;
   for (unsigned copy = 0; copy < device.copies; ++copy) {
-    if (index == kPlate) {
+    if (index == kPlateDevice) {
       PlateReading reading;
       reading.sequence = device.count;
       reading.device_us = stamp(device, now);
@@ -134,7 +141,7 @@ void ItemScript::send(std::size_t index, double now) {
     scan.scan_time_us = stamp(device, now - 0.04);
     scan.transmission_time_us = stamp(device, now);
     scan.receipt_ns = receipt_ns(device, now);
-    fill(scan, device.kind);
+    fill(scan, device.kind, device.beams);
     items_.emplace_back(std::make_shared<const Scan>(std::move(scan)));
   }
 }
@@ -143,7 +150,7 @@ void ItemScript::send_odd(std::size_t index, std::uint8_t seed) {
   std::minstd_rand random(seed + 1U);
   const auto bits = [&] { return static_cast<std::uint32_t>(random() * 2654435761U); };
   const std::int64_t receipt = receipt_ns(devices_[index], now_);
-  if (index == kPlate) {
+  if (index == kPlateDevice) {
     PlateReading reading;
     reading.sequence = static_cast<std::uint16_t>(bits());
     reading.device_us = bits();
@@ -158,7 +165,7 @@ void ItemScript::send_odd(std::size_t index, std::uint8_t seed) {
   scan.scan_time_us = bits();
   scan.transmission_time_us = seed % 2 == 0 ? scan.scan_time_us + 25'000 : bits();
   scan.receipt_ns = receipt;
-  fill(scan, seed);
+  fill(scan, seed, devices_[index].beams);
   items_.emplace_back(std::make_shared<const Scan>(std::move(scan)));
 }
 

@@ -16,20 +16,33 @@ namespace crisp {
 /// Scans and plate readings in the order in which a hub received them.
 using ItemSequence = std::vector<std::variant<std::shared_ptr<const Scan>, PlateReading>>;
 
+inline constexpr std::size_t kPlateDevice = 3;  ///< behind three lasers
+
+/// [s] A jump of a clock: none, back or forth, from what delays hide to what counters wrap by.
+double jump_of(std::uint8_t argument);
+
 /// The items that a script of bytes describes: traffic of three lasers and a plate, between changes of their
 /// clocks, of the hub's, of their counters and of what they send. Any bytes are a script.
 ///
-/// An operation is two bytes, the operation (modulo their number) in the low half of the first, a device in
-/// its high half, and an argument:
+/// An operation is two bytes: the operation in the low half of the first, a device in its high half, and an
+/// argument. Operations:
 ///
-///     0  all devices that speak send for (argument + 1) · 20 ms     7  the hub's clock runs by (argument −
-///     128) · 50 ppm 1  those in the bits of the argument speak                    8  the delays of the
-///     device grow by argument ms 2  the hub's clock jumps (kJumps)                              9  the
-///     receipts of the device are off (kJumps) 3  the clock of the device jumps (kJumps) 10  the device sends
-///     scans of kind `argument` 4  the clock of the device stands still: odd argument         11  the encoder
-///     jumps by argument² steps 5  the counter of the device jumps by argument                12  one item of
-///     random fields 6  the device's stamps are rounded to argument² µs            13  the device sends each
-///     item argument times
+/// - 0: all devices that speak send for (argument + 1) · 20 ms
+/// - 1: those in the bits of the argument speak
+/// - 2: the hub's clock jumps (jump_of)
+/// - 3: the clock of the device jumps (jump_of)
+/// - 4: the clock of the device stands still, if the argument is odd
+/// - 5: the counter of the device jumps by argument
+/// - 6: the device's stamps are rounded to argument² µs
+/// - 7: the hub's clock runs by (argument − 128) · 50 ppm
+/// - 8: the delays of the device grow by argument ms
+/// - 9: the receipts of the device are off (jump_of)
+/// - 10: the device sends scans of kind `argument`
+/// - 11: the encoder jumps by argument² steps
+/// - 12: one item of random fields
+/// - 13: the device sends each item argument times
+/// - 14: the device sends each (argument + 1) · 10 ms
+/// - 15: the device's scans have argument + 1 beams
 class ItemScript {
  public:
   explicit ItemScript(std::span<const std::uint8_t> script);
@@ -44,6 +57,8 @@ class ItemScript {
     double delay = 1e-3;
     double off = 0;  ///< [s] of its receipts
     unsigned copies = 1;
+    std::size_t every = 4;  ///< [10 ms]
+    std::size_t beams = 2;
     std::uint16_t count = 65'500;
     std::uint8_t kind = 0;
   };

@@ -145,11 +145,29 @@ TEST(CaptureOrder, TakesOutTheOffsetOfAnInterfaceWithAnotherClock) {
     std::ranges::sort(expected);
     EXPECT_EQ(found, expected);
     ASSERT_EQ(reading.statistics.remarks.size(), 1U) << ahead;
-    EXPECT_THAT(reading.statistics.remarks[0], HasSubstr("packets of 192.168.0.10 are stamped"));
+    EXPECT_THAT(reading.statistics.remarks[0],
+                HasSubstr("packets between 192.168.0.10 and 192.168.0.100 are stamped"));
     for (const auto& device : reading.statistics.devices) {
       if (device.items == 0) continue;
       EXPECT_NEAR(1e-9 * static_cast<double>(device.first_ns - kStart), 0, 0.05) << device.name << ahead;
     }
+  }
+}
+
+TEST(CaptureOrder, TakesOutTheOffsetOfAnInterfaceThatALaserIsAt) {
+  constexpr std::size_t kSource = 29, kDestination = 33;  // the last byte of an IPv4 address
+  auto all = frames();
+  for (auto& frame : all) {
+    if (frame.bytes[kSource] == 2 || frame.bytes[kDestination] == 2) frame.time_ns += 37 * kSecond;
+  }
+  const auto reading = read_capture(pcap_file(all));
+  ASSERT_EQ(reading.statistics.remarks.size(), 1U);
+  EXPECT_THAT(reading.statistics.remarks[0],
+              HasSubstr("between 192.168.0.2 and 192.168.0.100 are stamped +37.0"));
+  EXPECT_EQ(reading.items.size(), items().size());
+  for (const auto& device : reading.statistics.devices) {
+    if (device.items == 0) continue;
+    EXPECT_NEAR(1e-9 * static_cast<double>(device.first_ns - kStart), 0, 0.05) << device.name;
   }
 }
 
