@@ -5,6 +5,7 @@
 #include <charconv>
 #include <limits>
 
+#include "pipeline/app/installed_pipelines.hpp"
 #include "pipeline/app/own_pipelines.hpp"
 #include "pipeline/app/own_process.hpp"
 #include "pipeline/app/usage_error.hpp"
@@ -23,6 +24,8 @@ constexpr const char* kFooter =
 constexpr const char* kScenes = "What stands around: office, hall, street, workshop, garden, people or paper";
 
 constexpr const char* kJobThreads = "How many threads each job may use";
+
+constexpr const char* kPipeline = "The pipeline's YAML file, or the name of an installed one";
 
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   const std::string range = std::to_string(least) + " to " + std::to_string(most);
@@ -47,6 +50,11 @@ CommandLine::CommandLine() {
   app.failure_message(
       [](const CLI::App* asked, const CLI::Error& error) { return usage_error(*asked, error); });
   add_run();
+  calibrate_app =
+      add_of_recording("calibrate", "Find where the lasers sit and when they measure, and make the cloud",
+                       kCalibratePipeline, calibrate);
+  diagnose_app = add_of_recording("diagnose", "Find by name what the sensor model lacks, and what it costs",
+                                  kDiagnosePipeline, diagnose);
   add_batch();
   add_cluster();
   add_record();
@@ -92,9 +100,35 @@ void CommandLine::add_set(CLI::App* to, PipelineArguments& arguments) {
       ->allow_extra_args(false);
 }
 
+CLI::Option* CommandLine::add_pipeline(CLI::App* to, std::filesystem::path& file, const std::string& help) {
+  const auto find = [](std::string& text) -> std::string {
+    try {
+      text = pipelines_of_program().find(text).string();
+      return {};
+    } catch (const Error& error) {
+      return error.message() + "; " + error.advice();
+    }
+  };
+  return to->add_option("pipeline", file, help)
+      ->transform(CLI::Validator(find, "", "installed_pipeline"))
+      ->type_name("PIPELINE");
+}
+
+CLI::App* CommandLine::add_of_recording(const char* name, const std::string& help, std::string_view text,
+                                        RunRequest& request) {
+  CLI::App* made = command(name, help);
+  made->add_option("recording", request.arguments.input, "A capture, or a folder of captures of one scanner")
+      ->required()
+      ->type_name("PATH");
+  add_own_pipeline(made, (std::string(name) + ".yaml").c_str(), text, std::filesystem::path("out") / name,
+                   "--threads", request);
+  add_rig(made, request.arguments);
+  return made;
+}
+
 void CommandLine::add_run() {
   run_app = command("run", "Run a pipeline");
-  run_app->add_option("pipeline", run.file, "The pipeline's YAML file")->required()->type_name("FILE");
+  add_pipeline(run_app, run.file, kPipeline)->required();
   add_arguments(run_app, run.arguments);
   add_run_options(run_app, "--threads", run);
 }
@@ -102,7 +136,7 @@ void CommandLine::add_run() {
 void CommandLine::add_batch() {
   batch_app = command(
       "batch", "Run a pipeline over many recordings, each in a process of its own; go on where it stopped");
-  batch_app->add_option("pipeline", batch.run.file, "The pipeline's YAML file")->type_name("FILE");
+  add_pipeline(batch_app, batch.run.file, kPipeline);
   add_batch_inputs(batch_app, batch);
   batch.jobs = own_cores();
   batch_app->add_option("--jobs", batch.jobs, "How many recordings to process at once")
@@ -153,9 +187,7 @@ void CommandLine::add_cluster() {
   CLI::App* submit = cluster_app->add_subcommand(
       "submit", "Submit a batch as an array of tasks, and a job after them that writes the table");
   submit->fallthrough();
-  submit->add_option("pipeline", request.batch.run.file, "The pipeline's YAML file")
-      ->required()
-      ->type_name("FILE");
+  add_pipeline(submit, request.batch.run.file, kPipeline)->required()->type_name("FILE");
   add_batch_inputs(submit, request.batch);
   submit->get_option("--input")->required();
   submit->get_option("--output")->required();
@@ -332,7 +364,7 @@ void CommandLine::add_monte_carlo() {
 void CommandLine::add_validate() {
   validate_app =
       command("validate", "Check a pipeline without running it, or a rig; exit status 2 on any mistake");
-  validate_app->add_option("pipeline", validate_file, "The pipeline's YAML file, or the rig's")
+  add_pipeline(validate_app, validate_file, "The pipeline's YAML file or its name, or the rig's file")
       ->required()
       ->type_name("FILE");
   add_arguments(validate_app, validate);

@@ -22,6 +22,8 @@ struct CommandLine {
   CLI::App app{"Turns what lasers on a spinning plate measured into one crisp cloud.", "crisp"};
   std::vector<std::string> plugins;
   RunRequest run;
+  RunRequest calibrate;
+  RunRequest diagnose;
   BatchRequest batch;
   BatchStatusRequest batch_status;
   BatchTableRequest batch_table;
@@ -43,6 +45,8 @@ struct CommandLine {
   InfoRequest info;
   std::string shell;
   CLI::App* run_app = nullptr;
+  CLI::App* calibrate_app = nullptr;
+  CLI::App* diagnose_app = nullptr;
   CLI::App* batch_app = nullptr;
   CLI::App* batch_status_app = nullptr;
   CLI::App* batch_table_app = nullptr;
@@ -69,7 +73,12 @@ struct CommandLine {
   static void add_arguments(CLI::App* to, PipelineArguments& arguments);
   static void add_rig(CLI::App* to, PipelineArguments& arguments);
   static void add_set(CLI::App* to, PipelineArguments& arguments);
+  /// A pipeline, by its file or by the name of an installed one.
+  static CLI::Option* add_pipeline(CLI::App* to, std::filesystem::path& file, const std::string& help);
   void add_run();
+  /// A pipeline that comes with the program, for a recording.
+  CLI::App* add_of_recording(const char* name, const std::string& help, std::string_view text,
+                             RunRequest& request);
   void add_batch();
   static void add_batch_inputs(CLI::App* to, BatchRequest& request);
   /// What a batch allows each job.

@@ -137,6 +137,8 @@ ExitStatus run_program(const CommandLine& line) {
   if (!all_loaded) return ExitStatus::misused;
   if (line.plugins_app->parsed()) return ExitStatus::done;
   if (line.run_app->parsed()) return run_command(line.run, registrar);
+  if (line.calibrate_app->parsed()) return run_command(line.calibrate, registrar);
+  if (line.diagnose_app->parsed()) return run_command(line.diagnose, registrar);
   if (line.batch_app->parsed()) return run_batch_command(line, registrar);
   if (line.cluster_app->parsed()) return cluster_submit_command(cluster_submit_request(line), registrar);
   if (line.basin_app->parsed()) return run_command(basin_request(line), registrar);

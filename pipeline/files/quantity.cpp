@@ -89,7 +89,7 @@ struct NumberAndRest {
 };
 
 /// The decimal number that the text begins with, or nothing.
-std::optional<NumberAndRest> leading_number(std::string_view text) {
+std::optional<NumberAndRest> leading_decimal(std::string_view text) {
   if (!text.empty() && text.front() == '+') {
     text.remove_prefix(1);
     if (!text.empty() && text.front() == '-') return std::nullopt;
@@ -100,6 +100,16 @@ std::optional<NumberAndRest> leading_number(std::string_view text) {
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (failure != std::errc()) return std::nullopt;
   return NumberAndRest{number, text.substr(static_cast<std::size_t>(end - text.data()))};
+}
+
+/// The decimal number or fraction (1/6) that the text begins with, or nothing.
+std::optional<NumberAndRest> leading_number(std::string_view text) {
+  const auto numerator = leading_decimal(text);
+  if (!numerator || numerator->rest.size() < 2 || numerator->rest[0] != '/' || !is_digit(numerator->rest[1]))
+    return numerator;
+  const auto denominator = leading_decimal(numerator->rest.substr(1));
+  if (!denominator || denominator->number == 0) return std::nullopt;
+  return NumberAndRest{numerator->number / denominator->number, denominator->rest};
 }
 
 Complaint wrong_unit(std::string_view text, std::string_view given, std::string_view wanted) {
@@ -141,7 +151,7 @@ std::variant<std::int64_t, Complaint> parse_integer(std::string_view text) {
   std::int64_t integer = 0;
   const auto [end, failure] = std::from_chars(whole.data(), whole.data() + whole.size(), integer);
   if (failure == std::errc() && end == whole.data() + whole.size()) return integer;
-  const auto parts = leading_number(whole);    // 1e6, +5
+  const auto parts = leading_decimal(whole);   // 1e6, +5
   constexpr double kExact = 9007199254740992;  // 2^53
   const bool is_whole = parts && parts->rest.empty() && std::trunc(parts->number) == parts->number;
   if (!is_whole || std::abs(parts->number) > kExact) return complain(text, "is not a whole number");

@@ -14,8 +14,8 @@ struct Complaint {
   std::string text;
 };
 
-/// Reads a number with or without a unit: "5cm", "0.3 deg", "-1.5e-3", "20ms". A number without a unit is in
-/// `unit`; with one, it is converted to `unit`.
+/// Reads a number with or without a unit: "5cm", "0.3 deg", "-1.5e-3", "1/6deg". A number without a unit is
+/// in `unit`; with one, it is converted to `unit`.
 ///
 /// Refused: units of another dimension or not known, a unit on a number that has none (`unit` empty), leading
 /// zeros ("010" is 8 to some readers and 10 to others), inf, nan, hexadecimal, anything behind the number.

@@ -47,6 +47,30 @@ TEST_F(ProgramTest, RunsAPipelineAndWritesItsResultSummaryAndProvenance) {
   EXPECT_EQ(provenance["inputs"][0]["bytes"], fs::file_size(folder_ / "sum.yaml"));
 }
 
+TEST_F(ProgramTest, FindsInstalledPipelinesByName) {
+  const auto found = crisp({"validate", "calibrate"});
+  EXPECT_EQ(found.status, 0) << found.error;
+  EXPECT_THAT(found.out, HasSubstr("configs/calibrate.yaml: right"));
+  const auto unknown = crisp({"run", "calibrat"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_EQ(
+      unknown.error,
+      "error: pipeline: there is no file calibrat, and no installed pipeline of that name; did you mean "
+      "'calibrate'?; crisp run --help tells more\n");
+  EXPECT_THAT(crisp({"run", "xyz"}).error, HasSubstr("give a YAML file, or one of assemble, basin, bound,"));
+}
+
+TEST_F(ProgramTest, CalibratesByAShortForm) {
+  ASSERT_EQ(crisp({"run", "simulate", "-o", path("made"), "--set", "grabber.simulate.duration=4s"}).status,
+            0);
+  const auto brief = crisp({"calibrate", path("made/hub.pcap"), "-o", path("brief")});
+  const auto full = crisp({"run", "calibrate", "-i", path("made/hub.pcap"), "-o", path("full")});
+  EXPECT_EQ(brief.status, full.status) << brief.error;
+  EXPECT_EQ(content("brief/cloud.pcd"), content("full/cloud.pcd"));
+  EXPECT_GT(content("brief/cloud.pcd").size(), 100000U);
+  EXPECT_EQ(crisp({"diagnose", path("no.pcap")}).error, "error: there is no input " + path("no.pcap") + "\n");
+}
+
 TEST_F(ProgramTest, LetsSettingsGoBeforeTheFileAndFlagsThatAreNotGivenNot) {
   const auto run =
       crisp({"run", path("sum.yaml"), "-o", path("out"), "--set", "toy.count.first=10", "--quiet"});

@@ -54,6 +54,17 @@ TEST(Quantity, TakesAPlainNumberAsSi) {
   EXPECT_EQ(value("0", "rad"), 0);
 }
 
+TEST(Quantity, ReadsFractions) {
+  EXPECT_EQ(value("1/2 m", "m"), 0.5);
+  EXPECT_EQ(value("1/6deg", "rad"), value("1deg", "rad") / 6);
+  EXPECT_EQ(value("-3/4", ""), -0.75);
+  EXPECT_EQ(value("1/1e3", ""), 1e-3);
+  EXPECT_EQ(value("30rad/s", "rad/s"), 30);
+  EXPECT_THAT(refusal("1/0", ""), HasSubstr("is not a number"));
+  EXPECT_THAT(refusal("1/2/3", ""), HasSubstr("has a unit"));
+  EXPECT_THAT(refusal("1/", ""), HasSubstr("has a unit"));
+}
+
 TEST(Quantity, RefusesUnitsInsteadOfStrippingThem) {
   EXPECT_EQ(refusal("5cm", "s"), "'5cm' cannot be converted to s");
   EXPECT_EQ(refusal("5cm", ""), "'5cm' has a unit, but a plain number is wanted");
@@ -63,7 +74,8 @@ TEST(Quantity, RefusesUnitsInsteadOfStrippingThem) {
 }
 
 TEST(Quantity, RefusesWhatIsNoPlainDecimalNumber) {
-  for (const auto* text : {"", " ", "m", "inf", "-inf", "nan", "--5", "+-5", "1e999", "five", "-", "."}) {
+  for (const auto* text :
+       {"", " ", "m", "/2", "inf", "-inf", "nan", "--5", "+-5", "1e999", "five", "-", "."}) {
     EXPECT_THAT(refusal(text, "m"), HasSubstr("is not a number")) << text;
   }
   EXPECT_THAT(refusal("010", ""), HasSubstr("begins with 0"));
