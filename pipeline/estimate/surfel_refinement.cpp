@@ -2,6 +2,7 @@
 #include "pipeline/estimate/surfel_refinement.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -143,11 +144,11 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
     result = std::move(next);
     result.restarts = restart + 1;
   }
-  for (const std::string& move : far_moves(from, result.outcome, settings.prior)) {
+  if (const auto moves = far_moves(from, result.outcome, settings.prior); !moves.empty()) {
     result.outcome.doubts.push_back(fmt::format(
-        "the refinement did not settle: {} in its last of {} restarts. Check the rig's mount and nominal "
+        "the refinement did not settle: in the last of {} restarts {}. Check the rig's mount and nominal "
         "values, or start from a better calibration (calibrate.load)",
-        move, kRestarts));
+        kRestarts, fmt::join(moves, "; ")));
   }
   return result;
 }

@@ -162,11 +162,16 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
   const double noise = settings_.surfels.noise;
   context.report({{"misfit", misfit_of(refined, noise)}, {"neighbour_noise", refined.scatter}});
   const auto of_fit = check_fit(refined, calibration, *start_, context.rig(), noise);
-  auto caveats =
-      mistakes(sample, refined, of_fit.empty(), *measure, context);  // first, as they explain the rest
-  caveats.insert(caveats.end(), of_fit.begin(), of_fit.end());
-  for (const auto& caveat : caveats) context.distrust(caveat);
-  if (caveats.empty() && start_->doubts.empty()) {
+  const auto of_rig = mistakes(sample, refined, of_fit.empty(), *measure, context);
+  for (const auto& mistake : of_rig) context.distrust(mistake);
+  // A mistake that is known by name explains the rest, which nobody needs to look into before it is mended.
+  for (const auto& caveat : of_fit) {
+    if (of_rig.empty())
+      context.distrust(caveat);
+    else
+      context.say("probably for that reason: " + caveat);
+  }
+  if (of_rig.empty() && of_fit.empty() && start_->doubts.empty()) {
     context.lift_doubts(KindName<Calibration>::value,
                         "the refined calibration fits, and agrees with the rig");
   }
