@@ -89,9 +89,11 @@ function(crisp_library name)
   endif()
 
   file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
-  install(TARGETS ${target} EXPORT crispTargets)
+  install(TARGETS ${target} EXPORT crispTargets
+          LIBRARY COMPONENT libraries NAMELINK_COMPONENT development
+          ARCHIVE COMPONENT development)
   install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/crisp/${folder}"
-          FILES_MATCHING PATTERN "*.hpp")
+          COMPONENT development FILES_MATCHING PATTERN "*.hpp")
 endfunction()
 
 # crisp_test(<name> [THREADS] [SLOW <filter>] [SMOKE <filter>] [LONG <filter>] SOURCES ... LIBRARIES ...)

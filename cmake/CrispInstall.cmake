@@ -7,8 +7,9 @@ set(package "${CMAKE_INSTALL_LIBDIR}/cmake/crisp")
 configure_package_config_file(cmake/crispConfig.cmake.in "${CMAKE_BINARY_DIR}/crispConfig.cmake"
                               INSTALL_DESTINATION "${package}")
 write_basic_package_version_file("${CMAKE_BINARY_DIR}/crispConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
-install(EXPORT crispTargets NAMESPACE crisp:: DESTINATION "${package}")
+install(EXPORT crispTargets NAMESPACE crisp:: DESTINATION "${package}" COMPONENT development)
 install(FILES "${CMAKE_BINARY_DIR}/crispConfig.cmake" "${CMAKE_BINARY_DIR}/crispConfigVersion.cmake"
-              cmake/CrispPackages.cmake cmake/CrispPlugin.cmake DESTINATION "${package}")
-install(DIRECTORY configs/ DESTINATION "${CMAKE_INSTALL_DATADIR}/crisp/configs")
-install(FILES LICENSE README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+              cmake/CrispPackages.cmake cmake/CrispPlugin.cmake DESTINATION "${package}" COMPONENT development)
+install(DIRECTORY configs/ DESTINATION "${CMAKE_INSTALL_DATADIR}/crisp/configs" COMPONENT program)
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
+install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
