@@ -276,6 +276,15 @@ void CommandLine::add_stage_options(
   }
 }
 
+void CommandLine::add_parts(CLI::App* to, const std::string& stage, StudyRequest& request) {
+  request.stage = stage;
+  CLI::Option* shard =
+      to->add_option("--shard", request.shard, "Only the i-th of n parts of the study, on any machine")
+          ->type_name("i/n");
+  to->add_flag("--merge", request.merge, "Do nothing anew, but merge what the parts in the folder gave")
+      ->excludes(shard);
+}
+
 void CommandLine::add_bound() {
   bound_app = command("bound", "Say before a recording how well it would determine the parameters");
   add_own_pipeline(bound_app, "bound.yaml", kBoundPipeline, "out/bound", "--threads", bound);
@@ -297,9 +306,10 @@ void CommandLine::add_basin() {
   basin_app->add_option("-n,--starts", basin_starts, "How many")
       ->check(whole_number(1, 1000000))
       ->capture_default_str();
-  add_own_pipeline(basin_app, "basin.yaml", kBasinPipeline, "out/basin", "-j,--threads", basin);
-  add_rig(basin_app, basin.arguments);
-  add_stage_options(basin_app, "study.basin", basin,
+  add_own_pipeline(basin_app, "basin.yaml", kBasinPipeline, "out/basin", "-j,--threads", basin.run);
+  add_rig(basin_app, basin.run.arguments);
+  add_parts(basin_app, "study.basin", basin);
+  add_stage_options(basin_app, "study.basin", basin.run,
                     {{"scene", kScenes},
                      {"scene_file", "A scene of your own in YAML"},
                      {"beams", "in_plane: of each laser the two in the plate's plane; or all"}});
@@ -345,10 +355,11 @@ void CommandLine::add_monte_carlo() {
                                                   "How many; run k has the seed --seed + k - 1");
   runs->check(whole_number(1, 1000000))->capture_default_str();
   add_own_pipeline(monte_carlo_app, "monte_carlo.yaml", kMonteCarloPipeline, "out/monte_carlo",
-                   "-j,--threads", monte_carlo);
-  add_rig(monte_carlo_app, monte_carlo.arguments);
+                   "-j,--threads", monte_carlo.run);
+  add_rig(monte_carlo_app, monte_carlo.run.arguments);
+  add_parts(monte_carlo_app, "study.monte_carlo", monte_carlo);
   add_stage_options(
-      monte_carlo_app, "study.monte_carlo", monte_carlo,
+      monte_carlo_app, "study.monte_carlo", monte_carlo.run,
       {{"scene", kScenes},
        {"scene_file", "A scene of your own in YAML"},
        {"beams", "in_plane: of each laser the two in the plate's plane; or all"},
@@ -358,6 +369,8 @@ void CommandLine::add_monte_carlo() {
   monte_carlo_app->add_option("--only", monte_carlo_only, "Repeat the run of this seed alone")
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->excludes(runs)
+      ->excludes(monte_carlo_app->get_option("--shard"))
+      ->excludes(monte_carlo_app->get_option("--merge"))
       ->excludes(monte_carlo_app->get_option("--seed"));
 }
 

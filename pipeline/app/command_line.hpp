@@ -14,6 +14,7 @@
 #include "pipeline/app/batch_commands.hpp"
 #include "pipeline/app/cluster_command.hpp"
 #include "pipeline/app/commands.hpp"
+#include "pipeline/app/study_command.hpp"
 
 namespace crisp {
 
@@ -29,11 +30,11 @@ struct CommandLine {
   BatchTableRequest batch_table;
   BatchRetryRequest batch_retry;
   ClusterSubmitRequest cluster_submit;
-  RunRequest basin;
+  StudyRequest basin;
   std::uint64_t basin_starts = 1000;
   RunRequest bound;
   RunRequest figures;
-  RunRequest monte_carlo;
+  StudyRequest monte_carlo;
   RunRequest record;
   RunRequest emulate;
   std::uint64_t monte_carlo_runs = 1500;
@@ -95,6 +96,8 @@ struct CommandLine {
   /// Options of the one stage of a pipeline, as options of the command.
   static void add_stage_options(CLI::App* to, const std::string& stage, RunRequest& request,
                                 std::initializer_list<std::pair<std::string, std::string>> names_and_help);
+  /// A study can be divided, and is merged then.
+  static void add_parts(CLI::App* to, const std::string& stage, StudyRequest& request);
   void add_bound();
   void add_basin();
   void add_record();

@@ -11,15 +11,16 @@ namespace {
 // line breaks only, so that names with blanks stay whole.
 constexpr const char* kScript = R"bash(# bash completion of crisp
 _crisp() {{
-  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} command="" i
+  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} command="" known i
   local IFS=$'\n'
   COMPREPLY=()
   for ((i = 1; i < COMP_CWORD; i++)); do
-    case ${{COMP_WORDS[i]}} in
-      {names}) command=${{COMP_WORDS[i]}}; break ;;
+    known=${{command:+$command }}${{COMP_WORDS[i]}}
+    case $known in
+      {names}) command=$known ;;
     esac
   done
-  local options="" values="" stages=""
+  local options="" values="" verbs="" stages=""
   case $command in
 {cases}    *) options=$'{top}' ;;
   esac
@@ -27,6 +28,8 @@ _crisp() {{
     return
   elif [[ $word == -* || -z $command ]]; then
     COMPREPLY=($(compgen -W "$options" -- "$word"))
+  elif [[ -n $verbs && $before == "$command" ]]; then
+    COMPREPLY=($(compgen -W "$verbs" -- "$word"))
   elif [[ -n $stages ]]; then
     COMPREPLY=($(compgen -W "$("${{COMP_WORDS[0]}}" $stages --names 2>/dev/null)" -- "$word"))
   fi
@@ -37,16 +40,18 @@ complete -o default -F _crisp crisp
 }  // namespace
 
 std::string bash_completion(const std::vector<CommandWords>& commands) {
-  std::vector<std::string> names;
+  std::vector<std::string> names;  // as patterns: "batch status" is a name, too
+  std::vector<std::string> top;
   std::string cases;
   for (const auto& command : commands) {
-    names.push_back(command.name);
-    cases += fmt::format("    {}) options=$'{}'; values=$'{}'; stages={} ;;\n", command.name,
+    names.push_back("'" + command.name + "'");
+    if (command.name.find(' ') == std::string::npos) top.push_back(command.name);
+    cases += fmt::format("    '{}') options=$'{}'; values=$'{}'; verbs=$'{}'; stages={} ;;\n", command.name,
                          fmt::join(command.options, "\\n"), fmt::join(command.with_value, "\\n"),
-                         command.takes_name ? command.name : "");
+                         fmt::join(command.verbs, "\\n"), command.takes_name ? command.name : "");
   }
   return fmt::format(kScript, fmt::arg("names", fmt::join(names, "|")), fmt::arg("cases", cases),
-                     fmt::arg("top", fmt::format("{}\\n--help\\n--version", fmt::join(names, "\\n"))));
+                     fmt::arg("top", fmt::format("{}\\n--help\\n--version", fmt::join(top, "\\n"))));
 }
 
 }  // namespace crisp

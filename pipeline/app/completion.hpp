@@ -8,9 +8,10 @@ namespace crisp {
 
 /// What can be written behind one of the program's commands.
 struct CommandWords {
-  std::string name;
+  std::string name;                     ///< "run", or with a verb "batch status"
   std::vector<std::string> options;     ///< "--seed", "-i", …
   std::vector<std::string> with_value;  ///< those of them behind which a value stands
+  std::vector<std::string> verbs;       ///< that may stand next: "status"
   bool takes_name = false;              ///< its argument is what the command lists: a stage, an effect
 };
 

@@ -19,17 +19,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-RunRequest basin_request(const CommandLine& line) {
-  RunRequest request = line.basin;
-  request.arguments.set.push_back("starts=" + std::to_string(line.basin_starts));
+StudyRequest basin_request(const CommandLine& line) {
+  StudyRequest request = line.basin;
+  request.run.arguments.set.push_back("starts=" + std::to_string(line.basin_starts));
   return request;
 }
 
-RunRequest monte_carlo_request(const CommandLine& line) {
-  RunRequest request = line.monte_carlo;
-  if (line.monte_carlo_only) request.seed = *line.monte_carlo_only;
+StudyRequest monte_carlo_request(const CommandLine& line) {
+  StudyRequest request = line.monte_carlo;
+  if (line.monte_carlo_only) request.run.seed = *line.monte_carlo_only;
   const std::uint64_t runs = line.monte_carlo_only ? 1 : line.monte_carlo_runs;
-  request.arguments.set.push_back("runs=" + std::to_string(runs));
+  request.run.arguments.set.push_back("runs=" + std::to_string(runs));
   return request;
 }
 
@@ -39,18 +39,30 @@ ClusterSubmitRequest cluster_submit_request(const CommandLine& line) {
   return request;
 }
 
+void add_options(const CLI::App& command, CommandWords& words) {
+  for (const CLI::Option* option : command.get_options()) {
+    std::vector<std::string> names;
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+    for (const auto& name : option->get_snames()) names.push_back("-" + name);
+    words.options.insert(words.options.end(), names.begin(), names.end());
+    if (option->get_items_expected_max() > 0)
+      words.with_value.insert(words.with_value.end(), names.begin(), names.end());
+  }
+}
+
 std::vector<CommandWords> completion_words(const CommandLine& line) {
   std::vector<CommandWords> commands;
   for (const CLI::App* sub : line.app.get_subcommands({})) {
-    CommandWords words{sub->get_name(), {}, {}, sub == line.stages_app || sub == line.effects_app};
-    for (const CLI::Option* option : sub->get_options()) {
-      std::vector<std::string> names;
-      for (const auto& name : option->get_lnames()) names.push_back("--" + name);
-      for (const auto& name : option->get_snames()) names.push_back("-" + name);
-      words.options.insert(words.options.end(), names.begin(), names.end());
-      if (option->get_items_expected_max() > 0) {
-        words.with_value.insert(words.with_value.end(), names.begin(), names.end());
-      }
+    CommandWords words{.name = sub->get_name(),
+                       .takes_name = sub == line.stages_app || sub == line.effects_app};
+    add_options(*sub, words);
+    for (const CLI::App* verb : sub->get_subcommands({})) {
+      words.verbs.push_back(verb->get_name());
+      CommandWords with_verb{.name = words.name + " " + verb->get_name()};
+      add_options(*verb, with_verb);
+      // It runs the batch, and takes its options.
+      if (verb == line.batch_retry_app) add_options(*sub, with_verb);
+      commands.push_back(std::move(with_verb));
     }
     commands.push_back(std::move(words));
   }
@@ -141,12 +153,12 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.diagnose_app->parsed()) return run_command(line.diagnose, registrar);
   if (line.batch_app->parsed()) return run_batch_command(line, registrar);
   if (line.cluster_app->parsed()) return cluster_submit_command(cluster_submit_request(line), registrar);
-  if (line.basin_app->parsed()) return run_command(basin_request(line), registrar);
+  if (line.basin_app->parsed()) return study_command(basin_request(line), registrar);
   if (line.bound_app->parsed()) return run_command(line.bound, registrar);
   if (line.record_app->parsed()) return run_command(line.record, registrar);
   if (line.emulate_app->parsed()) return run_command(line.emulate, registrar);
   if (line.figures_app->parsed()) return run_command(line.figures, registrar);
-  if (line.monte_carlo_app->parsed()) return run_command(monte_carlo_request(line), registrar);
+  if (line.monte_carlo_app->parsed()) return study_command(monte_carlo_request(line), registrar);
   if (line.validate_app->parsed()) return validate_command(line.validate_file, line.validate, registrar);
   if (line.stages_app->parsed()) return stages_command(line.stages, registrar);
   if (line.effects_app->parsed()) return effects_command(line.effects, registrar);

@@ -137,13 +137,14 @@ class Exploration {
 
 std::vector<BasinRecording> explore_basin(const BasinSettings& settings, const MakeMeasure& make_measure,
                                           const StudyHooks& hooks) {
-  const std::size_t each = std::max<std::size_t>(1, settings.starts_a_recording);
-  const std::size_t recordings = (settings.starts + each - 1) / each;
-  return run_in_parallel<BasinRecording>(recordings, settings.threads, hooks, [&](std::size_t k) {
-    const auto measure = make_measure();
-    return Exploration(settings, settings.first_seed + k, *measure)
-        .run(std::min(each, settings.starts - k * each));
-  });
+  const std::size_t each = settings.starts_a_recording;
+  return run_in_parallel<BasinRecording>(
+      share_of(settings.part, settings.recordings()), settings.threads, hooks, [&](std::size_t k) {
+        const auto measure = make_measure();
+        const std::size_t recording = run_of(settings.part, k);
+        return Exploration(settings, settings.first_seed + recording, *measure)
+            .run(std::min(each, settings.starts - recording * each));
+      });
 }
 
 }  // namespace crisp

@@ -7,6 +7,7 @@
 
 #include "pipeline/data/degree.hpp"
 #include "plugins/study/parallel_runs.hpp"
+#include "plugins/study/study_part.hpp"
 #include "plugins/study/trial.hpp"
 
 namespace crisp {
@@ -28,7 +29,11 @@ struct BasinSettings {
   std::size_t starts_a_recording = 20;  ///< then a new one is simulated
   double same = 3;               ///< [standard errors] ends that are no farther from one another are the same
   std::uint64_t first_seed = 1;  ///< of the first recording
+  Shard part;                    ///< which recordings are explored
   unsigned threads = 1;
+
+  /// How many recordings there are for all starts.
+  std::size_t recordings() const { return (starts + starts_a_recording - 1) / starts_a_recording; }
 };
 
 /// How a calibration ended, against the optimum at the truth: calibrate.refine alone, from the truth on.

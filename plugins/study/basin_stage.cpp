@@ -8,6 +8,7 @@
 #include "pipeline/stage/option_check.hpp"
 #include "plugins/study/basin_text.hpp"
 #include "plugins/study/rqe.hpp"
+#include "plugins/study/run_json.hpp"
 
 namespace crisp {
 
@@ -59,11 +60,12 @@ void BasinStage::describe(StageDescription<BasinStage>& d) {
       .unit("rad")
       .range(0, 3.2);
   d.option("eta", &BasinStage::settings_, range, &StartRange::eta, "and eta").unit("s").range(0, 1);
+  describe_part(d, &BasinStage::part_);
   d.option("file", &BasinStage::file_, "where every start goes, as CSV").writes();
 }
 
 void BasinStage::check(const RunSettings& run) const {
-  check_all([&] { check_lasers(settings_.trial, run.rig); },
+  check_all([&] { check_part(part_, run); }, [&] { check_lasers(settings_.trial, run.rig); },
             of_option("tau_most",
                       [&] {
                         if (settings_.range.tau_least <= settings_.range.tau_most) return;
@@ -79,19 +81,22 @@ void BasinStage::process(const Inputs&, Outputs&, Context& context) {
   settings.threads = context.threads();
   settings.trial.rig = context.rig();
   settings.trial.scene = scene_.load(context);
-  const std::size_t recordings =
-      (settings.starts + settings.starts_a_recording - 1) / settings.starts_a_recording;
-  recordings_ = explore_basin(settings, rqe_maker(context.run()),
-                              {.progress =
-                                   [&](std::size_t done) {
-                                     context.progress({.done = static_cast<double>(done),
-                                                       .total = static_cast<double>(recordings),
-                                                       .unit = "recordings"});
-                                   },
-                               .interrupted = [&] { return context.interrupted(); }});
+  if (part_.is_part()) settings.part = parse_shard(part_.part);
+  extent_ = {.first_seed = settings.first_seed, .runs = settings.recordings()};
+  const auto progress = [&](std::size_t done) {
+    context.progress({.done = static_cast<double>(done),
+                      .total = static_cast<double>(share_of(settings.part, extent_.runs)),
+                      .unit = "recordings"});
+  };
+  const auto explore = [&] {
+    return explore_basin(settings, rqe_maker(context.run()),
+                         {.progress = progress, .interrupted = [&] { return context.interrupted(); }});
+  };
+  recordings_ = run_or_read<BasinRecording>(context, part_, extent_, explore, basin_of);
 }
 
 void BasinStage::finish(Outputs&, Context& context) {
+  if (write_if_part(context, part_, extent_, recordings_, basin_json)) return;
   const BasinTally tally = tally_of(recordings_);
   context.say(basin_text(recordings_));
   context.report({{"starts", tally.starts},

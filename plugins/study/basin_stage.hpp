@@ -7,6 +7,7 @@
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/study/basin.hpp"
+#include "plugins/study/part_file.hpp"
 
 namespace crisp {
 
@@ -27,6 +28,8 @@ class BasinStage final : public Stage {
   BasinSettings settings_;
   SceneChoice scene_{.name = "paper", .file = {}};
   std::filesystem::path file_;
+  StudyPart part_;
+  StudyExtent extent_;  ///< recordings
   std::vector<BasinRecording> recordings_;
 };
 

@@ -5,9 +5,10 @@ namespace crisp {
 
 std::vector<Trial> run_trials(const MonteCarloSettings& settings, const MakeMeasure& make_measure,
                               const StudyHooks& hooks) {
-  return run_in_parallel<Trial>(settings.runs, settings.threads, hooks, [&](std::size_t run) {
-    return run_trial(settings.trial, settings.first_seed + run, make_measure);
-  });
+  return run_in_parallel<Trial>(
+      share_of(settings.part, settings.runs), settings.threads, hooks, [&](std::size_t k) {
+        return run_trial(settings.trial, settings.first_seed + run_of(settings.part, k), make_measure);
+      });
 }
 
 }  // namespace crisp

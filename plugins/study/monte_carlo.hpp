@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "plugins/study/parallel_runs.hpp"
+#include "plugins/study/study_part.hpp"
 #include "plugins/study/trial.hpp"
 
 namespace crisp {
@@ -12,11 +13,12 @@ struct MonteCarloSettings {
   TrialSettings trial;
   std::uint64_t first_seed = 1;  ///< run k has the seed first_seed + k
   std::size_t runs = 1500;
+  Shard part;  ///< which of them are done
   unsigned threads = 1;
 };
 
-/// Runs all trials, in the order of their seeds. What each gives depends on its seed alone, and not on the
-/// number of threads. Interrupted, it returns early, with trials missing.
+/// Runs all trials of the part, in the order of their seeds. What each gives depends on its seed alone, and
+/// not on the number of threads. Interrupted, it returns early, with trials missing.
 std::vector<Trial> run_trials(const MonteCarloSettings& settings, const MakeMeasure& make_measure,
                               const StudyHooks& hooks = {});
 

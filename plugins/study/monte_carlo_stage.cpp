@@ -12,6 +12,7 @@
 #include "pipeline/stage/option_check.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/study/rqe.hpp"
+#include "plugins/study/run_json.hpp"
 #include "plugins/study/table.hpp"
 
 namespace crisp {
@@ -107,13 +108,14 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
       .unit("m")
       .range(1e-3, 10)
       .count(2, 2);
+  describe_part(d, &MonteCarloStage::part_);
   d.option("runs_file", &MonteCarloStage::runs_file_, "where every run goes, as CSV").writes();
   d.option("table_file", &MonteCarloStage::table_file_, "where the table goes, as text").writes();
 }
 
 void MonteCarloStage::check(const RunSettings& run) const {
   const MotionSettings& motion = settings_.trial.motion;
-  check_all([&] { check_lasers(settings_.trial, run.rig); },
+  check_all([&] { check_part(part_, run); }, [&] { check_lasers(settings_.trial, run.rig); },
             of_option("sigma",
                       [&] {
                         if (sigma_[0] >= sigma_[1]) return;
@@ -166,17 +168,22 @@ void MonteCarloStage::process(const Inputs&, Outputs&, Context& context) {
   use_effects(settings.trial, context.run());
   settings.trial.rqe.in_plane.sigma_from = sigma_[0];
   settings.trial.rqe.in_plane.sigma_to = sigma_[1];
-  trials_ = run_trials(settings, rqe_maker(context.run()),
-                       {.progress =
-                            [&](std::size_t done) {
-                              context.progress({.done = static_cast<double>(done),
-                                                .total = static_cast<double>(settings.runs),
-                                                .unit = "runs"});
-                            },
-                        .interrupted = [&] { return context.interrupted(); }});
+  if (part_.is_part()) settings.part = parse_shard(part_.part);
+  extent_ = {.first_seed = settings.first_seed, .runs = settings.runs};
+  const auto progress = [&](std::size_t done) {
+    context.progress({.done = static_cast<double>(done),
+                      .total = static_cast<double>(share_of(settings.part, settings.runs)),
+                      .unit = "runs"});
+  };
+  const auto run = [&] {
+    return run_trials(settings, rqe_maker(context.run()),
+                      {.progress = progress, .interrupted = [&] { return context.interrupted(); }});
+  };
+  trials_ = run_or_read<Trial>(context, part_, extent_, run, trial_of);
 }
 
 void MonteCarloStage::finish(Outputs&, Context& context) {
+  if (write_if_part(context, part_, extent_, trials_, trial_json)) return;
   const bool papers = scene_.name == "paper" && scene_.file.empty() && trial().beams == BeamChoice::kInPlane;
   const Table table = table_of(trials_, papers);
   const std::string text = table_text(table);

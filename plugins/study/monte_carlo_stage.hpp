@@ -8,6 +8,7 @@
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/study/monte_carlo.hpp"
+#include "plugins/study/part_file.hpp"
 
 namespace crisp {
 
@@ -41,6 +42,8 @@ class MonteCarloStage final : public Stage {
   std::vector<double> sigma_ = {0.5, 0.1};
   std::filesystem::path runs_file_;
   std::filesystem::path table_file_;
+  StudyPart part_;
+  StudyExtent extent_;
   std::vector<Trial> trials_;
 };
 

@@ -277,40 +277,59 @@ std::vector<pid_t> children_of(pid_t process) {
   return children;
 }
 
-/// Each round ends with the batch dead; in every other one a job was killed before.
-TEST_F(BatchTest, DoesEachRecordingOnceWhateverIsKilledInWhichMoment) {
-  constexpr int kRecordings = 40;
-  constexpr int kRounds = 30;
-  for (int i = 0; i < kRecordings; ++i) put("r" + std::to_string(i) + ".pcap", "done");
-  std::mt19937 random(1);
-  std::uniform_int_distribution<int> milliseconds(0, 60);
-  const auto pause = [&] { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds(random))); };
-  for (int round = 0; round < kRounds; ++round) {
-    const pid_t child = start(words({"--jobs", "2"}));
-    pause();
-    if (round % 2 == 1) {
-      for (const pid_t launcher : children_of(child)) {
-        for (const pid_t job : children_of(launcher)) kill(job, SIGKILL);
-      }
+/// Batches that are killed, and go on.
+class KilledBatchTest : public BatchTest {
+ protected:
+  /// Each round has new recordings, and ends with the batch dead; in every other one a job was killed before.
+  void run_rounds(int rounds) {
+    constexpr int kNewInARound = 4;
+    std::mt19937 random(1);
+    std::uniform_int_distribution<int> milliseconds(0, 60);
+    const auto pause = [&] { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds(random))); };
+    for (int round = 0; round < rounds; ++round) {
+      for (int i = 0; i < kNewInARound; ++i) put("r" + std::to_string(recordings_++) + ".pcap", "done");
+      const pid_t child = start(words({"--jobs", "2"}));
       pause();
+      if (round % 2 == 1) {
+        for (const pid_t launcher : children_of(child)) {
+          for (const pid_t job : children_of(launcher)) kill(job, SIGKILL);
+        }
+        pause();
+      }
+      kill(child, SIGKILL);
+      wait_for(child);
     }
-    kill(child, SIGKILL);
-    wait_for(child);
   }
+
+  void expect_each_done_once() const {
+    std::map<std::string, int> done;
+    std::istringstream events(content("out/manifest/batch/events.jsonl"));
+    for (std::string line; std::getline(events, line);) {
+      const auto event = nlohmann::json::parse(line);
+      if (event["event"] == "end" && event["status"] == "done") ++done[event["name"]];
+    }
+    EXPECT_EQ(done.size(), recordings_);
+    for (const auto& [name, times] : done) {
+      EXPECT_EQ(times, 1) << name;
+      EXPECT_EQ(content("out/" + name + "/" + name + ".txt"), "done\n");
+      EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out" / name), {}), 3)
+          << "nothing is left of kills";
+    }
+  }
+
+  std::size_t recordings_ = 0;
+};
+
+TEST_F(KilledBatchTest, DoesEachRecordingOnceWhateverIsKilledInWhichMoment) {
+  run_rounds(20);
   EXPECT_EQ(batch().status, 0);
-  std::map<std::string, int> done;
-  std::istringstream events(content("out/manifest/batch/events.jsonl"));
-  for (std::string line; std::getline(events, line);) {
-    const auto event = nlohmann::json::parse(line);
-    if (event["event"] == "end" && event["status"] == "done") ++done[event["name"]];
-  }
-  EXPECT_EQ(done.size(), static_cast<std::size_t>(kRecordings));
-  for (const auto& [name, times] : done) {
-    EXPECT_EQ(times, 1) << name;
-    EXPECT_EQ(content("out/" + name + "/" + name + ".txt"), "done\n");
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out" / name), {}), 3)
-        << "nothing is left of kills";
-  }
+  expect_each_done_once();
+}
+
+TEST_F(KilledBatchTest, DoesEachRecordingOnceThroughAHundredRounds) {
+  run_rounds(100);
+  EXPECT_EQ(batch().status, 0);
+  expect_each_done_once();
 }
 
 }  // namespace

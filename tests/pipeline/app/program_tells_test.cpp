@@ -224,6 +224,42 @@ TEST_F(ProgramTest, RepeatsARunOfTheMonteCarloAlone) {
   EXPECT_EQ(run({"--only", "9", "-n", "2"}).status, 2);
 }
 
+/// What a study is called with, small enough for a test.
+std::vector<std::string> small_study(const std::string& command, const fs::path& output,
+                                     const std::vector<std::string>& more) {
+  std::vector<std::string> words = {
+      command, "-n", command == "basin" ? "6" : "5", "--seed", "8", "-j", "1", "-o", output.string()};
+  words.insert(words.end(), more.begin(), more.end());
+  const std::string stage = command == "basin" ? "study.basin." : "study.monte_carlo.";
+  words.insert(words.end(), {"--set", stage + "lasers=1", "--set", stage + "duration=4s"});
+  if (command == "basin") words.insert(words.end(), {"--set", stage + "starts_a_recording=2"});
+  return words;
+}
+
+TEST_F(ProgramTest, MergesPartsOfAStudyToTheBytesOfOneMachine) {
+  for (const std::string command : {"monte-carlo", "basin"}) {
+    const fs::path alone = folder_ / command / "alone";
+    const fs::path parts = folder_ / command / "parts";
+    const int status = wait_for(start(small_study(command, alone, {}))).status;
+    const auto early = wait_for(start(small_study(command, parts, {"--merge"})));
+    EXPECT_EQ(early.status, 1);
+    EXPECT_THAT(early.error, HasSubstr("run the parts with --shard i/n"));
+    for (const char* shard : {"1/2", "2/2"}) {
+      const auto part = wait_for(start(small_study(command, parts, {"--shard", shard})));
+      EXPECT_EQ(part.status, 0) << part.error;
+    }
+    const auto merged = wait_for(start(small_study(command, parts, {"--merge"})));
+    EXPECT_EQ(merged.status, status) << merged.error;
+    for (const char* file : {"monte_carlo.csv", "table1.txt", "basin.csv"}) {
+      EXPECT_EQ(fs::exists(parts / file), fs::exists(alone / file));
+      if (!fs::exists(alone / file)) continue;
+      EXPECT_EQ(read_text_file(parts / file, 1 << 24), read_text_file(alone / file, 1 << 24)) << file;
+    }
+    EXPECT_EQ(wait_for(start(small_study(command, parts, {"--shard", "3/2"}))).status, 2);
+    EXPECT_EQ(wait_for(start(small_study(command, parts, {"--shard", "1/2", "--merge"}))).status, 2);
+  }
+}
+
 TEST_F(ProgramTest, CompletesItsCommandLineInBash) {
   const auto completed = [&](const std::string& words, int at) {
     const std::string script = "source <(" CRISP_PROGRAM " completion bash); COMP_WORDS=(" + words +
@@ -237,6 +273,15 @@ TEST_F(ProgramTest, CompletesItsCommandLineInBash) {
   EXPECT_EQ(completed(CRISP_PROGRAM " run --se", 2), "--set --seed ");
   EXPECT_EQ(completed(CRISP_PROGRAM " stages write.cal", 2), "write.calibration ");
   EXPECT_EQ(completed(CRISP_PROGRAM " effects noise.mi", 2), "noise.mixed_pixels ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " batch st", 2), "status ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " batch status --w", 3), "--watch ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " batch retry --ma", 3), "--match --mark ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " batch retry --jo", 3), "--jobs ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " batch table --j", 3), "--json ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " batch p.yaml --sh", 3), "--shard ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " batch p.yaml st", 3), " ");  // a file
+  EXPECT_EQ(completed(CRISP_PROGRAM " cluster s", 2), "submit ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " cluster submit --ta", 3), "--tasks ");
   EXPECT_EQ(completed(CRISP_PROGRAM " run --rig x", 3), " ");  // left to bash's own, which knows files
 }
 
