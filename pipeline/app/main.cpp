@@ -11,7 +11,9 @@
 #include "pipeline/app/builtin.hpp"
 #include "pipeline/app/command_line.hpp"
 #include "pipeline/app/completion.hpp"
+#include "pipeline/app/exhaustion.hpp"
 #include "pipeline/app/own_process.hpp"
+#include "pipeline/data/want_of_resources.hpp"
 #include "pipeline/files/nearest.hpp"
 
 namespace crisp {
@@ -229,6 +231,7 @@ int after_output(int status) {
 int main(int count, char** words) {
   std::signal(SIGXFSZ,
               SIG_IGN);  // a file beyond the shell's limit is an error as on a full disk, not the end
+  crisp::end_where_memory_is_exhausted();
   try {
     return after_output(crisp::guarded_main(count, words));
   } catch (const crisp::Error& error) {
@@ -237,7 +240,7 @@ int main(int count, char** words) {
     crisp::print_errors(crisp::Error(error.path1().string() + ": " + error.code().message(),
                                      "check the path and its permissions"));
   } catch (const std::exception& error) {
-    std::cerr << "error: " << error.what() << "\n";
+    crisp::print_errors(crisp::want_of_resources(error).value_or(crisp::Error(error.what())));
   } catch (...) {
     std::cerr << "error: a plugin threw what is no std::exception\n";
   }

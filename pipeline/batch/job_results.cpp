@@ -81,7 +81,7 @@ JobResults read_results(const fs::path& output) {
   if (!stream) return results;
   try {
     read_summary(Json::parse(stream), results);
-  } catch (const Json::exception& error) {
+  } catch (const std::exception& error) {  // what it says, or reading it
     results.json["reasons"].push_back((output / kSummary).string() + " cannot be read: " + error.what());
   }
   return results;

@@ -23,6 +23,7 @@ nlohmann::ordered_json last_batch(const std::filesystem::path& output) {
       time = event->time;
       last = line;
     }
+    if (stream.bad()) throw Error("cannot read " + manifest.string(), "check the disk");
   }
   return last.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json::parse(last);
 }

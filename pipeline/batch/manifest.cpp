@@ -107,6 +107,7 @@ std::size_t read_manifest(const fs::path& file,
     else
       ++damaged;
   }
+  if (stream.bad()) throw Error("cannot read " + file.string(), "check the disk");
   return damaged;
 }
 

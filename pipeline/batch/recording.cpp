@@ -73,6 +73,7 @@ class Finder {
     std::ifstream list(file);
     if (!list) throw Error("cannot read the list " + file.string(), "check its rights");
     add_list(list, absolute_of(file).parent_path());
+    if (list.bad()) throw Error("cannot read the list " + file.string(), "check the disk");
   }
 
   /// @param folder  that relative paths are relative to

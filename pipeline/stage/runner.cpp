@@ -5,10 +5,10 @@
 #include <deque>
 #include <iterator>
 #include <mutex>
-#include <new>
 #include <thread>
 #include <utility>
 
+#include "pipeline/data/want_of_resources.hpp"
 #include "pipeline/stage/stopwatch.hpp"
 
 namespace crisp {
@@ -322,11 +322,9 @@ class Runner {
     } catch (const Error& error) {
       const Place& place = error.place().file.empty() ? worker.node->place : error.place();
       throw Told(worker.node->tag + ": " + error.message(), error.advice(), place);
-    } catch (const std::bad_alloc&) {
-      throw Told(worker.node->tag + ": the memory is exhausted", "give it less data at once",
-                 worker.node->place);
-    } catch (const std::exception& error) {
-      throw Told(worker.node->tag + ": " + error.what(), {}, worker.node->place);
+    } catch (const std::exception& thrown) {
+      const Error error = want_of_resources(thrown).value_or(Error(thrown.what()));
+      throw Told(worker.node->tag + ": " + error.message(), error.advice(), worker.node->place);
     } catch (...) {
       throw Told(worker.node->tag + ": it threw what is no std::exception", "let it throw crisp::Error",
                  worker.node->place);

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Preloaded into a program, it makes one of the program's system calls on files below a folder fail.
+// Preloaded into a program, it makes one of the program's system calls fail: those on files below a folder,
+// and those that get a thread its stack. A large `operator new` counts as a call, too.
 //
-// A seccomp filter traps the calls, also those that the C library makes itself (fwrite, std::ofstream), which
-// symbols of a preloaded library never see. The handler of SIGSYS makes the call, or injects the fault:
+// A seccomp filter traps the calls of the C library, also those that it makes itself (fwrite, std::ofstream),
+// which symbols of a preloaded library never see. The handler of SIGSYS makes the call, or injects the fault.
+// Processes that the program forks count their calls together with it; what it executes is left alone.
 //
 //   CRISP_FAULT_FOLDER  the folder, absolute
 //   CRISP_FAULT_CALL    the number of the call that fails, from 1; 0: none
-//   CRISP_FAULT_KIND    a number of errno; "full": no space from that call on; "short": half of what is to be
-//                       written; "kill": SIGKILL before the call; "torn": SIGKILL after half of what is to be
-//                       written
+//   CRISP_FAULT_KIND    a number of errno; "full": no space from that call on; "starved": no memory from that
+//                       call on; "short": half of what is to be written; "kill": SIGKILL before the call;
+//                       "torn": SIGKILL after half of what is to be written
 //   CRISP_FAULT_LOG     file to which the injected call is appended as "NUMBER CALL PATH"; every call if
-//   there is no
-//                       number
+//   there is
+//                       no number
 #include <fcntl.h>
-#include <linux/audit.h>
-#include <linux/filter.h>
-#include <linux/seccomp.h>
-#include <sys/prctl.h>
+#include <sys/mman.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <ucontext.h>
@@ -31,11 +30,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 #include <string_view>
 
-// The one place from which trapped calls pass the filter, which knows it by the address behind `syscall`.
+#include "tests/faults/fault_filter.hpp"
+
+// Makes a call from outside the C library, which the filter lets pass.
 extern "C" long crisp_fault_pass(long number, long a, long b, long c, long d, long e, long f);
-extern "C" const char crisp_fault_behind_pass[];
 asm(R"(
   .text
   .globl crisp_fault_pass
@@ -48,15 +49,13 @@ crisp_fault_pass:
   mov %r9, %r8
   mov 8(%rsp), %r9
   syscall
-  .globl crisp_fault_behind_pass
-crisp_fault_behind_pass:
   ret
 )");
 
 namespace {
 
 /// How a call names the file that it works on.
-enum class Names : std::uint8_t { descriptor, path, folder_and_path };
+enum class Names : std::uint8_t { descriptor, path, folder_and_path, nothing };
 
 struct Call {
   int number;
@@ -87,7 +86,10 @@ constexpr std::array kCalls = {
     Call{SYS_unlinkat, "unlink", Names::folder_and_path},
     Call{SYS_mkdir, "mkdir", Names::path},
     Call{SYS_mkdirat, "mkdir", Names::folder_and_path},
+    Call{SYS_mmap, "thread", Names::nothing},
 };
+constexpr Call kNew = {-1, "new", Names::nothing};
+constexpr std::size_t kLarge = 1 << 16;  ///< [bytes] from which on an `operator new` counts
 
 using Arguments = std::array<long, 6>;
 using Path = std::array<char, 4096>;
@@ -96,7 +98,7 @@ std::string_view folder;
 std::string_view kind;
 const char* log_path = nullptr;
 long fault_at = 0;
-std::atomic<long> calls = 0;
+std::atomic<long>* calls = nullptr;  ///< shared with the processes that are forked
 
 long pass(long number, const Arguments& a) {
   return crisp_fault_pass(number, a[0], a[1], a[2], a[3], a[4], a[5]);
@@ -109,6 +111,8 @@ std::size_t path_of_descriptor(long descriptor, Path& path) {
                                        reinterpret_cast<long>(path.data()), path.size() - 1, 0, 0, 0);
   return length < 0 ? 0 : static_cast<std::size_t>(length);
 }
+
+bool is_stack(const Arguments& arguments) { return (arguments[3] & MAP_STACK) != 0; }
 
 std::string_view path_of(const Call& call, const Arguments& arguments, Path& path) {
   if (call.names == Names::descriptor) return {path.data(), path_of_descriptor(arguments[call.at], path)};
@@ -155,19 +159,40 @@ bool needs_room(const Call& call, const Arguments& arguments) {
 long inject(const Call& call, const Arguments& arguments) {
   if (kind == "torn") pass_half(call.number, arguments);
   if (kind == "torn" || kind == "kill") crisp_fault_pass(SYS_kill, getpid(), SIGKILL, 0, 0, 0, 0);
+  if (call.names == Names::nothing) {  // it can fail in one way only
+    const bool fails = kind == "starved" || std::atol(kind.data()) > 0;
+    return fails ? -ENOMEM : pass(call.number, arguments);
+  }
   if (kind == "short") return pass_half(call.number, arguments);
   if (kind == "full") return needs_room(call, arguments) ? -ENOSPC : pass(call.number, arguments);
+  if (kind == "starved") return pass(call.number, arguments);
   return -std::atol(kind.data());
+}
+
+/// Counts a call. @return whether it is to fail
+bool count(const Call& call, std::string_view path) {
+  const long number = ++*calls;
+  if (number == fault_at || fault_at == 0) log_call(number, call, path);
+  const bool lasts = kind == "full" || kind == "starved";
+  return number == fault_at || (lasts && fault_at > 0 && number > fault_at);
 }
 
 long perform(const Call& call, const Arguments& arguments) {
   Path buffer{};
-  const auto path = path_of(call, arguments, buffer);
-  if (!path.starts_with(folder)) return pass(call.number, arguments);
-  const long number = ++calls;
-  const bool is_due = number == fault_at || (kind == "full" && fault_at > 0 && number > fault_at);
-  if (number == fault_at || fault_at == 0) log_call(number, call, path);
-  return is_due ? inject(call, arguments) : pass(call.number, arguments);
+  const bool is_memory = call.names == Names::nothing;
+  const std::string_view path = is_memory ? "memory" : path_of(call, arguments, buffer);
+  const bool is_watched = is_memory ? is_stack(arguments) : path.starts_with(folder);
+  return is_watched && count(call, path) ? inject(call, arguments) : pass(call.number, arguments);
+}
+
+void* allocate(std::size_t size, std::size_t alignment) {
+  const bool fails =
+      size >= kLarge && calls != nullptr && count(kNew, "memory") && inject(kNew, {}) == -ENOMEM;
+  void* memory = fails                                    ? nullptr
+                 : alignment <= alignof(std::max_align_t) ? std::malloc(size)
+                                                          : std::aligned_alloc(alignment, size);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
 }
 
 void handle(int /*signal*/, siginfo_t* info, void* context) {
@@ -181,33 +206,6 @@ void handle(int /*signal*/, siginfo_t* info, void* context) {
   errno = saved;
 }
 
-void install_filter() {
-  // The address behind the passing call, the other calls, then the trap.
-  const auto pass_address = reinterpret_cast<std::uintptr_t>(crisp_fault_behind_pass);
-  std::array<sock_filter, kCalls.size() + 7> program{};
-  std::size_t n = 0;
-  const auto add = [&](sock_filter statement) { program.at(n++) = statement; };
-  constexpr auto kAddress = offsetof(seccomp_data, instruction_pointer);
-  add(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kAddress));
-  add(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(pass_address), 0, 2));
-  add(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kAddress + 4));
-  add(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(pass_address >> 32U), kCalls.size() + 1,
-               0));
-  add(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)));
-  for (std::size_t i = 0; i < kCalls.size(); ++i) {
-    add(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(kCalls[i].number),
-                 static_cast<std::uint8_t>(kCalls.size() - i), 0));
-  }
-  add(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
-  add(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRAP));
-  const sock_fprog filter = {static_cast<unsigned short>(n), program.data()};
-  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
-      prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) != 0) {
-    std::perror("fault_preload: no seccomp filter");
-    _exit(125);
-  }
-}
-
 const char* setting(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
@@ -219,11 +217,24 @@ __attribute__((constructor)) void begin() {
   log_path = setting("CRISP_FAULT_LOG");
   fault_at = std::atol(setting("CRISP_FAULT_CALL"));
   if (folder.empty()) return;
+  void* shared = mmap(nullptr, sizeof *calls, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  calls = new (shared) std::atomic<long>(0);
   struct sigaction action = {};
   action.sa_sigaction = handle;
   action.sa_flags = SA_SIGINFO | SA_RESTART;
   sigaction(SIGSYS, &action, nullptr);
-  install_filter();
+  std::array<int, kCalls.size()> numbers{};
+  for (std::size_t i = 0; i < kCalls.size(); ++i) numbers.at(i) = kCalls[i].number;
+  crisp::test::trap_calls_of_c_library(numbers);
 }
 
 }  // namespace
+
+void* operator new(std::size_t size) { return allocate(size, 1); }
+void* operator new[](std::size_t size) { return allocate(size, 1); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return allocate(size, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return allocate(size, static_cast<std::size_t>(alignment));
+}

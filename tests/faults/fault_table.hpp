@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <map>
 #include <string>
 #include <utility>
@@ -10,10 +11,11 @@
 
 namespace crisp::test {
 
-/// How many faults ended how, by call and kind of fault.
+/// How many faults ended how: by scenario and call, and by kind of fault.
 class FaultTable {
  public:
-  void add(const std::string& call, const std::string& fault, const Verdict& verdict);
+  void add(const std::string& scenario, const std::string& call, const std::string& fault,
+           const Verdict& verdict);
   std::size_t faults() const;
   /// In Markdown.
   std::string text() const;
@@ -23,7 +25,12 @@ class FaultTable {
     std::array<std::size_t, 5> ends{};  ///< by Verdict::End
     std::size_t violations = 0;
   };
-  std::map<std::pair<std::string, std::string>, Row> rows_;
+  static void add(Row& row, const Verdict& verdict);
+  static std::size_t faults_in(const Row& row);
+  static std::string text(const Row& row);
+
+  std::map<std::pair<std::string, std::string>, Row> by_call_;
+  std::map<std::string, Row> by_fault_;
 };
 
 }  // namespace crisp::test

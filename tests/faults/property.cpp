@@ -6,54 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
-#include <cstdint>
-#include <cstring>
-#include <nlohmann/json.hpp>
+
+#include "tests/faults/file_state.hpp"
 
 namespace crisp::test {
 namespace {
-
-using Json = nlohmann::json;
-
-bool is_hidden(const std::string& name) { return name.starts_with('.'); }
-bool is_record(const std::string& name) {
-  return name.ends_with(".provenance.json") || name == "summary.json";
-}
-
-/// Without what differs from run to run: when it began and how long it took.
-Json without_times(Json record) {
-  for (const char* key : {"started", "seconds"}) record.erase(key);
-  if (record.contains("stages")) {
-    for (auto& stage : record["stages"]) stage.erase("seconds");
-  }
-  return record;
-}
-
-bool same_record(const std::string& a, const std::string& b) {
-  return without_times(Json::parse(a, nullptr, false)) == without_times(Json::parse(b, nullptr, false));
-}
-
-bool same_file(const std::string& name, const Files& files, const Files& expected) {
-  const auto found = files.find(name);
-  const auto wanted = expected.find(name);
-  if (found == files.end() || wanted == expected.end())
-    return found == files.end() && wanted == expected.end();
-  return is_record(name) ? same_record(found->second, wanted->second) : found->second == wanted->second;
-}
-
-/// Whether a pcap file holds whole records, but for the last one if the program was killed.
-bool is_capture(const std::string& bytes, bool may_be_cut) {
-  constexpr std::size_t kFileHeader = 24;
-  constexpr std::size_t kRecordHeader = 16;
-  constexpr std::size_t kLengthAt = 8;
-  std::size_t at = kFileHeader;
-  while (at + kRecordHeader <= bytes.size()) {
-    std::uint32_t length = 0;
-    std::memcpy(&length, bytes.data() + at + kLengthAt, sizeof length);
-    at += kRecordHeader + length;
-  }
-  return at == bytes.size() || bytes.empty() || (may_be_cut && bytes.size() > kFileHeader);
-}
 
 /// The name that a person knows a file by: of a part that of the file that it becomes, of a lock its
 /// folder's.
@@ -83,15 +40,17 @@ class Judge {
     }
     const bool has_left_over =
         std::ranges::any_of(files, [](const auto& file) { return is_hidden(file.first); });
-    if (has_left_over && end_.signal == 0 && call() != "unlink") violate("a part is left over");
-    if (has_left_over || end_.signal != 0) check_next_run();
+    if (has_left_over && !fault_.kills() && call() != "unlink") violate("a part is left over");
+    if (has_left_over || fault_.kills()) check_next_run();
     return std::move(verdict_);
   }
 
  private:
   bool is_done() const { return end_.signal == 0 && end_.status == stage_.status(); }
   void violate(const std::string& what) { verdict_.violations.push_back(what); }
-  std::string call() const { return end_.calls.empty() ? "" : end_.calls.front().name; }
+  /// Of the fault; none where the program was killed at some moment.
+  std::string call() const { return fault_.call == 0 || end_.calls.empty() ? "" : end_.calls.front().name; }
+  bool is_live() const { return stage_.scenario().command == Command::record; }
 
   void check_end() {
     using End = Verdict::End;
@@ -108,13 +67,19 @@ class Judge {
     if (!is_done()) check_message();
   }
 
-  void check_message() {
-    if (end_.calls.empty()) return;
+  /// What a message has to name.
+  std::string culprit() const {
+    if (fault_.kills()) return "illed";  // a process of the batch
     // On a full disk a later call fails, too, and is what is named.
-    const std::string name =
-        fault_.kind == "full" ? "No space left on device" : known_name(end_.calls.front().file);
-    if (end_.messages.find(name) == std::string::npos)
-      violate(fmt::format("exit {}, and no message has {}: {}", end_.status, name, end_.messages));
+    if (fault_.kind == "full") return "No space left on device";
+    if (fault_.kind == "starved") return "memory";
+    return end_.calls.front().needs_memory() ? "memory" : known_name(end_.calls.front().file);
+  }
+
+  void check_message() {
+    if (call().empty()) return;
+    if (end_.messages.find(culprit()) == std::string::npos)
+      violate(fmt::format("exit {}, and no message has {}: {}", end_.status, culprit(), end_.messages));
   }
 
   void check_inputs() {
@@ -124,7 +89,9 @@ class Judge {
   std::vector<std::string> differing(const Files& files) const {
     std::vector<std::string> names;
     for (const auto& [name, bytes] : stage_.undisturbed()) {
-      if (!same_file(name, files, stage_.undisturbed())) names.push_back(name);
+      const bool is_right = is_live() ? files.contains(name) && is_whole(name, files.at(name), false)
+                                      : same_file(name, files, stage_.undisturbed());
+      if (!is_right) names.push_back(name);
     }
     for (const auto& [name, bytes] : files) {
       if (!is_hidden(name) && !stage_.undisturbed().contains(name)) names.push_back(name);
@@ -137,9 +104,9 @@ class Judge {
     for (const auto& [name, bytes] : files) {
       if (is_hidden(name)) continue;
       if (is_record(name)) {
-        if (!Json::accept(bytes)) violate(name + " is half-written");
-      } else if (name == stage_.scenario().grows) {
-        if (!is_capture(bytes, fault_.kills())) violate(name + " is damaged");
+        if (!is_whole(name, bytes, false)) violate(name + " is half-written");
+      } else if (name == stage_.scenario().grows || is_account(name)) {
+        if (!is_whole(name, bytes, fault_.kills())) violate(name + " is damaged");
       } else if (!same_file(name, files, stage_.earlier()) && !same_file(name, files, stage_.undisturbed())) {
         violate(name + " is half-written, or of neither run");
       }
@@ -151,7 +118,7 @@ class Judge {
   void check_kept(const std::string& name, const std::string& bytes, const Files& files) {
     const bool is_numbered =
         name.find("_0") != std::string::npos;  // removed where they are beyond this run's
-    if (is_record(name) || is_numbered || !stage_.undisturbed().contains(name)) return;
+    if (is_record(name) || is_account(name) || is_numbered || !stage_.undisturbed().contains(name)) return;
     if (!files.contains(name)) violate(name + " of the earlier run is gone");
     if (name == stage_.scenario().grows && files.contains(name) && !files.at(name).starts_with(bytes))
       violate(name + " was shortened");
@@ -160,9 +127,10 @@ class Judge {
   /// No record of the earlier run stays beside a file of this one.
   void check_records(const Files& files) {
     for (const auto& [name, bytes] : files) {
-      const bool is_new = !is_record(name) && !is_hidden(name) && !same_file(name, files, stage_.earlier());
-      if (!is_new) continue;
-      for (const auto& record : {name + ".provenance.json", std::string("summary.json")}) {
+      const bool is_result = !is_record(name) && !is_hidden(name) && !is_account(name);
+      if (!is_result || same_file(name, files, stage_.earlier())) continue;
+      const std::filesystem::path path(name);
+      for (const auto& record : {name + ".provenance.json", (path.parent_path() / "summary.json").string()}) {
         const auto of = stage_.earlier().find(record);
         const auto now = files.find(record);
         if (of != stage_.earlier().end() && now != files.end() && of->second == now->second)
@@ -172,7 +140,7 @@ class Judge {
   }
 
   void check_next_run() {
-    const ProgramEnd next = stage_.run();
+    const ProgramEnd next = stage_.run_next();
     if (next.status != stage_.status()) violate("the next run fails: " + next.messages);
     const Files files = files_in(stage_.output());
     for (const auto& [name, bytes] : files) {

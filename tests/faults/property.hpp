@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/faults/program_run.hpp"
-#include "tests/faults/scenario.hpp"
+#include "tests/faults/stage.hpp"
 
 namespace crisp::test {
 
