@@ -148,7 +148,14 @@ void ClockAligner::end_recording() {
     report_.append(tracks_.report());
   } else {
     ++report_.counts["recordings without any scan, or without two readings of the plate"];
-    report_.counts["scans of recordings without two readings of the plate"] += tracks_.scans_received();
+    const std::uint64_t scans = tracks_.scans_received();
+    report_.counts["scans of recordings without two readings of the plate"] += scans;
+    if (scans > 0)
+      report_.warnings.push_back(fmt::format(
+          "{}: nothing came from it in one of several recordings with pauses between them: the {} scans of "
+          "that "
+          "recording are left out. See whether it was switched on, and whether its packets were recorded",
+          tracks_.plate().clock().device(), scans));
   }
   tracks_.begin_anew();
   length_ = settings_.window.value_or(kWindow);

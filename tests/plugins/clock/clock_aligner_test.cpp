@@ -307,6 +307,8 @@ TEST_F(PausedRecording, APartWithoutThePlateIsCountedAndTheOtherUsed) {
   const auto result = aligned();
   EXPECT_EQ(result.stretches.size(), 1U);
   EXPECT_EQ(result.report.counts.at("recordings without any scan, or without two readings of the plate"), 1U);
+  EXPECT_THAT(result.report.warnings,
+              ::testing::Contains(::testing::HasSubstr("plate: nothing came from it in one")));
 }
 
 }  // namespace
