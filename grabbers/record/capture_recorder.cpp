@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "grabbers/capture/capture_file.hpp"
+#include "grabbers/capture/file_window.hpp"
 #include "grabbers/capture/pcap_extent.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
@@ -24,7 +25,10 @@ constexpr std::size_t kAtOnce = 4096;  // items that are written before the paus
 constexpr std::size_t kMostWaiting =
     40000;  // items: a minute's of three lasers at 50 Hz and a plate at 500 Hz
 
+/// @throws Error  if the file cannot be read
 FrameOrigin origin_of_file(const std::filesystem::path& file) {
+  constexpr std::size_t kMagic = 4;
+  FileWindow(file).peek(kMagic);
   try {
     CaptureFile capture(file);
     const Packet* first = capture.next();

@@ -46,7 +46,12 @@ std::FILE* create_aside(const fs::path& file, fs::path& aside) {
   aside = file.parent_path() / fmt::format(".{}.{}{}", file.filename().string(), unique_name(), kPart);
   const int descriptor = open(aside.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) fail(file, errno);
-  return fdopen(descriptor, "w+b");
+  std::FILE* stream = fdopen(descriptor, "w+b");
+  if (stream != nullptr) return stream;
+  const int code = errno;
+  close(descriptor);
+  unlink(aside.c_str());
+  fail(file, code);
 }
 
 /// Whether a process that is dead left this file, before it was complete.

@@ -26,10 +26,14 @@ fs::path name_in_folder(const fs::path& file) {
   return one_name(whole.parent_path()) / whole.filename();
 }
 
-/// The names of a file that is read: its own, and that of the file that it leads to if it is a link.
-std::vector<NamePattern> names_read(const fs::path& path) {
+/// The names of a file that is read: its own, and that of the file that it leads to if it is a link; of a
+/// folder those of the files in it that have one of the endings, too.
+std::vector<NamePattern> names_read(const fs::path& path, const std::vector<std::string>& endings) {
   std::vector<NamePattern> names{NamePattern(one_name(path))};
   if (const fs::path own = name_in_folder(path); own != one_name(path)) names.emplace_back(own);
+  std::error_code none;
+  if (!fs::is_directory(path, none)) return names;
+  for (const auto& ending : endings) names.push_back(NamePattern::within(one_name(path), "*" + ending));
   return names;
 }
 
@@ -62,7 +66,7 @@ struct FilesOfStages {
   std::vector<OwnFiles> written;
 };
 
-FilesOfStages files_of(const Pipeline& pipeline) {
+FilesOfStages files_of(const Pipeline& pipeline, const FilesOfRun& run) {
   FilesOfStages files;
   for (const auto& node : pipeline.nodes) {
     if (!node.type) continue;
@@ -73,7 +77,7 @@ FilesOfStages files_of(const Pipeline& pipeline) {
       const auto* text = scalar ? std::get_if<std::string>(scalar) : nullptr;
       if (!text || text->empty()) continue;
       if (option.writes.empty())
-        files.read.push_back({node.tag, node.place_of(option.name), names_read(*text)});
+        files.read.push_back({node.tag, node.place_of(option.name), names_read(*text, run.read_in_folders)});
       else
         files.written.push_back(
             {node.tag, node.place_of(option.name), names_written(option, fs::absolute(*text))});
@@ -113,11 +117,11 @@ void refuse_folders(const OwnFiles& writer, std::vector<Error>& errors) {
 }  // namespace
 
 void check_files_written(const Pipeline& pipeline, const FilesOfRun& run, std::vector<Error>& errors) {
-  FilesOfStages files = files_of(pipeline);
+  FilesOfStages files = files_of(pipeline, run);
   OwnFiles& read_already = files.read.emplace_back();
   read_already.who = "this run";
   for (const auto& file : run.read) {
-    if (!file.empty()) std::ranges::copy(names_read(file), std::back_inserter(read_already.names));
+    if (!file.empty()) std::ranges::copy(names_read(file, {}), std::back_inserter(read_already.names));
   }
   std::vector<OwnFiles> others;
   if (!run.summary.empty()) {

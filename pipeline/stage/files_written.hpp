@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "pipeline/data/error.hpp"
@@ -16,6 +18,7 @@ inline constexpr const char* kSummary = "summary.json";
 struct FilesOfRun {
   std::vector<std::filesystem::path> read;  ///< the pipeline's own file, the rig's and the input
   std::filesystem::path summary;
+  std::vector<std::string> read_in_folders;  ///< endings of the files that are read where a folder is given
 };
 
 /// Adds an error for each stage that could write a file that another one reads or writes: the options of

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <sstream>
 
 #include "pipeline/files/nearest.hpp"
+#include "pipeline/files/quantity.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
 namespace crisp {
@@ -37,6 +39,29 @@ std::optional<OptionScalar> read_scalar(const Option& option, const YamlNode& no
   if (path && path->empty()) wrong = "the path is empty";
   if (!wrong.empty()) return std::nullopt;
   return OptionScalar(path_of(node, folder).string());
+}
+
+/// An option and a value of it, for people: in the unit in which the value was written.
+struct AsWritten {
+  Option option;
+  OptionScalar value;
+};
+
+AsWritten as_written(const Option& option, const OptionScalar& value, const std::string& text) {
+  AsWritten written{option, value};
+  if (!std::holds_alternative<double>(value)) return written;
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  const auto unit = text.find_first_not_of(' ', static_cast<std::size_t>(end - text.c_str()));
+  if (unit == std::string::npos) return written;
+  const auto one = parse_quantity("1" + text.substr(unit), option.unit);
+  const auto* size = std::get_if<double>(&one);
+  if (size == nullptr) return written;
+  written.option.unit = text.substr(unit);
+  written.option.min /= *size;
+  written.option.max /= *size;
+  written.value = number;
+  return written;
 }
 
 class Reader {
@@ -96,8 +121,11 @@ class Reader {
       refuse(node.place, wrong, hint);
       return std::nullopt;
     }
-    if (const auto wrong_value = complaint_of_one(option_, *scalar)) {
-      refuse(node.place, *wrong_value, did_you_mean(node.text, option_.choices, {}));
+    if (complaint_of_one(option_, *scalar)) {
+      const AsWritten written = as_written(option_, *scalar, node.text);
+      const auto wrong_value = complaint_of_one(written.option, written.value);
+      refuse(written.option, node.place, wrong_value.value_or("is out of range"),
+             did_you_mean(node.text, option_.choices, {}));
       return std::nullopt;
     }
     return scalar;
@@ -122,8 +150,12 @@ class Reader {
   }
 
   void refuse(const Place& place, const std::string& wrong, const std::string& hint = {}) {
+    refuse(option_, place, wrong, hint);
+  }
+  /// @param expected  the option as a person is to see it
+  void refuse(const Option& expected, const Place& place, const std::string& wrong, const std::string& hint) {
     errors_.emplace_back(who_ + ": option '" + option_.name + "': " + wrong,
-                         (hint.empty() ? "" : hint + " ") + "expected is " + expectation(option_), place);
+                         (hint.empty() ? "" : hint + " ") + "expected is " + expectation(expected), place);
   }
 
   const Option& option_;

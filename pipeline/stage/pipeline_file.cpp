@@ -238,6 +238,14 @@ void sort_by_place(std::vector<Error>& errors) {
                    [&](const Error& a, const Error& b) { return key(a) < key(b); });
 }
 
+/// Of the kind of file that stages read in a folder.
+std::vector<std::string> endings_of_captures(const Registrar& registrar) {
+  for (const auto& inspector : registrar.inspectors()) {
+    if (inspector.kind == "a capture") return inspector.extensions;
+  }
+  return {};
+}
+
 }  // namespace
 
 PipelinePlan parse_plan(const YamlNode& root, const fs::path& folder, const PipelineArguments& arguments,
@@ -256,7 +264,8 @@ LoadedPipeline load_pipeline(const YamlNode& root, const fs::path& file, const P
   Pipeline pipeline = build_pipeline(plan.stages, run, errors, plan.rig_is_known);
   const fs::path output = arguments.only_validate && !arguments.output ? kNoOutput : run.output;
   const FilesOfRun own{.read = {file, plan.rig_file, arguments.input.value_or(fs::path())},
-                       .summary = output.empty() ? fs::path() : output / kSummary};
+                       .summary = output.empty() ? fs::path() : output / kSummary,
+                       .read_in_folders = endings_of_captures(*run.registrar)};
   check_files_written(pipeline, own, errors);
   sort_by_place(errors);
   if (!errors.empty()) throw Errors(std::move(errors));

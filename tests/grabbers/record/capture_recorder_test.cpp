@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -145,6 +146,23 @@ TEST_F(CaptureRecorderTest, BeginsANewFileAfterATimeOrASize) {
     }
     expect_same(all, items);
   }
+}
+
+TEST_F(CaptureRecorderTest, SaysWhyARecordingThatIsThereCannotBeRead) {
+  constexpr uid_t kNobody = 65534;
+  { CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {}); }
+  fs::permissions(folder_.path(), fs::perms::owner_all | fs::perms::group_exec | fs::perms::others_exec);
+  fs::permissions(folder_ / "hub.pcap", fs::perms::none);
+  const uid_t user = geteuid();
+  if (user == 0 && seteuid(kNobody) != 0) GTEST_SKIP() << "root may read everything";
+  std::string message;
+  try {
+    refuse_foreign(folder_ / "hub.pcap");
+  } catch (const Error& error) {
+    message = error.message();
+  }
+  ASSERT_EQ(seteuid(user), 0);
+  EXPECT_EQ(message, "cannot read " + (folder_ / "hub.pcap").string() + ": Permission denied");
 }
 
 TEST_F(CaptureRecorderTest, RefusesAFileThatIsNoCaptureAndAFolderThatIsNotThere) {

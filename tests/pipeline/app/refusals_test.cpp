@@ -127,6 +127,21 @@ TEST_F(ProgramTest, RefusesAnInputThatLiesWhereTheRunWrites) {
   }
 }
 
+TEST_F(ProgramTest, RefusesToRecordIntoTheFolderWhoseCapturesItReads) {
+  fs::create_directory(folder_ / "captures");
+  write_file(folder_ / "captures/hub.pcap", "kept");
+  write_file(folder_ / "copy.yaml",
+             "crisp: 1\npipeline:\n  - {stage: grabber.capture, with: {file: \"${input}\"}}\n"
+             "  - {stage: write.capture, with: {file: \"${output}/copy.pcap\"}}\n");
+  const auto outcome = crisp({"run", path("copy.yaml"), "-i", path("captures"), "-o", path("captures")});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.error,
+              HasSubstr("write.capture: its " + path("captures/copy.pcap") + " could overwrite " +
+                        path("captures/*.pcap") + ", which grabber.capture reads; "));
+  EXPECT_EQ(content("captures/hub.pcap"), "kept");
+  EXPECT_FALSE(fs::exists(folder_ / "captures/copy.pcap"));
+}
+
 TEST_F(ProgramTest, ReplacesLinksAndLeavesTheFilesThatTheyLeadToAlone) {
   fs::create_directory(folder_ / "out");
   const std::vector<std::string> names = {"sum.txt", "sum.txt.provenance.json", "summary.json"};

@@ -159,6 +159,12 @@ TEST_F(PipelineFileTest, RefusesEachWrongValueAtItsPlaceAndSaysWhatWasExpected) 
           "p.yaml:3:12: error: all: option 'file' is missing (where); expected is a path"));
 }
 
+TEST_F(PipelineFileTest, SaysALimitInTheUnitInWhichTheValueWasWritten) {
+  EXPECT_THAT(errors_of(with("file: x, length: 2000cm, window: -20 ms")),
+              ElementsAre(HasSubstr("2000cm is out of range; expected is a number in cm, 0.01 to 1000"),
+                          HasSubstr("-20ms is out of range; expected is a number in ms, at least 0")));
+}
+
 TEST_F(PipelineFileTest, SaysOnceThatARequiredOptionIsWrong) {
   EXPECT_THAT(errors_of(with("file: [a]")), ElementsAre(HasSubstr("a list is not a text")));
 }
