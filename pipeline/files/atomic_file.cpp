@@ -89,6 +89,12 @@ void AtomicFile::write(std::string_view bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), stream_.get()) != bytes.size()) fail(file_, errno);
 }
 
+void AtomicFile::rewrite(long offset, std::string_view bytes) {
+  if (std::fseek(stream_.get(), offset, SEEK_SET) != 0) fail(file_, errno);
+  write(bytes);
+  if (std::fseek(stream_.get(), 0, SEEK_END) != 0) fail(file_, errno);
+}
+
 void AtomicFile::commit() {
   if (std::fflush(stream_.get()) != 0) fail(file_, errno);
   // A library that wrote to aside() may have replaced the file; what has to last is the one of that name.

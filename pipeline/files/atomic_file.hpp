@@ -39,6 +39,11 @@ class AtomicFile {
   /// @throws Error that names the file, if the disk is full or fails
   void write(std::string_view bytes);
 
+  /// Replaces bytes that were written: a header whose counts are known at the end. Goes on behind the end.
+  /// @param offset  [bytes] from the file's begin; the bytes must end before what was written ends
+  /// @throws Error that names the file, if the disk is full or fails
+  void rewrite(long offset, std::string_view bytes);
+
   /// Puts the file in its place. Nothing may be written afterwards.
   /// @throws Error that names the file, if the disk is full or fails
   void commit();

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/files/folder.hpp"
 #include "pipeline/files/quantity.hpp"
 
 namespace crisp {
@@ -26,7 +27,7 @@ std::string type_name(const Option& option) {
     case OptionType::choice:
       return "a name";
     case OptionType::path:
-      return "a path";
+      return option.ending.empty() ? "a path" : "a path that ends in " + option.ending;
     case OptionType::groups:
       return "a map of maps: {name: {parameter: value}}";
   }
@@ -97,6 +98,16 @@ std::string scalar_text(const Option& option, const OptionScalar& scalar) {
   return std::visit(Printer{option.unit}, scalar);
 }
 
+std::optional<std::string> complaint_of_text(const Option& option, const std::string& text) {
+  if (!option.choices.empty() && std::ranges::find(option.choices, text) == option.choices.end()) {
+    return fmt::format("'{}' is not one of its names", text);
+  }
+  if (!option.ending.empty() && !has_extension(text, {option.ending})) {
+    return fmt::format("'{}' is no name of a {} file", text, option.ending);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::string> complaint_of_one(const Option& option, const OptionScalar& scalar) {
@@ -110,12 +121,8 @@ std::optional<std::string> complaint_of_one(const Option& option, const OptionSc
   if (number < option.min || number > option.max) {
     return fmt::format("{} is out of range", scalar_text(option, scalar));
   }
-  if (const auto* text = std::get_if<std::string>(&scalar); text && !option.choices.empty()) {
-    if (std::find(option.choices.begin(), option.choices.end(), *text) == option.choices.end()) {
-      return fmt::format("'{}' is not one of its names", *text);
-    }
-  }
-  return std::nullopt;
+  const auto* text = std::get_if<std::string>(&scalar);
+  return text ? complaint_of_text(option, *text) : std::nullopt;
 }
 
 std::optional<std::string> complaint(const Option& option, const OptionValue& value) {

@@ -49,6 +49,7 @@ struct Option {
   bool required = false;            ///< there is no default
   bool is_folder = false;           ///< of a path: the stage writes files into that folder
   std::vector<std::string> writes;  ///< of a path that is written, not read: the files, see NamePattern
+  std::string ending;               ///< of a path: how it must end, ".pcd"; empty: as it likes
   std::string unit;  ///< SI unit of the value ("m", "rad", "s", "Hz", "1"), empty if it has none
   double min = -std::numeric_limits<double>::infinity();  ///< smallest number, in `unit`
   double max = std::numeric_limits<double>::infinity();   ///< largest number, in `unit`

@@ -148,6 +148,12 @@ class OptionDeclaration {
     option_->writes.insert(option_->writes.end(), also.begin(), also.end());
     return *this;
   }
+  /// The path's extension, in small letters or capitals: ".pcd". A file with another one would be taken for
+  /// what it is not.
+  OptionDeclaration& ending(std::string extension) requires std::same_as<V, std::filesystem::path> {
+    option_->ending = std::move(extension);
+    return *this;
+  }
   /// The path is of a folder that the stage writes such files into: "*_noise.svg". As above, no other stage
   /// may read or write them.
   OptionDeclaration& writes_into(

@@ -33,6 +33,7 @@ void WriteCloudsStage::describe(StageDescription<WriteCloudsStage>& d) {
   d.takes<Cloud>();
   d.option("file", &WriteCloudsStage::file_, "where to write them, NAME.pcd")
       .writes({"<stem>_####<ext>"})
+      .ending(".pcd")
       .required();
   d.option("format", &WriteCloudsStage::format_, "how the points follow the header")
       .choices({{"binary_compressed", PcdFormat::binary_compressed},

@@ -32,7 +32,10 @@ void describe_parts(StageDescription<S>& d, PartsOptions S::*options,
                     std::initializer_list<std::string_view> also = {}) {
   std::vector<std::string_view> files = {"<stem>_####<ext>"};
   files.insert(files.end(), also.begin(), also.end());
-  d.option("file", options, &PartsOptions::file, "where to write it, NAME.pcd").writes(files).required();
+  d.option("file", options, &PartsOptions::file, "where to write it, NAME.pcd")
+      .writes(files)
+      .ending(".pcd")
+      .required();
   d.option("format", options, &PartsOptions::format, "how the points follow the header")
       .choices({{"binary_compressed", PcdFormat::binary_compressed},
                 {"binary", PcdFormat::binary},

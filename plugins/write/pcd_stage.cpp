@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/write/pcd_stage.hpp"
 
-#include <pcl/common/point_tests.h>
-
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "pipeline/pcd/cloud_table.hpp"
+#include "plugins/write/finite_points.hpp"
 
 namespace crisp {
 
@@ -17,7 +15,7 @@ void WritePcdStage::describe(StageDescription<WritePcdStage>& d) {
       "All clouds that come become one, with the fields x, y, z, intensity, laser, beam and time: seconds, "
       "as "
       "double, since the epoch that the comment `# crisp epoch_ns` in the header gives in nanoseconds since "
-      "1970. PCL and CloudCompare read it. A recording that is too long for one file becomes several, so "
+      "1970. PCL reads it. A recording that is too long for one file becomes several, so "
       "that "
       "memory does not grow with it; and what comes after a pause of 5 s, maybe of another place, is in a "
       "file of "
@@ -36,20 +34,12 @@ void WritePcdStage::process(const Inputs& in, Outputs&, Context& context) {
   if (!writer_) writer_.emplace(options_.file, options_.format);
   const Cloud& cloud = in.get<Cloud>();
   if (written_ == 0 && pending_.empty()) pending_.header = cloud.header;
-  const double shift =
-      1e-6 * (static_cast<double>(cloud.header.stamp) - static_cast<double>(pending_.header.stamp));
-  std::size_t lost = 0;
   bool is_first = true;
-  for (Point point : cloud) {
-    point.time += shift;  // 0 within a run of crisp
-    if (!pcl::isXYZFinite(point) || !std::isfinite(point.time)) {
-      ++lost;
-      continue;
-    }
+  const std::size_t lost = for_each_finite_point(cloud, pending_.header.stamp, [&](const Point& point) {
     if (std::exchange(is_first, false)) borders_.begin_cloud(point.time);
     add(point);
-  }
-  context.count("points that are not numbers", lost);
+  });
+  context.count(kNotFinite, lost);
 }
 
 void WritePcdStage::add(const Point& point) {
@@ -67,8 +57,7 @@ void WritePcdStage::add(const Point& point) {
 
 void WritePcdStage::finish(Outputs&, Context& context) {
   if (pending_.empty()) {
-    throw Error("no point came, so that there is no cloud to write",
-                "the losses and warnings above say why; without any, no stage above gave one");
+    throw no_point_came();
   }
   writer_->write(to_table(pending_), false);
   finish_parts(*writer_, written_ + pending_.size(), "points", context);

@@ -17,7 +17,10 @@ void WritePictureStage::describe(StageDescription<WritePictureStage>& d) {
       "the "
       "picture is white.");
   d.takes<Cloud>();
-  d.option("file", &WritePictureStage::file_, "where to write it").writes().required();
+  d.option("file", &WritePictureStage::file_, "where to write it, NAME.png")
+      .writes()
+      .ending(".png")
+      .required();
   d.option("view", &WritePictureStage::settings_, &PictureSettings::view,
            "from where it is seen: top (x to the right, y upwards), front (x, z) or side (y, z)")
       .choices({{"top", PictureView::top}, {"front", PictureView::front}, {"side", PictureView::side}});

@@ -46,6 +46,17 @@ TEST_F(AtomicFileTest, TakesItsNameOnlyWhenItIsComplete) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "new"), {}), 1);
 }
 
+TEST_F(AtomicFileTest, RewritesItsBeginAndGoesOnBehindItsEnd) {
+  const fs::path file = folder_ / "x.txt";
+  AtomicFile out(file);
+  out.write("0 points: ");
+  out.write("a, ");
+  out.rewrite(0, "2");
+  out.write("b");
+  out.commit();
+  EXPECT_EQ(content(file), "2 points: a, b");
+}
+
 TEST_F(AtomicFileTest, LeavesNothingBehindWhenItIsGivenUp) {
   const fs::path file = folder_ / "x.txt";
   write_file(file, "old");

@@ -51,6 +51,16 @@ TEST_F(Fixture, HoldsAMapOfMaps) {
   EXPECT_TRUE(complaint(last(), std::monostate{}));
 }
 
+TEST_F(Fixture, RefusesAPathOfAnotherFormat) {
+  options.add("file", &Thing::file, "-").ending(".pcd");
+  EXPECT_FALSE(complaint(last(), OptionScalar(std::string("a.b/cloud.pcd"))));
+  EXPECT_FALSE(complaint(last(), OptionScalar(std::string("CLOUD.PCD"))));
+  for (const std::string wrong : {"cloud.ply", "cloud", "", "cloud.pcd.gz", "a.pcd/cloud"}) {
+    EXPECT_EQ(complaint(last(), OptionScalar(wrong)), "'" + wrong + "' is no name of a .pcd file");
+  }
+  EXPECT_EQ(expectation(last()), "a path that ends in .pcd");
+}
+
 TEST_F(Fixture, RefusesAMapOfMapsWhereAListIsWanted) {
   options.add("names", &Thing::names, "-");
   EXPECT_TRUE(complaint(last(), OptionGroups{}));
