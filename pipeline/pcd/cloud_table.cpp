@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 
@@ -13,15 +14,30 @@ namespace {
 
 constexpr std::int64_t kNsPerUs = 1000;
 
+constexpr std::array<std::string_view, 7> kKept = {"x", "y", "z", "intensity", "laser", "beam", "time"};
+
+bool is_same_letter(unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); }
+
+/// What the table calls a field of that name: other programs write X or Intensity. The name itself where
+/// there is none.
+std::string_view own_name(const PcdTable& table, std::string_view field) {
+  if (table.has(field)) return field;
+  for (const auto& own : table.header().fields) {
+    if (std::ranges::equal(own.name, field, is_same_letter)) return own.name;
+  }
+  return field;
+}
+
 template <PcdNumber T>
 std::vector<T> column_or_zeros(const PcdTable& table, std::string_view field) {
-  return table.has(field) ? table.column<T>(field) : std::vector<T>(table.rows());
+  const std::string_view name = own_name(table, field);
+  return table.has(name) ? table.column<T>(name) : std::vector<T>(table.rows());
 }
 
 /// A coordinate, less `by`, as a cloud holds it; `rounding` becomes the most that one changed by that.
 std::vector<float> shifted_column(const PcdTable& table, std::string_view field, double by,
                                   double& rounding) {
-  const auto exact = table.column<double>(field);
+  const auto exact = table.column<double>(own_name(table, field));
   std::vector<float> column;
   column.reserve(exact.size());
   for (const double value : exact) {
@@ -83,13 +99,14 @@ TableCloud cloud_of(const PcdTable& table, const std::array<double, 3>& shift) {
 }
 
 std::vector<std::string> not_kept(const PcdTable& table) {
-  constexpr std::array<std::string_view, 7> kKept = {"x", "y", "z", "intensity", "laser", "beam", "time"};
   constexpr std::string_view kPadding = "_";  // PCL's, between fields
   std::vector<std::string> lost;
   std::vector<std::string> fields;
+  const auto is_kept = [&](const std::string& name) {
+    return std::ranges::any_of(kKept, [&](std::string_view kept) { return own_name(table, kept) == name; });
+  };
   for (const auto& field : table.header().fields) {
-    if (field.name != kPadding && std::ranges::find(kKept, field.name) == kKept.end())
-      fields.push_back(field.name);
+    if (field.name != kPadding && !is_kept(field.name)) fields.push_back(field.name);
   }
   if (!fields.empty()) lost.push_back(fmt::format("the fields {}", fmt::join(fields, ", ")));
   if (table.header().rows > 1) lost.push_back(fmt::format("the order in {} rows", table.header().rows));
@@ -102,7 +119,7 @@ std::array<double, 3> suggested_shift(const PcdTable& table) {
   std::array<double, 3> shift{};
   std::size_t axis = 0;
   for (const auto* field : {"x", "y", "z"}) {
-    const auto column = table.column<double>(field);
+    const auto column = table.column<double>(own_name(table, field));
     const auto first = std::ranges::find_if(column, [](double value) { return std::isfinite(value); });
     shift.at(axis++) = first == column.end() ? 0 : kStep * std::round(*first / kStep);
   }

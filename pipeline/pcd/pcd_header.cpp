@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <limits>
 #include <numeric>
@@ -73,7 +74,10 @@ class HeaderReader {
     const Words words = words_of(line);
     if (words.empty()) return;
     const std::string_view key = words[0];
-    if (key == "VERSION") return;
+    if (key == "VERSION") {
+      is_of_version_5_ = words.size() == 2 && (words[1] == ".5" || words[1] == "0.5");
+      return;
+    }
     if (key == "VIEWPOINT") return read_viewpoint(words);
     if (key == "FIELDS" || key == "COLUMNS") return read_fields(words);
     if (key == "WIDTH") return read_once(width_, words);
@@ -103,8 +107,9 @@ class HeaderReader {
 
   void read_property(PcdField& field, std::string_view key, std::string_view word) {
     if (key == "TYPE") {
-      if (word != "F" && word != "I" && word != "U") fail(fmt::format("there is no type '{}'", shown(word)));
-      field.type = word[0];
+      if (word.size() != 1 || std::string_view("FIUfiu").find(word[0]) == std::string_view::npos)
+        fail(fmt::format("there is no type '{}'", shown(word)));
+      field.type = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
     } else if (key == "SIZE") {
       field.size = number(word);
     } else {
@@ -149,7 +154,8 @@ class HeaderReader {
 
   void finish() {
     if (header_.fields.empty()) fail("FIELDS is missing");
-    for (const auto& field : header_.fields) {
+    for (auto& field : header_.fields) {
+      if (is_of_version_5_ && field.size == 0) field.size = sizeof(float);  // as all of its fields were
       const bool exists =
           field.size == 4 || field.size == 8 || (field.type != 'F' && (field.size == 1 || field.size == 2));
       if (!exists) fail(fmt::format("no number of type {} has {} bytes", field.type, field.size));
@@ -170,6 +176,7 @@ class HeaderReader {
   std::optional<std::size_t> width_;
   std::optional<std::size_t> height_;
   std::optional<std::size_t> points_;
+  bool is_of_version_5_ = false;
   int line_ = 0;
   bool done_ = false;
 };

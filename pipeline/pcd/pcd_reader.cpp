@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/control_characters.hpp"
@@ -154,12 +157,40 @@ class BodyReader {
                 {.file = name_, .line = static_cast<int>(line), .column = 1});
   }
 
+  /// The number that a word is as a whole; nothing if it is none. A plus may stand before it.
+  template <PcdNumber T>
+  static std::optional<T> whole_word(std::string_view word) {
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+    T value{};
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool is_read = code == std::errc() && end == word.data() + word.size();
+    return is_read && !word.empty() ? std::optional(value) : std::nullopt;
+  }
+
+  /// A whole number that is written as 4.0 or 4e0; nothing if it is none, or too large to be known exactly.
+  template <PcdNumber T>
+  static std::optional<T> written_as_real(std::string_view word) {
+    constexpr double kLargestExact = 9007199254740992;
+    const auto real = whole_word<double>(word);
+    if (!real || std::trunc(*real) != *real || std::abs(*real) > kLargestExact) return std::nullopt;
+    const auto whole = static_cast<std::int64_t>(*real);
+    return std::in_range<T>(whole) ? std::optional(static_cast<T>(whole)) : std::nullopt;
+  }
+
   template <PcdNumber T>
   T number_of(std::string_view word, std::size_t row) const {
+    if (word.starts_with('+')) {
+      if (const auto value = whole_word<T>(word)) return *value;
+    }
     T value{};
     const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
     if constexpr (std::same_as<T, float>) {  // beyond a float's range: zero or infinity, as a cast makes it
       if (code == std::errc::result_out_of_range) return static_cast<float>(number_of<double>(word, row));
+    }
+    if constexpr (std::integral<T>) {
+      if (end != word.data() + word.size()) {
+        if (const auto whole = written_as_real<T>(word)) return *whole;
+      }
     }
     if (code != std::errc() || end != word.data() + word.size() || word.empty()) {
       fail_in_line(fmt::format("'{}' in place of a number, in point {}", shown(word), row + 1));

@@ -107,6 +107,41 @@ TEST(PcdTable, AnAsciiFileOfAnotherProgramIsRead) {
   EXPECT_EQ(table.column<double>("big").at(1), 5);
 }
 
+TEST(PcdTable, AFileOfVersion5WithoutSizesIsRead) {
+  const auto table = parse_pcd("VERSION .5\nCOLUMNS x y z\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 6.5\n", "x.pcd");
+  EXPECT_EQ(table.column<float>("z"), (std::vector<float>{3, 6.5F}));
+  EXPECT_THAT(complaint("VERSION 0.7\nFIELDS x\nPOINTS 1\nDATA ascii\n1\n"), HasSubstr("0 bytes"));
+}
+
+TEST(PcdTable, TypesInSmallLettersAreRead) {
+  const auto table = parse_pcd(ascii_file("FIELDS x n\nSIZE 4 2\nTYPE f u\nWIDTH 1", "1.5 7\n"), "x.pcd");
+  EXPECT_EQ(table.column<std::uint16_t>("n"), (std::vector<std::uint16_t>{7}));
+  EXPECT_THAT(complaint(ascii_file("FIELDS x\nSIZE 4\nTYPE FI\nWIDTH 1", "1\n")), HasSubstr("no type 'FI'"));
+}
+
+TEST(PcdTable, NumbersAreReadHoweverTheyAreWritten) {
+  const auto table = parse_pcd(
+      ascii_file("FIELDS x n\nSIZE 4 2\nTYPE F I\nWIDTH 4", "+1.5 4.0\n.25 +7\n1e-1 -2e1\n-3E2 0.0\n"),
+      "x.pcd");
+  EXPECT_EQ(table.column<float>("x"), (std::vector<float>{1.5F, 0.25F, 0.1F, -300}));
+  EXPECT_EQ(table.column<double>("n"), (std::vector<double>{4, 7, -20, 0}));
+  for (const auto* wrong : {"4.5", "+-4", "1e9", "+", "4.0x"}) {
+    EXPECT_THAT(complaint(ascii_file("FIELDS n\nSIZE 2\nTYPE I\nWIDTH 1", std::string(wrong) + "\n")),
+                HasSubstr("in place of a number"))
+        << wrong;
+  }
+}
+
+TEST(PcdTable, FieldsInCapitalsAreACloudsToo) {
+  const auto table = parse_pcd(
+      ascii_file("FIELDS X Y Z Intensity GpsTime\nSIZE 4 4 4 4 8\nTYPE F F F F F\nWIDTH 1", "1 2 3 4 5\n"),
+      "x.pcd");
+  const auto cloud = cloud_of(table).cloud;
+  EXPECT_EQ(cloud->at(0).y, 2);
+  EXPECT_EQ(cloud->at(0).intensity, 4);
+  EXPECT_THAT(not_kept(table), testing::ElementsAre("the fields GpsTime"));
+}
+
 TEST(PcdTable, AValueThatIsNotANumberIsShown) {
   EXPECT_THAT(complaint(ascii_file("FIELDS x\nSIZE 4\nWIDTH 2", "1\ntwo\n")),
               HasSubstr("'two' in place of a number, in point 2"));
