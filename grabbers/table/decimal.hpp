@@ -7,9 +7,9 @@
 
 namespace crisp {
 
-/// A decimal number times ten to the `exponent` (0 to 9), rounded to a whole number, exactly: a double would
-/// round a time since 1970 to a quarter of a microsecond. Nothing for what is no decimal number (an exponent
-/// with e is none) or does not fit.
+/// A decimal number (12, -0.5, +1.5e9) times ten to the `exponent` (0 to 9), rounded to a whole number,
+/// exactly: a double would round a time since 1970 to a quarter of a microsecond. Nothing for what is no
+/// decimal number or does not fit.
 std::optional<std::int64_t> shifted_decimal(std::string_view text, int exponent);
 
 }  // namespace crisp

@@ -5,11 +5,12 @@
 #include <optional>
 #include <vector>
 
+#include "pipeline/data/rig.hpp"
+
 namespace crisp {
 
 /// Units of a column, by what one of them is in SI.
 enum class TimeUnit { s, ms, us, ns };
-enum class AngleUnit { rad, deg };
 enum class LengthUnit { m, cm, mm };
 
 /// What stands where in a table. Columns count from 1. A row is a scan, or, where `mirror_column` is given,
@@ -26,6 +27,7 @@ struct TableFormat {
 
   std::optional<int> angle_column;  ///< of the actuator; else there is none
   AngleUnit angle_unit = AngleUnit::rad;
+  double angle_per_count = 1;  ///< [rad] of AngleUnit::counts
 
   std::optional<int> range_column;  ///< of the first range; else rows are times alone
   std::optional<int> count_column;  ///< how many ranges the row has; else they go on to its end

@@ -6,13 +6,11 @@
 #include <numbers>
 #include <utility>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/data/mirror_angle.hpp"
+#include "grabbers/table/append_beams.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kMicro = 1e6, kNano = 1e9;
 constexpr std::int64_t kMicrosecond = 1000;      // [ns]
 constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
@@ -25,7 +23,7 @@ std::int64_t microseconds(double s) { return std::llround(s * kMicro); }
 }  // namespace
 
 TableItems::TableItems(const TableFormat& format, const TableScanSettings& settings, Rig rig)
-    : format_(format), settings_(settings), rig_(std::move(rig)) {
+    : format_(format), settings_(settings), rig_(std::move(rig)), angles_(rig_.plate) {
   ends_.assign(rig_.lasers.size(), -std::numeric_limits<double>::infinity());
 }
 
@@ -45,19 +43,6 @@ std::int64_t TableItems::time_of(const TableRow& row, std::int64_t turn) const {
 }
 
 double TableItems::seconds(std::int64_t ns) const { return static_cast<double>(ns - epoch_ns_) / kNano; }
-
-double TableItems::unwrapped(double angle) const {
-  const double step = std::abs(rig_.plate.angle_per_count());
-  const double rounded = std::round(angle / step) * step;
-  if (!last_angle_) return rounded;
-  return rounded + kTurn * std::round((*last_angle_ - rounded) / kTurn);
-}
-
-void TableItems::note_angle(double time, double angle) {
-  if (!times_.empty() && time <= times_.back()) return;
-  times_.push_back(time);
-  angles_.push_back(angle);
-}
 
 std::shared_ptr<const Scan> TableItems::scan_of(const TableRow& row, std::int64_t time_ns) const {
   auto scan = std::make_shared<Scan>();
@@ -87,16 +72,19 @@ void TableItems::add_beams(const TableRow& row, double time) {
   }
   Measurements& beams = *beams_.back();
   const double first = (single ? row.mirror : settings_.start_angle) - rig_.lasers[row.laser].mount;
-  for (std::size_t k = 0; k < row.ranges.size(); ++k) {
-    if (!(row.ranges[k] > 0)) continue;
-    const auto n = static_cast<double>(k);
-    beams.range.push_back(row.ranges[k]);
-    beams.mirror_angle.push_back(static_cast<float>(wrapped_mirror_angle(first + n * settings_.angle_step)));
-    beams.time.push_back(time + n * settings_.beam_interval);
-    beams.laser.push_back(row.laser);
-    beams.remission.push_back(row.remissions.empty() ? 0.0F : row.remissions[k]);
-    beams.beam.push_back(static_cast<std::uint16_t>(k));
-  }
+  append_beams({.first_angle = first,
+                .angle_step = settings_.angle_step,
+                .first_time = time,
+                .interval = settings_.beam_interval,
+                .laser = row.laser},
+               row.ranges, row.remissions, beams);
+}
+
+/// An angle may begin anew at a whole turn, and its step be up to half a turn more or less than that.
+void TableItems::note_step(double reported) {
+  constexpr double kTurnAndAHalf = 3 * std::numbers::pi;
+  large_steps_ += last_reported_ && std::abs(reported - *last_reported_) >= kTurnAndAHalf ? 1 : 0;
+  last_reported_ = reported;
 }
 
 void TableItems::note_end(const TableRow& row, double time) {
@@ -136,22 +124,21 @@ std::optional<TableScan> TableItems::add(const TableRow& row) {
 TableScan TableItems::add(const TableRow& row, std::int64_t time_ns) {
   if (rows_ == 0) epoch_ns_ = time_ns - time_ns % kSecond;
   const double time = seconds(time_ns);
-  const double angle = unwrapped(std::copysign(1.0, rig_.plate.angle_per_count()) * row.angle);
-  last_angle_ = angle;
+  note_step(row.angle);
+  const double angle = angles_.unwrap(row.angle);
   const bool stands = settings_.actuator == ActuatorMotion::stands;
   const double lasts = static_cast<double>(row.ranges.size()) * settings_.beam_interval;
-  note_angle(time, angle);
-  if (stands) note_angle(time + lasts, angle);
+  angles_.add(time, angle);
+  if (stands) angles_.add(time + lasts, angle);
   note_end(row, time);
   add_beams(row, time);
 
   TableScan item;
   if (format_.angle_column && (!last_reading_us_ || time_ns / kMicrosecond > *last_reading_us_)) {
     last_reading_us_ = time_ns / kMicrosecond;
-    const double counts = std::round(angle / rig_.plate.angle_per_count());
     item.reading = PlateReading{.sequence = readings_++,
                                 .device_us = wrapped_us((time_ns - epoch_ns_) / kMicrosecond),
-                                .count = static_cast<std::uint32_t>(static_cast<std::int64_t>(counts)),
+                                .count = angles_.count_at(angle),
                                 .receipt_ns = time_ns,
                                 .numbered = false};
   }
@@ -160,13 +147,7 @@ TableScan TableItems::add(const TableRow& row, std::int64_t time_ns) {
   return item;
 }
 
-PlateTrajectory TableItems::trajectory() const {
-  if (times_.size() < 2) {
-    throw Error("the table has fewer than two angles at different times",
-                "is its time in time_column, and in the right unit? Without one, give the period");
-  }
-  return {epoch_ns_, times_, angles_, settings_.max_gap};
-}
+PlateTrajectory TableItems::trajectory() const { return angles_.trajectory(epoch_ns_, settings_.max_gap); }
 
 std::vector<std::shared_ptr<const Measurements>> TableItems::take_measurements() {
   std::vector<std::shared_ptr<const Measurements>> all;

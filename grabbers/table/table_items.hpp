@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "grabbers/table/actuator_angles.hpp"
 #include "grabbers/table/table_format.hpp"
 #include "pipeline/data/measurements.hpp"
 #include "pipeline/data/plate_trajectory.hpp"
@@ -62,15 +63,16 @@ class TableItems {
   int first_early_line() const { return first_early_line_; }
   std::uint64_t rows() const { return rows_; }  ///< taken so far
   /// Rows that by their own time began before the last beam of the row before, of the same laser, was fired.
+  /// Angles that are a turn and a half or more from the one before: no actuator steps so far.
+  std::uint64_t large_steps() const { return large_steps_; }
   std::uint64_t overlapping() const { return overlapping_; }
 
  private:
   /// Turns of the mirror since the first row; nothing for a row whose counter is that of the row before.
   std::optional<std::int64_t> turn_of(const TableRow& row) const;
+  void note_step(double reported);
   void note_end(const TableRow& row, double time);
   std::int64_t time_of(const TableRow& row, std::int64_t turn) const;
-  double unwrapped(double angle) const;
-  void note_angle(double time, double angle);
   std::shared_ptr<const Scan> scan_of(const TableRow& row, std::int64_t time_ns) const;
   void add_beams(const TableRow& row, double time);
   double seconds(std::int64_t ns) const;
@@ -80,17 +82,17 @@ class TableItems {
   Rig rig_;
   std::uint64_t rows_ = 0;
   std::uint64_t overlapping_ = 0;
-  std::vector<double> ends_;  ///< [s] last beam of each laser so far
+  std::uint64_t large_steps_ = 0;
+  std::optional<double> last_reported_;  ///< [rad]
+  std::vector<double> ends_;             ///< [s] last beam of each laser so far
   int first_early_line_ = 0;
   std::uint16_t readings_ = 0;  ///< wraps, as a device's counter does
   std::optional<std::int64_t> last_counter_;
   std::int64_t turn_ = -1;  ///< of the row admitted last: the device's count, unwrapped, or the row's number
   std::optional<std::int64_t> last_ns_;
   std::int64_t epoch_ns_ = 0;
-  std::optional<double> last_angle_;
   std::optional<std::int64_t> last_reading_us_;
-  std::vector<double> times_;
-  std::vector<double> angles_;
+  ActuatorAngles angles_;
   std::vector<std::shared_ptr<Measurements>> beams_;
   std::map<std::string, std::uint64_t> losses_;
 };

@@ -50,7 +50,8 @@ class Fields {
     return fields_[column - 1];
   }
   double number(std::size_t column) const {
-    const auto field = text(column);
+    auto field = text(column);
+    if (field.size() > 1 && field[0] == '+' && field[1] != '-') field.remove_prefix(1);
     double value = 0;
     const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
     if (failure != std::errc() || end != field.data() + field.size()) {
@@ -90,10 +91,11 @@ double metres(LengthUnit unit) {
   return unit == LengthUnit::cm ? kCentimetre : kMillimetre;
 }
 
-double angle_of(const Fields& fields, int column, AngleUnit unit) {
-  constexpr double kHalfTurn = 180;  // [deg]
-  const double value = fields.number(static_cast<std::size_t>(column)) *
-                       (unit == AngleUnit::deg ? std::numbers::pi / kHalfTurn : 1.0);
+/// @param rad  [rad] of one count of the encoder
+double angle_of(const Fields& fields, int column, AngleUnit unit, double rad = 1) {
+  if (unit == AngleUnit::deg) rad = std::numbers::pi / 180;
+  if (unit == AngleUnit::rad) rad = 1;
+  const double value = fields.number(static_cast<std::size_t>(column)) * rad;
   if (!(std::abs(value) <= kLargestAngle)) {
     throw Fault{"rows with an angle that cannot be", fields.start(static_cast<std::size_t>(column) - 1)};
   }
@@ -124,7 +126,8 @@ void read_ranges(const Fields& fields, const TableFormat& format, TableRow& row)
   const double unit = metres(format.range_unit);
   row.ranges.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const double raw = fields.number(static_cast<std::size_t>(*format.range_column) + k);
+    const auto column = static_cast<std::size_t>(*format.range_column) + k;
+    const double raw = fields.text(column).empty() ? 0 : fields.number(column);  // nothing: no echo
     const bool code = !(raw > 0) || (format.invalid_from && raw >= *format.invalid_from);
     row.ranges.push_back(code || raw * unit > kLargestRange ? 0.0F : static_cast<float>(raw * unit));
     if (!format.remission_column) continue;
@@ -179,8 +182,14 @@ std::optional<TableRow> TableReader::parse(std::string_view text) {
       }
       row.laser = static_cast<std::uint16_t>(laser);
     }
-    if (format_.angle_column) row.angle = angle_of(fields, *format_.angle_column, format_.angle_unit);
-    if (format_.mirror_column) row.mirror = angle_of(fields, *format_.mirror_column, format_.angle_unit);
+    const AngleUnit unit = format_.angle_unit;
+    if (format_.angle_column) {
+      row.angle = angle_of(fields, *format_.angle_column, unit, format_.angle_per_count);
+    }
+    if (format_.mirror_column) {
+      row.mirror =
+          angle_of(fields, *format_.mirror_column, unit == AngleUnit::counts ? AngleUnit::rad : unit);
+    }
     if (format_.range_column) read_ranges(fields, format_, row);
     return row;
   } catch (const Fault& fault) {
@@ -198,7 +207,7 @@ std::optional<TableRow> TableReader::next() {
   std::string text;
   while (lines_.next(text)) {
     const auto begin = text.find_first_not_of(" \t");
-    if (begin == std::string::npos || text[begin] == '#') continue;
+    if (begin == std::string::npos || text[begin] == '#' || text[begin] == '%') continue;
     // names of columns: the first line, and it begins with a letter or a quote
     if (lines_.number() == 1 && (std::isalpha(static_cast<unsigned char>(text[begin])) || text[begin] == '"'))
       continue;

@@ -15,8 +15,8 @@
 namespace crisp {
 
 /// Reads a table of scans, or of single beams, row by row: numbers apart by commas, semicolons, tabs or
-/// spaces. Lines that are empty or begin with # are no rows, nor is a first line of names. A row that cannot
-/// be read is left out and counted; memory does not depend on the length of the table.
+/// spaces. Lines that are empty or begin with # or % are no rows, nor is a first line of names. A row that
+/// cannot be read is left out and counted; memory does not depend on the length of the table.
 class TableReader {
  public:
   /// @param name  of the table, for places

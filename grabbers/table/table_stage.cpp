@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <istream>
 #include <utility>
 
@@ -35,8 +36,11 @@ void describe_columns(StageDescription<TableStage>& d, TableFormat TableStage::*
       .unit("s")
       .range(0, 1000);
   column("angle_column", &TableFormat::angle_column, "the actuator's angle; auto: the laser stands still");
-  d.option("angle_unit", format, &TableFormat::angle_unit, "of all angles in the table")
-      .choices({{"rad", AngleUnit::rad}, {"deg", AngleUnit::deg}});
+  d.option("angle_unit", format, &TableFormat::angle_unit,
+           "of all angles in the table; counts: the actuator's are counts of the rig's encoder, and mirror "
+           "angles in "
+           "rad")
+      .choices({{"rad", AngleUnit::rad}, {"deg", AngleUnit::deg}, {"counts", AngleUnit::counts}});
   column("range_column", &TableFormat::range_column, "the first range; auto: rows are times alone");
   column("count_column", &TableFormat::count_column, "how many ranges there are; auto: up to the row's end");
   d.option("range_unit", format, &TableFormat::range_unit, "of ranges")
@@ -57,7 +61,7 @@ void TableStage::describe(StageDescription<TableStage>& d) {
   d.details(
       "For any laser on an actuator whose recording is a table: a scan a row, or a beam a row, numbers apart "
       "by "
-      "commas, semicolons, tabs or spaces. Lines that begin with # and a first line of names are passed "
+      "commas, semicolons, tabs or spaces. Lines that begin with # or % and a first line of names are passed "
       "over. A "
       "row that cannot be read is left out and counted; the first is named with its line and column.\n\n"
       "Where laser and actuator share a clock, the measurements that it gives can be placed at once. "
@@ -172,7 +176,9 @@ void TableStage::process(const Inputs&, Outputs& out, Context& context) {
   std::istream in(&buffer);
   in.exceptions(std::ios::badbit);
   context.reads(file_);
-  TableReader reader(in, file_.string(), format_);
+  TableFormat format = format_;
+  format.angle_per_count = std::abs(context.rig().plate.angle_per_count());
+  TableReader reader(in, file_.string(), format);
   TableItems items(format_, settings_, context.rig());
   read(reader, items, out, context);
   if (context.interrupted()) return;
@@ -203,6 +209,13 @@ void TableStage::report(const TableReader& reader, const TableItems& items, std:
         to_string(Place{file_.string(), line, 1}) +
         ": here is the first of the rows that are earlier than the row before. If the row before leaps "
         "ahead, take it out; if rows are in another order, sort them by their time");
+  }
+  if (items.large_steps() > 0) {
+    context.warn(
+        fmt::format("{} of {} angles are a turn and a half or more from the one before; is angle_unit right? "
+                    "Counts of an "
+                    "encoder are angle_unit: counts",
+                    items.large_steps(), items.rows()));
   }
   if (2 * items.overlapping() > items.rows()) {
     context.warn(fmt::format(

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,16 +22,24 @@ struct Address {
 struct RigLaser {
   std::string name;
   Address address;
+  std::string topic;         ///< of its scans in a bag; empty: the only one of scans
   double mount = 0;          ///< [rad] θ = reported angle − mount
   double time_offset = 0;    ///< [s] from the scan's stamp to its first possible beam
   int period_offset = 0;     ///< whole mirror periods between them (−1: the stamp is one period late)
   LaserCalibration nominal;  ///< the values to start from; a std_error of 0: the rig gives none
 };
 
+/// What a number in a bag's message says of the plate's angle.
+enum class AngleUnit { rad, deg, counts };
+
 /// The plate and its encoder.
 struct RigPlate {
   std::string name = "plate";
   Address address;
+  std::string topic;              ///< of its angles in a bag; empty: the only one of joint states
+  std::string joint;              ///< of a joint state; empty: the only one
+  std::string field;              ///< of a message of another type: "data"
+  std::optional<AngleUnit> unit;  ///< of that field; else rad, or counts where it is a whole number
   double counts_per_revolution = 16384;
   CountDirection direction = CountDirection::counter_clockwise;
 

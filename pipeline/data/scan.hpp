@@ -18,6 +18,13 @@ struct ScanEncoder {
   std::int32_t speed = 0;      ///< device's units
 };
 
+/// When each beam of a scan was fired.
+enum class BeamTiming {
+  mirror,  ///< as the mirror turns: a turn takes a period, and the stamp is of the first possible beam, at
+           ///< −45°
+  stated,  ///< the stamp is of beam 0, and the scan states the time from beam to beam
+};
+
 /// One scan telegram of one laser, decoded. Angles are as the device reports them (no mount angle applied):
 /// beam k points to start_angle + k * angle_step.
 struct Scan {
@@ -32,7 +39,9 @@ struct Scan {
   double scan_frequency = 0;               ///< [Hz] nominal
   double start_angle = 0;                  ///< [rad] reported angle of beam 0
   double angle_step = 0;                   ///< [rad] exact fraction where the telegram rounds
-  std::vector<Echo> echoes;                ///< DIST1/RSSI1, DIST2/RSSI2, …
+  BeamTiming timing = BeamTiming::mirror;
+  double beam_interval = 0;  ///< [s] from beam to beam, where that is stated
+  std::vector<Echo> echoes;  ///< DIST1/RSSI1, DIST2/RSSI2, …
   std::vector<ScanEncoder> encoders;
   bool numbered = true;  ///< by the device, and each asked for: else a gap of its numbers is no loss
   bool timed = true;  ///< by the device's clock: else its times are its number times the nominal period, or

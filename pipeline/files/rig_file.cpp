@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numbers>
 
 #include "pipeline/files/file_kind.hpp"
@@ -67,6 +68,7 @@ class RigReader {
     RigLaser laser;
     laser.name = entry.key;
     laser.address = read_address(map, 0);
+    laser.topic = map.text("topic", "");
     laser.mount = angle(map, "mount");
     laser.time_offset = bounded(map, "time_offset", "s", 0, 10);
     laser.period_offset = static_cast<int>(map.integer("period_offset", 0, -100, 100));
@@ -125,6 +127,7 @@ class RigReader {
                "'" + rig_.plate.name + "' is not a name of letters, digits, _ and -");
     }
     rig_.plate.address = read_address(map, kDefaultPort);
+    read_joint(map);
     // Its counter has 32 bits; of one step a turn it could not be said which way it turned.
     constexpr std::int64_t kMostSteps = std::int64_t{1} << 31;
     rig_.plate.counts_per_revolution =
@@ -132,6 +135,25 @@ class RigReader {
     rig_.plate.direction = direction(map);
     map.refuse_others();
     devices_.push_back({rig_.plate.name, rig_.plate.address, node.place});
+  }
+
+  /// Where a bag has the plate's angle.
+  void read_joint(YamlMap& map) {
+    rig_.plate.topic = map.text("topic", "");
+    rig_.plate.joint = map.text("joint", "");
+    rig_.plate.field = map.text("field", "");
+    const std::map<std::string, AngleUnit> units = {
+        {"rad", AngleUnit::rad}, {"deg", AngleUnit::deg}, {"counts", AngleUnit::counts}};
+    const std::string unit = map.text("unit", "");
+    if (const auto known = units.find(unit); known != units.end())
+      rig_.plate.unit = known->second;
+    else if (!unit.empty())
+      map.fail(map.find("unit")->place, "'unit': '" + unit + "' is no unit of an angle",
+               "write rad, deg or counts");
+    if (!rig_.plate.joint.empty() && !rig_.plate.field.empty()) {
+      map.fail(map.find("field")->place, "'field' and 'joint' are both given",
+               "a joint is of a JointState, a field of a message of another type; leave one of them out");
+    }
   }
 
   static CountDirection direction(YamlMap& map) {

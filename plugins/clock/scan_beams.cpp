@@ -46,7 +46,12 @@ void for_each_of(std::int32_t count, T* to, Value value) {
 
 }  // namespace
 
+double TimedScan::beam_interval() const {
+  return scan->timing == BeamTiming::stated ? scan->beam_interval : scan->angle_step / kTurn * period;
+}
+
 double TimedScan::beam_time(std::size_t k) const {
+  if (scan->timing == BeamTiming::stated) return begin + static_cast<double>(k) * scan->beam_interval;
   const double angle = scan->start_angle + static_cast<double>(k) * scan->angle_step;
   return begin + (angle - kFirstPossible) / kTurn * period;
 }
@@ -60,7 +65,7 @@ void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64
   const std::span ranges(all.data(), beams);
   const bool has_remissions = remissions.size() >= beams;
   const double first_time = timed.beam_time(0);
-  const double time_step = scan.angle_step / kTurn * timed.period;
+  const double time_step = timed.beam_interval();
   const double first_angle = scan.start_angle - laser.mount;
 
   out.epoch_ns = epoch_ns;

@@ -13,11 +13,13 @@ namespace crisp {
 /// A scan of which it is known when the mirror swept it.
 struct TimedScan {
   std::shared_ptr<const Scan> scan;
-  double begin = 0;  ///< [s since the epoch] hub time at which the first possible beam, at −45°, was fired
+  double begin = 0;  ///< [s since the epoch] hub time of its stamp: of the first possible beam, at −45°, or
+                     ///< of beam 0, see BeamTiming
   double period = 0;  ///< [s] of hub time: a turn of the mirror
 
-  /// [s since the epoch] hub time at which beam k was fired: a whole turn of the mirror takes one period.
+  /// [s since the epoch] hub time at which beam k was fired.
   double beam_time(std::size_t k) const;
+  double beam_interval() const;  ///< [s] from beam to beam
 };
 
 /// The measurements of a scan: one for each beam that came back, in the order of firing.

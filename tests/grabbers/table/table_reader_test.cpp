@@ -87,6 +87,41 @@ TEST(TableReader, PassesOverCommentsEmptyLinesAndNames) {
       3U);
 }
 
+TEST(TableReader, ReadsASignAndAnExponentAnywhere) {
+  const auto all = read("+1.5e+0,+2E-1,+3.5,-1\n", kPlain);
+  ASSERT_EQ(all.rows.size(), 1U) << all.fault;
+  EXPECT_EQ(all.rows[0].time_ns, 1'500'000'000);
+  EXPECT_EQ(all.rows[0].angle, 0.2);
+  EXPECT_THAT(all.rows[0].ranges, ElementsAre(3.5F, 0.0F));
+}
+
+TEST(TableReader, TakesAnEmptyRangeForNoEcho) {
+  const auto all = read("0,0,1.5,,2.5\n1,0,,,2.5\n", kPlain);
+  ASSERT_EQ(all.rows.size(), 2U) << all.fault;
+  EXPECT_THAT(all.rows[0].ranges, ElementsAre(1.5F, 0.0F, 2.5F));
+  EXPECT_THAT(all.rows[1].ranges, ElementsAre(0.0F, 0.0F, 2.5F));
+  EXPECT_EQ(read(",0,1\n", kPlain).rows.size(), 0U) << "a time must be there";
+}
+
+TEST(TableReader, PassesOverNamesBehindAPercentSign) {
+  const auto all = read("%time,field.angle,field.ranges0\n0,0,1\n", kPlain);
+  EXPECT_EQ(all.rows.size(), 1U);
+  EXPECT_THAT(all.losses, IsEmpty());
+}
+
+TEST(TableReader, ReadsTheActuatorsCounts) {
+  const TableFormat format{.time_column = 1,
+                           .angle_column = 2,
+                           .angle_unit = AngleUnit::counts,
+                           .angle_per_count = 0.001,
+                           .range_column = 4,
+                           .mirror_column = 3};
+  const auto all = read("0,250,0.5,1\n", format);
+  ASSERT_EQ(all.rows.size(), 1U);
+  EXPECT_NEAR(all.rows[0].angle, 0.25, 1e-12);
+  EXPECT_EQ(all.rows[0].mirror, 0.5) << "rad";
+}
+
 TEST(TableReader, CountsRowsThatCannotBeReadAndNamesTheFirst) {
   const auto all = read("0,0,1\n1,zero,1\n2,0\n3,0,x\n1e3,0,1\n4,1e300,1\n5,0,1\n", kPlain);
   EXPECT_EQ(all.rows.size(), 2U);
@@ -158,7 +193,14 @@ TEST(ShiftedDecimal, IsExactWhereADoubleIsNot) {
   EXPECT_EQ(shifted_decimal("-0.0000000015", 9), -2);
   EXPECT_EQ(shifted_decimal(".5", 3), 500);
   EXPECT_EQ(shifted_decimal("7", 0), 7);
-  for (const char* no : {"", ".", "1e3", "0x1", "1.2.3", "--1", "99999999999999999999", "nan"}) {
+  EXPECT_EQ(shifted_decimal("1.541000000250000000e+09", 9), 1541000000250000000);
+  EXPECT_EQ(shifted_decimal("1.00000E+00", 0), 1);
+  EXPECT_EQ(shifted_decimal("1.5e-3", 3), 2);
+  EXPECT_EQ(shifted_decimal("-25e-1", 0), -3);
+  EXPECT_EQ(shifted_decimal("1e-300", 9), 0);
+  EXPECT_EQ(shifted_decimal("0e300", 0), 0);
+  for (const char* no : {"", ".", "1e", "e3", "1e+-3", "1e999", "1e30", "0x1", "1.2.3", "--1",
+                         "99999999999999999999", "nan"}) {
     EXPECT_EQ(shifted_decimal(no, 9), std::nullopt) << no;
   }
 }

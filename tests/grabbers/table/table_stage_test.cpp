@@ -153,6 +153,15 @@ TEST_F(TableStageTest, WarnsWhereTheBeamsOfARowLastBeyondTheNext) {
       << "receipts come in bursts";
 }
 
+TEST_F(TableStageTest, WarnsOfCountsThatAreTakenForRadians) {
+  const std::string table = "0,0,1\n1,20,1\n2,41,1\n3,60,1\n";
+  EXPECT_THAT(run(table, kColumns).report.warnings,
+              Contains(HasSubstr("3 of 4 angles are a turn and a half")));
+  EXPECT_THAT(run(table, std::string(kColumns) + ", angle_unit: counts").report.warnings, testing::IsEmpty());
+  EXPECT_THAT(run("0,6.2,1\n1,0.1,1\n2,0.2,1\n", kColumns).report.warnings, testing::IsEmpty())
+      << "it begins anew at a whole turn";
+}
+
 TEST_F(TableStageTest, RefusesAFolder) {
   std::ofstream(folder_ / "pipeline.yaml")
       << "crisp: 1\nrig: " << rig_

@@ -96,6 +96,22 @@ lasers:
   EXPECT_DOUBLE_EQ(rig.plate.angle_per_count(), 360 * kDegree / 8192);
 }
 
+TEST(RigFile, ReadsWhereABagHasItsDevices) {
+  const auto rig = [](const std::string& plate) {
+    return "crisp: 1\nlasers: {a: {topic: /scan, nominal: {lambda: 0, tau: 0}}}\nplate: {" + plate + "}\n";
+  };
+  const Rig joint = parse_rig(parse_yaml(rig("topic: /joints, joint: tilt"), "rig.yaml"));
+  EXPECT_EQ(joint.lasers[0].topic, "/scan");
+  EXPECT_EQ(joint.plate.topic, "/joints");
+  EXPECT_EQ(joint.plate.joint, "tilt");
+  EXPECT_EQ(joint.plate.unit, std::nullopt);
+  const Rig field = parse_rig(parse_yaml(rig("topic: /slice, field: step, unit: deg"), "rig.yaml"));
+  EXPECT_EQ(field.plate.field, "step");
+  EXPECT_EQ(field.plate.unit, AngleUnit::deg);
+  EXPECT_THAT(errors_of_rig(rig("unit: mm")), ElementsAre(HasSubstr("write rad, deg or counts")));
+  EXPECT_THAT(errors_of_rig(rig("joint: a, field: b")), ElementsAre(HasSubstr("leave one of them out")));
+}
+
 TEST(RigFile, ReportsEveryMistakeWithItsPlace) {
   EXPECT_THAT(
       errors_of_rig(R"(crisp: 1
