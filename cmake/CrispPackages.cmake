@@ -31,6 +31,11 @@ pkg_check_modules(PCL_COMMON REQUIRED IMPORTED_TARGET pcl_common)
 pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)
 pkg_check_modules(PCAP REQUIRED IMPORTED_TARGET libpcap)
 pkg_check_modules(TINS REQUIRED IMPORTED_TARGET libtins)
+find_package(BZip2 REQUIRED)
+pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(ZLIB REQUIRED IMPORTED_TARGET zlib)
+pkg_check_modules(SQLITE REQUIRED IMPORTED_TARGET sqlite3)
 pkg_check_modules(JEMALLOC IMPORTED_TARGET jemalloc)  # for speed alone
 
 crisp_require_header(ceres/jet.h libceres-dev)

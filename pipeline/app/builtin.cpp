@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/app/builtin.hpp"
 
+#include "grabbers/bag/register.hpp"
 #include "grabbers/capture/register.hpp"
 #include "grabbers/emulate/emulate_stage.hpp"
 #include "grabbers/live/live_stage.hpp"
@@ -30,6 +31,7 @@ Builtin::Builtin() {
   register_built_in(terms_);
   register_built_in(searches_);
   register_built_in(measures_);
+  register_bag(registrar_);
   register_capture(registrar_);
   register_live(registrar_);
   register_emulate(registrar_);

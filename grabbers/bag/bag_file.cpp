@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/bag/bag_file.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+#include "grabbers/bag/mcap_reader.hpp"
+#include "grabbers/bag/rosbag1_reader.hpp"
+#include "grabbers/bag/sqlite_reader.hpp"
+#include "pipeline/data/error.hpp"
+#include "pipeline/files/folder.hpp"
+
+namespace crisp {
+namespace {
+
+/// The first bytes of a file, as many as say what it is.
+std::string begin_of(const std::filesystem::path& file) {
+  constexpr std::size_t kEnoughBytes = 16;
+  ByteStream bytes(file);
+  std::string begin(kEnoughBytes, '\0');
+  begin.resize(bytes.read(begin.data(), begin.size()));
+  return begin;
+}
+
+}  // namespace
+
+bool is_bag(std::string_view head) {
+  return head.starts_with(Rosbag1Reader::kMagic) || head.starts_with(McapReader::kMagic) ||
+         head.starts_with(SqliteReader::kMagic);
+}
+
+std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& path) {
+  if (!std::filesystem::is_directory(path)) return {path};
+  std::vector<std::filesystem::path> files;
+  for (const auto& file : files_in(path)) {
+    if (has_extension(file, {".mcap", ".db3", ".bag"})) files.push_back(file);
+  }
+  if (files.empty())
+    throw Error(path.string() + " holds no bag", "a bag is a file NAME.bag, NAME.mcap or NAME.db3");
+  return files;
+}
+
+BagFile::BagFile(const std::filesystem::path& file, std::function<bool()> interrupted) {
+  const std::string begin = begin_of(file);
+  if (begin.starts_with(SqliteReader::kMagic)) {
+    reader_ = std::make_unique<SqliteReader>(file);
+    return;
+  }
+  if (!is_bag(begin)) {
+    throw Error(
+        file.string() + " is no bag that is known",
+        "known are ROS 1's (.bag, version 2.0), MCAP and ROS 2's in SQLite (.db3); of a file .zst or .zstd, "
+        "unzstd makes one");
+  }
+  bytes_.emplace(file, std::move(interrupted));
+  buffer_.emplace(*bytes_);
+  stream_.emplace(&*buffer_);
+  stream_->exceptions(std::ios::badbit);
+  if (begin.starts_with(McapReader::kMagic))
+    reader_ = std::make_unique<McapReader>(*stream_);
+  else
+    reader_ = std::make_unique<Rosbag1Reader>(*stream_);
+}
+
+}  // namespace crisp

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grabbers/bag/bag_messages.hpp"
+#include "grabbers/table/actuator_angles.hpp"
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/data/plate_trajectory.hpp"
+
+namespace crisp {
+
+/// [s] until all beams of a scan were fired.
+double duration_of_beams(const ScanMessage& message);
+
+/// Makes of a bag's messages what other grabbers give: scans and readings with the header's stamp as their
+/// device's time and the receipt as the hub's, for a clock stage; and measurements with the plate's angles on
+/// the headers' own time, where laser and plate were stamped by one clock.
+class BagItems {
+ public:
+  /// @param max_gap  [s] longest silence of the angles to interpolate across
+  BagItems(Rig rig, double max_gap) : rig_(std::move(rig)), max_gap_(max_gap), angles_(rig_.plate) {}
+
+  /// @return nothing for a scan that is earlier than the one before or of its time, which is counted
+  std::shared_ptr<const Scan> add(ScanMessage message, std::int64_t receipt_ns, std::uint16_t laser);
+  /// @return nothing for an angle that is earlier than the one before or of its time, which is counted
+  /// @param lasts  [s] how long the plate stands at that angle; 0 where it moves
+  std::optional<PlateReading> add(const AngleMessage& message, std::int64_t receipt_ns, double lasts = 0);
+
+  bool has_trajectory() const { return angles_.size() > 1; }
+  PlateTrajectory trajectory() const { return angles_.trajectory(*epoch_ns_, max_gap_); }
+  /// Of the scans so far, in their order; forgets them.
+  std::vector<std::shared_ptr<const Measurements>> take_measurements();
+
+  const std::map<std::string, std::uint64_t>& losses() const { return losses_; }
+
+ private:
+  /// [µs] since the epoch, which the first stamp makes.
+  std::int64_t device_us(std::int64_t stamp_ns) const;
+  double seconds(std::int64_t stamp_ns) const;
+  /// Whether a stamp is behind the one before of its device.
+  bool advance(std::optional<std::int64_t>& last, std::int64_t stamp_ns, const char* what);
+
+  Rig rig_;
+  double max_gap_;
+  std::optional<std::int64_t> epoch_ns_;
+  ActuatorAngles angles_;
+  std::uint16_t readings_ = 0;  ///< wraps, as a device's counter does
+  std::map<std::uint16_t, std::uint16_t> scans_;
+  std::map<std::uint16_t, std::optional<std::int64_t>> last_scan_ns_;
+  std::optional<std::int64_t> last_angle_ns_;
+  std::vector<std::shared_ptr<const Measurements>> measurements_;
+  std::map<std::string, std::uint64_t> losses_;
+};
+
+}  // namespace crisp

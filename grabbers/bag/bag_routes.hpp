@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "grabbers/bag/bag_messages.hpp"
+
+namespace crisp {
+
+/// What the messages of a topic are to the rig.
+struct BagRoute {
+  std::optional<std::uint16_t> laser;  ///< whose scans they are, or hold
+  std::optional<ScanDecoder> scans;
+  std::optional<AngleDecoder> angles;  ///< of the plate
+};
+
+/// Finds of which device of the rig a bag's topics are: by the rig's names, or by the type where the rig
+/// names none and only one topic is of such a type.
+class BagRoutes {
+ public:
+  explicit BagRoutes(const Rig& rig) : rig_(rig) {}
+
+  /// @throws Error if two topics could be of one device, or the topic that the rig names holds none of its
+  /// kind
+  BagRoute route(const BagConnection& connection);
+
+  /// Topics that the rig names and no connection had so far.
+  std::vector<std::string> missing() const;
+
+ private:
+  std::optional<std::uint16_t> laser_of(const BagConnection& connection) const;
+  void take(std::optional<std::string>& by, const BagConnection& connection, const std::string& device,
+            const char* key) const;
+
+  Rig rig_;
+  std::set<std::string> met_;
+  std::optional<std::string> guessed_laser_;  ///< the topic that was taken for the only laser's
+  std::optional<std::string> guessed_plate_;
+};
+
+}  // namespace crisp

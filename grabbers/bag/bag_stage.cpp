@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/bag/bag_stage.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "grabbers/bag/byte_cursor.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+/// What is known of a run while its files are read.
+struct BagStage::Run {
+  Run(Outputs& outputs, Context& its_context, double max_gap)
+      : out(outputs), context(its_context), routes(context.rig()), items(context.rig(), max_gap) {}
+
+  Outputs& out;
+  Context& context;
+  BagRoutes routes;
+  BagItems items;
+  std::optional<std::int64_t> first_ns;
+  std::vector<std::uint64_t> scans = std::vector<std::uint64_t>(context.rig().lasers.size());
+  std::uint64_t angles = 0;
+  std::map<std::string, std::string> topics;  ///< and their types, of all that the bag holds
+};
+
+void BagStage::describe(StageDescription<BagStage>& d) {
+  d.name("grabber.bag").summary("reads scans and the plate's angles from a bag of ROS 1 or ROS 2");
+  d.details(
+      "Nothing of ROS is needed. Bags are those of ROS 1 (.bag, chunks plain, bz2 or lz4), MCAP (chunks "
+      "plain, lz4 "
+      "or zstd) and ROS 2's in SQLite (.db3); a folder stands for the files in it, as ROS 2 writes them.\n\n"
+      "Scans are sensor_msgs/LaserScan or MultiEchoLaserScan, or a message that holds one. The plate's angle "
+      "is a "
+      "joint of a sensor_msgs/JointState, the number of a std_msgs message, or any field of another message. "
+      "The "
+      "rig names topics: `laser1: {topic: /tilt_scan, …}`, `plate: {topic: /joint_states, joint: "
+      "laser_tilt_mount_joint}`, `plate: {topic: /encoder, unit: counts}`, `plate: {topic: /slice, field: "
+      "stepAngle, "
+      "unit: deg}`; where it names none, the only topic of such a type is taken. `crisp info BAG` lists "
+      "topics, types "
+      "and joints.\n\n"
+      "A header's stamp is when beam 0 was fired, or the angle was read; beams follow by the scan's "
+      "time_increment. "
+      "Scans and readings carry it as their device's time, and when they were received as the hub's, for a "
+      "clock "
+      "stage below. Where one computer stamped laser and plate, the measurements that it gives besides can "
+      "be placed "
+      "at once. Angles are rounded to the plate's `counts_per_revolution`.");
+  d.gives<Scan>().gives<PlateReading>().gives<PlateTrajectory>().gives<Measurements>();
+  d.option("file", &BagStage::file_, "the bag, or a folder with its files").required();
+  d.option("actuator", &BagStage::actuator_,
+           "what the plate does while a scan is taken whose message holds its angle: it moves, or it stands "
+           "at that "
+           "angle")
+      .choices({{"moves", ActuatorMotion::moves}, {"stands", ActuatorMotion::stands}});
+  d.option("max_gap", &BagStage::max_gap_, "longest silence of the angles to interpolate across")
+      .unit("s")
+      .range(1e-6, 1e6);
+  d.option("begin", &BagStage::begin_,
+           "what was received earlier than this after the first message is left out")
+      .unit("s")
+      .at_least(0);
+  d.option("duration", &BagStage::duration_, "how much is given from there on; auto: all of it")
+      .unit("s")
+      .at_least(0);
+}
+
+void BagStage::check(const RunSettings& run) const {
+  if (run.rig.lasers.size() < 2) return;
+  for (const auto& laser : run.rig.lasers) {
+    if (laser.topic.empty()) {
+      throw Error(fmt::format("the rig has {} lasers, and does not say of which topic {}'s scans are",
+                              run.rig.lasers.size(), laser.name),
+                  fmt::format("name it in the rig: {}: {{topic: /scan, …}}; crisp info BAG lists topics",
+                              laser.name));
+    }
+  }
+}
+
+bool BagStage::is_wanted(std::int64_t receipt_ns, Run& run) const {
+  if (!run.first_ns) run.first_ns = receipt_ns;
+  const double since_begin = 1e-9 * static_cast<double>(receipt_ns - *run.first_ns) - begin_;
+  if ((begin_ == 0 || since_begin >= 0) && (!duration_ || since_begin < *duration_)) return true;
+  run.context.count("messages left out because of begin and duration");
+  return false;
+}
+
+void BagStage::use(const BagRoute& route, const BagMessage& message, Run& run) const {
+  std::optional<ScanMessage> scan;
+  if (route.scans) scan = route.scans->decode(message.data);
+  if (route.angles) {
+    const auto angle = route.angles->decode(message.data);
+    const bool stands = scan && actuator_ == ActuatorMotion::stands;
+    const auto reading =
+        angle ? run.items.add(*angle, message.receipt_ns, stands ? duration_of_beams(*scan) : 0)
+              : std::nullopt;
+    if (reading) run.out.give(*reading);
+    run.angles += reading.has_value();
+  }
+  if (!scan) return;
+  if (auto given = run.items.add(std::move(*scan), message.receipt_ns, *route.laser)) {
+    run.out.give(std::move(given));
+    ++run.scans[*route.laser];
+  }
+}
+
+void BagStage::read(const std::filesystem::path& file, Run& run) const {
+  constexpr std::uint64_t kTellEvery = 1000;
+  run.context.reads(file);
+  BagFile bag(file, [&run] { return run.context.interrupted(); });
+  std::vector<BagRoute> routes;
+  std::uint64_t messages = 0;
+  while (const auto message = bag.reader().next()) {
+    const auto& connections = bag.reader().connections();
+    while (routes.size() < connections.size()) routes.push_back(run.routes.route(connections[routes.size()]));
+    if (++messages % kTellEvery == 0) {
+      if (run.context.interrupted()) return;
+      run.context.progress(Progress{static_cast<double>(messages), 0, "messages", "reading the bag"});
+    }
+    const BagRoute& route = routes[message->connection];
+    if ((!route.scans && !route.angles) || !is_wanted(message->receipt_ns, run)) continue;
+    try {
+      use(route, *message, run);
+    } catch (const BagDamage& damage) {
+      run.context.count(damage.what);
+    }
+  }
+  for (const auto& connection : bag.reader().connections()) run.topics[connection.topic] = connection.type;
+  for (const auto& [what, n] : bag.reader().losses()) run.context.count(what, n);
+}
+
+void BagStage::report(const Run& run) const {
+  Context& context = run.context;
+  for (const auto& [what, n] : run.items.losses()) context.count(what, n);
+  std::vector<std::string> topics;
+  for (const auto& [topic, type] : run.topics) topics.push_back(fmt::format("{} ({})", topic, type));
+  const std::string held =
+      topics.empty() ? "it holds no topic" : fmt::format("its topics are {}", fmt::join(topics, ", "));
+  if (run.angles == 0 && std::ranges::all_of(run.scans, [](std::uint64_t n) { return n == 0; }))
+    throw Error(file_.string() + " holds no scan and no angle of the rig's devices",
+                held + "; name them in the rig");
+  for (const auto& topic : run.routes.missing())
+    context.warn(fmt::format("the rig's topic {} is not in the bag; {}", topic, held));
+  auto section = nlohmann::json::object();
+  for (std::size_t i = 0; i < run.scans.size(); ++i) {
+    const std::string& name = context.rig().lasers[i].name;
+    context.say(fmt::format("{}: {} scans", name, run.scans[i]));
+    section[name] = {{"scans", run.scans[i]}};
+    if (run.scans[i] == 0) context.warn(fmt::format("the bag holds no scan of {}; {}", name, held));
+  }
+  context.say(fmt::format("{}: {} angles", context.rig().plate.name, run.angles));
+  section[context.rig().plate.name] = {{"angles", run.angles}};
+  context.report(section);
+}
+
+void BagStage::process(const Inputs&, Outputs& out, Context& context) {
+  Run run(out, context, max_gap_);
+  for (const auto& file : files_of_bag(file_)) {
+    read(file, run);
+    if (context.interrupted()) return;
+  }
+  report(run);
+  if (!run.items.has_trajectory()) return;
+  out.give(run.items.trajectory());
+  for (const auto& beams : run.items.take_measurements()) out.give(beams);
+}
+
+}  // namespace crisp

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/bag/rosbag1_reader.hpp"
+
+#include <algorithm>
+
+#include "grabbers/bag/decompress.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+
+/// What a record is, in the field `op` of its header.
+enum class Op : std::uint8_t { message = 2, chunk = 5, connection = 7 };
+
+/// The value of a field of a header: fields are NAME=VALUE after their length.
+std::string_view field(std::string_view header, std::string_view name) {
+  for (ByteCursor fields(header); !fields.empty();) {
+    const std::string_view one = fields.text();
+    const auto equals = one.find('=');
+    if (equals == std::string_view::npos) throw BagDamage{"records whose header cannot be read"};
+    if (one.substr(0, equals) == name) return one.substr(equals + 1);
+  }
+  throw BagDamage{"records whose header lacks a field"};
+}
+
+template <class T>
+T number(std::string_view header, std::string_view name) {
+  return ByteCursor(field(header, name)).take<T>();
+}
+
+}  // namespace
+
+struct Rosbag1Reader::Record {
+  std::string_view header, data;
+};
+
+Rosbag1Reader::Rosbag1Reader(std::istream& in) : BagReader("rosbag 1"), in_(in) {
+  if (!in_.read(kMagic.size(), header_) || header_ != kMagic) count("bags whose begin is missing");
+}
+
+bool Rosbag1Reader::read_record() {
+  std::string length;
+  const auto read = [&](std::string& to) {
+    return in_.read(sizeof(std::uint32_t), length) && in_.read(ByteCursor(length).take<std::uint32_t>(), to);
+  };
+  if (in_.at_end()) return false;
+  if (read(header_) && read(data_)) return true;
+  count("bags that end within a record");
+  return false;
+}
+
+void Rosbag1Reader::connect(const Record& record) {
+  const auto id = number<std::uint32_t>(record.header, "conn");
+  if (index_.contains(id)) return;  // it is once more in the index
+  std::string definition;
+  try {
+    definition = field(record.data, "message_definition");
+  } catch (const BagDamage&) {  // a type that is known here needs none
+  }
+  index_[id] = add({.topic = std::string(field(record.header, "topic")),
+                    .type = std::string(field(record.data, "type")),
+                    .definition = std::move(definition),
+                    .encoding = RosEncoding::ros1});
+}
+
+void Rosbag1Reader::open_chunk(const Record& record) {
+  const auto size = number<std::uint32_t>(record.header, "size");
+  chunk_ = decompress(field(record.header, "compression"), record.data, size);
+  left_ = ByteCursor(chunk_);
+}
+
+void Rosbag1Reader::use(const Record& record) {
+  switch (number<Op>(record.header, "op")) {
+    case Op::chunk:
+      return open_chunk(record);
+    case Op::connection:
+      return connect(record);
+    case Op::message: {
+      const auto known = index_.find(number<std::uint32_t>(record.header, "conn"));
+      if (known == index_.end()) throw BagDamage{"messages of a connection that the bag does not describe"};
+      ByteCursor time(field(record.header, "time"));
+      const std::int64_t seconds = time.take<std::uint32_t>();
+      message_ = {known->second, seconds * kNsPerSecond + time.take<std::uint32_t>(), record.data};
+      return;
+    }
+  }
+}
+
+std::optional<BagMessage> Rosbag1Reader::next() {
+  message_.reset();
+  while (!message_) {
+    try {
+      if (!left_.empty()) {
+        const std::string_view header = left_.text();
+        use({header, left_.text()});
+      } else if (read_record()) {
+        use({header_, data_});
+      } else {
+        return std::nullopt;
+      }
+    } catch (const BagDamage& damage) {
+      count(damage.what);
+      left_ = ByteCursor({});
+    }
+  }
+  return message_;
+}
+
+}  // namespace crisp

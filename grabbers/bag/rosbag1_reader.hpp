@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "grabbers/bag/bag_reader.hpp"
+#include "grabbers/bag/byte_cursor.hpp"
+#include "grabbers/bag/record_stream.hpp"
+
+namespace crisp {
+
+/// Reads ROS 1's bags, version 2.0 (wiki.ros.org/Bags/Format/2.0), from front to back: their index is not
+/// needed, so that one that was not closed (.bag.active) or was cut off is read as far as it goes.
+class Rosbag1Reader final : public BagReader {
+ public:
+  static constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
+
+  /// @param in  at its begin
+  explicit Rosbag1Reader(std::istream& in);
+
+  std::optional<BagMessage> next() override;
+
+ private:
+  struct Record;
+  /// Reads the next record outside of chunks. False at the end.
+  bool read_record();
+  void use(const Record& record);
+  void open_chunk(const Record& record);
+  void connect(const Record& record);
+
+  RecordStream in_;
+  std::string header_, data_;
+  std::string chunk_;
+  ByteCursor left_{{}};                         ///< of the chunk
+  std::map<std::uint32_t, std::size_t> index_;  ///< of a connection's number in the bag
+  std::optional<BagMessage> message_;
+};
+
+}  // namespace crisp
