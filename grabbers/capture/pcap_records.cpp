@@ -36,7 +36,7 @@ PcapRecords::PcapRecords(FileWindow& file, Counts& losses) : file_(file), losses
   if (magic == kNanoseconds) ns_per_tick_ = 1;
   if (magic == kExtended) header_size_ = 24;
   link_type_ =
-      number_at<std::uint32_t>(begin, 20, order_) & 0x0FFFFFFF;  // the rest tells of checksums of frames
+      number_at<std::uint32_t>(begin, 20, order_) & 0xFFFF;  // the rest tells of checksums of frames
   file_.skip(kPcapFileHeader);
 }
 
