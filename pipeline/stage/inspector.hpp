@@ -33,6 +33,9 @@ struct Inspector {
   /// @throws Error if one cannot be read
   std::function<std::string(const std::filesystem::path& first, const std::filesystem::path& second)>
       compare = {};
+  /// What a file of this kind says to ROS, as URDF; none where it says nothing.
+  /// @throws Error if it cannot be read
+  std::function<std::string(const std::filesystem::path& file, const Rig& rig)> urdf = {};
 };
 
 using Inspectors = std::vector<Inspector>;

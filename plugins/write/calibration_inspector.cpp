@@ -5,6 +5,7 @@
 #include "pipeline/files/calibration_file.hpp"
 #include "plugins/write/calibration_stage.hpp"
 #include "plugins/write/calibrations_compared.hpp"
+#include "plugins/write/urdf.hpp"
 
 namespace crisp {
 namespace {
@@ -48,9 +49,12 @@ Inspector calibration_inspector() {
   return {.kind = "a calibration",
           .recognises = recognises,
           .inspect = inspect,
-          .compare = [](const std::filesystem::path& first, const std::filesystem::path& second) {
-            return side_by_side(read_calibration(first), read_calibration(second));
-          }};
+          .compare =
+              [](const std::filesystem::path& first, const std::filesystem::path& second) {
+                return side_by_side(read_calibration(first), read_calibration(second));
+              },
+          .urdf = [](const std::filesystem::path& file,
+                     const Rig& rig) { return to_urdf(read_calibration(file), rig); }};
 }
 
 }  // namespace crisp

@@ -10,6 +10,7 @@
 #include "plugins/write/pcd_stage.hpp"
 #include "plugins/write/picture_stage.hpp"
 #include "plugins/write/ply_writer.hpp"
+#include "plugins/write/trajectory_stage.hpp"
 
 namespace crisp {
 
@@ -22,6 +23,7 @@ void register_write(Registrar& registrar) {
   registrar.stage<WritePcdStage>();
   registrar.stage<WritePictureStage>();
   registrar.stage<CloudFileStage<PlyWriter>>();
+  registrar.stage<WriteTrajectoryStage>();
   registrar.inspector(calibration_inspector());
 }
 
