@@ -7,6 +7,7 @@
 #include "pipeline/app/terminal.hpp"
 #include "pipeline/data/all_errors.hpp"
 #include "pipeline/files/atomic_file.hpp"
+#include "pipeline/files/process_identity.hpp"
 #include "pipeline/files/utc_now.hpp"
 #include "pipeline/pcd/parts.hpp"
 #include "pipeline/stage/files_written.hpp"
@@ -52,6 +53,7 @@ RecordedRun::RecordedRun(const RunRequest& request, const Registrar& registrar)
     std::error_code not_there;
     fs::remove(settings_.output / kSummary, not_there);
   }
+  record_.command = command_of_this_process();
   record_.pipeline_file = loaded_.file;
   record_.rig_file = loaded_.rig_file;
   record_.seed = settings_.seed;
@@ -93,6 +95,7 @@ bool RecordedRun::keep(const std::function<void(const Error&)>& report) {
     });
   };
   if (record_.failure.empty() || record_.wrote_any()) keep([&] { record_.inputs = hash_inputs(record_); });
+  if (record_.failure.empty()) keep([&] { write_when_recorded(record_); });
   keep([&] { write_provenance(record_); });
   keep([&] { write_summary(record_, settings_.output); });
   return all_kept;

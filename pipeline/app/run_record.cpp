@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 #include "pipeline/data/all_errors.hpp"
 #include "pipeline/files/atomic_file.hpp"
@@ -29,6 +30,7 @@ Json inputs_json(const RunRecord& record) {
 /// What summary and provenance begin with.
 Json head_json(const RunRecord& record) {
   return {{"crisp", CRISP_VERSION},
+          {"command", record.command},
           {"pipeline", record.pipeline_file.string()},
           {"rig", record.rig_file.empty() ? "default" : record.rig_file.string()},
           {"seed", record.seed},
@@ -135,6 +137,20 @@ Json provenance_json(const RunRecord& record, const fs::path& file) {
     json["stages"].push_back(stage_json(record, i));
   }
   return json;
+}
+
+void write_when_recorded(RunRecord& record) {
+  AllErrors errors;
+  const Json summary = summary_json(record);
+  for (auto& node : record.nodes) {
+    if (!node.report.when_recorded) continue;
+    const auto written = std::exchange(node.report.written, {});
+    errors.keep_of([&] {
+      node.report.when_recorded(summary);
+      node.report.written = written;
+    });
+  }
+  errors.throw_any();
 }
 
 void write_provenance(const RunRecord& record) {

@@ -20,6 +20,7 @@ struct InputRecord {
 
 /// All that is to be told of a run once it is over.
 struct RunRecord {
+  std::string command;  ///< that started the program
   std::filesystem::path pipeline_file;
   std::filesystem::path rig_file;  ///< empty: the default rig
   std::uint64_t seed = 0;
@@ -44,6 +45,11 @@ nlohmann::ordered_json summary_json(const RunRecord& record);
 
 /// What is put beside each file that a run wrote: how it came to be.
 nlohmann::ordered_json provenance_json(const RunRecord& record, const std::filesystem::path& file);
+
+/// Has the stages write what shows the whole run: see Context::when_recorded(). What could not be written no
+/// longer counts as written. Each is tried.
+/// @throws Errors  why some could not be written
+void write_when_recorded(RunRecord& record);
 
 /// Writes FILE.provenance.json beside every file that the stages wrote. Each is tried.
 /// @throws Errors  why some could not be written

@@ -24,14 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 using LockJson = nlohmann::ordered_json;
 
-std::string command_of_this_process() {
-  std::ifstream stream("/proc/self/cmdline", std::ios::binary);
-  std::string command(std::istreambuf_iterator<char>(stream), {});
-  while (command.ends_with('\0')) command.pop_back();
-  std::ranges::replace(command, '\0', ' ');
-  return command;
-}
-
 [[noreturn]] void fail_to_lock(const fs::path& folder, int code) {
   throw Error("cannot write into the folder " + folder.string() + ": " + std::strerror(code),
               is_for_want_of_room(code) ? "make room on the disk" : "");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -71,6 +72,14 @@ ProcessIdentity this_process() {
   const pid_t number = getpid();
   const auto state = state_of(number);
   return {host_name(), machine_of_this_process(), number, state ? state->start : 0};
+}
+
+std::string command_of_this_process() {
+  std::ifstream stream("/proc/self/cmdline", std::ios::binary);
+  std::string command(std::istreambuf_iterator<char>(stream), {});
+  while (command.ends_with('\0')) command.pop_back();
+  std::ranges::replace(command, '\0', ' ');
+  return command;
 }
 
 Liveness liveness_of(const ProcessIdentity& process) {

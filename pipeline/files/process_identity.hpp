@@ -22,6 +22,9 @@ struct ProcessIdentity {
 /// The calling process.
 ProcessIdentity this_process();
 
+/// The command line that started it, its words parted by spaces; empty where the system does not tell.
+std::string command_of_this_process();
+
 enum class Liveness {
   alive,
   dead,

@@ -60,6 +60,7 @@ struct StageReport {
   std::vector<std::string> lines;
   std::vector<std::filesystem::path> read;
   std::vector<std::filesystem::path> written;
+  std::function<void(const nlohmann::ordered_json& summary)> when_recorded = {};
 };
 
 /// Through which a stage knows the run that it is part of, and tells what happened. To be used from the
@@ -99,6 +100,12 @@ class Context {
   void reads(std::filesystem::path file) { report_->read.push_back(std::move(file)); }
   /// Names a file that was written, once it is complete: a record of its origin is put beside it.
   void wrote(std::filesystem::path file) { report_->written.push_back(std::move(file)); }
+  /// Has the last of the stage's files written when the run is over and came to its end: `write` gets what
+  /// summary.json is going to hold. Name the file by wrote() all the same, in finish(). The stage itself may
+  /// be gone by then.
+  void when_recorded(std::function<void(const nlohmann::ordered_json& summary)> write) {
+    report_->when_recorded = std::move(write);
+  }
 
   /// How much of the stage's own work is done, 0 to 1; `what` says what is being done: "sigma 5 cm".
   void progress(double fraction, std::string_view what = {}) const {
