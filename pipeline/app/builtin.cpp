@@ -17,6 +17,7 @@
 #include "plugins/clock/register.hpp"
 #include "plugins/diagnose/register.hpp"
 #include "plugins/filter/register.hpp"
+#include "plugins/report/register.hpp"
 #include "plugins/scans/register.hpp"
 #include "plugins/study/register.hpp"
 #include "plugins/watch/register.hpp"
@@ -46,6 +47,7 @@ Builtin::Builtin() {
   register_calibrate(registrar_);
   register_diagnose(registrar_);
   register_filter(registrar_);
+  register_report(registrar_);
   register_scans(registrar_);
   register_study(registrar_);
   register_watch(registrar_);

@@ -59,6 +59,7 @@ CommandLine::CommandLine() {
   add_cluster();
   add_record();
   add_emulate();
+  add_report();
   add_bound();
   add_basin();
   add_monte_carlo();
@@ -341,6 +342,22 @@ void CommandLine::add_emulate() {
   add_stage_options(emulate_app, "emulate.rig", emulate,
                     {{"speed", "Times real time; 0: as fast as the clients take it"},
                      {"plate_to", "Where the plate's datagrams are sent: 127.0.0.1:4000"}});
+}
+
+void CommandLine::add_report() {
+  report_app = command("report", "Write one HTML page of what a run or a batch left in a folder");
+  report.file = "report.yaml";
+  report.text = kReportPipeline;
+  report_app
+      ->add_option("folder", report.arguments.input, "The folder that crisp run or crisp batch wrote into")
+      ->required()
+      ->type_name("FOLDER");
+  add_rig(report_app, report.arguments);
+  add_stage_options(report_app, "report.folder", report,
+                    {{"file", "The page, instead of report.html in the folder"},
+                     {"points", "Most points that the page's cloud has"},
+                     {"against", "An earlier calibration of the scanner, to be shown beside"}});
+  add_run_options(report_app, "--threads", report);
 }
 
 void CommandLine::add_figures() {

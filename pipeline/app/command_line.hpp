@@ -37,6 +37,7 @@ struct CommandLine {
   StudyRequest monte_carlo;
   RunRequest record;
   RunRequest emulate;
+  RunRequest report;
   std::uint64_t monte_carlo_runs = 1500;
   std::optional<std::uint64_t> monte_carlo_only;
   PipelineArguments validate;
@@ -59,6 +60,7 @@ struct CommandLine {
   CLI::App* monte_carlo_app = nullptr;
   CLI::App* record_app = nullptr;
   CLI::App* emulate_app = nullptr;
+  CLI::App* report_app = nullptr;
   CLI::App* validate_app = nullptr;
   CLI::App* stages_app = nullptr;
   CLI::App* effects_app = nullptr;
@@ -102,6 +104,7 @@ struct CommandLine {
   void add_basin();
   void add_record();
   void add_emulate();
+  void add_report();
   void add_figures();
   void add_monte_carlo();
   void add_validate();

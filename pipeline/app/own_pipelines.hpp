@@ -14,5 +14,6 @@ extern const std::string_view kEmulatePipeline;
 extern const std::string_view kFiguresPipeline;
 extern const std::string_view kMonteCarloPipeline;
 extern const std::string_view kRecordPipeline;
+extern const std::string_view kReportPipeline;
 
 }  // namespace crisp

@@ -36,7 +36,7 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
   EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml",
                                               "diagnose.yaml", "emulate.yaml", "figures.yaml",
                                               "like_real.yaml", "live.yaml", "monte_carlo.yaml",
-                                              "picture.yaml", "record.yaml", "simulate.yaml"));
+                                              "picture.yaml", "record.yaml", "report.yaml", "simulate.yaml"));
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
@@ -63,7 +63,8 @@ TEST(Configs, CalibrateFindsTheScannerAndMakesTheCloudFromACaptureAlone) {
   const auto outcome = workshop.run("calibrate.yaml", workshop / "made/hub.pcap", "out");
   EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
   EXPECT_THAT(outcome.files, ElementsAre("calibration.yaml", "calibration.yaml.provenance.json", "cloud.pcd",
-                                         "cloud.pcd.provenance.json", "summary.json"));
+                                         "cloud.pcd.provenance.json", "report.html",
+                                         "report.html.provenance.json", "summary.json"));
   const auto errors = test::errors_of(read_calibration(workshop / "out/calibration.yaml"),
                                       read_calibration(workshop / "made/truth.yaml"));
   EXPECT_LE(errors.tau, 0.003);
@@ -86,6 +87,14 @@ TEST(Configs, PictureShowsTheCloudBeforeAndAfterACalibration) {
   EXPECT_THAT(drawn.files, ElementsAre("after.png", "after.png.provenance.json", "before.png",
                                        "before.png.provenance.json", "summary.json"));
   EXPECT_NE(test::bytes_of(workshop / "out/before.png"), test::bytes_of(workshop / "out/after.png"));
+}
+
+TEST(Configs, ReportWritesThePageOfWhatARunLeft) {
+  const test::Workshop workshop;
+  workshop.simulate("made", {"duration=1s"});
+  const auto outcome = workshop.run("report.yaml", workshop / "made", "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  EXPECT_THAT(test::bytes_of(workshop / "made/report.html"), testing::HasSubstr("grabber.simulate"));
 }
 
 TEST(Configs, FiguresWritesTheColumnsOfThePapersFigures) {

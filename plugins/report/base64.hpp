@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace crisp {
+
+/// RFC 4648, with padding, in one line.
+std::string base64_of(std::span<const unsigned char> bytes);
+
+}  // namespace crisp

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/data/calibration.hpp"
+
+namespace crisp {
+
+/// What a report shows of a calibration: parameters in mm, degrees and ms with standard errors, the values of
+/// the rig and of an earlier calibration beside them, correlations of the free ones, and what is
+/// not observable.
+///
+/// @param nominal  the rig's values; a parameter that it lacks has none
+/// @param against  an earlier calibration of the same scanner; null: none
+nlohmann::ordered_json calibration_json(const Calibration& calibration, const Calibration& nominal,
+                                        const Calibration* against);
+
+}  // namespace crisp

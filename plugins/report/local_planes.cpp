@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/report/local_planes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "plugins/report/cell_runs.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr unsigned kLevels = 2;        // the cells' side is doubled twice
+constexpr double kMostFlatness = 0.2;  // spread across the plane over that along it
+constexpr std::size_t kFewest = 12;    // points of a plane
+
+Plane plane_of_run(const CellRun& run, const PointsView& points, const SpatialOrder& order) {
+  Moments moments;
+  const std::uint32_t first = order.index[run.begin];
+  const Eigen::Vector3d origin(points.x[first], points.y[first], points.z[first]);
+  for (std::size_t k = run.begin; k < run.end; ++k) {
+    const std::uint32_t i = order.index[k];
+    moments.add(Eigen::Vector3d(points.x[i], points.y[i], points.z[i]) - origin);
+  }
+  Plane plane = plane_of(moments);
+  plane.middle += origin;
+  return plane;
+}
+
+}  // namespace
+
+double LocalPlanes::distance(std::size_t point, const PointsView& points) const {
+  if (of[point] == kNone) return std::numeric_limits<double>::quiet_NaN();
+  return planes[of[point]].distance({points.x[point], points.y[point], points.z[point]});
+}
+
+double LocalPlanes::incidence(std::size_t point, const Eigen::Vector3d& direction) const {
+  if (of[point] == kNone) return std::numeric_limits<double>::quiet_NaN();
+  return std::acos(std::min(1.0, std::abs(planes[of[point]].normal.dot(direction.normalized()))));
+}
+
+LocalPlanes local_planes(const PointsView& points, const SpatialOrder& order) {
+  LocalPlanes found{.planes = {}, .of = std::vector(points.size(), LocalPlanes::kNone)};
+  for (const CellRun& run : cell_runs(order, kLevels)) {
+    if (run.size() < kFewest) continue;
+    const Plane plane = plane_of_run(run, points, order);
+    if (!(plane.extent[0] < kMostFlatness * plane.extent[1])) continue;
+    for (std::size_t k = run.begin; k < run.end; ++k) {
+      found.of[order.index[k]] = static_cast<std::uint32_t>(found.planes.size());
+    }
+    found.planes.push_back(plane);
+  }
+  return found;
+}
+
+}  // namespace crisp

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/report/register.hpp"
+
+#include "plugins/report/folder_stage.hpp"
+#include "plugins/report/report_stage.hpp"
+
+namespace crisp {
+
+void register_report(Registrar& registrar) {
+  registrar.stage<WriteReportStage>();
+  registrar.stage<FolderReportStage>();
+}
+
+}  // namespace crisp

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+void register_report(Registrar& registrar);
+
+}  // namespace crisp

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "pipeline/data/calibration.hpp"
+#include "pipeline/data/findings.hpp"
+#include "pipeline/data/oriented_plate.hpp"
+#include "pipeline/estimate/collected.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// `write.report`: the run as one HTML page.
+class WriteReportStage final : public Stage {
+ public:
+  static void describe(StageDescription<WriteReportStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  std::filesystem::path file_;
+  std::size_t points_ = 300'000;
+  std::optional<std::filesystem::path> against_;
+
+  static constexpr std::size_t kMostBeams = 2'000'000;  ///< that points are chosen from
+  Collected collected_{kMostBeams};
+  bool has_beams_ = false;
+  OrientedPlate oriented_;
+  std::shared_ptr<const Calibration> calibration_;
+  std::shared_ptr<const Findings> findings_;
+};
+
+}  // namespace crisp
