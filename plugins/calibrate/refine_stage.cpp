@@ -108,6 +108,12 @@ void RefineStage::finish(Outputs& out, Context& context) {
   if (context.interrupted()) return;
   add_clock_errors(refined.outcome, context.rig(), clocks_);
   Calibration calibration = calibration_of(refined.outcome, context.rig());
+  // calibrate.rqe decides by values that may be some centimetres off.
+  if (auto turned =
+          in_direction_of_rig(calibration, context.rig(), check_with_rig(calibration, context.rig(), {}))) {
+    context.warn(kCountsClockwise);
+    calibration = std::move(*turned);
+  }
   judge(sample, refined, calibration, context);
   if (context.interrupted()) return;
   tell(halves, context);

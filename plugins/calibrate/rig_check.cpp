@@ -234,7 +234,12 @@ RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const Se
   const double as_it_is = distance(calibration, nominal_calibration(rig), range);
   const auto all = hypotheses(calibration, rig, range);
   const Hypothesis& mirror_image = all.front();
-  const Hypothesis& best = *std::ranges::min_element(all, {}, &Hypothesis::distance);
+  const Hypothesis& nearest = *std::ranges::min_element(all, {}, &Hypothesis::distance);
+  // A lone laser that is upside down makes the mirror image. Where the rig leaves the direction open, it is
+  // that.
+  const bool may_be_mirrored =
+      rig.plate.direction == CountDirection::automatic && mirror_image.distance < nearest.distance + kClearly;
+  const Hypothesis& best = may_be_mirrored ? mirror_image : nearest;
   const bool fits = best.distance < kFitsPerLaser * static_cast<double>(rig.lasers.size());
   const bool is_explained = fits && best.distance + kClearly < as_it_is;
   RigCheck check{.is_mirrored = is_explained && &best == &mirror_image,
@@ -242,6 +247,12 @@ RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const Se
                  .knows_direction = as_it_is + kClearly < mirror_image.distance};
   check.caveats = is_explained ? std::vector{best.caveat} : outside(calibration, rig, range);
   return check;
+}
+
+std::optional<Calibration> in_direction_of_rig(const Calibration& calibration, const Rig& rig,
+                                               const RigCheck& check) {
+  if (rig.plate.direction != CountDirection::automatic || !check.is_mirrored) return std::nullopt;
+  return match_form_of_rig(with_lambdas_near(mirrored(calibration), rig), rig);
 }
 
 }  // namespace crisp

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,17 @@ struct RigCheck {
 /// @param calibration  one laser for each of the rig's, in its order
 /// @param range        [m, rad] how far τ and α may be from their nominal values
 RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const SearchRange& range);
+
+/// Where the rig leaves the encoder's direction to the calibration, and the mirror image is what agrees with
+/// the rig: the mirror image, in the form that is near to the rig. Otherwise nothing.
+std::optional<Calibration> in_direction_of_rig(const Calibration& calibration, const Rig& rig,
+                                               const RigCheck& check);
+
+/// What the user is told then.
+inline constexpr const char* kCountsClockwise =
+    "the encoder counts clockwise, by the signs of tau and alpha and the order of the lasers; the "
+    "calibration "
+    "takes it so. Set plate.direction: clockwise in the rig";
 
 /// The parameters whose standard error is about that which the rig gives them.
 std::vector<std::string> known_from_rig_only(const Calibration& calibration, const SearchRange& prior);

@@ -101,12 +101,11 @@ void RqeStage::process(const Inputs& in, Outputs&, Context& context) {
 Calibration RqeStage::compared_with_rig(Calibration calibration, Context& context) const {
   const RigCheck check = check_with_rig(calibration, context.rig(), range_);
   const bool asks_direction = context.rig().plate.direction == CountDirection::automatic && !start_;
-  if (asks_direction && check.is_mirrored) {
-    context.warn(
-        "the encoder counts clockwise, by the signs of tau and alpha and the order of the lasers; the "
-        "calibration "
-        "takes it so. Set plate.direction: clockwise in the rig");
-    return match_form_of_rig(with_lambdas_near(mirrored(calibration), context.rig()), context.rig());
+  if (!start_) {
+    if (auto turned = in_direction_of_rig(calibration, context.rig(), check)) {
+      context.warn(kCountsClockwise);
+      return std::move(*turned);
+    }
   }
   if (asks_direction && !check.knows_direction) {
     calibration.doubts.emplace_back(

@@ -54,6 +54,8 @@ TEST_F(AnyRig, ACoarseEncoderCountsInTheStandardErrors) {
 
 TEST_F(AnyRig, InACorridorTheNominalLambdaTellsWhichWayRound) { is_right_and_trusted(160); }
 
+TEST_F(AnyRig, ALoneLaserTellsTheDirectionByTheSignOfItsTau) { is_right_and_trusted(622, {}); }
+
 TEST_F(AnyRig, ALagAtWhichLinesFitByChanceIsNotTaken) {
   const auto outcome = calibrate(581, {"fault=none"});
   EXPECT_THAT(outcome.told, HasSubstr("left.eta has another minimum at 99.93 ms"));

@@ -78,6 +78,23 @@ TEST(RigCheck, TheOrderOfTheLasersTellsTheDirectionOfRadialScanPlanes) {
   EXPECT_THAT(two.caveats, IsEmpty());
 }
 
+TEST(RigCheck, ALoneLaserUpsideDownIsTheMirrorImageWhereTheDirectionIsOpen) {
+  Rig rig = default_rig();
+  rig.lasers.resize(1);
+  rig.plate.direction = CountDirection::automatic;
+  const Calibration truth = found(6, rig);
+  const RigCheck result = check(mirrored(truth), rig);
+  EXPECT_TRUE(result.is_mirrored);
+  const auto turned = in_direction_of_rig(mirrored(truth), rig, result);
+  ASSERT_TRUE(turned);
+  EXPECT_EQ(turned->direction, CountDirection::counter_clockwise);
+  EXPECT_NEAR(turned->lasers[0].tau.value, truth.lasers[0].tau.value, 1e-12);
+  EXPECT_NEAR(turned->lasers[0].alpha.value, truth.lasers[0].alpha.value, 1e-12);
+  EXPECT_FALSE(in_direction_of_rig(truth, rig, check(truth, rig)));
+  rig.plate.direction = CountDirection::counter_clockwise;
+  EXPECT_FALSE(in_direction_of_rig(mirrored(truth), rig, check(mirrored(truth), rig)));
+}
+
 TEST(RigCheck, ExchangedLasersAreNamed) {
   Rig rig = default_rig();
   rig.lasers[1].nominal.tau.value = 0.25;
