@@ -23,7 +23,7 @@ void replace_line(std::string& script, std::size_t begin, const std::string& lin
 
 /// sbatch takes a value with a blank in double quotes.
 std::string directive(const std::string& name, const std::string& value) {
-  const std::string begin = std::string(kDirective) + name;
+  std::string begin = std::string(kDirective) + name;
   if (value.empty()) return begin;
   if (value.find_first_of(" \t\"'\\#") == std::string::npos) return begin + "=" + value;
   std::string quoted;
