@@ -147,10 +147,10 @@ endfunction()
 
 # crisp_fuzz(<name> SOURCES ... LIBRARIES ...) makes one fuzz target, <name>_fuzz, of sources that define
 # LLVMFuzzerTestOneInput, with the seeds in corpus/<name>/. With clang and CRISP_BUILD_FUZZERS libFuzzer
-# searches from the seeds for CRISP_FUZZ_SECONDS (test fuzz.<name>); elsewhere each seed is replayed once
-# (test seeds.<name>), so that what was once found stays found in every build.
+# searches from the seeds for CRISP_FUZZ_SECONDS (test fuzz.<name>), with SLOW for twice as long; elsewhere each
+# seed is replayed once (test seeds.<name>), so that what was once found stays found in every build.
 function(crisp_fuzz name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SLOW" "" "SOURCES;LIBRARIES")
   set(seeds "${CMAKE_CURRENT_SOURCE_DIR}/corpus/${name}")
   if(NOT IS_DIRECTORY "${seeds}")
     message(FATAL_ERROR "the fuzz target ${name} has no seeds: put some small inputs into ${seeds}")
@@ -170,9 +170,13 @@ function(crisp_fuzz name)
     endforeach()
     set(found "${CMAKE_BINARY_DIR}/fuzz/${name}")
     file(MAKE_DIRECTORY "${found}/corpus")
-    add_test(NAME fuzz.${name} COMMAND ${name}_fuzz -max_total_time=${CRISP_FUZZ_SECONDS} -timeout=10
+    set(seconds "${CRISP_FUZZ_SECONDS}")
+    if(arg_SLOW)
+      math(EXPR seconds "2 * ${seconds}")
+    endif()
+    add_test(NAME fuzz.${name} COMMAND ${name}_fuzz -max_total_time=${seconds} -timeout=10
              -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix=${found}/ ${found}/corpus ${seeds})
-    math(EXPR limit "${CRISP_FUZZ_SECONDS} + 300")
+    math(EXPR limit "${seconds} + 300")
     set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT ${limit})
   else()
     target_link_libraries(${name}_fuzz PRIVATE crisp_replay)

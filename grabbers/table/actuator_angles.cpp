@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/table/actuator_angles.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <numbers>
 
 #include "pipeline/data/error.hpp"
@@ -21,6 +24,14 @@ void ActuatorAngles::add(double time, double angle) {
   if (!times_.empty() && time <= times_.back()) return;
   times_.push_back(time);
   angles_.push_back(angle);
+}
+
+void ActuatorAngles::forget_before(double time) {
+  constexpr std::ptrdiff_t kLeft = 3;  // slopes are taken from neighbours
+  const auto most = std::max<std::ptrdiff_t>(0, std::ssize(times_) - kLeft);
+  const auto n = std::min(most, std::ranges::lower_bound(times_, time) - times_.begin());
+  times_.erase(times_.begin(), times_.begin() + n);
+  angles_.erase(angles_.begin(), angles_.begin() + n);
 }
 
 std::uint32_t ActuatorAngles::count_at(double angle) const {

@@ -27,6 +27,8 @@ class ActuatorAngles {
   std::uint32_t count_at(double angle) const;
   /// @throws Error if there are fewer than two angles at different times
   PlateTrajectory trajectory(std::int64_t epoch_ns, double max_gap) const;
+  /// Angles before this time [s since the epoch] are no longer part of trajectory(), but for the last three.
+  void forget_before(double time);
   std::size_t size() const { return times_.size(); }
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/table/table_items.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -72,12 +73,14 @@ void TableItems::add_beams(const TableRow& row, double time) {
   }
   Measurements& beams = *beams_.back();
   const double first = (single ? row.mirror : settings_.start_angle) - rig_.lasers[row.laser].mount;
+  const std::size_t before = beams.size();
   append_beams({.first_angle = first,
                 .angle_step = settings_.angle_step,
                 .first_time = time,
                 .interval = settings_.beam_interval,
                 .laser = row.laser},
                row.ranges, row.remissions, beams);
+  beam_count_ += beams.size() - before;
 }
 
 /// An angle may begin anew at a whole turn, and its step be up to half a turn more or less than that.
@@ -150,11 +153,28 @@ TableScan TableItems::add(const TableRow& row, std::int64_t time_ns) {
 PlateTrajectory TableItems::trajectory() const { return angles_.trajectory(epoch_ns_, settings_.max_gap); }
 
 std::vector<std::shared_ptr<const Measurements>> TableItems::take_measurements() {
+  return take_measurements_until(std::numeric_limits<double>::infinity());
+}
+
+std::vector<std::shared_ptr<const Measurements>> TableItems::take_measurements_until(double time) {
+  const auto first_left = std::ranges::find_if(
+      beams_, [&](const auto& beams) { return beams->size() > 0 && beams->time.back() > time; });
   std::vector<std::shared_ptr<const Measurements>> all;
-  for (auto& beams : std::exchange(beams_, {})) {
-    if (beams->size() > 0) all.push_back(std::move(beams));
+  for (auto it = beams_.begin(); it != first_left; ++it) {
+    forgotten_ += (*it)->size();
+    if ((*it)->size() > 0) all.push_back(std::move(*it));
   }
+  beams_.erase(beams_.begin(), first_left);
   return all;
 }
+
+double TableItems::middle_time() const {
+  const auto is_empty = [](const auto& beams) { return beams->size() == 0; };
+  const auto middle =
+      std::ranges::find_if_not(beams_.begin() + std::ssize(beams_) / 2, beams_.end(), is_empty);
+  return middle == beams_.end() ? std::numeric_limits<double>::infinity() : (*middle)->time.back();
+}
+
+void TableItems::forget_angles_before(double time) { angles_.forget_before(time); }
 
 }  // namespace crisp

@@ -57,6 +57,16 @@ class TableItems {
   PlateTrajectory trajectory() const;
   /// Of the rows so far, a scan each (or all beams of a laser that follow one another); forgets them.
   std::vector<std::shared_ptr<const Measurements>> take_measurements();
+  /// The same, of those that were over at this time [s since the epoch] and came before all that were not.
+  std::vector<std::shared_ptr<const Measurements>> take_measurements_until(double time);
+  /// [s since the epoch] By which half of what take_measurements() would give was over.
+  double middle_time() const;
+  /// Angles before this time [s since the epoch] are no longer part of trajectory().
+  void forget_angles_before(double time);
+  std::uint64_t beams() const { return beam_count_; }  ///< taken so far
+  std::uint64_t beams_held() const {
+    return beam_count_ - forgotten_;
+  }  ///< that take_measurements() would give
 
   const std::map<std::string, std::uint64_t>& losses() const { return losses_; }
   /// Line of the first row that is earlier than the one before; 0: there is none.
@@ -94,6 +104,8 @@ class TableItems {
   std::optional<std::int64_t> last_reading_us_;
   ActuatorAngles angles_;
   std::vector<std::shared_ptr<Measurements>> beams_;
+  std::uint64_t beam_count_ = 0;
+  std::uint64_t forgotten_ = 0;  ///< beams
   std::map<std::string, std::uint64_t> losses_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <istream>
@@ -16,6 +17,8 @@ namespace crisp {
 namespace {
 
 constexpr int kMostColumns = 1'000'000;
+constexpr std::uint64_t kPiece = 1'000'000;  // beams that are held at most, about
+constexpr double kMargin = 1;  // [s] by which pieces of the plate's trajectory overlap, for lags
 
 void describe_columns(StageDescription<TableStage>& d, TableFormat TableStage::*format) {
   const auto column = [&](const char* name, auto member, const char* help) {
@@ -159,12 +162,23 @@ void TableStage::read(TableReader& reader, TableItems& items, Outputs& out, Cont
     const auto item = items.add(*row, *time_ns);
     if (item.reading) out.give(*item.reading);
     if (item.scan) out.give(item.scan);
+    if (items.beams_held() >= kPiece) give_piece(items, out);
     constexpr std::uint64_t kTellEvery = 1000;
     if (++rows % kTellEvery == 0) {
       if (context.interrupted()) return;
       context.progress(Progress{static_cast<double>(rows), 0, "rows", "reading the table"});
     }
   }
+}
+
+void TableStage::give_piece(TableItems& items, Outputs& out) {
+  const PlateTrajectory plate = items.trajectory();
+  const auto measurements =
+      items.take_measurements_until(std::max(plate.end() - kMargin, items.middle_time()));
+  if (measurements.empty()) return;
+  out.give(plate);
+  for (const auto& piece : measurements) out.give(piece);
+  items.forget_angles_before(plate.end() - 2 * kMargin);
 }
 
 void TableStage::process(const Inputs&, Outputs& out, Context& context) {
@@ -182,12 +196,9 @@ void TableStage::process(const Inputs&, Outputs& out, Context& context) {
   TableItems items(format_, settings_, context.rig());
   read(reader, items, out, context);
   if (context.interrupted()) return;
-  const auto measurements = items.take_measurements();
-  std::uint64_t beams = 0;
-  for (const auto& piece : measurements) beams += piece->size();
-  report(reader, items, beams, context);
+  report(reader, items, items.beams(), context);
   if (format_.range_column) out.give(items.trajectory());
-  for (const auto& piece : measurements) out.give(piece);
+  for (const auto& piece : items.take_measurements()) out.give(piece);
 }
 
 void TableStage::report(const TableReader& reader, const TableItems& items, std::uint64_t beams,

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numbers>
 
 #include "grabbers/capture/capture_file.hpp"
@@ -13,7 +16,9 @@
 namespace crisp {
 namespace {
 
-constexpr double kMaxGap = 0.05;  // [s] of the azimuths, which come every 0.11 ms
+constexpr double kMaxGap = 0.05;      // [s] of the azimuths, which come every 0.11 ms
+constexpr std::size_t kPiece = 4000;  // packets that are held at most, of 384 beams each
+constexpr double kMargin = 1;         // [s] by which pieces of the plate's trajectory overlap, for lags
 
 std::optional<TransportPacket> datagram_of(const Packet& packet) {
   const auto found = dissect_ip(packet);
@@ -61,6 +66,10 @@ void VelodyneStage::take(const VelodynePacket& packet, std::int64_t receipt_ns, 
     const double time = packet_time_ + velodyne_shot(b, 0, 0);
     double angle = -packet.azimuth[b];
     if (!angles_.empty()) angle += kTurn * std::round((angles_.back() - angle) / kTurn);
+    if (times_.empty()) {
+      first_time_ = time;
+      first_angle_ = angle;
+    }
     if (times_.empty() || time > times_.back()) {
       times_.push_back(time);
       angles_.push_back(angle);
@@ -81,6 +90,18 @@ void VelodyneStage::take(const VelodynePacket& packet, std::int64_t receipt_ns, 
   if (beams.size() > 0) beams_.push_back(std::move(beams));
 }
 
+void VelodyneStage::give_until(double time, Outputs& out) {
+  const auto left =
+      std::ranges::find_if(beams_, [&](const Measurements& beams) { return beams.time.back() > time; });
+  out.give(PlateTrajectory(*epoch_ns_, times_, angles_, kMaxGap));
+  for (auto it = beams_.begin(); it != left; ++it) out.give(std::move(*it));
+  beams_.erase(beams_.begin(), left);
+  const auto n = std::ranges::lower_bound(times_, time - kMargin) - times_.begin();
+  if (n == std::ssize(times_)) return;  // all of it was given
+  times_.erase(times_.begin(), times_.begin() + n);
+  angles_.erase(angles_.begin(), angles_.begin() + n);
+}
+
 void VelodyneStage::process(const Inputs&, Outputs& out, Context& context) {
   context.reads(file_);
   CaptureFile capture(file_, [&context] { return context.interrupted(); });
@@ -99,17 +120,18 @@ void VelodyneStage::process(const Inputs&, Outputs& out, Context& context) {
     }
     take(*data, packet->time_ns, context.rig());
     ++packets;
+    if (beams_.size() >= kPiece)
+      give_until(std::max(times_.back() - kMargin, beams_[kPiece / 2].time.back()), out);
   }
   for (const auto& [what, n] : capture.losses().all()) context.count(what, n);
   if (times_.size() < 2) {
     throw Error(file_.string() + " holds no measurements of a VLP-16", "was the right interface captured?");
   }
-  const double turns = std::abs(angles_.back() - angles_.front()) / (2 * std::numbers::pi);
+  const double turns = std::abs(angles_.back() - first_angle_) / (2 * std::numbers::pi);
   context.report({{"packets", packets}, {"turns", turns}});
   context.say(
-      fmt::format("{} packets, {:.2f} turns in {:.3f} s", packets, turns, times_.back() - times_.front()));
-  out.give(PlateTrajectory(*epoch_ns_, times_, angles_, kMaxGap));
-  for (auto& beams : beams_) out.give(std::move(beams));
+      fmt::format("{} packets, {:.2f} turns in {:.3f} s", packets, turns, times_.back() - first_time_));
+  give_until(std::numeric_limits<double>::infinity(), out);
 }
 
 }  // namespace crisp

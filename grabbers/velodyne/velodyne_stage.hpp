@@ -23,13 +23,16 @@ class VelodyneStage final : public Stage {
 
  private:
   void take(const VelodynePacket& packet, std::int64_t receipt_ns, const Rig& rig);
+  /// Gives the beams until then [s since the epoch], with the plate's trajectory over them.
+  void give_until(double time, Outputs& out);
 
   std::filesystem::path file_;
   std::optional<std::int64_t> epoch_ns_;
   std::uint32_t last_us_ = 0;
   double packet_time_ = 0;  ///< [s since the epoch] of the last packet, by the device's clock
-  std::vector<double> times_, angles_;
-  std::vector<Measurements> beams_;  ///< a packet each
+  double first_angle_ = 0, first_time_ = 0;
+  std::vector<double> times_, angles_;  ///< that are needed for beams that were not given yet
+  std::vector<Measurements> beams_;     ///< a packet each
 };
 
 }  // namespace crisp

@@ -15,6 +15,7 @@
 #include "pipeline/app/signals.hpp"
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/data/counted.hpp"
+#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/folder_lock.hpp"
 
 namespace crisp {
@@ -150,6 +151,7 @@ ExitStatus batch_command(const BatchRequest& request, const Registrar& registrar
     const fs::path task = task_folder(request.output, task_of(shard));
     batch = check_batch(request, shard, registrar);
     lock_task(task, shard, lock);
+    remove_left_over_parts(request.output);
     plan_due(request, *batch);
     if (batch->is_over(request.output)) return report_nothing_due(request, *batch);
     manifest.emplace(task / kManifestFile);

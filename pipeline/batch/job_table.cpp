@@ -14,6 +14,8 @@
 #include <cstring>
 #include <iostream>
 
+#include "pipeline/data/want_of_resources.hpp"
+
 namespace crisp {
 namespace {
 
@@ -63,7 +65,8 @@ void JobTable::become(const Job& job, int error) const {
   try {
     status = run_(job);
   } catch (const std::exception& failure) {
-    std::cerr << "error: " << failure.what() << "\n";
+    const Error error = want_of_resources(failure).value_or(Error(failure.what()));
+    std::cerr << "error: " << error.what() << "\n";
   } catch (...) {
     std::cerr << "error: a plugin threw what is no std::exception\n";
   }

@@ -10,6 +10,7 @@
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/folder.hpp"
+#include "pipeline/files/sha256.hpp"
 #include "pipeline/pcd/measurement_tables.hpp"
 
 namespace crisp {
@@ -18,6 +19,22 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kNext = "next_part";
+const std::string kBefore = "part_before";  // digest of what it holds
+
+std::string table_digest(const PcdTable& table) {
+  constexpr std::size_t kDigits = 16;
+  return sha256_of(table.bytes()).substr(0, kDigits);
+}
+
+/// @throws Error  if the part says that it follows on another one; what no crisp of today wrote says nothing
+void check_follows(const PcdTable& part, const std::string& before, const fs::path& file) {
+  const auto said = part.header().notes.find(kBefore);
+  if (before.empty() || said == part.header().notes.end() || said->second == before) return;
+  throw Error(file.string() +
+                  " does not follow on the part before it: it is of another run, which was ended "
+                  "before all of its parts had their names",
+              "run again what wrote them");
+}
 
 /// The file that a recording begins with.
 fs::path first_file(const fs::path& file) {
@@ -133,6 +150,8 @@ fs::path PartsWriter::write(PcdTable table, bool more) {
     file = part_path(file_, parts_);
     table.set_note(kPart, std::to_string(parts_));
     if (more) table.set_note(kNext, std::to_string(parts_ + 1));
+    if (!last_.empty()) table.set_note(kBefore, last_);
+    last_ = table_digest(table);
   }
   write_beside(file, table);
   return file;
@@ -163,8 +182,11 @@ std::vector<fs::path> PartsWriter::remove_older() const {
 
 void read_parts(const fs::path& file, const std::function<void(const PcdTable&, const fs::path&)>& use) {
   fs::path now = first_file(file);
+  std::string before;
   for (bool more = true; more;) {
     const PcdTable table = read_pcd(now);
+    check_follows(table, before, now);
+    before = table_digest(table);
     use(table, now);
     const auto next = table.header().note<std::size_t>(kNext);
     more = next.has_value();

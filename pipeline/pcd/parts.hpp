@@ -26,8 +26,8 @@ std::vector<std::filesystem::path> remove_numbered_beyond(const std::filesystem:
                                                           const std::string& note);
 
 /// Writes what is too long for one file as several: the first is only named when it is known whether there
-/// will be a second. Each says in its header which part it is, and whether another follows. They take their
-/// names together, by commit(); without it nothing remains of them.
+/// will be a second. Each says in its header which part it is, whether another follows, and what the one
+/// before holds. They take their names together, by commit(); without it nothing remains of them.
 class PartsWriter {
  public:
   PartsWriter(std::filesystem::path file, PcdFormat format) : file_(std::move(file)), format_(format) {}
@@ -51,12 +51,15 @@ class PartsWriter {
   std::filesystem::path file_;
   PcdFormat format_;
   std::size_t parts_ = 0;  ///< 0: all in one file
+  std::string last_;       ///< digest of the part that was written last
   std::list<AtomicFile> files_;
 };
 
 /// Reads `file`, or if there is none the parts that it was cut into; or, if it is itself a part, that one and
 /// those behind it. Calls `use` for each.
-/// @throws Error if a part is missing, is not the part that its name says, or both a file and parts are there
+/// @throws Error if a part is missing, is not the part that its name says, follows on another one than that
+/// before
+///         it (as where a run ended between the parts of an earlier one), or both a file and parts are there
 void read_parts(const std::filesystem::path& file,
                 const std::function<void(const PcdTable&, const std::filesystem::path&)>& use);
 

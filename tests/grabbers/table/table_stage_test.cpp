@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include "grabbers/table/register.hpp"
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/data/plate_trajectory.hpp"
 #include "pipeline/stage/pipeline_file.hpp"
 #include "pipeline/stage/runner.hpp"
 #include "tests/support/source_dir.hpp"
@@ -32,7 +38,7 @@ class TableStageTest : public testing::Test {
         << "\npipeline:\n  - stage: grabber.table\n    with: {file: " << (folder_ / "t.csv").string() << ", "
         << options << "}\n";
     auto loaded = load_pipeline(folder_ / "pipeline.yaml", {}, run_);
-    return run_pipeline(loaded.pipeline, run_, {}).at(0);
+    return run_pipeline(loaded.pipeline, run_, hooks_).at(0);
   }
   std::string complaint(const std::string& table, const std::string& options) {
     try {
@@ -46,6 +52,7 @@ class TableStageTest : public testing::Test {
   test::TemporaryFolder folder_;
   Registrar registrar_;
   RunSettings run_;
+  RunHooks hooks_;
   std::string rig_ = "{crisp: 1, lasers: {a: {nominal: {lambda: 0, tau: 0}}}, plate: {}}";
 };
 
@@ -58,6 +65,36 @@ TEST_F(TableStageTest, ReportsWhatItReadAndWhatItLeftOut) {
   EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows with something that is no number", 1)));
   EXPECT_THAT(result.report.warnings,
               ElementsAre(HasSubstr("t.csv:2:5: here is the first of the rows with")));
+}
+
+TEST_F(TableStageTest, GivesALongTableInPiecesInWhichEachBeamIsPlaced) {
+  constexpr int kRows = 2500;
+  constexpr double kInterval = 0.01, kRate = 0.5;  // [s], [rad/s]
+  std::string ranges;
+  for (int i = 0; i < 1000; ++i) ranges += ",1";
+  std::string table;
+  for (int k = 0; k < kRows; ++k)
+    table += fmt::format("{},{}{}\n", k * kInterval, k * kInterval * kRate, ranges);
+  std::shared_ptr<const PlateTrajectory> plate;
+  std::size_t pieces = 0, beams = 0, unplaced = 0;
+  double worst = 0;
+  hooks_.given = [&](const std::string&, const Item& item) {
+    if (auto piece = item.as<PlateTrajectory>()) {
+      plate = std::move(piece);
+      ++pieces;
+    }
+    const auto scan = item.as<Measurements>();
+    if (!scan) return;
+    beams += scan->size();
+    const auto state = plate ? plate->at(scan->time.front()) : std::nullopt;
+    if (!state) unplaced += scan->size();
+    if (state) worst = std::max(worst, std::abs(state->angle - kRate * scan->time.front()));
+  };
+  run(table, "time_column: 1, angle_column: 2, angle_unit: rad, range_column: 3, angle_step: 0.1deg");
+  EXPECT_EQ(pieces, 3U);
+  EXPECT_EQ(beams, 1000U * kRows);
+  EXPECT_EQ(unplaced, 0U);
+  EXPECT_LT(worst, 2 * std::numbers::pi / 16384);  // a step of the encoder
 }
 
 TEST_F(TableStageTest, ReadsAPartOfTheTable) {

@@ -22,9 +22,9 @@ PcdTable one_value(float value) {
 
 class Parts : public testing::Test {
  protected:
-  void write(int n) const {
-    PartsWriter writer(folder_ / "x.pcd", PcdFormat::binary);
-    for (int i = 1; i <= n; ++i) writer.write(one_value(static_cast<float>(i)), i < n);
+  void write(int n, float more = 0, PcdFormat format = PcdFormat::binary) const {
+    PartsWriter writer(folder_ / "x.pcd", format);
+    for (int i = 1; i <= n; ++i) writer.write(one_value(static_cast<float>(i) + more), i < n);
     writer.commit();
   }
   std::vector<float> read(std::string_view name) const {
@@ -54,6 +54,25 @@ TEST_F(Parts, PartsOfAnEarlierLongerRecordingAreNotTakenForThisOnes) {
   write(3);
   write(2);
   EXPECT_THAT(read("x.pcd"), ElementsAre(1, 2));
+}
+
+TEST_F(Parts, OfTwoRunsAreNotTakenForOneRecording) {
+  for (const PcdFormat format : {PcdFormat::ascii, PcdFormat::binary, PcdFormat::binary_compressed}) {
+    write(3, 0.1F, format);
+    const std::string third = test::bytes_of(folder_ / "x_0003.pcd");
+    write(3, 10.1F, format);
+    EXPECT_THAT(read("x.pcd"), ElementsAre(11.1F, 12.1F, 13.1F));
+    test::put_bytes(folder_ / "x_0003.pcd", third);
+    try {
+      read("x.pcd");
+      ADD_FAILURE() << "parts of two runs were read";
+    } catch (const Error& error) {
+      EXPECT_EQ(
+          error.message().find((folder_ / "x_0003.pcd").string() + " does not follow on the part before it"),
+          0U)
+          << error.what();
+    }
+  }
 }
 
 TEST_F(Parts, OfAnEarlierRunAreRemovedWhenThisOnesAreComplete) {
