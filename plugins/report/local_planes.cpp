@@ -24,6 +24,7 @@ Plane plane_of_run(const CellRun& run, const PointsView& points, const SpatialOr
   }
   Plane plane = plane_of(moments);
   plane.middle += origin;
+  if (plane.normal.dot(plane.middle) > 0) plane.normal = -plane.normal;
   return plane;
 }
 

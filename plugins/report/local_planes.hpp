@@ -10,14 +10,15 @@
 
 namespace crisp {
 
-/// A plane fitted to the points of each cell that is flat.
+/// A plane fitted to the points of each cell that is flat; its normal points towards the scanner, at the
+/// origin.
 struct LocalPlanes {
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
   std::vector<Plane> planes;
   std::vector<std::uint32_t> of;  ///< of each point: index of its plane; kNone where its cell is not flat
 
-  /// [m] From its plane; NaN where it has none.
+  /// [m] From its plane, towards the scanner at the origin; NaN where it has none.
   double distance(std::size_t point, const PointsView& points) const;
   /// [rad] Between the plane's normal and a beam's direction, 0 to π/2; NaN where it has none.
   double incidence(std::size_t point, const Eigen::Vector3d& direction) const;

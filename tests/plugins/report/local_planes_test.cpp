@@ -38,6 +38,14 @@ TEST(LocalPlanes, GiveEachPointItsDistanceFromItsSurface) {
   EXPECT_GT(with_plane, 800);
 }
 
+TEST(LocalPlanes, CountDistancesTowardsTheScanner) {
+  const Vectors points = square(0.01);
+  const LocalPlanes planes = local_planes(points.view(), spatial_order(points.view(), kCell));
+  const std::size_t farther = 15 * 30 + 15, nearer = farther + 1;  // z is 1.01 m and 0.99 m
+  EXPECT_LT(planes.distance(farther, points.view()), 0);
+  EXPECT_GT(planes.distance(nearer, points.view()), 0);
+}
+
 TEST(LocalPlanes, GiveTheAngleBetweenBeamAndNormal) {
   const Vectors points = square(0);
   const LocalPlanes planes = local_planes(points.view(), spatial_order(points.view(), kCell));
