@@ -35,8 +35,7 @@ PcapRecords::PcapRecords(FileWindow& file, Counts& losses) : file_(file), losses
   const auto magic = number_at<std::uint32_t>(begin, 0, order_);
   if (magic == kNanoseconds) ns_per_tick_ = 1;
   if (magic == kExtended) header_size_ = 24;
-  link_type_ =
-      number_at<std::uint32_t>(begin, 20, order_) & 0xFFFF;  // the rest tells of checksums of frames
+  link_type_ = number_at<std::uint32_t>(begin, 20, order_) & 0xFFFF;  // the rest tells of checksums of frames
   file_.skip(kPcapFileHeader);
 }
 
