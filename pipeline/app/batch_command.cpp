@@ -41,16 +41,18 @@ std::string task_of(const Shard& shard) {
   return shard.is_whole() ? "batch" : fmt::format("shard-{}-of-{}", shard.number, shard.count);
 }
 
-/// A task that was requeued may come before the lease of the one that died on another machine is over.
+/// Waits while another process has the part: a scheduler starts a task again whose node gives no sign of
+/// life, though the task may live on there.
 void lock_task(const fs::path& task, const Shard& shard, std::optional<FolderLock>& lock) {
-  const FolderLockSettings settings;
-  const auto give_up = std::chrono::steady_clock::now() + 2 * settings.lease;
   constexpr std::chrono::seconds kTryEvery{1};
+  bool waits = false;
   while (!lock) {
     try {
-      lock.emplace(task, settings);
-    } catch (const Error&) {
-      if (shard.is_whole() || std::chrono::steady_clock::now() > give_up) throw;
+      lock.emplace(task);
+    } catch (const Error& error) {
+      if (shard.is_whole() || !FolderLock::is_refusal(error.message())) throw;
+      if (!waits) std::cerr << "waiting for part " << shard.text() << ": " << error.message() << "\n";
+      waits = true;
       std::this_thread::sleep_for(kTryEvery);
     }
   }

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <optional>
 #include <random>
 
+#include "pipeline/batch/shard.hpp"
 #include "pipeline/files/folder_lock.hpp"
 #include "tests/pipeline/app/batch_fixture.hpp"
 
@@ -266,6 +268,29 @@ TEST_F(BatchTest, DividesTheRecordingsAmongShards) {
   const auto whole = batch();
   EXPECT_THAT(whole.error, HasSubstr("20 recordings done before and unchanged"));
   EXPECT_THAT(calls(), called) << "what shards did counts for all";
+}
+
+/// A scheduler may start a task again that lives on.
+TEST_F(BatchTest, WaitsForAPartThatAnotherProcessHas) {
+  put("a.pcap", "done");
+  std::optional<FolderLock> lock(std::in_place, folder_ / "out/manifest/shard-1-of-1000");
+  const Shard shard{1, 1000};
+  int number = 0;
+  while (!shard.has("r" + std::to_string(number))) ++number;
+  put("r" + std::to_string(number) + ".pcap", "done");
+  const pid_t child = start(words({"--shard", "1/1000"}));
+  while (content("stderr").find("waiting for part 1/1000: ") == std::string::npos) std::this_thread::yield();
+  EXPECT_TRUE(calls().empty());
+  lock.reset();
+  EXPECT_EQ(wait_for(child).status, 0);
+  EXPECT_EQ(calls().size(), 1U);
+}
+
+TEST_F(BatchTest, DoesNotWaitForAPartWhoseFolderCannotBeMade) {
+  put("a.pcap", "done");
+  fs::create_directory(folder_ / "out");
+  write_file(folder_ / "out/manifest", "no folder");
+  EXPECT_EQ(batch({"--shard", "1/2"}).status, 2);
 }
 
 /// The processes that a process started.
