@@ -13,13 +13,18 @@
 namespace crisp {
 namespace {
 
-/// The first bytes of a file, as many as say what it is.
-std::string begin_of(const std::filesystem::path& file) {
+/// What a file begins with, as much as says what it is.
+struct Begin {
+  std::string bytes;
+  bool is_compressed = false;
+};
+
+Begin begin_of(const std::filesystem::path& file) {
   constexpr std::size_t kEnoughBytes = 16;
-  ByteStream bytes(file);
-  std::string begin(kEnoughBytes, '\0');
-  begin.resize(bytes.read(begin.data(), begin.size()));
-  return begin;
+  ByteStream stream(file);
+  std::string bytes(kEnoughBytes, '\0');
+  bytes.resize(stream.read(bytes.data(), bytes.size()));
+  return {.bytes = bytes, .is_compressed = !bytes.empty() && stream.size() == 0};
 }
 
 }  // namespace
@@ -41,16 +46,16 @@ std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& pat
 }
 
 BagFile::BagFile(const std::filesystem::path& file, std::function<bool()> interrupted) {
-  const std::string begin = begin_of(file);
+  const auto [begin, is_compressed] = begin_of(file);
   if (begin.starts_with(SqliteReader::kMagic)) {
+    if (is_compressed)
+      throw Error(file.string() + " is a compressed database, which cannot be read as it is", "unzstd it");
     reader_ = std::make_unique<SqliteReader>(file);
     return;
   }
   if (!is_bag(begin)) {
-    throw Error(
-        file.string() + " is no bag that is known",
-        "known are ROS 1's (.bag, version 2.0), MCAP and ROS 2's in SQLite (.db3); of a file .zst or .zstd, "
-        "unzstd makes one");
+    throw Error(file.string() + " is no bag that is known",
+                "known are ROS 1's (.bag, version 2.0), MCAP and ROS 2's in SQLite (.db3)");
   }
   bytes_.emplace(file, std::move(interrupted));
   buffer_.emplace(*bytes_);

@@ -46,22 +46,11 @@ double BagItems::seconds(std::int64_t stamp_ns) const {
 std::shared_ptr<const Scan> BagItems::add(ScanMessage message, std::int64_t receipt_ns, std::uint16_t laser) {
   if (!advance(last_scan_ns_[laser], message.stamp_ns, "scans that are not later than the one before"))
     return nullptr;
-  if (!message.echoes.empty()) {
-    auto beams = std::make_shared<Measurements>();
-    beams->epoch_ns = *epoch_ns_;
-    append_beams({.first_angle = message.angle_min - rig_.lasers[laser].mount,
-                  .angle_step = message.angle_increment,
-                  .first_time = seconds(message.stamp_ns),
-                  .interval = message.time_increment,
-                  .laser = laser},
-                 message.echoes.front().ranges, message.echoes.front().remissions, *beams);
-    if (beams->size() > 0) measurements_.push_back(std::move(beams));
-  }
   auto scan = std::make_shared<Scan>();
   const double lasts = duration_of(message);
   scan->laser = laser;
   scan->serial_number = laser;
-  scan->telegram_counter = scan->scan_counter = scans_[laser]++;
+  scan->telegram_counter = scan->scan_counter = counters_[laser]++;
   scan->numbered = false;
   const std::int64_t stamp_us = device_us(message.stamp_ns);
   scan->scan_time_us = clock_bits(stamp_us);
@@ -73,6 +62,7 @@ std::shared_ptr<const Scan> BagItems::add(ScanMessage message, std::int64_t rece
   scan->timing = BeamTiming::stated;
   scan->beam_interval = message.time_increment;
   scan->echoes = std::move(message.echoes);
+  scans_.push_back({scan, seconds(message.stamp_ns) + rig_.lasers[laser].time_offset});
   return scan;
 }
 
@@ -91,8 +81,19 @@ std::optional<PlateReading> BagItems::add(const AngleMessage& message, std::int6
                       .numbered = false};
 }
 
-std::vector<std::shared_ptr<const Measurements>> BagItems::take_measurements() {
-  return std::exchange(measurements_, {});
+void BagItems::for_each_measured(const std::function<void(std::shared_ptr<const Measurements>)>& use) const {
+  for (const auto& [scan, time] : scans_) {
+    if (scan->echoes.empty()) continue;
+    auto beams = std::make_shared<Measurements>();
+    beams->epoch_ns = *epoch_ns_;
+    append_beams({.first_angle = scan->start_angle - rig_.lasers[scan->laser].mount,
+                  .angle_step = scan->angle_step,
+                  .first_time = time,
+                  .interval = scan->beam_interval,
+                  .laser = scan->laser},
+                 scan->echoes.front().ranges, scan->echoes.front().remissions, *beams);
+    if (beams->size() > 0) use(std::move(beams));
+  }
 }
 
 }  // namespace crisp

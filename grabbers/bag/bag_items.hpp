@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -34,12 +35,16 @@ class BagItems {
 
   bool has_trajectory() const { return angles_.size() > 1; }
   PlateTrajectory trajectory() const { return angles_.trajectory(*epoch_ns_, max_gap_); }
-  /// Of the scans so far, in their order; forgets them.
-  std::vector<std::shared_ptr<const Measurements>> take_measurements();
+  /// Calls `use` with the measurements of each scan so far, in their order.
+  void for_each_measured(const std::function<void(std::shared_ptr<const Measurements>)>& use) const;
 
   const std::map<std::string, std::uint64_t>& losses() const { return losses_; }
 
  private:
+  struct Stamped {
+    std::shared_ptr<const Scan> scan;
+    double time;  ///< [s since the epoch] of beam 0
+  };
   /// [µs] since the epoch, which the first stamp makes.
   std::int64_t device_us(std::int64_t stamp_ns) const;
   double seconds(std::int64_t stamp_ns) const;
@@ -51,10 +56,10 @@ class BagItems {
   std::optional<std::int64_t> epoch_ns_;
   ActuatorAngles angles_;
   std::uint16_t readings_ = 0;  ///< wraps, as a device's counter does
-  std::map<std::uint16_t, std::uint16_t> scans_;
+  std::map<std::uint16_t, std::uint16_t> counters_;
   std::map<std::uint16_t, std::optional<std::int64_t>> last_scan_ns_;
   std::optional<std::int64_t> last_angle_ns_;
-  std::vector<std::shared_ptr<const Measurements>> measurements_;
+  std::vector<Stamped> scans_;
   std::map<std::string, std::uint64_t> losses_;
 };
 

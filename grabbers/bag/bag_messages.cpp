@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t kSecondInNs = 1'000'000'000;
 constexpr BagDamage kNoScan{"scans that cannot be"};
 
-bool is_number(const RosField& field) { return size_of(field.type) > 0 && field.count == RosCount::one; }
+bool is_number(const RosField& field) { return size_of(field.type) > 0 && !field.is_in_list; }
 
 /// The field `name` below `prefix`, which is there in every message of its type.
 std::size_t field_below(const RosLayout& layout, const std::string& prefix, std::string_view name) {
@@ -146,11 +146,9 @@ std::optional<AngleDecoder> AngleDecoder::of(const BagConnection& connection, co
   const AngleUnit unit = plate.unit.value_or(is_whole ? AngleUnit::counts : AngleUnit::rad);
   if (unit == AngleUnit::deg) decoder.scale_ = std::numbers::pi / 180;
   if (unit == AngleUnit::counts) decoder.scale_ = std::abs(plate.angle_per_count());
-  for (const RosField& field : layout->fields) {
-    if (field.name != "builtin_interfaces/Time" || !field.path.ends_with("stamp")) continue;
-    decoder.sec_ = field.parts[0];
-    decoder.nanosec_ = field.parts[1];
-    break;
+  if (const RosField* stamp = layout->stamp()) {
+    decoder.sec_ = stamp->parts.at(0);
+    decoder.nanosec_ = stamp->parts.at(1);
   }
   decoder.layout_ = std::move(*layout);
   return decoder;

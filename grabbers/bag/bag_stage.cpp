@@ -165,7 +165,7 @@ void BagStage::process(const Inputs&, Outputs& out, Context& context) {
   report(run);
   if (!run.items.has_trajectory()) return;
   out.give(run.items.trajectory());
-  for (const auto& beams : run.items.take_measurements()) out.give(beams);
+  run.items.for_each_measured([&](std::shared_ptr<const Measurements> beams) { out.give(std::move(beams)); });
 }
 
 }  // namespace crisp

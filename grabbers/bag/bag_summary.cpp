@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "grabbers/bag/byte_cursor.hpp"
 #include "grabbers/bag/ros_layout.hpp"
@@ -22,8 +23,10 @@ class TopicWatch {
     summary_.topic = connection.topic;
     summary_.type = connection.type;
     if (!layout_ || encoding_ == RosEncoding::other) return;
-    sec_ = layout_->find("header.stamp.sec");
-    nanosec_ = layout_->find("header.stamp.nanosec");
+    if (const RosField* stamp = layout_->stamp()) {
+      sec_ = stamp->parts.at(0);
+      nanosec_ = stamp->parts.at(1);
+    }
     if (connection.type == "sensor_msgs/JointState") joints_ = layout_->find("name");
   }
 
@@ -89,13 +92,19 @@ double TopicSummary::rate() const {
 
 BagSummary summarize(BagReader& reader) {
   std::vector<TopicWatch> watches;
+  std::map<std::pair<std::string, std::string>, std::size_t> of_topic;  // several may publish on one
+  std::vector<std::size_t> of_connection;
   const auto watch_all = [&] {
-    while (watches.size() < reader.connections().size())
-      watches.emplace_back(reader.connections()[watches.size()]);
+    while (of_connection.size() < reader.connections().size()) {
+      const BagConnection& connection = reader.connections()[of_connection.size()];
+      const auto [known, is_new] = of_topic.try_emplace({connection.topic, connection.type}, watches.size());
+      if (is_new) watches.emplace_back(connection);
+      of_connection.push_back(known->second);
+    }
   };
   while (const auto message = reader.next()) {
     watch_all();
-    watches[message->connection].add(*message);
+    watches[of_connection[message->connection]].add(*message);
   }
   watch_all();
   BagSummary summary{.format = reader.format(), .losses = reader.losses()};

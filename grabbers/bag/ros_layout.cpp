@@ -29,6 +29,8 @@ struct DefinedField {
 };
 using Definitions = std::map<std::string, std::vector<DefinedField>, std::less<>>;
 
+const std::string kTime = "builtin_interfaces/Time";  // of sec and nanosec
+
 const BagDamage kUnreadable{"definitions of messages that cannot be read"};
 
 /// Splits "float32[36]" and the like: takes the brackets off, and says what they mean.
@@ -61,13 +63,14 @@ std::optional<DefinedField> field_of(const std::string& line) {
 /// "Header" → "std_msgs/Header", "Point" in geometry_msgs/Pose → "geometry_msgs/Point".
 std::string qualified(const std::string& type, const std::string& within) {
   if (type == "Header") return "std_msgs/Header";
-  if (type == "time" || type == "duration") return "builtin_interfaces/Time";
+  if (type == "time") return kTime;
+  if (type == "duration") return "builtin_interfaces/Duration";
   if (type.find('/') != std::string::npos) return plain_ros_type(type);
   return within.substr(0, within.find('/')) + "/" + type;
 }
 
 Definitions parse_definitions(const std::string& type, const std::string& text) {
-  Definitions all = {{"builtin_interfaces/Time", {{"uint32", "sec"}, {"uint32", "nanosec"}}},
+  Definitions all = {{kTime, {{"uint32", "sec"}, {"uint32", "nanosec"}}},
                      {"builtin_interfaces/Duration", {{"uint32", "sec"}, {"uint32", "nanosec"}}}};
   std::string current = type;
   std::istringstream lines(text);
@@ -112,7 +115,8 @@ class Grower {
                                 .type = primitive == kPrimitives.end() ? RosType::message : primitive->second,
                                 .name = part.type,
                                 .count = part.count,
-                                .fixed = part.fixed});
+                                .fixed = part.fixed,
+                                .is_in_list = layout_.fields[of].is_in_list || part.count != RosCount::one});
       layout_.fields[of].parts.push_back(index);
       if (primitive == kPrimitives.end()) add_parts(index, depth + 1);
     }
@@ -158,6 +162,13 @@ std::optional<std::size_t> RosLayout::find_type(std::string_view name) const {
   const auto found = std::ranges::find(fields, name, &RosField::name);
   return found == fields.end() ? std::nullopt
                                : std::optional(static_cast<std::size_t>(found - fields.begin()));
+}
+
+const RosField* RosLayout::stamp() const {
+  const auto found = std::ranges::find_if(fields, [](const RosField& field) {
+    return field.name == kTime && !field.is_in_list && field.path.ends_with("stamp");
+  });
+  return found == fields.end() ? nullptr : &*found;
 }
 
 std::optional<RosLayout> parse_ros_layout(const std::string& type, const std::string& definition) {

@@ -41,6 +41,7 @@ struct RosField {
   std::string name;  ///< of the type of a message: "sensor_msgs/LaserScan"
   RosCount count = RosCount::one;
   std::uint32_t fixed = 1;         ///< of RosCount::fixed
+  bool is_in_list = false;         ///< whether it, or a message that holds it, may come several times
   std::vector<std::size_t> parts;  ///< of a message: indices in RosLayout::fields
 };
 
@@ -53,6 +54,8 @@ struct RosLayout {
   std::optional<std::size_t> find(std::string_view path) const;
   /// The first message of that type, from the outside in; nothing if there is none.
   std::optional<std::size_t> find_type(std::string_view name) const;
+  /// The stamp of the message's header, or of the first message within that has one; nothing without any.
+  const RosField* stamp() const;
 };
 
 /// @param type        "sensor_msgs/LaserScan"

@@ -5,19 +5,36 @@
 
 namespace crisp {
 
+namespace {
+
+void resize(Measurements& to, std::size_t n) {
+  to.range.resize(n);
+  to.mirror_angle.resize(n);
+  to.time.resize(n);
+  to.laser.resize(n);
+  to.remission.resize(n);
+  to.beam.resize(n);
+}
+
+}  // namespace
+
 void append_beams(const BeamSequence& sequence, std::span<const float> ranges,
                   std::span<const float> remissions, Measurements& to) {
+  std::size_t at = to.size();
+  resize(to, at + ranges.size());
   for (std::size_t k = 0; k < ranges.size(); ++k) {
     if (!(ranges[k] > 0)) continue;
     const auto n = static_cast<double>(k);
-    to.range.push_back(ranges[k]);
-    to.mirror_angle.push_back(
-        static_cast<float>(wrapped_mirror_angle(sequence.first_angle + n * sequence.angle_step)));
-    to.time.push_back(sequence.first_time + n * sequence.interval);
-    to.laser.push_back(sequence.laser);
-    to.remission.push_back(remissions.empty() ? 0.0F : remissions[k]);
-    to.beam.push_back(static_cast<std::uint16_t>(k));
+    to.range[at] = ranges[k];
+    to.mirror_angle[at] =
+        static_cast<float>(wrapped_mirror_angle(sequence.first_angle + n * sequence.angle_step));
+    to.time[at] = sequence.first_time + n * sequence.interval;
+    to.laser[at] = sequence.laser;
+    to.remission[at] = remissions.empty() ? 0.0F : remissions[k];
+    to.beam[at] = static_cast<std::uint16_t>(k);
+    ++at;
   }
+  resize(to, at);
 }
 
 }  // namespace crisp

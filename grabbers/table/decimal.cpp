@@ -18,7 +18,7 @@ std::optional<int> take_exponent(std::string_view& text) {
   if (e == std::string_view::npos) return 0;
   std::string_view digits = text.substr(e + 1);
   text = text.substr(0, e);
-  if (digits.starts_with('+')) digits.remove_prefix(1);
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
   int value = 0;
   const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool is_read = failure == std::errc() && end == digits.data() + digits.size() && !digits.empty();

@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -38,6 +40,18 @@ ByteStream::ByteStream(std::filesystem::path path, std::function<bool()> interru
   }
   is_file_ = S_ISREG(status.st_mode);
   if (is_file_) size_ = static_cast<std::uint64_t>(status.st_size);
+  if (is_file_) begin_decompression();
+}
+
+void ByteStream::begin_decompression() {
+  std::array<char, 4> begin{};
+  const auto got = ::pread(descriptor_, begin.data(), begin.size(), 0);
+  decompressor_ = Decompressor::of({begin.data(), got > 0 ? static_cast<std::size_t>(got) : 0});
+  if (!decompressor_) return;
+  constexpr std::size_t kAtOnce = 1 << 17;
+  size_ = position_ = 0;
+  compressed_.resize(kAtOnce);
+  left_ = {};
 }
 
 ByteStream::~ByteStream() { ::close(descriptor_); }
@@ -52,6 +66,29 @@ void ByteStream::wait_for_bytes() const {
 }
 
 std::size_t ByteStream::read(void* to, std::size_t most) {
+  return decompressor_ ? read_decompressed(static_cast<char*>(to), most) : read_raw(to, most);
+}
+
+std::size_t ByteStream::read_decompressed(char* to, std::size_t most) {
+  try {
+    while (true) {
+      if (const std::size_t made = decompressor_->run(left_, to, most); made > 0) {
+        position_ += made;
+        return made;
+      }
+      left_ = {compressed_.data(), read_raw(compressed_.data(), compressed_.size())};
+      if (!left_.empty()) continue;
+      if (!decompressor_->may_end()) throw CompressionFault("it ends early");
+      return 0;
+    }
+  } catch (const CompressionFault& fault) {
+    throw Error(
+        fmt::format("{} cannot be decompressed from byte {} on: {}", path_.string(), position_, fault.what()),
+        "is there a good copy? gunzip and unzstd save what stands before");
+  }
+}
+
+std::size_t ByteStream::read_raw(void* to, std::size_t most) {
   while (true) {
     wait_for_bytes();
     const auto got = ::read(descriptor_, to, most);
@@ -61,6 +98,18 @@ std::size_t ByteStream::read(void* to, std::size_t most) {
 }
 
 void ByteStream::move_to(std::uint64_t offset) {
+  if (decompressor_) {
+    if (offset < position_) {
+      if (::lseek(descriptor_, 0, SEEK_SET) < 0) throw cannot_read_bytes(path_, errno);
+      begin_decompression();
+    }
+    std::vector<char> passed(1 << 16);
+    while (position_ < offset) {
+      if (read_decompressed(passed.data(), std::min<std::uint64_t>(passed.size(), offset - position_)) == 0)
+        return;
+    }
+    return;
+  }
   if (::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0) throw cannot_read_bytes(path_, errno);
 }
 

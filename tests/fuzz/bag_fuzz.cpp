@@ -49,9 +49,9 @@ void read_all(const std::string& bytes) {
     require(message->connection < reader.connections().size());
     use(reader.connections()[message->connection], *message, rig, items);
   }
-  for (const auto& beams : items.take_measurements()) {
+  items.for_each_measured([](const std::shared_ptr<const Measurements>& beams) {
     for (const float range : beams->range) require(range > 0);
-  }
+  });
   std::istringstream again(bytes);
   Reader second(again);
   to_text(summarize(second));

@@ -2,6 +2,7 @@
 #include "grabbers/bag/bag_file.hpp"
 
 #include <gmock/gmock.h>
+#include <zstd.h>
 
 #include "pipeline/data/error.hpp"
 #include "tests/grabbers/bag/bag_writer.hpp"
@@ -131,6 +132,24 @@ TEST_F(BagFiles, AChunkThatIsDamagedIsCounted) {
   BagFile read(folder_ / "a.mcap");
   EXPECT_FALSE(read.reader().next());
   EXPECT_EQ(read.reader().losses().at("chunks whose checksum is wrong"), 1U);
+}
+
+TEST_F(BagFiles, ReadsABagThatZstdCompressedAndRefusesADatabase) {
+  const auto compress = [&](const char* from, const char* to) {
+    const std::string bytes = test::bytes_of(folder_ / from);
+    std::string out(ZSTD_compressBound(bytes.size()), '\0');
+    out.resize(ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 3));
+    test::put_bytes(folder_ / to, out);
+  };
+  test::write_rosbag1(folder_ / "a.bag", sample_bag(), "none");
+  test::write_db3(folder_ / "a.db3", sample_bag());
+  compress("a.bag", "a.bag.zst");
+  compress("a.db3", "a.db3.zstd");
+  BagFile read(folder_ / "a.bag.zst");
+  std::size_t messages = 0;
+  while (read.reader().next()) ++messages;
+  EXPECT_EQ(messages, 500U);
+  EXPECT_THROW(BagFile(folder_ / "a.db3.zstd"), Error);
 }
 
 TEST_F(BagFiles, RefusesWhatIsNoBag) {

@@ -109,6 +109,15 @@ TEST_F(BagStageTest, PlacesBeamsOnTheHeadersTime) {
   EXPECT_NEAR(plate->at(0.05)->angle, 1.0, 1e-5);
 }
 
+TEST_F(BagStageTest, TakesTheRigsTimeOffsetForTheFirstBeams) {
+  rig_.plate.joint = "tilt";
+  rig_.lasers[0].time_offset = -0.5;
+  add_joint(0, 0.5);
+  add_scan(1000, {1});
+  add_joint(2000, 1.5);
+  EXPECT_THAT(run().given<Measurements>().at(0)->time, ElementsAre(0.5));
+}
+
 TEST_F(BagStageTest, ReadsCountsOfATopicThatTheRigNames) {
   rig_.plate.topic = "/count";
   for (const std::int32_t count : {0, 250'000}) {

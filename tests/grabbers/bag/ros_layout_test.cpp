@@ -36,6 +36,18 @@ TEST(RosLayout, HasTheFieldsOfTheDefinitionWithoutItsConstants) {
   EXPECT_EQ(layout->find_type("my_msgs/Inner"), 2U);
 }
 
+TEST(RosLayout, HasTheFirstStampThatIsThereOnce) {
+  const std::string header = "===\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n";
+  const auto path = [&](const std::string& fields) -> std::string {
+    const auto layout = parse_ros_layout("a/A", fields + header + "===\nMSG: a/B\nHeader header\n");
+    return layout && layout->stamp() ? layout->stamp()->path : "none";
+  };
+  EXPECT_EQ(path("Header header\nB b\n"), "header.stamp");
+  EXPECT_EQ(path("float64 x\nB b\n"), "b.header.stamp");
+  EXPECT_EQ(path("B[] several\n"), "none");
+  EXPECT_EQ(path("duration stamp\n"), "none");
+}
+
 TEST(RosLayout, IsNothingWhereATypeIsMissingOrHoldsItself) {
   EXPECT_FALSE(parse_ros_layout("a/A", "B b\n"));
   EXPECT_FALSE(parse_ros_layout("a/A", "A a\n"));

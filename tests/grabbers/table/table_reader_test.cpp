@@ -123,7 +123,7 @@ TEST(TableReader, ReadsTheActuatorsCounts) {
 }
 
 TEST(TableReader, CountsRowsThatCannotBeReadAndNamesTheFirst) {
-  const auto all = read("0,0,1\n1,zero,1\n2,0\n3,0,x\n1e3,0,1\n4,1e300,1\n5,0,1\n", kPlain);
+  const auto all = read("0,0,1\n1,zero,1\n2,0\n3,0,x\n1e3x,0,1\n4,1e300,1\n5,0,1\n", kPlain);
   EXPECT_EQ(all.rows.size(), 2U);
   EXPECT_THAT(all.losses, ElementsAre(Pair("rows with a time or count that cannot be", 1),
                                       Pair("rows with an angle that cannot be", 1),
