@@ -30,7 +30,8 @@ std::optional<ReportPlot> plot_of(const fs::path& written, const fs::path& folde
   return ReportPlot{.name = written.stem().string(), .svg = std::move(*svg)};
 }
 
-/// The recording's name: the input that is neither pipeline nor rig.
+/// The recording's name, with its folder's: the input that is neither pipeline nor rig; of several, the
+/// folder.
 std::string title_of(const Json& summary) {
   std::string title;
   for (const Json& input : summary.value("inputs", Json::array())) {
@@ -38,7 +39,7 @@ std::string title_of(const Json& summary) {
     const auto kind = file.extension();
     if (kind == ".yaml" || kind == ".yml") continue;
     if (!title.empty()) return fs::path(file).parent_path().filename().string();
-    title = file.filename().string();
+    title = (file.parent_path().filename() / file.filename()).string();
   }
   if (!title.empty()) return title;
   return fs::path(summary.value("pipeline", "crisp")).filename().string();

@@ -69,7 +69,8 @@ def batch(program, folder):
     rows[5]["name"] = "javascript:window.attacked=1//" + ATTACK.replace("/", "")
     (folder / "batch.json").write_text(json.dumps({
         "crisp": "0", "pipeline": "calibrate.yaml", "counts": {"done": 11, "failed": 1}, "rows": rows,
-        "trend": {"laser1.tau": {"unit": "m", "centre": 0.20005, "centre_error": 0.00003, "chi2": 3.0}}}))
+        "trend": [{"parameter": "laser1.tau", "unit": "m", "median": 0.20005, "std_error": 0.00003,
+                   "chi2_per_degree_of_freedom": 3.0, "recordings": 11, "stand_out": ["day 7"]}]}))
     for name in ("day 0", rows[5]["name"]):
         (folder / name).mkdir(parents=True)
         (folder / name / "report.html").write_text("<title>the report of a run</title>")

@@ -29,7 +29,7 @@ function batchColumns(rows) {
     ...qualities.map((name) => ({label: name, value: (/** @type {any} */ row) => (row.quality || {})[name], show: (/** @type {any} */ row) => shortNumber((row.quality || {})[name])})),
     {label: 'stands out in', value: (row) => (row.stands_out || []).join(', '), show: (row) => el('span', {class: 'alarm'}, (row.stands_out || []).join(', '))},
     {label: 'causes', value: (row) => (row.causes || []).join(', ')},
-    {label: 'reasons', value: (row) => (row.reasons || []).join('; ')},
+    {label: 'reasons', value: (row) => (row.reasons || []).join('; '), show: (row) => el('div', {class: 'reasons'}, (row.reasons || []).join('; '))},
   ];
 }
 
@@ -79,17 +79,18 @@ function batchTable(rows) {
 
 /**
  * A parameter over the recordings, in the order of their time.
- * @param {string} name
- * @param {any} trend
+ * @param {{parameter: string, unit: string, median: number}} trend
  * @param {any[]} rows
  */
-function trendPlot(name, trend, rows) {
-  const shown = {m: {factor: 1e3, name: 'mm'}, rad: {factor: 180 / Math.PI, name: '°'}, s: {factor: 1e3, name: 'ms'}}[/** @type {string} */ (trend.unit)] || {factor: 1, name: ''};
+function trendPlot({parameter: name, unit, median}, rows) {
+  /** @type {Record<string, {factor: number, name: string}>} */
+  const units = {m: {factor: 1e3, name: 'mm'}, rad: {factor: 180 / Math.PI, name: '°'}, s: {factor: 1e3, name: 'ms'}};
+  const shown = units[unit] || {factor: 1, name: ''};
   const points = rows.map((row, i) => ({row, x: i + 1, p: (row.parameters || {})[name]}))
     .filter(({row, p}) => p && Number.isFinite(p.value) && row.status === 'done')
     .map(({row, x, p}) => ({row, x, y: shown.factor * p.value, error: 2 * shown.factor * (p.std_error || 0)}));
   if (points.length === 0) return null;
-  const centre = shown.factor * trend.centre;
+  const centre = shown.factor * median;
   const frame = new PlotFrame({x: [1, Math.max(2, rows.length)], y: extentOf([centre, ...points.flatMap(({y, error}) => [y - error, y + error])]), xLabel: 'recording', yLabel: `${name} [${shown.name}]`});
   return el('figure', {}, frame.draw(
     svg('path', {class: 'centre', d: `M${frame.left} ${frame.py(centre)}H${frame.width - frame.right}`}),
@@ -122,7 +123,7 @@ function batchVerdict(batch) {
 function batchSections(data) {
   const {batch} = data;
   const ordered = [...batch.rows].sort((a, b) => compareValues(a.begin, b.begin) || compareValues(a.name, b.name));
-  const plots = Object.entries(batch.trend || {}).map(([name, trend]) => trendPlot(name, trend, ordered)).filter(Boolean);
+  const plots = (batch.trend || []).map((/** @type {any} */ trend) => trendPlot(trend, ordered)).filter(Boolean);
   return [batchVerdict(batch), section('recordings', 'Recordings', batchTable(batch.rows)),
     plots.length > 0 && section('trends', 'Trends', el('p', {class: 'hint'}, 'Recordings in the order of their time; bars: two standard errors; line: the weighted median; red: stands out.'), el('div', {class: 'columns'}, ...plots)),
     section('origin', 'Origin', el('dl', {class: 'facts'}, el('dt', {}, 'crisp'), el('dd', {}, batch.crisp), el('dt', {}, 'pipeline'), el('dd', {}, batch.pipeline), el('dt', {}, 'page written'), el('dd', {}, data.written)))];

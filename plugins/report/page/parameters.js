@@ -22,14 +22,14 @@ function changeBar({value, nominal, std_error: error}, most) {
 }
 
 /**
- * The largest change in each unit.
+ * The largest change in each unit, with two standard errors.
  * @param {ShownParameter[]} parameters
  * @returns {Map<string, number>}
  */
 function largestChanges(parameters) {
   const most = new Map();
-  for (const {unit, value, nominal} of parameters) {
-    if (nominal !== undefined) most.set(unit, Math.max(most.get(unit) || 0, Math.abs(value - nominal)));
+  for (const {unit, value, nominal, std_error: error} of parameters) {
+    if (nominal !== undefined) most.set(unit, Math.max(most.get(unit) || 0, Math.abs(value - nominal) + 2 * (error || 0)));
   }
   return most;
 }

@@ -109,6 +109,14 @@ TEST_F(WriteReport, OfARunWithoutMeasurementsHasNoCloud) {
   EXPECT_FALSE(data_of_page().contains("cloud"));
 }
 
+TEST_F(WriteReport, IsTitledByTheRecordingAndItsFolder) {
+  Json summary = kSummary;
+  summary["inputs"] = {{{"file", "/c/calibrate.yaml"}}, {{"file", "/data/day 3/hub.pcap"}}};
+  driver_.finish();
+  driver_.report().when_recorded(summary);
+  EXPECT_EQ(data_of_page().at("title"), "day 3/hub.pcap");
+}
+
 TEST_F(WriteReport, HoldsThePlotsThatStagesDrew) {
   test::put_bytes(folder_ / "laser1_noise.svg", "<svg/>");
   Json summary = kSummary;
