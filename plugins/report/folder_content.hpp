@@ -17,7 +17,7 @@ struct FolderPageSettings {
   std::optional<Calibration> against;  ///< an earlier calibration
 };
 
-struct FolderPage {
+struct FolderPage {  // NOLINT(bugprone-exception-escape): moving JSON checks what it holds
   PageContent content;
   std::vector<std::filesystem::path> read;
 };

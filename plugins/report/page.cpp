@@ -79,9 +79,9 @@ std::string page_html(const PageContent& content) {
       "<body>\n<noscript>This page needs JavaScript. It is all in the file: nothing is loaded.</noscript>\n"
       "<main id=\"page\"></main>\n",
       script_hash(script), CRISP_VERSION, html_text(content.title), kPageStyle);
-  page += "<script type=\"application/json\" id=\"report-data\">" + with_plots(content) + "</script>\n";
+  page += R"(<script type="application/json" id="report-data">)" + with_plots(content) + "</script>\n";
   if (content.cloud) {
-    page += "<script type=\"text/plain\" id=\"report-cloud\">";
+    page += R"(<script type="text/plain" id="report-cloud">)";
     page += content.cloud->base64;
     page += "</script>\n";
   }

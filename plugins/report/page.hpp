@@ -17,7 +17,7 @@ struct ReportPlot {
 };
 
 /// All that a report's page shows. What is null or empty has no section.
-struct PageContent {
+struct PageContent {  // NOLINT(bugprone-exception-escape): moving JSON checks what it holds
   std::string title;
   nlohmann::ordered_json data;  ///< what the page's scripts read: summary, calibration, findings, motion …
   std::vector<ReportPlot> plots;
