@@ -13,8 +13,6 @@ namespace {
 
 /// Files of other kinds that are taken for captures, by their first bytes, and what to do with them.
 Error no_capture(const std::filesystem::path& path, std::string_view begin) {
-  if (begin.starts_with("\x1f\x8b"))
-    return Error(path.string() + " is compressed by gzip", "gunzip it first");
   if (begin.starts_with("# .PCD") || begin.starts_with("VERSION "))
     return Error(path.string() + " is a PCD file, not a capture",
                  "grabber.pcd reads measurements, grabber.cloud a cloud");

@@ -15,7 +15,8 @@ void CaptureStage::describe(StageDescription<CaptureStage>& d) {
   d.name("grabber.capture")
       .summary("reads scans and plate readings from a capture of the hub's network interface");
   d.details(
-      "A capture is a pcap or pcapng file as tcpdump, dumpcap or Wireshark write it. Lasers are found by the "
+      "A capture is a pcap or pcapng file as tcpdump, dumpcap or Wireshark write it, plain or compressed by "
+      "gzip or zstd. Lasers are found by the "
       "rig's addresses in TCP streams of CoLa-A or CoLa-B telegrams, the plate in UDP datagrams or a TCP "
       "stream of its "
       "sentences. Each item carries the time of the packet that completed it, and items come in the order of "

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdlib>
+#include <set>
+
 #include "pipeline/files/nearest.hpp"
 
 namespace crisp {
@@ -76,10 +79,16 @@ const YamlNode* Variables::find(const std::string& name, const Place& place,
     errors.emplace_back("${" + name + "} has no value", missing->second, place);
     return nullptr;
   }
-  std::vector<std::string> known = {"input", "output"};
-  for (const auto& [key, value] : values_) known.push_back(key);
-  errors.emplace_back("there is no variable '" + name + "'",
-                      did_you_mean(name, known, fmt::format("known are {}", fmt::join(known, ", "))), place);
+  std::set<std::string> names = {"input", "output"};
+  for (const auto& [key, value] : values_) names.insert(key);
+  const std::vector<std::string> known(names.begin(), names.end());
+  const bool is_of_environment = std::getenv(name.c_str()) != nullptr;
+  errors.emplace_back(fmt::format("there is no variable '{}'{}", name,
+                                  is_of_environment ? "; those of the environment are not read" : ""),
+                      is_of_environment
+                          ? fmt::format("declare it under vars, and give it with --set {}=VALUE", name)
+                          : did_you_mean(name, known, fmt::format("known are {}", fmt::join(known, ", "))),
+                      place);
   return nullptr;
 }
 

@@ -48,6 +48,7 @@ Measurements within(const Measurements& beams, const RangeLimits& limits) {
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const bool keep = is_within(limits.range, static_cast<double>(beams.range[i])) &&
                       is_within(limits.mirror_angle, static_cast<double>(beams.mirror_angle[i])) &&
+                      is_within(limits.remission, static_cast<double>(beams.remission[i])) &&
                       wanted(beams.laser[i]);
     if (keep) kept.append(beams, i);
   }

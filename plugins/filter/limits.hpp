@@ -32,6 +32,7 @@ Cloud crop(const Cloud& cloud, const CropLimits& limits);
 struct RangeLimits {
   Limits range;                  ///< [m]
   Limits mirror_angle;           ///< [rad]
+  Limits remission;              ///< device's units
   std::vector<unsigned> lasers;  ///< indices in the rig; empty: all
 };
 

@@ -58,7 +58,8 @@ void CropStage::finish(Outputs&, Context& context) {
 void RangeStage::describe(StageDescription<RangeStage>& d) {
   constexpr double kTurn = 6.3;
   d.name("filter.range")
-      .summary("keeps the measurements within limits of range and mirror angle, or of some lasers");
+      .summary(
+          "keeps the measurements within limits of range, mirror angle and remission, or of some lasers");
   d.details(
       "Before calibration or assembly: leaves out what the scanner sees of itself, or one laser. Each limit "
       "is a list of the smallest and the largest value: `range: [0.3m, 30m]`.");
@@ -67,17 +68,21 @@ void RangeStage::describe(StageDescription<RangeStage>& d) {
   as_limits(d.option("mirror_angle", &RangeStage::mirror_angle_,
                      "limits of the mirror's angle, the mount's taken off"),
             "rad", kTurn);
+  as_limits(d.option("remission", &RangeStage::remission_,
+                     "limits of the remission, in the device's units; 0 where the device sends none"),
+            "1", 1e6);
   d.option("lasers", &RangeStage::lasers_, "names of the lasers that are kept; none: all");
 }
 
 void RangeStage::check(const RunSettings& run) const {
   check_all(of_option("range", [&] { check_limits(range_, "range"); }),
             of_option("mirror_angle", [&] { check_limits(mirror_angle_, "mirror_angle"); }),
+            of_option("remission", [&] { check_limits(remission_, "remission"); }),
             of_option("lasers", [&] { limits(run.rig); }));
 }
 
 RangeLimits RangeStage::limits(const Rig& rig) const {
-  RangeLimits limits{.range = range_, .mirror_angle = mirror_angle_};
+  RangeLimits limits{.range = range_, .mirror_angle = mirror_angle_, .remission = remission_};
   std::vector<std::string> known;
   for (const auto& laser : rig.lasers) known.push_back(laser.name);
   for (const auto& name : lasers_) {

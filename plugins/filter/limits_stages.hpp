@@ -37,6 +37,7 @@ class RangeStage final : public Stage {
 
   Limits range_;
   Limits mirror_angle_;
+  Limits remission_;
   std::vector<std::string> lasers_;
   std::size_t all_ = 0;
   std::size_t kept_ = 0;

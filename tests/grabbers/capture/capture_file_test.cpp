@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <pcap/pcap.h>
+#include <zlib.h>
 
 #include "pipeline/data/error.hpp"
 #include "tests/grabbers/capture/capture_bytes.hpp"
@@ -66,6 +67,25 @@ TEST_F(CaptureFileTest, ReadsBothByteOrdersAndPrecisions) {
       EXPECT_TRUE(losses_.all().empty());
     }
   }
+}
+
+/// The upper bits of the link type say that frames end with a checksum of 4 bytes (2 times 16 bits).
+TEST_F(CaptureFileTest, TellsTheLinkTypeFromTheLengthOfAChecksum) {
+  const auto found = read(pcap_file(packets(2), {ByteOrder::Little, false, 0x24000001}));
+  ASSERT_THAT(found, SizeIs(2));
+  EXPECT_EQ(found[0].interface, 1U);
+}
+
+TEST_F(CaptureFileTest, ReadsACaptureThatGzipCompressed) {
+  const auto written = packets(50);
+  const auto bytes = pcap_file(written);
+  gzFile file = gzopen((folder_ / "hub.pcap.gz").c_str(), "wb");
+  ASSERT_EQ(gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size())), static_cast<int>(bytes.size()));
+  ASSERT_EQ(gzclose(file), Z_OK);
+  const auto found = read(folder_ / "hub.pcap.gz");
+  ASSERT_THAT(found, SizeIs(50));
+  EXPECT_EQ(found[49].bytes, written[49].bytes);
+  EXPECT_TRUE(losses_.all().empty());
 }
 
 TEST_F(CaptureFileTest, FindsInRealCapturesWhatLibpcapFinds) {

@@ -199,6 +199,17 @@ TEST_F(PipelineFileTest, SaysWhichVariableIsUnknownOrMissing) {
                           HasSubstr("'${open' has no }"), HasSubstr("${l} is a list; let it stand alone")));
 }
 
+TEST_F(PipelineFileTest, SaysThatTheEnvironmentIsNotReadAndNamesEachVariableOnce) {
+  setenv("CRISP_TEST_FOLDER", "/x", 1);
+  EXPECT_THAT(errors_of(with("file: \"${CRISP_TEST_FOLDER}/y\"")),
+              ElementsAre(HasSubstr(
+                  "there is no variable 'CRISP_TEST_FOLDER'; those of the environment are not read; "
+                  "declare it under vars")));
+  unsetenv("CRISP_TEST_FOLDER");
+  EXPECT_THAT(errors_of(with("file: \"${qqqqqqqq}\""), {.input = "a", .output = "b"}),
+              ElementsAre(HasSubstr("known are input, name, output, stem")));
+}
+
 TEST_F(PipelineFileTest, StopsVariablesThatDoubleOneAnother) {
   std::string texts = "crisp: 1\nvars:\n  a0: xxxxxxxxxxxxxxxx\n";
   std::string lists = "crisp: 1\nvars:\n  a0: [1, 2]\n";

@@ -161,6 +161,12 @@ TEST(Range, KeepsMeasurementsWholeWithinTheLimits) {
   EXPECT_THAT(stage.report().lines, ElementsAre("kept 1 of 3 measurements"));
 }
 
+TEST(Range, KeepsMeasurementsWithinLimitsOfTheRemission) {
+  auto stage = StageDriver::of<RangeStage>({{"remission", list({15, 30})}});
+  stage.feed(three_measurements());
+  EXPECT_THAT(stage.given<Measurements>().at(0)->remission, ElementsAre(20, 30));
+}
+
 TEST(Range, KeepsTheLasersThatAreNamed) {
   const OptionValue names = std::vector<OptionScalar>{std::string("laser3"), std::string("laser1")};
   auto stage = StageDriver::of<RangeStage>({{"lasers", names}});
