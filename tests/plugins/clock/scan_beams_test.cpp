@@ -6,8 +6,8 @@
 namespace crisp {
 namespace {
 
-using testing::DoubleNear;
-using testing::ElementsAre;
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
 
 Measurements measured(BeamTiming timing, double angle_step) {
   auto scan = std::make_shared<Scan>();
