@@ -14,6 +14,7 @@
 #include "pipeline/estimate/observability.hpp"
 #include "pipeline/estimate/turn_period.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
+#include "plugins/calibrate/crispest.hpp"
 #include "plugins/calibrate/deepest_valley.hpp"
 #include "plugins/calibrate/optimum_scatter.hpp"
 #include "plugins/calibrate/report.hpp"
@@ -197,7 +198,17 @@ class RqeCalibration {
         model_ = best;
       }
     }
+    std::erase_if(rivals_, [&](const Rival& rival) { return is_same_minimum(rival, used); });
     return used;
+  }
+
+  /// Whether all beams led from both minima to one: to where they place the cloud alike to within the kernel.
+  bool is_same_minimum(const Rival& rival, const Sample& used) const {
+    const double here = model_.values()[static_cast<Eigen::Index>(rival.parameter)];
+    const bool is_angle = !model_.names()[rival.parameter].ends_with(".eta");
+    const double step =
+        search_basis(model_, used, {rival.parameter}, settings_.in_plane.range, settings_.sigma_to)(0, 0);
+    return between(rival.at, here, is_angle) <= std::abs(step);
   }
 
   Eigen::MatrixXd scatter(const Sample& used) {
