@@ -60,6 +60,7 @@ CommandLine::CommandLine() {
   add_record();
   add_emulate();
   add_report();
+  add_convert();
   add_bound();
   add_basin();
   add_monte_carlo();
@@ -360,6 +361,26 @@ void CommandLine::add_report() {
   add_run_options(report_app, "--threads", report);
 }
 
+void CommandLine::add_convert() {
+  convert_app = command("convert", "Write a PCD file's cloud, or each of a folder, as LAS, PLY or PCD");
+  convert_app->add_option("input", convert.from, "The cloud, or a folder of them")
+      ->required()
+      ->type_name("PATH");
+  convert_app
+      ->add_option(
+          "output", convert.to,
+          "The new file, whose ending says what it is: .las, .ply or .pcd; with --format, its folder")
+      ->required()
+      ->type_name("PATH");
+  convert_app->add_option("--format", convert.format, "What to make of each cloud")
+      ->check(CLI::IsMember({"las", "ply", "pcd"}));
+  convert.run.file = "convert.yaml";
+  add_set(convert_app, convert.run.arguments);
+  add_run_options(convert_app, "--threads", convert.run);
+  add_stage_options(convert_app, "grabber.cloud", convert.run,
+                    {{"shift", "What to subtract from all coordinates: [691600, 5334700, 500]"}});
+}
+
 void CommandLine::add_figures() {
   figures_app = command("figures", "Compute the paper's figures 4 to 7 as data to be plotted");
   add_own_pipeline(figures_app, "figures.yaml", kFiguresPipeline, "out/figures", "--threads", figures);
@@ -423,7 +444,9 @@ void CommandLine::add_info() {
       command("info", "Say what files, or folders of them, hold: captures, clouds, calibrations, diagnoses");
   info_app->add_option("file", info.paths, "The files or folders")->required()->type_name("FILE");
   info_app->add_option("--rig", info.rig, "The rig whose devices are to be named")->type_name("FILE");
-  info_app->add_flag("--json", info.json, "For programs");
+  CLI::Option* json = info_app->add_flag("--json", info.json, "For programs");
+  info_app->add_flag("--urdf", info.urdf, "A calibration as URDF for ROS; give the --rig that has the mounts")
+      ->excludes(json);
 }
 
 }  // namespace crisp

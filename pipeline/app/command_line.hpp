@@ -14,6 +14,7 @@
 #include "pipeline/app/batch_commands.hpp"
 #include "pipeline/app/cluster_command.hpp"
 #include "pipeline/app/commands.hpp"
+#include "pipeline/app/convert_command.hpp"
 #include "pipeline/app/study_command.hpp"
 
 namespace crisp {
@@ -38,6 +39,7 @@ struct CommandLine {
   RunRequest record;
   RunRequest emulate;
   RunRequest report;
+  ConvertRequest convert;
   std::uint64_t monte_carlo_runs = 1500;
   std::optional<std::uint64_t> monte_carlo_only;
   PipelineArguments validate;
@@ -61,6 +63,7 @@ struct CommandLine {
   CLI::App* record_app = nullptr;
   CLI::App* emulate_app = nullptr;
   CLI::App* report_app = nullptr;
+  CLI::App* convert_app = nullptr;
   CLI::App* validate_app = nullptr;
   CLI::App* stages_app = nullptr;
   CLI::App* effects_app = nullptr;
@@ -105,6 +108,7 @@ struct CommandLine {
   void add_record();
   void add_emulate();
   void add_report();
+  void add_convert();
   void add_figures();
   void add_monte_carlo();
   void add_validate();

@@ -69,6 +69,7 @@ struct InfoRequest {
   std::vector<std::filesystem::path> paths;
   std::optional<std::filesystem::path> rig;
   bool json = false;
+  bool urdf = false;  ///< calibrations as ROS has them, in place of all else
 };
 /// What each file holds, and each file of a known kind in a folder. Where there may be several, one that
 /// cannot be read does not hide the others: the listing says what is wrong with it.

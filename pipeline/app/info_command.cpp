@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <optional>
 #include <utility>
 
 #include "pipeline/app/commands.hpp"
+#include "pipeline/files/byte_stream.hpp"
 #include "pipeline/files/folder.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/rig_file.hpp"
@@ -26,12 +26,21 @@ struct Entry {
   std::string error;  ///< as a person is told it; empty: none
 };
 
+/// The first bytes of a file; of one that cannot be read none, since reading it says why.
 std::string head_of(const fs::path& file) {
   constexpr std::size_t kEnough = 4096;
-  std::ifstream stream(file, std::ios::binary);
   std::string head(kEnough, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(stream.gcount()));
+  std::size_t size = 0;
+  try {
+    ByteStream stream(file);
+    while (size < kEnough) {
+      const std::size_t got = stream.read(head.data() + size, kEnough - size);
+      if (got == 0) break;
+      size += got;
+    }
+  } catch (const Error&) {
+  }
+  head.resize(size);
   return head;
 }
 
@@ -136,6 +145,21 @@ void print(const std::vector<Entry>& entries) {
   }
 }
 
+/// The files as URDF. @throws Error if one is of a kind that has none
+ExitStatus print_urdf(const std::vector<Entry>& entries, const Rig& rig) {
+  for (const auto& entry : entries) {
+    if (!entry.error.empty()) {
+      std::cerr << entry.error << "\n";
+      return ExitStatus::failed;
+    }
+    if (!entry.inspector->urdf)
+      throw Error(entry.name + " is " + entry.inspector->kind + ", which URDF cannot hold",
+                  "give a calibration");
+    std::cout << entry.inspector->urdf(entry.name, rig) << "\n";
+  }
+  return ExitStatus::done;
+}
+
 }  // namespace
 
 ExitStatus info_command(const InfoRequest& request, const Registrar& registrar) {
@@ -150,6 +174,7 @@ ExitStatus info_command(const InfoRequest& request, const Registrar& registrar) 
   for (const auto& path : request.paths) {
     std::ranges::move(entries_of(registrar.inspectors(), path, rig), std::back_inserter(entries));
   }
+  if (request.urdf) return print_urdf(entries, rig);
   const bool one = request.paths.size() == 1 && entries[0].name == request.paths[0].string();
   if (one && !entries[0].error.empty())
     std::cerr << entries[0].error << "\n";

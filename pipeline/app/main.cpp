@@ -160,6 +160,7 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.record_app->parsed()) return run_command(line.record, registrar);
   if (line.emulate_app->parsed()) return run_command(line.emulate, registrar);
   if (line.report_app->parsed()) return run_command(line.report, registrar);
+  if (line.convert_app->parsed()) return convert_command(line.convert, registrar);
   if (line.figures_app->parsed()) return run_command(line.figures, registrar);
   if (line.monte_carlo_app->parsed()) return study_command(monte_carlo_request(line), registrar);
   if (line.validate_app->parsed()) return validate_command(line.validate_file, line.validate, registrar);

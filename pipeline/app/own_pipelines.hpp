@@ -10,6 +10,7 @@ extern const std::string_view kBasinPipeline;
 extern const std::string_view kBoundPipeline;
 extern const std::string_view kCalibratePipeline;
 extern const std::string_view kDiagnosePipeline;
+extern const std::string_view kConvertPipeline;
 extern const std::string_view kEmulatePipeline;
 extern const std::string_view kFiguresPipeline;
 extern const std::string_view kMonteCarloPipeline;

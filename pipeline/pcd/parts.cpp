@@ -143,6 +143,13 @@ fs::path part_path(const fs::path& file, std::size_t number) {
          fmt::format("{}_{:04}{}", file.stem().string(), number, file.extension().string());
 }
 
+std::optional<fs::path> whole_of_part(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  const fs::path whole = file.parent_path() / (stem.substr(0, stem.rfind('_')) + file.extension().string());
+  const auto number = number_of(file, whole);
+  return number && says_its_number(file, *number, kPart) ? std::optional(whole) : std::nullopt;
+}
+
 fs::path PartsWriter::write(PcdTable table, bool more) {
   fs::path file = file_;
   if (more || parts_ > 0) {

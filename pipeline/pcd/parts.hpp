@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <list>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace crisp {
 
 /// The name of the n-th of the files that a long recording is cut into: cloud.pcd → cloud_0001.pcd.
 std::filesystem::path part_path(const std::filesystem::path& file, std::size_t number);
+
+/// The name of which a part's is made: cloud_0001.pcd → cloud.pcd, where the file says in its header that it
+/// is that part. Nothing for other files.
+std::optional<std::filesystem::path> whole_of_part(const std::filesystem::path& file);
 
 /// In a part's header: which one it is.
 inline constexpr const char* kPart = "part";
