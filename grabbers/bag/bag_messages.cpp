@@ -15,14 +15,14 @@ namespace crisp {
 namespace {
 
 constexpr std::int64_t kSecondInNs = 1'000'000'000;
-constexpr BagDamage kNoScan{"scans that cannot be"};
+constexpr const char* kNoScan = "scans that cannot be";
 
 bool is_number(const RosField& field) { return size_of(field.type) > 0 && !field.is_in_list; }
 
 /// The field `name` below `prefix`, which is there in every message of its type.
 std::size_t field_below(const RosLayout& layout, const std::string& prefix, std::string_view name) {
   const auto found = layout.find(prefix.empty() ? std::string(name) : fmt::format("{}.{}", prefix, name));
-  if (!found) throw kNoScan;
+  if (!found) throw BagDamage{kNoScan};
   return *found;
 }
 
@@ -37,7 +37,7 @@ std::vector<std::vector<float>> by_echo(const std::vector<std::vector<float>>& b
   std::size_t most = 0;
   for (const auto& beam : beams) most = std::max(most, beam.size());
   constexpr std::size_t kMostEchoes = 64;
-  if (most > kMostEchoes) throw kNoScan;
+  if (most > kMostEchoes) throw BagDamage{kNoScan};
   std::vector<std::vector<float>> echoes(most, std::vector<float>(beams.size()));
   for (std::size_t k = 0; k < beams.size(); ++k) {
     for (std::size_t e = 0; e < beams[k].size(); ++e) echoes[e][k] = beams[k][e];
@@ -71,7 +71,7 @@ ScanDecoder::ScanDecoder(RosLayout layout, RosEncoding encoding, std::string pre
   intensities_ = field(multi_echo ? "intensities.echoes" : "intensities");
   for (const std::size_t list : {ranges_, intensities_}) {
     if (layout_.fields[list].type != RosType::float32 || layout_.fields[list].count != RosCount::counted)
-      throw kNoScan;
+      throw BagDamage{kNoScan};
   }
 }
 
@@ -109,7 +109,7 @@ ScanMessage ScanDecoder::decode(std::string_view message) const {
   }
   for (const double value : {scan.angle_min, scan.angle_increment, scan.time_increment, scan.scan_time}) {
     constexpr double kMost = 1000;
-    if (!(std::abs(value) <= kMost)) throw kNoScan;
+    if (!(std::abs(value) <= kMost)) throw BagDamage{kNoScan};
   }
   if (multi_echo_) {
     ranges = by_echo(ranges);

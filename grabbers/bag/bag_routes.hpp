@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grabbers/bag/bag_messages.hpp"
@@ -23,7 +24,7 @@ struct BagRoute {
 /// names none and only one topic is of such a type.
 class BagRoutes {
  public:
-  explicit BagRoutes(const Rig& rig) : rig_(rig) {}
+  explicit BagRoutes(Rig rig) : rig_(std::move(rig)) {}
 
   /// @throws Error if two topics could be of one device, or the topic that the rig names holds none of its
   /// kind

@@ -50,12 +50,14 @@ class TopicWatch {
   void add_header(const BagMessage& message) {
     constexpr double kNanosecond = 1e-9;
     double stamp = 0, delay = 0;
-    const auto receipt = static_cast<double>(message.receipt_ns / 1'000'000'000);
+    constexpr std::int64_t kSecond = 1'000'000'000;
+    const std::int64_t whole = message.receipt_ns / kSecond;
+    const auto receipt = static_cast<double>(whole);
     for (const RosValue& value : decode_ros(*layout_, encoding_, message.data)) {
       const RosType type = layout_->fields[value.field].type;
       if (value.field == sec_) stamp = value.number(type);
       if (value.field == nanosec_)
-        delay = kNanosecond * (static_cast<double>(message.receipt_ns % 1'000'000'000) - value.number(type));
+        delay = kNanosecond * (static_cast<double>(message.receipt_ns % kSecond) - value.number(type));
       if (value.field == joints_) summary_.joints.emplace(value.bytes);
     }
     delay += receipt - stamp;

@@ -13,24 +13,24 @@
 namespace crisp {
 namespace {
 
-constexpr BagDamage kDamaged{"chunks that cannot be decompressed"};
+constexpr const char* kDamaged = "chunks that cannot be decompressed";
 
 /// Memory for so many bytes, but never for more than what `compressed` bytes can have become.
 std::string room_for(std::uint64_t size, std::size_t compressed, std::uint64_t best_ratio) {
-  if (size / best_ratio > compressed + 1) throw kDamaged;
+  if (size / best_ratio > compressed + 1) throw BagDamage{kDamaged};
   return std::string(size, '\0');
 }
 
 std::string from_bz2(std::string_view bytes, std::uint64_t size) {
   constexpr std::uint64_t kBestRatio = 100'000;  // 45 bytes of bzip2 can be 900 kB of zeros, and more of them
   constexpr std::uint64_t kMost = std::uint64_t{1} << 31;
-  if (size > kMost || bytes.size() > kMost) throw kDamaged;
+  if (size > kMost || bytes.size() > kMost) throw BagDamage{kDamaged};
   std::string out = room_for(size, bytes.size(), kBestRatio);
   auto written = static_cast<unsigned>(size);
   // bzip2's interface takes what it does not change without const
   const int status = BZ2_bzBuffToBuffDecompress(out.data(), &written, const_cast<char*>(bytes.data()),
                                                 static_cast<unsigned>(bytes.size()), 0, 0);
-  if (status != BZ_OK || written != size) throw kDamaged;
+  if (status != BZ_OK || written != size) throw BagDamage{kDamaged};
   return out;
 }
 
@@ -38,7 +38,7 @@ std::string from_lz4(std::string_view bytes, std::uint64_t size) {
   constexpr std::uint64_t kBestRatio = 255;
   std::string out = room_for(size, bytes.size(), kBestRatio);
   LZ4F_dctx* raw = nullptr;
-  if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION)) != 0) throw kDamaged;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION)) != 0) throw BagDamage{kDamaged};
   const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> context(raw,
                                                                              LZ4F_freeDecompressionContext);
   std::size_t written = 0;
@@ -46,19 +46,19 @@ std::string from_lz4(std::string_view bytes, std::uint64_t size) {
     std::size_t to = out.size() - written;
     std::size_t from = bytes.size();
     const std::size_t left = LZ4F_decompress(raw, out.data() + written, &to, bytes.data(), &from, nullptr);
-    if (LZ4F_isError(left) != 0 || (to == 0 && from == 0)) throw kDamaged;
+    if (LZ4F_isError(left) != 0 || (to == 0 && from == 0)) throw BagDamage{kDamaged};
     written += to;
     bytes.remove_prefix(from);
     if (left == 0) break;
   }
-  if (written != size) throw kDamaged;
+  if (written != size) throw BagDamage{kDamaged};
   return out;
 }
 
 std::string from_zstd(std::string_view bytes, std::uint64_t size) {
   constexpr std::uint64_t kBestRatio = 100'000;
   std::string out = room_for(size, bytes.size(), kBestRatio);
-  if (ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size()) != size) throw kDamaged;
+  if (ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size()) != size) throw BagDamage{kDamaged};
   return out;
 }
 

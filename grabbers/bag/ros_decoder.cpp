@@ -8,7 +8,7 @@
 namespace crisp {
 namespace {
 
-constexpr BagDamage kTooShort{"messages that end before their content"};
+constexpr const char* kTooShort = "messages that end before their content";
 
 template <class T>
 T value_at(std::string_view bytes, std::size_t i) {
@@ -48,7 +48,7 @@ auto with_number(RosType type, std::string_view bytes, std::size_t i, Use use) {
 class Decoder {
  public:
   Decoder(const RosLayout& layout, RosEncoding encoding, std::string_view message)
-      : layout_(layout), aligned_(encoding == RosEncoding::cdr), cursor_(message, kTooShort) {
+      : layout_(layout), aligned_(encoding == RosEncoding::cdr), cursor_(message, BagDamage{kTooShort}) {
     constexpr std::size_t kEncapsulation = 4;
     if (!aligned_) return;
     const std::string_view begin = cursor_.bytes(kEncapsulation);
@@ -86,7 +86,7 @@ class Decoder {
       return values_.push_back({index, n, cursor_.bytes(n * size)});
     }
     // Each takes a byte at least: a damaged number of them ends here.
-    if (n > cursor_.size()) throw kTooShort;
+    if (n > cursor_.size()) throw BagDamage{kTooShort};
     for (std::uint64_t i = 0; i < n; ++i) {
       if (field.type == RosType::message) {
         read_parts(field);

@@ -31,7 +31,7 @@ using Definitions = std::map<std::string, std::vector<DefinedField>, std::less<>
 
 const std::string kTime = "builtin_interfaces/Time";  // of sec and nanosec
 
-const BagDamage kUnreadable{"definitions of messages that cannot be read"};
+constexpr const char* kUnreadable = "definitions of messages that cannot be read";
 
 /// Splits "float32[36]" and the like: takes the brackets off, and says what they mean.
 void take_brackets(DefinedField& field) {
@@ -43,7 +43,7 @@ void take_brackets(DefinedField& field) {
   if (inside.empty() || inside.starts_with("<=")) return;
   field.count = RosCount::fixed;
   const auto read = std::from_chars(inside.data(), inside.data() + inside.size(), field.fixed);
-  if (read.ec != std::errc() || read.ptr != inside.data() + inside.size()) throw kUnreadable;
+  if (read.ec != std::errc() || read.ptr != inside.data() + inside.size()) throw BagDamage{kUnreadable};
 }
 
 /// Nothing for lines without a field: constants (int32 A=1), comments, empty ones.
@@ -52,7 +52,7 @@ std::optional<DefinedField> field_of(const std::string& line) {
   DefinedField field;
   std::string next;
   if (!(words >> field.type)) return std::nullopt;
-  if (!(words >> field.name)) throw kUnreadable;
+  if (!(words >> field.name)) throw BagDamage{kUnreadable};
   words >> next;
   if (field.name.find('=') != std::string::npos || next.starts_with('=')) return std::nullopt;
   take_brackets(field);
@@ -105,11 +105,11 @@ class Grower {
     constexpr int kDeepest = 16;
     constexpr std::size_t kMost = 10'000;
     const auto defined = definitions_.find(layout_.fields[of].name);
-    if (defined == definitions_.end() || depth > kDeepest) throw kUnreadable;
+    if (defined == definitions_.end() || depth > kDeepest) throw BagDamage{kUnreadable};
     for (const auto& part : defined->second) {
       const auto primitive = kPrimitives.find(part.type);
       const std::size_t index = layout_.fields.size();
-      if (index > kMost) throw kUnreadable;
+      if (index > kMost) throw BagDamage{kUnreadable};
       const std::string& outer = layout_.fields[of].path;
       layout_.fields.push_back({.path = outer.empty() ? part.name : outer + "." + part.name,
                                 .type = primitive == kPrimitives.end() ? RosType::message : primitive->second,

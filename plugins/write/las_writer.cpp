@@ -21,7 +21,13 @@ constexpr std::size_t kLasBuffer = 8192 * kPointSize;
 
 /// Year and day of the year in the header: of the recording, so that the same cloud gives the same bytes.
 void put_date(RecordBuffer& to, std::uint64_t unix_us) {
-  using namespace std::chrono;
+  using std::chrono::days;
+  using std::chrono::floor;
+  using std::chrono::January;
+  using std::chrono::microseconds;
+  using std::chrono::sys_days;
+  using std::chrono::sys_time;
+  using std::chrono::year_month_day;
   const auto today = floor<days>(sys_time<microseconds>(microseconds(static_cast<std::int64_t>(unix_us))));
   const year_month_day date(today);
   const auto of_year = today - sys_days(date.year() / January / 1) + days(1);

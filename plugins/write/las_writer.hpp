@@ -43,13 +43,13 @@ class LasWriter {
 
   AtomicFile file_;
   std::uint64_t stamp_;
-  double time_shift_ = 0;         ///< [s] of a point's time to what the file has
-  std::array<double, 3> offset_;  ///< [m]
+  double time_shift_ = 0;           ///< [s] of a point's time to what the file has
+  std::array<double, 3> offset_{};  ///< [m]
   std::uint64_t points_ = 0;
   std::uint64_t too_far_ = 0;
   std::uint64_t rounded_intensities_ = 0;
-  std::array<std::int32_t, 3> least_;
-  std::array<std::int32_t, 3> most_;
+  std::array<std::int32_t, 3> least_{};
+  std::array<std::int32_t, 3> most_{};
   RecordBuffer records_;
 };
 

@@ -31,7 +31,7 @@ class PlyWriter {
   /// Corrects the count in the header, and puts the file in its place.
   void commit();
   std::uint64_t points() const { return points_; }  ///< that the file holds
-  std::map<std::string, std::uint64_t> losses() const { return {}; }
+  static std::map<std::string, std::uint64_t> losses() { return {}; }
 
  private:
   std::string header() const;
