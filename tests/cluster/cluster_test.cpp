@@ -98,7 +98,7 @@ class ClusterTest : public ProgramTest {
       const auto process = hold_a_task(slurm);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
       if (!process) continue;
-      const std::string task = test::variable_of(*process, "SLURM_ARRAY_TASK_ID");
+      std::string task = test::variable_of(*process, "SLURM_ARRAY_TASK_ID");
       slurm.kill_node(test::variable_of(*process, "SLURMD_NODENAME"));
       return task;
     }

@@ -336,9 +336,9 @@ class KilledBatchTest : public BatchTest {
     EXPECT_EQ(done.size(), recordings_);
     for (const auto& [name, times] : done) {
       EXPECT_EQ(times, 1) << name;
-      EXPECT_EQ(content("out/" + name + "/" + name + ".txt"), "done\n");
-      EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out" / name), {}), 3)
-          << "nothing is left of kills";
+      const fs::path output = fs::path("out") / name;
+      EXPECT_EQ(content((output / name).string() + ".txt"), "done\n");
+      EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / output), {}), 3) << "nothing is left of kills";
     }
   }
 

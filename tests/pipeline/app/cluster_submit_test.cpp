@@ -72,11 +72,11 @@ TEST_F(ClusterSubmitTest, ScriptsDoAllRecordingsAndWriteTheTable) {
   put("r4.pcap", "doubt");
   EXPECT_EQ(submit().status, 0);
   const std::string scripts = path("out/manifest/slurm/");
-  for (const char* task : {"1", "2", "3", "4", "5"}) {
-    const std::string run =
-        "SLURM_CPUS_ON_NODE=3 SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_COUNT=6 SLURM_ARRAY_TASK_ID=";
-    std::ignore = std::system((run + task + " bash " + scripts + "batch.sbatch > /dev/null 2>&1").c_str());
-  }
+  const std::string tasks =
+      "export SLURM_CPUS_ON_NODE=3 SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_COUNT=6 SLURM_ARRAY_TASK_ID; "
+      "for SLURM_ARRAY_TASK_ID in 1 2 3 4 5; do bash " +
+      scripts + "batch.sbatch > /dev/null 2>&1; done";
+  std::ignore = std::system(tasks.c_str());
   const auto first = content("out/manifest/shard-1-of-6/events.jsonl");
   EXPECT_EQ(nlohmann::json::parse(first.substr(0, first.find('\n')))["jobs"], 3);
   const std::string merge = "bash " + scripts + "merge.sbatch > " + path("merged");

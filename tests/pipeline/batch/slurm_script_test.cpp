@@ -50,7 +50,7 @@ TEST(SlurmScript, GivesTheProgramItsWordsUnchanged) {
   std::ofstream(program) << "#!/bin/sh\nprintf '%s\\n' \"$@\"\n";
   std::filesystem::permissions(program, std::filesystem::perms::owner_all);
   const std::vector<std::string> words = {"p.yaml", "-i",  "cap tures/**/*.pcap", "it's", "$HOME",
-                                          "",       "a=b", "\"q\" \\ ; `x`",      "ä"};
+                                          "",       "a=b", R"("q" \ ; `x`)",      "ä"};
   std::ofstream(folder.path() / "script") << complete_slurm_script(
       kSlurmBatchScript, {.options = {}, .program = program.string(), .words = words});
   const std::string shell =

@@ -54,7 +54,7 @@ class PartFileTest : public testing::Test {
     const fs::path output = folder_ / (std::to_string(number) + "-of-" + std::to_string(count));
     fs::create_directories(output);
     Context& own = context(output);
-    const auto trials = run_or_read<Trial>(
+    auto trials = run_or_read<Trial>(
         own, part, kExtent,
         [&] {
           std::vector<Trial> made;
@@ -72,7 +72,7 @@ class PartFileTest : public testing::Test {
     const StudyPart part{.part = {}, .merge = folder_.path(), .key = key};
     Context& own = context(folder_.path());
     const auto none = [] { return std::vector<Trial>(); };
-    const auto trials = run_or_read<Trial>(own, part, kExtent, none, trial_of);
+    auto trials = run_or_read<Trial>(own, part, kExtent, none, trial_of);
     EXPECT_FALSE(write_if_part(own, part, kExtent, trials, trial_json));
     return trials;
   }
