@@ -80,7 +80,9 @@ struct CommandLine {
   static void add_rig(CLI::App* to, PipelineArguments& arguments);
   static void add_set(CLI::App* to, PipelineArguments& arguments);
   /// A pipeline, by its file or by the name of an installed one.
-  static CLI::Option* add_pipeline(CLI::App* to, std::filesystem::path& file, const std::string& help);
+  static CLI::Option* add_pipeline(
+      CLI::App* to, std::filesystem::path& file,
+      const std::string& help = "The pipeline's YAML file, or the name of an installed one");
   void add_run();
   /// A pipeline that comes with the program, for a recording.
   CLI::App* add_of_recording(const char* name, const std::string& help, std::string_view text,
