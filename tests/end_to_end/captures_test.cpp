@@ -63,5 +63,14 @@ TEST_P(Captures, AreCalibratedAndTheCloudIsAsNearToTheSurfacesAsTheTruthPutsIt) 
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Captures, testing::Range(1, 21));
 
+TEST(ShortCaptures, TwoMinimaThatLeadToOneAreOne) {
+  for (const int seed : {7, 14, 22}) {
+    const test::Workshop workshop;
+    workshop.simulate("made", {"scene=hall", "duration=3s", fmt::format("seed={}", seed)});
+    const auto outcome = workshop.run("calibrate.yaml", workshop / "made/hub.pcap", "out");
+    EXPECT_EQ(outcome.told.find("another minimum"), std::string::npos) << outcome.told;
+  }
+}
+
 }  // namespace
 }  // namespace crisp
