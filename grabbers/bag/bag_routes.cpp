@@ -18,7 +18,7 @@ std::optional<std::uint16_t> BagRoutes::laser_of(const BagConnection& connection
 
 /// Takes a topic for a device whose topic the rig does not name.
 void BagRoutes::take(std::optional<std::string>& by, const BagConnection& connection,
-                     const std::string& device, const char* key) const {
+                     const std::string& device, const char* key) {
   if (by && *by != connection.topic) {
     throw Error(fmt::format("both {} and {} could be of {}", *by, connection.topic, device),
                 fmt::format("name one of them in the rig: {}: {{topic: {}, …}}", key, *by));

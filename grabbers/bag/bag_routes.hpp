@@ -35,8 +35,8 @@ class BagRoutes {
 
  private:
   std::optional<std::uint16_t> laser_of(const BagConnection& connection) const;
-  void take(std::optional<std::string>& by, const BagConnection& connection, const std::string& device,
-            const char* key) const;
+  static void take(std::optional<std::string>& by, const BagConnection& connection, const std::string& device,
+                   const char* key);
 
   Rig rig_;
   std::set<std::string> met_;

@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 /// The ending of a file's name, without its dot, in small letters.
 std::string format_of(const fs::path& file) {
-  for (const std::string format : {"pcd", "ply", "las"}) {
-    if (has_extension(file, {"." + format})) return format;
+  for (const char* format : {"pcd", "ply", "las"}) {
+    if (has_extension(file, {std::string(".") + format})) return format;
   }
   throw Error(file.string() + " has no ending that says what to write",
               "end it in .pcd, .ply or .las, or give --format");

@@ -27,7 +27,7 @@ void check_input(const std::optional<fs::path>& input) {
   if (!fs::exists(part_path(*input, 1), failure)) throw Error("there is no input " + input->string());
 }
 
-RunSettings settings_of(const RunRequest& request, const Registrar& registrar) {
+RunSettings run_settings_of(const RunRequest& request, const Registrar& registrar) {
   RunSettings settings;
   settings.registrar = &registrar;
   settings.threads = request.threads;
@@ -43,7 +43,7 @@ LoadedPipeline load(const RunRequest& request, RunSettings& settings) {
 }  // namespace
 
 RecordedRun::RecordedRun(const RunRequest& request, const Registrar& registrar)
-    : settings_(settings_of(request, registrar)), loaded_(load(request, settings_)) {
+    : settings_(run_settings_of(request, registrar)), loaded_(load(request, settings_)) {
   check_input(request.arguments.input);
   // Finds out before the work, and not after it, that nothing can be written there.
   if (!settings_.output.empty()) {

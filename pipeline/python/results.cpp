@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/python/results.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -10,10 +11,10 @@ namespace {
 /// The tag of the last stage that gives this kind; empty if none does.
 template <class T>
 std::string last_giver(const Pipeline& pipeline) {
-  for (auto node = pipeline.nodes.rbegin(); node != pipeline.nodes.rend(); ++node) {
-    if (node->type->gives(Kind::of<T>())) return node->tag;
-  }
-  return {};
+  const auto& nodes = pipeline.nodes;
+  const auto last = std::find_if(nodes.rbegin(), nodes.rend(),
+                                 [](const PipelineNode& node) { return node.type->gives(Kind::of<T>()); });
+  return last != nodes.rend() ? last->tag : std::string();
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     pipelines.push_back(entry.path().filename().string());
   }
   EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml",
-                                              "diagnose.yaml", "emulate.yaml", "figures.yaml",
+                                              "convert.yaml", "diagnose.yaml", "emulate.yaml", "figures.yaml",
                                               "like_real.yaml", "live.yaml", "monte_carlo.yaml",
                                               "picture.yaml", "record.yaml", "report.yaml", "simulate.yaml"));
 }
@@ -95,6 +95,16 @@ TEST(Configs, ReportWritesThePageOfWhatARunLeft) {
   const auto outcome = workshop.run("report.yaml", workshop / "made", "out");
   EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
   EXPECT_THAT(test::bytes_of(workshop / "made/report.html"), testing::HasSubstr("grabber.simulate"));
+}
+
+TEST(Configs, ConvertWritesALasFileOfACloud) {
+  const test::Workshop workshop;
+  workshop.simulate("made", {"duration=1s"});
+  ASSERT_EQ(workshop.assemble("made", "cloud").status, ExitStatus::done);
+  const std::string to = (workshop / "cloud.las").string();
+  const auto outcome = workshop.run("convert.yaml", workshop / "cloud/cloud.pcd", "out", {"to=" + to});
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  EXPECT_THAT(test::bytes_of(to), testing::StartsWith("LASF"));
 }
 
 TEST(Configs, FiguresWritesTheColumnsOfThePapersFigures) {

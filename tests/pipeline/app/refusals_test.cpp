@@ -167,32 +167,31 @@ TEST_F(ProgramTest, RefusesToOverwriteWhatComesOfAnotherStagesFile) {
     EXPECT_EQ(outcome.status, outcome.error.empty() ? 0 : 2);
     return outcome.error;
   };
-  const auto picture = [](const std::string& name) {
-    return "{stage: write.picture, with: {file: \"${output}/" + name + "\"}}";
+  const auto page = [](const std::string& name) {
+    return "{stage: write.report, with: {file: \"${output}/" + name + "\"}}";
   };
   const std::string cloud = "{stage: write.pcd, with: {file: \"${output}/a.pcd\"}}";
   const std::string beams = "{stage: write.measurements, with: {file: \"${output}/a.pcd\"}}";
-  EXPECT_THAT(
-      error_of(cloud, picture("a_0001.pcd")),
-      HasSubstr(":7:41: error: write.picture: its /output/a_0001.pcd could overwrite /output/a_*.pcd, "
-                "which write.pcd writes; let it write another file"));
-  EXPECT_THAT(error_of(picture("a_0001.pcd"), cloud), HasSubstr("its /output/a_*.pcd could overwrite"));
-  EXPECT_THAT(error_of(beams, picture("a.plate.pcd")),
-              HasSubstr("write.picture: it would overwrite /output/a.plate.pcd, which write.measurements"));
-  EXPECT_THAT(error_of(beams, picture("a_0002.plate.pcd")), HasSubstr("/output/a_*.plate.pcd"));
-  EXPECT_THAT(error_of(cloud, picture("a.pcd.provenance.json")), HasSubstr("which write.pcd writes"));
-  EXPECT_THAT(error_of(picture("summary.json"), cloud), HasSubstr("which this run writes"));
+  EXPECT_THAT(error_of(cloud, page("a_0001.pcd")),
+              HasSubstr(":7:40: error: write.report: its /output/a_0001.pcd could overwrite /output/a_*.pcd, "
+                        "which write.pcd writes; let it write another file"));
+  EXPECT_THAT(error_of(page("a_0001.pcd"), cloud), HasSubstr("its /output/a_*.pcd could overwrite"));
+  EXPECT_THAT(error_of(beams, page("a.plate.pcd")),
+              HasSubstr("write.report: it would overwrite /output/a.plate.pcd, which write.measurements"));
+  EXPECT_THAT(error_of(beams, page("a_0002.plate.pcd")), HasSubstr("/output/a_*.plate.pcd"));
+  EXPECT_THAT(error_of(cloud, page("a.pcd.provenance.json")), HasSubstr("which write.pcd writes"));
+  EXPECT_THAT(error_of(page("summary.json"), cloud), HasSubstr("which this run writes"));
   const std::string clouds = "{stage: write.clouds, with: {file: \"${output}/a.pcd\"}}";
-  EXPECT_THAT(error_of(clouds, picture("a_0001.pcd")), HasSubstr("which write.clouds writes"));
+  EXPECT_THAT(error_of(clouds, page("a_0001.pcd")), HasSubstr("which write.clouds writes"));
   const std::string stamps = "{stage: diagnose.stamps, with: {folder: \"${output}\"}}";
-  EXPECT_THAT(error_of(stamps, picture("laser1_stamps.svg")),
+  EXPECT_THAT(error_of(stamps, page("laser1_stamps.svg")),
               HasSubstr("could overwrite /output/*_stamps.svg, which diagnose.stamps writes"));
-  EXPECT_THAT(error_of("{stage: write.capture, with: {file: \"${output}/h.pcap\"}}", picture("h-2.pcap")),
+  EXPECT_THAT(error_of("{stage: write.capture, with: {file: \"${output}/h.pcap\"}}", page("h-2.pcap")),
               HasSubstr("could overwrite /output/h-*.pcap, which write.capture writes"));
   for (const auto* other :
        {"a_1.png", "a_1.pcd", "a_001.pcd", "a_plate.pcd", "b_0001.pcd", "deeper/a_0001.pcd", "stamps.svg"}) {
-    EXPECT_EQ(error_of(cloud, picture(other)), "") << other;
-    EXPECT_EQ(error_of(stamps, picture(other)), "") << other;
+    EXPECT_EQ(error_of(cloud, page(other)), "") << other;
+    EXPECT_EQ(error_of(stamps, page(other)), "") << other;
   }
 }
 
@@ -301,7 +300,7 @@ TEST_F(ProgramTest, ValidatesEveryStageThoughAnotherIsWrong) {
                    "  - {stage: assemble.deskew, with: {nonsense: 1}}\n"
                    "  - {stage: filter.crop, with: {x: [2m, 1m], z: [4m, 3m]}}\n"
                    "  - {stage: write.pcd, with: {file: \"${output}/a.pcd\"}}\n"
-                   "  - {stage: write.picture, with: {file: \"${output}/a.pcd\"}}\n");
+                   "  - {stage: write.report, with: {file: \"${output}/a.pcd\"}}\n");
     return crisp({"validate", path("wrong.yaml")}).error;
   };
   const std::string all = errors_of("");
@@ -311,12 +310,12 @@ TEST_F(ProgramTest, ValidatesEveryStageThoughAnotherIsWrong) {
   EXPECT_THAT(all, has("error: assemble.deskew: there is no option 'nonsense'"));
   EXPECT_THAT(all, has(":7:36: error: filter.crop: x"));
   EXPECT_THAT(all, has(":7:49: error: filter.crop: z"));
-  EXPECT_THAT(all, has("error: write.picture: it would overwrite /output/a.pcd, which write.pcd writes"));
+  EXPECT_THAT(all, has("error: write.report: it would overwrite /output/a.pcd, which write.pcd writes"));
   EXPECT_THAT(all, testing::EndsWith("\n6 errors\n"));
   const std::string of_a_rig = errors_of("rig: {crisp: 1, plate: {}}\n");
   EXPECT_THAT(of_a_rig, has(":2:6: error: rig: 'lasers' is missing"));
   EXPECT_THAT(of_a_rig, has("assemble.deskew: there is no option 'nonsense'"));
-  EXPECT_THAT(of_a_rig, has("write.picture: it would overwrite"));
+  EXPECT_THAT(of_a_rig, has("write.report: it would overwrite"));
   EXPECT_THAT(of_a_rig, testing::Not(has("nobody"))) << "which lasers there are is not known";
 }
 
