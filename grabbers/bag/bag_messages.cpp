@@ -28,7 +28,7 @@ std::size_t field_below(const RosLayout& layout, const std::string& prefix, std:
 
 std::vector<float> floats_of(const RosValue& value) {
   std::vector<float> floats(value.count);
-  std::memcpy(floats.data(), value.bytes.data(), value.count * sizeof(float));
+  if (!floats.empty()) std::memcpy(floats.data(), value.bytes.data(), value.count * sizeof(float));
   return floats;
 }
 
