@@ -27,7 +27,7 @@ class RecordBuffer {
   /// A text in a field of fixed width, filled with zeros.
   void put_text(std::string_view text, std::size_t width) {
     std::memset(bytes_.data() + size_, 0, width);
-    std::memcpy(bytes_.data() + size_, text.data(), std::min(text.size(), width));
+    std::copy_n(text.begin(), std::min(text.size(), width), bytes_.data() + size_);
     size_ += width;
   }
   void put_zeros(std::size_t n) { put_text({}, n); }

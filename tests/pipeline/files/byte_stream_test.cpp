@@ -10,6 +10,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <future>
 #include <istream>
 #include <iterator>
@@ -49,7 +50,7 @@ TEST_F(ByteStreamTest, GivesWhatIsInAFile) {
 class CompressedFile : public ByteStreamTest, public testing::WithParamInterface<const char*> {
  protected:
   CompressedFile() {
-    for (int i = 0; i < 300'000; ++i) text_ += static_cast<char>(i * i % 251);
+    for (std::uint64_t i = 0; i < 300'000; ++i) text_ += static_cast<char>(i * i % 251);
     test::put_bytes(file(), compressed(text_.substr(0, 100'000)) + compressed(text_.substr(100'000)));
   }
   std::filesystem::path file() const { return folder_ / "file"; }
