@@ -3,6 +3,8 @@
 
 #include <zlib.h>
 
+#include <utility>
+
 #include "grabbers/bag/decompress.hpp"
 #include "grabbers/bag/ros_names.hpp"
 
@@ -26,7 +28,7 @@ RosEncoding encoding_of(std::string_view name) {
 
 }  // namespace
 
-McapReader::McapReader(std::istream& in) : BagReader("MCAP"), in_(in) {
+McapReader::McapReader(std::istream& in) : ChunkedBagReader("MCAP", in) {
   if (!in_.read(kMagic.size(), content_) || content_ != kMagic) count("bags whose begin is missing");
 }
 
@@ -68,14 +70,14 @@ void McapReader::add_channel(ByteCursor content) {
                     .encoding = encoding_of(content.text())});
 }
 
-void McapReader::open_chunk(ByteCursor content) {
+void McapReader::take_chunk(ByteCursor content) {
   content.bytes(2 * sizeof(std::uint64_t));  // the times of its messages
   const auto size = content.take<std::uint64_t>();
   const auto crc = content.take<std::uint32_t>();
   const std::string_view method = content.text();
-  chunk_ = decompress(method, content.bytes(content.take<std::uint64_t>()), size);
-  if (crc != 0 && crc != crc_of(chunk_)) throw BagDamage{"chunks whose checksum is wrong"};
-  left_ = ByteCursor(chunk_);
+  std::string chunk = decompress(method, content.bytes(content.take<std::uint64_t>()), size);
+  if (crc != 0 && crc != crc_of(chunk)) throw BagDamage{"chunks whose checksum is wrong"};
+  open_chunk(std::move(chunk));
 }
 
 void McapReader::take_message(ByteCursor content) {
@@ -84,36 +86,27 @@ void McapReader::take_message(ByteCursor content) {
   content.take<std::uint32_t>();  // a count of the publisher's, often 0
   const auto received = static_cast<std::int64_t>(content.take<std::uint64_t>());
   content.take<std::uint64_t>();  // when it was published, often the same
-  message_ = {known->second, received, content.bytes(content.size())};
+  give({known->second, received, content.bytes(content.size())});
 }
 
 void McapReader::use(std::uint8_t op, std::string_view content) {
   if (op == kSchema) add_schema(ByteCursor(content));
   if (op == kChannel) add_channel(ByteCursor(content));
   if (op == kMessage) take_message(ByteCursor(content));
-  if (op == kChunk) open_chunk(ByteCursor(content));
+  if (op == kChunk) take_chunk(ByteCursor(content));
 }
 
-std::optional<BagMessage> McapReader::next() {
-  message_.reset();
-  while (!message_) {
-    try {
-      if (!left_.empty()) {
-        const auto op = left_.take<std::uint8_t>();
-        const std::string_view content = left_.bytes(left_.take<std::uint64_t>());
-        if (op == kChunk) throw BagDamage{"chunks within chunks"};
-        use(op, content);
-      } else if (read_record()) {
-        use(op_, content_);
-      } else {
-        return std::nullopt;
-      }
-    } catch (const BagDamage& damage) {
-      count(damage.what);
-      left_ = ByteCursor({});
-    }
-  }
-  return message_;
+bool McapReader::take_record() {
+  if (!read_record()) return false;
+  use(op_, content_);
+  return true;
+}
+
+void McapReader::take_record_of(ByteCursor& chunk) {
+  const auto op = chunk.take<std::uint8_t>();
+  const std::string_view content = chunk.bytes(chunk.take<std::uint64_t>());
+  if (op == kChunk) throw BagDamage{"chunks within chunks"};
+  use(op, content);
 }
 
 }  // namespace crisp

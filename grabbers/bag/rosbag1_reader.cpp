@@ -35,7 +35,7 @@ struct Rosbag1Reader::Record {
   std::string_view header, data;
 };
 
-Rosbag1Reader::Rosbag1Reader(std::istream& in) : BagReader("rosbag 1"), in_(in) {
+Rosbag1Reader::Rosbag1Reader(std::istream& in) : ChunkedBagReader("rosbag 1", in) {
   if (!in_.read(kMagic.size(), header_) || header_ != kMagic) count("bags whose begin is missing");
 }
 
@@ -64,16 +64,15 @@ void Rosbag1Reader::connect(const Record& record) {
                     .encoding = RosEncoding::ros1});
 }
 
-void Rosbag1Reader::open_chunk(const Record& record) {
+void Rosbag1Reader::take_chunk(const Record& record) {
   const auto size = number<std::uint32_t>(record.header, "size");
-  chunk_ = decompress(field(record.header, "compression"), record.data, size);
-  left_ = ByteCursor(chunk_);
+  open_chunk(decompress(field(record.header, "compression"), record.data, size));
 }
 
 void Rosbag1Reader::use(const Record& record) {
   switch (number<Op>(record.header, "op")) {
     case Op::chunk:
-      return open_chunk(record);
+      return take_chunk(record);
     case Op::connection:
       return connect(record);
     case Op::message: {
@@ -81,30 +80,21 @@ void Rosbag1Reader::use(const Record& record) {
       if (known == index_.end()) throw BagDamage{"messages of a connection that the bag does not describe"};
       ByteCursor time(field(record.header, "time"));
       const std::int64_t seconds = time.take<std::uint32_t>();
-      message_ = {known->second, seconds * kNsPerSecond + time.take<std::uint32_t>(), record.data};
+      give({known->second, seconds * kNsPerSecond + time.take<std::uint32_t>(), record.data});
       return;
     }
   }
 }
 
-std::optional<BagMessage> Rosbag1Reader::next() {
-  message_.reset();
-  while (!message_) {
-    try {
-      if (!left_.empty()) {
-        const std::string_view header = left_.text();
-        use({header, left_.text()});
-      } else if (read_record()) {
-        use({header_, data_});
-      } else {
-        return std::nullopt;
-      }
-    } catch (const BagDamage& damage) {
-      count(damage.what);
-      left_ = ByteCursor({});
-    }
-  }
-  return message_;
+bool Rosbag1Reader::take_record() {
+  if (!read_record()) return false;
+  use({header_, data_});
+  return true;
+}
+
+void Rosbag1Reader::take_record_of(ByteCursor& chunk) {
+  const std::string_view header = chunk.text();
+  use({header, chunk.text()});
 }
 
 }  // namespace crisp
