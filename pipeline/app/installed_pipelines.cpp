@@ -52,9 +52,7 @@ std::vector<std::string> InstalledPipelines::names() const {
 }
 
 InstalledPipelines pipelines_of_program() {
-  const fs::path folder = own_file().parent_path();
-  // The second one is that of a program that lies where it was built.
-  return InstalledPipelines({(folder / CRISP_CONFIGS_FROM_BIN).lexically_normal(), folder / "configs"});
+  return InstalledPipelines::of_folder(own_file().parent_path(), CRISP_CONFIGS_FROM_BIN);
 }
 
 }  // namespace crisp

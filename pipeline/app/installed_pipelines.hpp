@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crisp {
@@ -12,6 +13,13 @@ class InstalledPipelines {
  public:
   /// @param folders  where they may lie; those that do not exist are passed over
   explicit InstalledPipelines(std::vector<std::filesystem::path> folders) : folders_(std::move(folders)) {}
+
+  /// Those of a program or a library in this folder: where it was installed, and where it was built.
+  /// @param installed  the pipelines' folder of an installation, relative to this one
+  static InstalledPipelines of_folder(const std::filesystem::path& folder,
+                                      const std::filesystem::path& installed) {
+    return InstalledPipelines({(folder / installed).lexically_normal(), folder / "configs"});
+  }
 
   /// The file that was meant: itself if there is one, or if it has a folder or an ending; otherwise the
   /// installed pipeline of that name.

@@ -48,8 +48,7 @@ void load_plugins(const std::vector<fs::path>& files, Registrar& registrar) {
 /// Those of this module, wherever it was put: installed, and where it was built.
 InstalledPipelines pipelines_of_module() {
   const fs::path module = py::module_::import("crisp._crisp").attr("__file__").cast<std::string>();
-  const fs::path folder = module.parent_path();
-  return InstalledPipelines({(folder / CRISP_CONFIGS_FROM_MODULE).lexically_normal(), folder / "configs"});
+  return InstalledPipelines::of_folder(module.parent_path(), CRISP_CONFIGS_FROM_MODULE);
 }
 
 RunRequest run_request(const Request& request) {

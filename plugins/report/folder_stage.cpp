@@ -18,7 +18,7 @@ void FolderReportStage::describe(StageDescription<FolderReportStage>& d) {
   d.option("file", &FolderReportStage::file_, "where to write it; auto: report.html in the folder").writes();
   d.option("points", &FolderReportStage::points_, "most points that the page's cloud has").range(1, 5e6);
   d.option("against", &FolderReportStage::against_,
-           "an earlier calibration of the scanner, whose values are shown beside; auto: none");
+           "an earlier calibration of the scanner, whose values are shown next to the new ones; auto: none");
 }
 
 void FolderReportStage::process(const Inputs&, Outputs&, Context& context) {

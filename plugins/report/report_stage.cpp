@@ -42,7 +42,7 @@ void WriteReportStage::describe(StageDescription<WriteReportStage>& d) {
   d.option("file", &WriteReportStage::file_, "where to write it, NAME.html").writes().required();
   d.option("points", &WriteReportStage::points_, "most points that the page's cloud has").range(1, 5e6);
   d.option("against", &WriteReportStage::against_,
-           "an earlier calibration of the scanner, whose values are shown beside; auto: none");
+           "an earlier calibration of the scanner, whose values are shown next to the new ones; auto: none");
 }
 
 void WriteReportStage::process(const Inputs& in, Outputs&, Context& context) {
