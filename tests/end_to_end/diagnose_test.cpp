@@ -28,7 +28,8 @@ TEST(Configs, DiagnoseNamesTheCauseAndExtendsTheCalibration) {
                   "laser2_stamps.svg.provenance.json", "laser3_noise.svg", "laser3_noise.svg.provenance.json",
                   "laser3_residuals.svg", "laser3_residuals.svg.provenance.json", "laser3_stamps.svg",
                   "laser3_stamps.svg.provenance.json", "plate_stamps.svg", "plate_stamps.svg.provenance.json",
-                  "scanner_residuals.svg", "scanner_residuals.svg.provenance.json", "summary.json"));
+                  "report.html", "report.html.provenance.json", "scanner_residuals.svg",
+                  "scanner_residuals.svg.provenance.json", "summary.json"));
   const auto diagnosis = nlohmann::json::parse(test::bytes_of(workshop / "out/diagnosis.json"));
   ASSERT_EQ(diagnosis["findings"].size(), 1U);
   EXPECT_EQ(diagnosis["findings"][0]["cause"], "range.offset");
