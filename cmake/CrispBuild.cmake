@@ -47,7 +47,7 @@ if(CRISP_SANITIZE)
     add_compile_options(-fno-sanitize=null,object-size)
   endif()
   if(CRISP_SANITIZE STREQUAL "thread")
-    # The thread sanitizer knows no fences; Asio's are beside its mutexes, which it knows.
+    # The thread sanitizer does not know fences; Asio's accompany its mutexes, which it knows.
     add_compile_definitions(BOOST_ASIO_DISABLE_FENCED_BLOCK)
   endif()
 endif()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# CRISP_CUDA says whether the CUDA plugin is built: when it is asked for and nvcc is found.
+# CRISP_CUDA is on if the CUDA plugin is built: when it is requested and nvcc is found.
 option(CRISP_BUILD_CUDA "Build the plugin that measures on a graphics processor, if nvcc is found" OFF)
 set(CRISP_CUDA OFF)
 if(CRISP_BUILD_CUDA)

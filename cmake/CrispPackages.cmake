@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The packages crisp stands on. A package that only some folders need is still looked for here, so that
-# configuring fails at once. An installed crisp looks for the same ones, for whatever is built on it.
+# The packages that crisp depends on. A package that only some folders need is required here as well, so that
+# configuring fails at once. An installed crisp requires the same ones of its users.
 
 # crisp_require_header(<header> <Debian package>) ends the configuration where a library without a package file of
 # CMake's or pkg-config's that serves is missing.

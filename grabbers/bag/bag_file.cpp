@@ -13,7 +13,7 @@
 namespace crisp {
 namespace {
 
-/// What a file begins with, as much as says what it is.
+/// The first bytes of a file, enough to determine its format.
 struct Begin {
   std::string bytes;
   bool is_compressed = false;
@@ -49,13 +49,13 @@ BagFile::BagFile(const std::filesystem::path& file, std::function<bool()> interr
   const auto [begin, is_compressed] = begin_of(file);
   if (begin.starts_with(SqliteReader::kMagic)) {
     if (is_compressed)
-      throw Error(file.string() + " is a compressed database, which cannot be read as it is", "unzstd it");
+      throw Error(file.string() + " is a compressed database, which must be decompressed first", "unzstd it");
     reader_ = std::make_unique<SqliteReader>(file);
     return;
   }
   if (!is_bag(begin)) {
-    throw Error(file.string() + " is no bag that is known",
-                "known are ROS 1's (.bag, version 2.0), MCAP and ROS 2's in SQLite (.db3)");
+    throw Error(file.string() + " is no bag of a known format",
+                "known formats are ROS 1's (.bag, version 2.0), MCAP and ROS 2's in SQLite (.db3)");
   }
   bytes_.emplace(file, std::move(interrupted));
   buffer_.emplace(*bytes_);

@@ -29,7 +29,7 @@ std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& pat
 /// A bag's file of any format: rosbag 2.0 (ROS 1), MCAP, or SQLite (ROS 2's .db3).
 class BagFile {
  public:
-  /// @param interrupted  asked now and then: whether to give up; may be empty
+  /// @param interrupted  polled: whether to give up; may be empty
   /// @throws Error if the file cannot be read or is no bag
   explicit BagFile(const std::filesystem::path& file, std::function<bool()> interrupted = {});
 

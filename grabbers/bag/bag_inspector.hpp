@@ -5,7 +5,7 @@
 
 namespace crisp {
 
-/// What a bag holds, for `crisp info`.
+/// Inspector of bags, for `crisp info`.
 Inspector bag_inspector();
 
 }  // namespace crisp

@@ -15,7 +15,7 @@ constexpr std::int64_t kNsInSecond = 1'000'000'000;
 /// The 32 bits that a device's clock has.
 std::uint32_t clock_bits(std::int64_t us) { return static_cast<std::uint32_t>(us); }
 
-/// [s] from the first beam to the next scan's: as the message says, or until all its beams were fired.
+/// [s] from the first beam to the next scan's: by the message, or else until all its beams were fired.
 double duration_of(const ScanMessage& message) {
   return message.scan_time > 0 ? message.scan_time : duration_of_beams(message);
 }

@@ -19,7 +19,7 @@ namespace crisp {
 /// [s] until all beams of a scan were fired.
 double duration_of_beams(const ScanMessage& message);
 
-/// Makes of a bag's messages what other grabbers give: scans and readings with the header's stamp as their
+/// Converts a bag's messages: scans and readings with the header's stamp as their
 /// device's time and the receipt as the hub's, for a clock stage; and measurements with the plate's angles on
 /// the headers' own time, where laser and plate were stamped by one clock.
 class BagItems {

@@ -45,7 +45,7 @@ std::vector<std::vector<float>> by_echo(const std::vector<std::vector<float>>& b
   return echoes;
 }
 
-/// What is no range by the message's own limits is 0, as in all scans.
+/// Sets ranges outside of the message's own limits to 0, as in all scans.
 void mark_no_echoes(std::vector<float>& ranges, double least, double most) {
   const auto from = static_cast<float>(least);
   const auto to = most > 0 ? static_cast<float>(most) : std::numeric_limits<float>::max();
@@ -173,11 +173,11 @@ std::optional<AngleMessage> AngleDecoder::decode(std::string_view message) const
   }
   if (sec_) reading.stamp_ns = stamp;
   if (joints_ && joint_.empty() && joints > 1)
-    throw BagDamage{"joint states of several joints, of which the rig names none"};
+    throw BagDamage{"joint states of several joints, none of which the rig names"};
   if (!joint || !position || *joint >= position->count) return std::nullopt;
   reading.angle = scale_ * position->number(layout_.fields[value_].type, *joint);
   constexpr double kLargest = 1e9;
-  if (!(std::abs(reading.angle) <= kLargest)) throw BagDamage{"angles of the plate that cannot be"};
+  if (!(std::abs(reading.angle) <= kLargest)) throw BagDamage{"impossible angles of the plate"};
   return reading;
 }
 

@@ -29,7 +29,7 @@ class ScanDecoder {
   /// @return nothing if such messages hold no scan
   static std::optional<ScanDecoder> of(const BagConnection& connection);
 
-  /// @throws BagDamage if the message is not as its type says, or a scan that cannot be
+  /// @throws BagDamage if the message does not match its type, or is an impossible scan
   ScanMessage decode(std::string_view message) const;
 
  private:
@@ -42,7 +42,7 @@ class ScanDecoder {
       range_max_, ranges_, intensities_;
 };
 
-/// One reading of the plate's angle.
+/// One encoder reading's angle.
 struct AngleMessage {
   std::optional<std::int64_t> stamp_ns;  ///< [ns] of its header, if it has one
   double angle = 0;                      ///< [rad] as the device counts it
@@ -55,8 +55,8 @@ class AngleDecoder {
   /// @throws Error if the rig names a field that they do not have
   static std::optional<AngleDecoder> of(const BagConnection& connection, const RigPlate& plate);
 
-  /// @return nothing if the message does not speak of the joint
-  /// @throws BagDamage if it is not as its type says, or an angle that is no number
+  /// @return nothing if the message does not contain the joint
+  /// @throws BagDamage if it does not match its type, or an angle is no number
   std::optional<AngleMessage> decode(std::string_view message) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// How the fields of a message follow one another.
+/// Encoding of a message's fields.
 enum class RosEncoding {
   ros1,   ///< packed
   cdr,    ///< ROS 2: aligned, after four bytes that name the order of bytes
@@ -44,7 +44,7 @@ class BagReader {
   /// The next message; nothing at the end. @throws Error if the disk fails
   virtual std::optional<BagMessage> next() = 0;
 
-  /// All that were met so far; a message is of one of them.
+  /// All connections so far; a message belongs to one of them.
   const std::vector<BagConnection>& connections() const { return connections_; }
   const std::map<std::string, std::uint64_t>& losses() const { return losses_; }
   const char* format() const { return format_; }  ///< "rosbag 1", for people

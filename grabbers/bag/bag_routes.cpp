@@ -16,7 +16,7 @@ std::optional<std::uint16_t> BagRoutes::laser_of(const BagConnection& connection
   return std::nullopt;
 }
 
-/// Takes a topic for a device whose topic the rig does not name.
+/// Assigns a topic to a device whose topic the rig does not name.
 void BagRoutes::take(std::optional<std::string>& by, const BagConnection& connection,
                      const std::string& device, const char* key) {
   if (by && *by != connection.topic) {
@@ -27,7 +27,7 @@ void BagRoutes::take(std::optional<std::string>& by, const BagConnection& connec
 }
 
 BagRoute BagRoutes::route(const BagConnection& connection) {
-  met_.insert(connection.topic);
+  seen_.insert(connection.topic);
   BagRoute route;
   if (const auto laser = laser_of(connection)) {
     const RigLaser& of = rig_.lasers[*laser];
@@ -35,7 +35,7 @@ BagRoute BagRoutes::route(const BagConnection& connection) {
     if (route.scans) route.laser = laser;
     if (route.scans && of.topic.empty()) take(guessed_laser_, connection, of.name, of.name.c_str());
     if (!route.scans && !of.topic.empty()) {
-      throw Error(fmt::format("messages of {}, the topic of {}, are {}: no scans that can be read", of.topic,
+      throw Error(fmt::format("messages of {}, the topic of {}, are {}, which is no type of scans", of.topic,
                               of.name, connection.type),
                   "scans are sensor_msgs/LaserScan or MultiEchoLaserScan");
     }
@@ -52,7 +52,7 @@ BagRoute BagRoutes::route(const BagConnection& connection) {
 std::vector<std::string> BagRoutes::missing() const {
   std::vector<std::string> topics;
   const auto note = [&](const std::string& topic) {
-    if (!topic.empty() && !met_.contains(topic)) topics.push_back(topic);
+    if (!topic.empty() && !seen_.contains(topic)) topics.push_back(topic);
   };
   for (const auto& laser : rig_.lasers) note(laser.topic);
   note(rig_.plate.topic);

@@ -13,7 +13,7 @@
 
 namespace crisp {
 
-/// What the messages of a topic are to the rig.
+/// Role of a topic's messages in the rig.
 struct BagRoute {
   std::optional<std::uint16_t> laser;  ///< whose scans they are, or hold
   std::optional<ScanDecoder> scans;
@@ -39,7 +39,7 @@ class BagRoutes {
                    const char* key);
 
   Rig rig_;
-  std::set<std::string> met_;
+  std::set<std::string> seen_;
   std::optional<std::string> guessed_laser_;  ///< the topic that was taken for the only laser's
   std::optional<std::string> guessed_plate_;
 };

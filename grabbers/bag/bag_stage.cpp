@@ -11,7 +11,7 @@
 
 namespace crisp {
 
-/// What is known of a run while its files are read.
+/// The state of a run while its files are read.
 struct BagStage::Run {
   Run(Outputs& outputs, Context& its_context, double max_gap)
       : out(outputs), context(its_context), routes(context.rig()), items(context.rig(), max_gap) {}
@@ -29,41 +29,22 @@ struct BagStage::Run {
 void BagStage::describe(StageDescription<BagStage>& d) {
   d.name("grabber.bag").summary("reads scans and the plate's angles from a bag of ROS 1 or ROS 2");
   d.details(
-      "Nothing of ROS is needed. Bags are those of ROS 1 (.bag, chunks plain, bz2 or lz4), MCAP (chunks "
-      "plain, lz4 "
-      "or zstd) and ROS 2's in SQLite (.db3); a folder stands for the files in it, as ROS 2 writes them.\n\n"
-      "Scans are sensor_msgs/LaserScan or MultiEchoLaserScan, or a message that holds one. The plate's angle "
-      "is a "
-      "joint of a sensor_msgs/JointState, the number of a std_msgs message, or any field of another message. "
-      "The "
-      "rig names topics: `laser1: {topic: /tilt_scan, …}`, `plate: {topic: /joint_states, joint: "
-      "laser_tilt_mount_joint}`, `plate: {topic: /encoder, unit: counts}`, `plate: {topic: /slice, field: "
-      "stepAngle, "
-      "unit: deg}`; where it names none, the only topic of such a type is taken. `crisp info BAG` lists "
-      "topics, types "
-      "and joints.\n\n"
-      "A header's stamp is when beam 0 was fired, or the angle was read; beams follow by the scan's "
-      "time_increment. "
-      "Scans and readings carry it as their device's time, and when they were received as the hub's, for a "
-      "clock "
-      "stage below. Where one computer stamped laser and plate, the measurements that it gives besides can "
-      "be placed "
-      "at once. Angles are rounded to the plate's `counts_per_revolution`.");
+      "ROS is not required. Supported bags are those of ROS 1 (.bag, chunks plain, bz2 or lz4), MCAP (chunks plain, lz4 or zstd) and ROS 2's in SQLite (.db3); a folder stands for the files in it, as ROS 2 writes them.\n\n"
+      "Scans are sensor_msgs/LaserScan or MultiEchoLaserScan, or a message that holds one. The plate's angle is a joint of a sensor_msgs/JointState, the number of a std_msgs message, or a field of another message. The rig names topics: `laser1: {topic: /tilt_scan, …}`, `plate: {topic: /joint_states, joint: laser_tilt_mount_joint}`, `plate: {topic: /encoder, unit: counts}`, `plate: {topic: /slice, field: stepAngle, unit: deg}`; without a name, the only topic of such a type is used. `crisp info BAG` lists topics, types and joints.\n\n"
+      "A header's stamp is the firing time of beam 0, or the time of the angle; beams follow by the scan's time_increment. Scans and readings carry it as their device's time, and the time of receipt as the hub's, for a clock stage below. Where one computer stamped laser and plate, the stage's measurements can be placed without a clock stage. Angles are rounded to the plate's `counts_per_revolution`.");
   d.gives<Scan>().gives<PlateReading>().gives<PlateTrajectory>().gives<Measurements>();
-  d.option("file", &BagStage::file_, "the bag, or a folder with its files").required();
-  d.option("actuator", &BagStage::actuator_,
-           "what the plate does while a scan is taken whose message holds its angle: it moves, or it stands "
-           "at that "
-           "angle")
+  d.option("file", &BagStage::file_, "bag, or folder of its files").required();
+  d.option(
+       "actuator", &BagStage::actuator_,
+       "motion of the plate during a scan whose message holds its angle: it moves, or it stands at that angle")
       .choices({{"moves", ActuatorMotion::moves}, {"stands", ActuatorMotion::stands}});
   d.option("max_gap", &BagStage::max_gap_, "longest silence of the angles to interpolate across")
       .unit("s")
       .range(1e-6, 1e6);
-  d.option("begin", &BagStage::begin_,
-           "what was received earlier than this after the first message is left out")
+  d.option("begin", &BagStage::begin_, "start of the used part, after the first message's receipt")
       .unit("s")
       .at_least(0);
-  d.option("duration", &BagStage::duration_, "how much is given from there on; auto: all of it")
+  d.option("duration", &BagStage::duration_, "duration of the used part; auto: to the end")
       .unit("s")
       .at_least(0);
 }
@@ -72,7 +53,7 @@ void BagStage::check(const RunSettings& run) const {
   if (run.rig.lasers.size() < 2) return;
   for (const auto& laser : run.rig.lasers) {
     if (laser.topic.empty()) {
-      throw Error(fmt::format("the rig has {} lasers, and does not say of which topic {}'s scans are",
+      throw Error(fmt::format("the rig has {} lasers, and gives no topic for the scans of {}",
                               run.rig.lasers.size(), laser.name),
                   fmt::format("name it in the rig: {}: {{topic: /scan, …}}; crisp info BAG lists topics",
                               laser.name));
@@ -80,11 +61,11 @@ void BagStage::check(const RunSettings& run) const {
   }
 }
 
-bool BagStage::is_wanted(std::int64_t receipt_ns, Run& run) const {
+bool BagStage::is_requested(std::int64_t receipt_ns, Run& run) const {
   if (!run.first_ns) run.first_ns = receipt_ns;
   const double since_begin = 1e-9 * static_cast<double>(receipt_ns - *run.first_ns) - begin_;
   if ((begin_ == 0 || since_begin >= 0) && (!duration_ || since_begin < *duration_)) return true;
-  run.context.count("messages left out because of begin and duration");
+  run.context.count("messages outside of begin and duration");
   return false;
 }
 
@@ -108,7 +89,7 @@ void BagStage::use(const BagRoute& route, const BagMessage& message, Run& run) c
 }
 
 void BagStage::read(const std::filesystem::path& file, Run& run) const {
-  constexpr std::uint64_t kTellEvery = 1000;
+  constexpr std::uint64_t kReportEvery = 1000;
   run.context.reads(file);
   BagFile bag(file, [&run] { return run.context.interrupted(); });
   std::vector<BagRoute> routes;
@@ -116,12 +97,12 @@ void BagStage::read(const std::filesystem::path& file, Run& run) const {
   while (const auto message = bag.reader().next()) {
     const auto& connections = bag.reader().connections();
     while (routes.size() < connections.size()) routes.push_back(run.routes.route(connections[routes.size()]));
-    if (++messages % kTellEvery == 0) {
+    if (++messages % kReportEvery == 0) {
       if (run.context.interrupted()) return;
       run.context.progress(Progress{static_cast<double>(messages), 0, "messages", "reading the bag"});
     }
     const BagRoute& route = routes[message->connection];
-    if ((!route.scans && !route.angles) || !is_wanted(message->receipt_ns, run)) continue;
+    if ((!route.scans && !route.angles) || !is_requested(message->receipt_ns, run)) continue;
     try {
       use(route, *message, run);
     } catch (const BagDamage& damage) {
@@ -147,11 +128,11 @@ void BagStage::report(const Run& run) const {
   auto section = nlohmann::json::object();
   for (std::size_t i = 0; i < run.scans.size(); ++i) {
     const std::string& name = context.rig().lasers[i].name;
-    context.say(fmt::format("{}: {} scans", name, run.scans[i]));
+    context.print(fmt::format("{}: {} scans", name, run.scans[i]));
     section[name] = {{"scans", run.scans[i]}};
     if (run.scans[i] == 0) context.warn(fmt::format("the bag holds no scan of {}; {}", name, held));
   }
-  context.say(fmt::format("{}: {} angles", context.rig().plate.name, run.angles));
+  context.print(fmt::format("{}: {} angles", context.rig().plate.name, run.angles));
   section[context.rig().plate.name] = {{"angles", run.angles}};
   context.report(section);
 }

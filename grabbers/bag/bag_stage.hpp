@@ -26,7 +26,7 @@ class BagStage final : public Stage {
   void read(const std::filesystem::path& file, Run& run) const;
   void use(const BagRoute& route, const BagMessage& message, Run& run) const;
   void report(const Run& run) const;
-  bool is_wanted(std::int64_t receipt_ns, Run& run) const;
+  bool is_requested(std::int64_t receipt_ns, Run& run) const;
 
   std::filesystem::path file_;
   ActuatorMotion actuator_ = ActuatorMotion::moves;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSecondsPerNs = 1e-9;
 
-/// Looks at the messages of a topic.
+/// Gathers statistics of a topic's messages.
 class TopicWatch {
  public:
   explicit TopicWatch(const BagConnection& connection)
@@ -81,7 +81,7 @@ std::string line_of(const TopicSummary& topic) {
   }
   if (!topic.joints.empty()) line += fmt::format("\n    joints: {}", fmt::join(topic.joints, ", "));
   if (topic.unreadable > 0)
-    line += fmt::format("\n    {} messages that are not as their type says", topic.unreadable);
+    line += fmt::format("\n    {} messages that do not match their type", topic.unreadable);
   return line;
 }
 

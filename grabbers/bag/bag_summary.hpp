@@ -14,7 +14,7 @@
 
 namespace crisp {
 
-/// What a bag holds of one topic.
+/// Summary of one topic of a bag.
 struct TopicSummary {
   std::string topic, type;
   std::uint64_t messages = 0;
@@ -24,12 +24,12 @@ struct TopicSummary {
   double least_delay = std::numeric_limits<double>::infinity();  ///< [s] receipt less stamp
   double most_delay = -std::numeric_limits<double>::infinity();  ///< [s]
   std::set<std::string> joints;                                  ///< of joint states
-  std::uint64_t unreadable = 0;                                  ///< messages that are not as their type says
+  std::uint64_t unreadable = 0;                                  ///< messages that do not match their type
 
   double rate() const;  ///< [Hz] mean; 0: not known
 };
 
-/// What a bag holds.
+/// Summary of a bag.
 struct BagSummary {
   std::string format;
   std::vector<TopicSummary> topics;

@@ -15,10 +15,11 @@ struct BagDamage {
   const char* what;
 };
 
-/// Takes little-endian numbers and texts off the front of bytes. Each throws BagDamage where they end before.
+/// Reads little-endian numbers and texts from the front of bytes. Each throws BagDamage where they end
+/// before.
 class ByteCursor {
  public:
-  /// @param damage  what is said where the bytes end before their content
+  /// @param damage  reported where the bytes end before their content
   explicit ByteCursor(std::string_view bytes, BagDamage damage = {"records that end before their content"})
       : rest_(bytes), damage_(damage) {}
 

@@ -7,8 +7,8 @@
 
 namespace crisp {
 
-/// A bag whose records lie in chunks, each compressed by itself, and between them. A damaged record costs
-/// what is left of its chunk.
+/// A bag whose records lie in chunks, each compressed by itself, and between them. A damaged record costs the
+/// rest of its chunk.
 class ChunkedBagReader : public BagReader {
  public:
   std::optional<BagMessage> next() final;

@@ -68,7 +68,7 @@ std::string decompress(std::string_view method, std::string_view bytes, std::uin
   if (method == "bz2") return from_bz2(bytes, size);
   if (method == "lz4") return from_lz4(bytes, size);
   if (method == "zstd") return from_zstd(bytes, size);
-  if (!method.empty() && method != "none") throw BagDamage{"chunks with a compression that is not known"};
+  if (!method.empty() && method != "none") throw BagDamage{"chunks with an unknown compression"};
   return std::string(bytes);
 }
 

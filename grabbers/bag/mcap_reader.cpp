@@ -11,7 +11,7 @@
 namespace crisp {
 namespace {
 
-/// What a record is, by its first byte.
+/// Kind of a record, by its first byte.
 enum McapOp : std::uint8_t { kSchema = 3, kChannel = 4, kMessage = 5, kChunk = 6 };
 
 bool is_of_interest(std::uint8_t op) { return op >= kSchema && op <= kChunk; }
@@ -76,7 +76,7 @@ void McapReader::take_chunk(ByteCursor content) {
   const auto crc = content.take<std::uint32_t>();
   const std::string_view method = content.text();
   std::string chunk = decompress(method, content.bytes(content.take<std::uint64_t>()), size);
-  if (crc != 0 && crc != crc_of(chunk)) throw BagDamage{"chunks whose checksum is wrong"};
+  if (crc != 0 && crc != crc_of(chunk)) throw BagDamage{"chunks with a wrong checksum"};
   open_chunk(std::move(chunk));
 }
 

@@ -5,7 +5,7 @@
 
 namespace crisp {
 
-/// grabber.bag, and what `crisp info` says of bags.
+/// Registers grabber.bag, and the inspector of bags for `crisp info`.
 void register_bag(Registrar& registrar);
 
 }  // namespace crisp

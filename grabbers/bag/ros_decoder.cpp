@@ -127,7 +127,7 @@ std::int64_t RosValue::integer(RosType type) const {
 }
 
 std::vector<RosValue> decode_ros(const RosLayout& layout, RosEncoding encoding, std::string_view message) {
-  if (encoding == RosEncoding::other) throw BagDamage{"messages in an encoding that is not known"};
+  if (encoding == RosEncoding::other) throw BagDamage{"messages in an unknown encoding"};
   return Decoder(layout, encoding, message).decode();
 }
 

@@ -18,15 +18,13 @@ struct Known {
 constexpr std::array kKnown = {
     Known{
         "sensor_msgs/LaserScan",
-        "Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 "
-        "time_increment\n"
+        "Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
         "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n"},
-    Known{"sensor_msgs/MultiEchoLaserScan",
-          "Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 "
-          "time_increment\n"
-          "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nLaserEcho[] ranges\nLaserEcho[] "
-          "intensities\n"
-          "===\nMSG: sensor_msgs/LaserEcho\nfloat32[] echoes\n"},
+    Known{
+        "sensor_msgs/MultiEchoLaserScan",
+        "Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
+        "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nLaserEcho[] ranges\nLaserEcho[] intensities\n"
+        "===\nMSG: sensor_msgs/LaserEcho\nfloat32[] echoes\n"},
     Known{"sensor_msgs/JointState",
           "Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n"},
     Known{"std_msgs/Int16", "int16 data\n"},

@@ -31,9 +31,9 @@ using Definitions = std::map<std::string, std::vector<DefinedField>, std::less<>
 
 const std::string kTime = "builtin_interfaces/Time";  // of sec and nanosec
 
-constexpr const char* kUnreadable = "definitions of messages that cannot be read";
+constexpr const char* kUnreadable = "unreadable definitions of messages";
 
-/// Splits "float32[36]" and the like: takes the brackets off, and says what they mean.
+/// Splits "float32[36]" and the like: removes the brackets and sets the array's length.
 void take_brackets(DefinedField& field) {
   const auto open = field.type.find('[');
   if (open == std::string::npos) return;
@@ -89,7 +89,7 @@ Definitions parse_definitions(const std::string& type, const std::string& text) 
   return all;
 }
 
-/// Makes the tree of fields of definitions.
+/// Builds the tree of fields of definitions.
 class Grower {
  public:
   explicit Grower(const Definitions& definitions) : definitions_(definitions) {}

@@ -11,7 +11,7 @@
 
 namespace crisp {
 
-/// What a field of a message is.
+/// Type of a message's field.
 enum class RosType : std::uint8_t {
   boolean,
   int8,
@@ -31,7 +31,7 @@ enum class RosType : std::uint8_t {
 /// [bytes] that a number has; 0 for texts and messages.
 std::size_t size_of(RosType type);
 
-/// How many of a field follow one another.
+/// Number of a field's elements.
 enum class RosCount : std::uint8_t { one, fixed, counted };
 
 /// A field of a message, in a tree whose leaves are numbers and texts.
@@ -76,7 +76,7 @@ struct RosValue {
 };
 
 /// All values of a message in their order; fields of a message that comes several times come as often.
-/// @throws BagDamage if the message is not as its type says
+/// @throws BagDamage if the message does not match its type
 std::vector<RosValue> decode_ros(const RosLayout& layout, RosEncoding encoding, std::string_view message);
 
 /// Definitions of the types that crisp uses, for bags without; empty for others.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
-/// What a record is, in the field `op` of its header.
+/// Kind of a record, in the field `op` of its header.
 enum class Op : std::uint8_t { message = 2, chunk = 5, connection = 7 };
 
 /// The value of a field of a header: fields are NAME=VALUE after their length.
@@ -18,7 +18,7 @@ std::string_view field(std::string_view header, std::string_view name) {
   for (ByteCursor fields(header); !fields.empty();) {
     const std::string_view one = fields.text();
     const auto equals = one.find('=');
-    if (equals == std::string_view::npos) throw BagDamage{"records whose header cannot be read"};
+    if (equals == std::string_view::npos) throw BagDamage{"records with an unreadable header"};
     if (one.substr(0, equals) == name) return one.substr(equals + 1);
   }
   throw BagDamage{"records whose header lacks a field"};

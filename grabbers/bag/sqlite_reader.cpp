@@ -64,7 +64,7 @@ SqliteReader::Statement SqliteReader::prepare(const char* query) const {
   sqlite3_stmt* statement = nullptr;
   if (sqlite3_prepare_v2(database_.get(), query, -1, &statement, nullptr) != SQLITE_OK) {
     throw Error("cannot read " + file_.string() + ": " + sqlite3_errmsg(database_.get()),
-                "sqlite3 FILE .recover saves what can be read of a damaged one");
+                "sqlite3 FILE .recover recovers a damaged one in part");
   }
   return Statement(statement);
 }

@@ -25,8 +25,8 @@ Error no_capture(const std::filesystem::path& path, std::string_view begin) {
 CaptureFile::CaptureFile(const std::filesystem::path& path, const Place& from, std::uint64_t end,
                          std::function<bool()> interrupted)
     : file_(path, std::move(interrupted)), end_(end) {
-  constexpr std::size_t kTelling = 8;  // bytes
-  const auto begin = file_.peek(kTelling);
+  constexpr std::size_t kDistinctive = 8;  // bytes
+  const auto begin = file_.peek(kDistinctive);
   if (begin.empty()) throw Error(path.string() + " is empty", "capture it again");
   if (PcapRecords::recognises(begin)) {
     records_.emplace<PcapRecords>(file_, losses_);

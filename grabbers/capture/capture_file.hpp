@@ -21,7 +21,7 @@ namespace crisp {
 /// single stamp that is too early would bend the clock of its device, where one that is late does nothing.
 class CaptureFile {
  public:
-  /// From where a capture can be read on.
+  /// A position from which a capture can be read.
   struct Place {
     std::uint64_t offset = 0;  ///< [bytes]
     std::optional<PcapngBlocks::Section> section = {};
@@ -42,7 +42,7 @@ class CaptureFile {
   /// The next packet, valid until the next call; nullptr at the end of the file.
   const Packet* next();
 
-  /// Where the packet begins that next() gave.
+  /// The position of the packet that next() gave.
   Place place() const;
 
   const Counts& losses() const { return losses_; }

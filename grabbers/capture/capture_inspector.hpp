@@ -5,7 +5,7 @@
 
 namespace crisp {
 
-/// Says what a capture holds, whoever sent it; devices at an address of the rig get its names.
+/// Describes a capture's content, from any sender; devices at an address of the rig get its names.
 Inspector capture_inspector();
 
 }  // namespace crisp

@@ -62,7 +62,7 @@ Stretches find_stretches(const std::filesystem::path& path, const std::function<
   return found;
 }
 
-/// By how much the times of one conversation are ahead of another's, by which packets stand before which.
+/// Offset of one conversation's times against another's, by the order of their packets.
 struct Offset {
   std::int64_t least = -kNever, most = kNever;  // [ns]
 
@@ -71,10 +71,10 @@ struct Offset {
 };
 
 /// Evidence from the packets of a capture for why their times go back.
-class ConversationSurvey {
+class ConversationScan {
  public:
   /// @param file is read from its begin to its end
-  explicit ConversationSurvey(CaptureFile& file) {
+  explicit ConversationScan(CaptureFile& file) {
     OrderWatch watch;
     while (const Packet* packet = file.next()) {
       if (watch.take(packet->time_ns)) ++stretch_;
@@ -140,7 +140,7 @@ class ConversationSurvey {
     return apart;
   }
 
-  /// What stands before a packet arrived before it.
+  /// Earlier packets in the file arrived earlier.
   void compare(const IpPair& pair, std::int64_t time_ns) {
     for (const auto& [other, conversation] : conversations_) {
       if (other == pair) continue;
@@ -180,7 +180,7 @@ std::int64_t interval_of(const CaptureStretch& stretch, std::uint64_t packets) {
 }
 
 /// Lets time go on where the hub's clock was set back.
-void continue_time(Stretches& found, const ConversationSurvey& survey, CaptureOrder& order) {
+void continue_time(Stretches& found, const ConversationScan& survey, CaptureOrder& order) {
   std::int64_t largest = 0;
   std::size_t times = 0;
   for (std::size_t i = 1; i < found.all.size(); ++i) {
@@ -195,11 +195,9 @@ void continue_time(Stretches& found, const ConversationSurvey& survey, CaptureOr
     ++times;
   }
   if (times == 0) return;
-  order.remarks.push_back(
-      fmt::format("the hub's clock was set back {} time(s) while it captured, by up to {:.3f} s: connections "
-                  "go on there. Times "
-                  "are continued. Let the hub set its clock before it captures",
-                  times, to_seconds(largest)));
+  order.remarks.push_back(fmt::format(
+      "the hub's clock was set back {} time(s) while it captured, by up to {:.3f} s: connections go on there. Times are continued. Set the hub's clock before capturing",
+      times, to_seconds(largest)));
 }
 
 void sort_by_time(Stretches& found, CaptureOrder& order) {
@@ -207,11 +205,9 @@ void sort_by_time(Stretches& found, CaptureOrder& order) {
   const auto out_of_order = std::ranges::adjacent_find(
       found.all, [](const auto& a, const auto& b) { return b.first_ns < a.last_ns - kWorthAWord; });
   if (out_of_order != found.all.end()) {
-    order.remarks.push_back(
-        fmt::format("its packets are not in the order of their times ({} parts, each in order): they are "
-                    "read in the order of "
-                    "their times",
-                    found.all.size()));
+    order.remarks.push_back(fmt::format(
+        "its packets are not in the order of their times ({} parts, each in order): they are read in the order of their times",
+        found.all.size()));
   }
   std::ranges::stable_sort(found.all, {}, &CaptureStretch::first_ns);
   order.stretches = std::move(found.all);
@@ -219,15 +215,11 @@ void sort_by_time(Stretches& found, CaptureOrder& order) {
 
 /// Whether the interfaces' clocks differ, each by a constant: then the file's order is right, and their times
 /// are corrected.
-bool join_clocks(const ConversationSurvey& survey, CaptureOrder& order) {
+bool join_clocks(const ConversationScan& survey, CaptureOrder& order) {
   for (const auto& [pair, offset] : survey.offsets()) {
     order.shift_ns[pair] = -offset;
     order.remarks.push_back(fmt::format(
-        "packets between {} and {} are stamped {:+.3f} s off those of the others between which they stand: "
-        "the capture's "
-        "interfaces have different clocks (TAI is 37 s ahead of UTC). This offset is taken out, to within "
-        "some "
-        "milliseconds, which a calibration finds as eta. Let all interfaces be stamped by one clock",
+        "packets between {} and {} are stamped {:+.3f} s off their neighbours: the capture's interfaces have different clocks (TAI is 37 s ahead of UTC). The offset is removed, to within some milliseconds, which a calibration estimates as eta. Stamp all interfaces by one clock",
         to_string(pair.first), to_string(pair.second), to_seconds(offset)));
   }
   return !order.shift_ns.empty();
@@ -235,26 +227,24 @@ bool join_clocks(const ConversationSurvey& survey, CaptureOrder& order) {
 
 }  // namespace
 
-CaptureOrder survey_capture(const std::filesystem::path& path, const std::function<bool()>& interrupted) {
+CaptureOrder scan_capture(const std::filesystem::path& path, const std::function<bool()>& interrupted) {
   constexpr std::size_t kInterleaved = 3;  // stretches: interfaces that take turns
   CaptureOrder order;
   Stretches found = find_stretches(path, interrupted);
   if (found.count + found.damaged >= kInterleaved) {
     CaptureFile file(path, interrupted);
     file.keep_all_stamps();  // one of another clock between two would be taken for damaged
-    if (join_clocks(ConversationSurvey(file), order)) return order;
+    if (join_clocks(ConversationScan(file), order)) return order;
   }
   if (found.count < 2) return order;
   if (found.count > kMostStretches) {
-    order.remarks.push_back(
-        fmt::format("the times of its packets go back {} times, too often to sort them: what comes out of "
-                    "order is lost. Sort it "
-                    "with reordercap",
-                    found.count - 1));
+    order.remarks.push_back(fmt::format(
+        "the times of its packets go back {} times, too often to sort them: packets out of order are lost. Sort it with reordercap",
+        found.count - 1));
     return order;
   }
   CaptureFile file(path, interrupted);
-  continue_time(found, ConversationSurvey(file), order);
+  continue_time(found, ConversationScan(file), order);
   sort_by_time(found, order);
   return order;
 }

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "grabbers/capture/capture_file.hpp"
-#include "grabbers/capture/network.hpp"
+#include "grabbers/devices/network.hpp"
 
 namespace crisp {
 
@@ -33,22 +33,22 @@ struct CaptureStretch {
   std::int64_t shift_ns = 0;  ///< what is added to the time of its packets
 };
 
-/// How the packets of a capture come into the order in which they arrived.
+/// The order of a capture's packets by their arrival.
 struct CaptureOrder {
   std::vector<CaptureStretch> stretches = {CaptureStretch{}};  ///< ascending in first_ns; they may overlap
   std::map<IpPair, std::int64_t> shift_ns = {};  ///< added to the times of what these sent to each other
   std::vector<std::string> remarks = {};         ///< what is out of order, and what is made of it
 };
 
-/// Reads the times of all packets; where they go back, the packets themselves, too.
+/// Reads the times of all packets; and the packets themselves where the times go back.
 ///
-/// Where the times go back, TCP distinguishes two cases: connections that go on there, byte for byte, mean
+/// Where the times go back, TCP distinguishes two cases: connections that continue there, byte for byte, show
 /// that the hub's clock was set back (or its 32 bits of seconds wrapped), and time goes on; otherwise the
 /// file's parts are in another order than that of their times. Where the times of each pair of addresses
 /// ascend but for a constant offset, interfaces have clocks of their own, such as TAI and UTC.
 ///
 /// @param interrupted  as ByteStream's
 /// @throws Error if the file cannot be read or is no capture
-CaptureOrder survey_capture(const std::filesystem::path& path, const std::function<bool()>& interrupted = {});
+CaptureOrder scan_capture(const std::filesystem::path& path, const std::function<bool()>& interrupted = {});
 
 }  // namespace crisp

@@ -11,7 +11,7 @@
 #include "grabbers/capture/fragments.hpp"
 #include "grabbers/capture/item_merge.hpp"
 #include "grabbers/capture/ordered_capture.hpp"
-#include "pipeline/data/robust.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
 namespace {
@@ -65,7 +65,7 @@ bool CaptureReader::Traffic::read_packet() {
   ++link_types[packet->link_type];
   if (const auto* reason = std::get_if<NoIp>(&found)) {
     if (*reason == NoIp::Damaged) totals.losses.add("packets with damaged headers");
-    if (*reason == NoIp::UnknownLinkType) totals.losses.add("packets of link types that are not understood");
+    if (*reason == NoIp::UnknownLinkType) totals.losses.add("packets of unsupported link types");
     return true;
   }
   const IpPacket& ip = *sent;
@@ -89,9 +89,9 @@ Flow* CaptureReader::Traffic::find_flow(const TransportPacket& packet) {
   const auto found = flows.find(packet.key);
   if (found != flows.end()) return found->second.get();
   auto* known = devices.known(packet.key);
-  const bool says_something = !packet.payload.empty() || packet.syn;
+  const bool has_content = !packet.payload.empty() || packet.syn;
   const bool like_a_plate = as_text(packet.payload).find(kPlateMark) != std::string_view::npos;
-  if (known == nullptr && (!says_something || (packet.key.transport == Transport::Udp && !like_a_plate)))
+  if (known == nullptr && (!has_content || (packet.key.transport == Transport::Udp && !like_a_plate)))
     return nullptr;
   if (flows.size() >= kMostFlows) forget_flows();
   auto flow = std::make_unique<Flow>(packet.key, devices, known, settings, give);
@@ -103,7 +103,7 @@ Flow* CaptureReader::Traffic::find_flow(const TransportPacket& packet) {
 void CaptureReader::Traffic::forget_flows() {
   std::vector<std::int64_t> ages;
   for (const auto& [key, flow] : flows) ages.push_back(flow->last_ns());
-  const std::int64_t middle = middle_of(ages);
+  const std::int64_t middle = median_in_place(ages);
   const auto old = [&](const Flow& flow) { return flow.last_ns() <= middle; };
   std::erase_if(rig_flows, [&](const Flow* flow) { return old(*flow); });
   for (auto& [key, flow] : flows) {
@@ -115,7 +115,7 @@ void CaptureReader::Traffic::forget_flows() {
 /// Items received before this are complete and in order.
 std::int64_t CaptureReader::Traffic::limit_ns() {
   auto limit = newest_ns - kDisorder;
-  const auto longest = static_cast<std::int64_t>(1e9 * settings.longest_wait);
+  const auto longest = static_cast<std::int64_t>(1e9 * settings.max_wait);
   for (auto* flow : rig_flows) {
     flow->expire(newest_ns);
     const auto since = flow->waiting_since();
@@ -142,7 +142,7 @@ std::optional<HubItem> CaptureReader::Traffic::next() {
       auto item = ended ? merge.pop() : merge.pop(limit_ns());
       if (item) {
         if (receipt_ns(*item) < given_ns)
-          totals.notes.add("items given out of order, because the hub's clock stepped back");
+          totals.notes.add("items out of order, since the hub's clock stepped back");
         given_ns = receipt_ns(*item);
         return item;
       }

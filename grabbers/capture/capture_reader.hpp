@@ -5,15 +5,15 @@
 #include <memory>
 #include <optional>
 
-#include "grabbers/capture/capture_statistics.hpp"
 #include "grabbers/capture/flow.hpp"
+#include "grabbers/devices/capture_statistics.hpp"
 
 namespace crisp {
 
-/// Reads scans and plate readings from a capture of the hub's network interface, in the order in which the
+/// Reads scans and encoder readings from a capture of the hub's network interface, in the order in which the
 /// hub received them: the time of the packet that completes a telegram. Only where the hub's clock itself
 /// stepped back does the order follow the file; that is counted. Memory does not depend on the capture's
-/// size. What is damaged or missing is counted by name; see statistics().
+/// size. Damaged and missing data are counted by name; see statistics().
 class CaptureReader final : public ItemSource {
  public:
   /// @throws Error if the file cannot be read or is no capture, or an address of the rig is none
@@ -30,7 +30,7 @@ class CaptureReader final : public ItemSource {
 
   void interrupt() override;
 
-  /// What was found so far; complete once next() gave nothing.
+  /// Statistics so far; complete once next() gave nothing.
   CaptureStatistics statistics() const;
 
   double progress() const;        ///< 0 … 1, by the bytes of the file
@@ -43,12 +43,12 @@ class CaptureReader final : public ItemSource {
   std::unique_ptr<Traffic> traffic_;
 };
 
-/// Whether a rig's devices can be told apart by their addresses.
+/// Checks that a rig's devices are distinguishable by their addresses.
 /// @throws Error if an address is none, or two devices have the same
 void check_addresses(const Rig& rig);
 
-/// What a capture holds, whoever sent it: reads all of it without a rig, and finds lasers and plates by what
-/// they say. @throws Error as CaptureReader
+/// Describes a capture's content, from any sender: reads all of it without a rig, and recognises lasers and
+/// plates by their telegrams. @throws Error as CaptureReader
 CaptureStatistics inspect_capture(const std::filesystem::path& file, const CaptureSettings& settings = {});
 
 }  // namespace crisp

@@ -82,9 +82,9 @@ std::string details(const DeviceStatistics& device) {
   auto text = "\n" + title(device);
   for (const auto number : device.serial_numbers) text += fmt::format(", serial number {}", number);
   if (device.skew)
-    text += fmt::format("\n  clock: {:+.1f} ppm against the hub's, at a first look", 1e6 * *device.skew);
+    text += fmt::format("\n  clock: {:+.1f} ppm against the hub's (rough estimate)", 1e6 * *device.skew);
   if (2 * device.standing > device.items) {
-    text += fmt::format("\n  clock: stands still: {} of {} items carry the stamp of the one before",
+    text += fmt::format("\n  clock: stands still: {} of {} items carry the stamp of their predecessor",
                         device.standing, device.items);
   }
   if (device.counted_up + device.counted_down > 0) {
@@ -95,10 +95,10 @@ std::string details(const DeviceStatistics& device) {
                         1 / *device.period, device.nominal_frequency);
   }
   if (device.median_handover) {
-    text += fmt::format("\n  a scan is handed out {:.2f} ms after its stamp", 1e3 * *device.median_handover);
+    text += fmt::format("\n  a scan is sent {:.2f} ms after its stamp", 1e3 * *device.median_handover);
   }
   if (device.period_hint() != 0) {
-    text += ", before it can be over: the stamp is probably a turn late (period_offset: -1 in the rig)";
+    text += ", before its end: the stamp is probably a turn late (period_offset: -1 in the rig)";
   }
   return text + list("telegrams", device.telegrams) + list("lost", device.losses) +
          list("noted", device.notes);
@@ -158,13 +158,11 @@ std::string to_text(const CaptureStatistics& statistics) {
   for (const auto& remark : statistics.remarks) text += "\n  " + remark;
   if (statistics.pauses > 0) {
     text += fmt::format(
-        "\n  {} recordings, one after the other: nothing came for {:.1f} s in all between them (pauses of "
-        "{:.0f} s "
-        "and more, which are no losses)",
+        "\n  {} recordings in sequence, with {:.1f} s of pauses in all between them (of {:.0f} s and more, which are no losses)",
         statistics.pauses + 1, statistics.paused, kPause);
   }
   text += list("lost", statistics.losses) + list("noted", statistics.notes);
-  if (statistics.devices.empty()) return text + "\nno lasers and no plate are in it";
+  if (statistics.devices.empty()) return text + "\nit holds no laser and no plate";
   text += "\n\n" + device_table(statistics) + "\n";
   for (const auto& device : statistics.devices) text += details(device);
   return text;

@@ -4,14 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "grabbers/capture/capture_statistics.hpp"
+#include "grabbers/devices/capture_statistics.hpp"
 
 namespace crisp {
 
-/// How a device is called: its name in the rig and its address, "laser1 (192.168.0.1:2112)".
+/// Title of a device: its name in the rig and its address, "laser1 (192.168.0.1:2112)".
 std::string title(const DeviceStatistics& device);
 
-/// How many of its items never came, by the device's own counter.
+/// Number of its lost items, by the device's own counter.
 std::uint64_t never_came(const DeviceStatistics& device);
 
 /// The statistics for programs. Times in s since the Unix epoch, durations in s, angles in rad.

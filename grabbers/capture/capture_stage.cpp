@@ -7,46 +7,32 @@
 #include "grabbers/capture/captures_in.hpp"
 #include "grabbers/capture/loss_warnings.hpp"
 #include "grabbers/capture/read_ahead.hpp"
-#include "grabbers/capture/strangers.hpp"
+#include "grabbers/capture/unknown_devices.hpp"
 
 namespace crisp {
 
 void CaptureStage::describe(StageDescription<CaptureStage>& d) {
   d.name("grabber.capture")
-      .summary("reads scans and plate readings from a capture of the hub's network interface");
+      .summary("reads scans and encoder readings from a capture of the hub's network interface");
   d.details(
-      "A capture is a pcap or pcapng file as tcpdump, dumpcap or Wireshark write it, plain or compressed by "
-      "gzip or zstd. Lasers are found by the "
-      "rig's addresses in TCP streams of CoLa-A or CoLa-B telegrams, the plate in UDP datagrams or a TCP "
-      "stream of its "
-      "sentences. Each item carries the time of the packet that completed it, and items come in the order of "
-      "these "
-      "times.\n\n"
-      "A folder stands for all captures in it, one after the other in the order of their first packets: of "
-      "one "
-      "scanner in several places, or of one recording in several files.\n\n"
-      "Where the times of a file's packets go back, its parts are read in the order of their times, or time "
-      "is "
-      "continued if the hub's clock was set back there.\n\n"
-      "What is damaged, lost, repeated or unknown is counted by name; it never ends the reading. Memory does "
-      "not "
-      "depend on the size of the capture.");
+      "A capture is a pcap or pcapng file as tcpdump, dumpcap or Wireshark write it, plain or compressed by gzip or zstd. The rig's addresses identify the lasers' TCP streams of CoLa-A or CoLa-B telegrams, and the plate's UDP datagrams or TCP stream of sentences. Each item carries the time of the packet that completed it, and items come in the order of these times.\n\n"
+      "A folder stands for all captures in it, one after the other in the order of their first packets: of one scanner in several places, or of one recording in several files.\n\n"
+      "Where packet times go back, the file's parts are read in the order of their times, or time is continued if the hub's clock was set back.\n\n"
+      "Damaged, lost, repeated and unknown data are counted by name; they never end the reading. Memory does not depend on the size of the capture.");
   d.gives<Scan>().gives<PlateReading>();
-  d.option("file", &CaptureStage::file_, "the capture, or a folder of captures").required();
-  d.option("begin", &CaptureStage::begin_,
-           "what was received earlier than this after the first packet is left out")
+  d.option("file", &CaptureStage::file_, "capture, or folder of captures").required();
+  d.option("begin", &CaptureStage::begin_, "start of the used part, after the first packet's receipt")
       .unit("s")
       .at_least(0);
-  d.option("duration", &CaptureStage::duration_, "how much is given from there on; auto: all of it")
+  d.option("duration", &CaptureStage::duration_, "duration of the used part; auto: to the end")
       .unit("s")
       .at_least(0);
-  d.option("encoder", &CaptureStage::settings_, &CaptureSettings::encoder_widths,
-           "width of the encoder's fields in scan telegrams, on which sources disagree: a position of 32 "
-           "bits with a "
-           "signed speed, or 16 bits each")
+  d.option(
+       "encoder", &CaptureStage::settings_, &CaptureSettings::encoder_widths,
+       "width of the encoder's fields in scan telegrams, which differs between sources: a position of 32 bits with a signed speed, or 16 bits each")
       .choices({{"position32", EncoderWidths::Position32}, {"position16", EncoderWidths::Position16}});
-  d.option("longest_wait", &CaptureStage::settings_, &CaptureSettings::longest_wait,
-           "how long a TCP segment that is missing is waited for, in the capture's time")
+  d.option("max_wait", &CaptureStage::settings_, &CaptureSettings::max_wait,
+           "timeout for a missing TCP segment, in the capture's time")
       .unit("s")
       .range(0, 600);
 }
@@ -55,12 +41,12 @@ void CaptureStage::check(const RunSettings& run) const { check_addresses(run.rig
 
 void CaptureStage::process(const Inputs&, Outputs& out, Context& context) {
   const auto [files, left_out] = captures_in(file_);
-  for (const auto& why : left_out) context.warn("left out: " + why + "; is there a good copy?");
+  for (const auto& why : left_out) context.warn("left out: " + why + "; use an intact copy");
   std::uint64_t found = 0;
   std::vector<CaptureStatistics> captures;
   auto sections = nlohmann::json::array();
   for (const auto& file : files) {
-    if (files.size() > 1) context.say(file.filename().string());
+    if (files.size() > 1) context.print(file.filename().string());
     const double done = static_cast<double>(sections.size()) / static_cast<double>(files.size());
     captures.push_back(read(file, done, 1 / static_cast<double>(files.size()), out, context));
     if (context.interrupted()) return;
@@ -69,24 +55,24 @@ void CaptureStage::process(const Inputs&, Outputs& out, Context& context) {
     sections.back()["file"] = file.string();
   }
   context.report(files.size() == 1 ? sections.front() : nlohmann::json{{"captures", sections}});
-  const std::string others = strangers(captures);
+  const std::string others = unknown_devices(captures);
   if (!others.empty()) context.warn("not in the rig: " + others);
   if (found == 0) throw nothing_found(others);
   if (given_ == 0) throw nothing_left();
-  for (auto& doubt : doubts_of_addresses(captures)) context.distrust(std::move(doubt));
+  for (auto& caveat : caveats_of_addresses(captures)) context.mark_untrusted(std::move(caveat));
 }
 
 Error CaptureStage::nothing_found(const std::string& others) const {
   return Error(fmt::format("{} holds no scan and no reading of the rig's devices", file_.string()),
-               others.empty() ? "no laser and no plate speaks in it at all: was the right interface captured?"
+               others.empty() ? "it holds no telegrams of any laser or plate: check the captured interface"
                               : "it holds " + others + ": correct the addresses in the rig");
 }
 
 Error CaptureStage::nothing_left() const {
   const double length = 1e-9 * static_cast<double>(last_ns_ - *first_ns_);
-  return Error(fmt::format("begin and duration leave nothing of {}, which ends after {:.1f} s",
+  return Error(fmt::format("begin and duration select nothing of {}, which ends after {:.1f} s",
                            file_.string(), length),
-               "let it begin earlier, or last longer");
+               "reduce begin, or raise duration");
 }
 
 CaptureStatistics CaptureStage::read(const std::filesystem::path& file, double done, double share,
@@ -125,7 +111,7 @@ void CaptureStage::refuse_overlap(std::int64_t first_ns, const std::filesystem::
 void CaptureStage::give(const HubItem& item, Outputs& out, Context& context) {
   const double since_begin = 1e-9 * static_cast<double>(receipt_ns(item) - *first_ns_) - begin_;
   if ((begin_ > 0 && since_begin < 0) || (duration_ && since_begin >= *duration_)) {
-    context.count("items left out because of begin and duration");
+    context.count("items outside of begin and duration");
     return;
   }
   ++given_;
@@ -138,15 +124,15 @@ void CaptureStage::give(const HubItem& item, Outputs& out, Context& context) {
 
 std::uint64_t CaptureStage::report(const CaptureStatistics& statistics, const std::filesystem::path& file,
                                    Context& context) {
-  context.say(device_table(statistics));
+  context.print(device_table(statistics));
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
   for (auto& warning : loss_warnings(statistics, file.filename().string())) context.warn(std::move(warning));
-  for (auto& caveat : lost_devices(statistics)) context.distrust(std::move(caveat));
-  for (auto& caveat : address_conflicts(statistics)) context.distrust(std::move(caveat));
+  for (auto& caveat : lost_devices(statistics)) context.mark_untrusted(std::move(caveat));
+  for (auto& caveat : address_conflicts(statistics)) context.mark_untrusted(std::move(caveat));
   std::uint64_t found = 0;
   for (const auto& device : statistics.devices) {
     if (device.name.empty()) {
-      context.count(fmt::format("items of a {}, which the rig does not know", title(device)), device.items);
+      context.count(fmt::format("items of a {} that is not in the rig", title(device)), device.items);
       continue;
     }
     found += device.items;

@@ -12,8 +12,8 @@
 
 namespace crisp {
 
-/// `grabber.capture`: gives the scans and readings of a capture of the hub's network interface, or
-/// of a folder of such.
+/// `grabber.capture`: gives the scans and readings of a capture of the hub's network interface, or of a
+/// folder of captures.
 class CaptureStage final : public Stage {
  public:
   static void describe(StageDescription<CaptureStage>& d);

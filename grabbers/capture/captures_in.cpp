@@ -30,7 +30,7 @@ bool ought_to_be_a_capture(const std::filesystem::path& file) {
   if (has_extension(file, capture_extensions())) return true;
   try {
     return begins_like_a_capture(file);
-  } catch (const Error&) {  // notes that may not be read: nobody asked for them
+  } catch (const Error&) {  // unreadable notes do not matter
     return false;
   }
 }
@@ -45,7 +45,7 @@ Captures captures_in(const std::filesystem::path& path) {
   for (const auto& file : files_in(path)) {
     try {
       found.emplace_back(first_packet(file), file);
-    } catch (const Error& error) {  // notes, rigs and results may lie beside captures
+    } catch (const Error& error) {  // notes, rigs and results may lie next to captures
       if (ought_to_be_a_capture(file)) captures.left_out.push_back(error.message());
     }
   }

@@ -7,7 +7,7 @@
 
 namespace crisp {
 
-/// What the names of captures end in: see has_extension().
+/// File name extensions of captures: see has_extension().
 inline std::vector<std::string> capture_extensions() { return {".pcap", ".pcapng", ".cap"}; }
 
 /// The captures that a path stands for.
@@ -17,8 +17,8 @@ struct Captures {
   std::vector<std::string> left_out;
 };
 
-/// A file stands for itself, a folder for the captures in it, but not in folders of its own. What is no
-/// capture by its name either may lie beside them.
+/// Lists the captures of a path: a file stands for itself, a folder for the captures in it, without
+/// subfolders. Files that are no captures by their names may lie next to them.
 /// @throws Error if a folder cannot be read or holds no capture
 Captures captures_in(const std::filesystem::path& path);
 

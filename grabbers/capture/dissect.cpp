@@ -113,7 +113,8 @@ std::variant<IpPacket, NoIp> by_ethernet_type(ByteView bytes, std::size_t type_a
   return NoIp::OtherProtocol;
 }
 
-/// Loopback's header is the address family, a number that differs between systems: the version tells as well.
+/// Loopback's header is the address family, a number that differs between systems: the IP version is
+/// sufficient.
 std::variant<IpPacket, NoIp> loopback(ByteView bytes, bool cut_short) {
   if (bytes.size() < 5) return NoIp::Damaged;
   const auto version = bytes[4] >> 4;

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <variant>
 
-#include "grabbers/capture/network.hpp"
 #include "grabbers/capture/packet.hpp"
+#include "grabbers/devices/network.hpp"
 
 namespace crisp {
 

@@ -7,7 +7,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kRead = 256 * 1024;  // little enough to be in the cache still when it is looked at
+constexpr std::size_t kRead = 256 * 1024;  // small enough to be in the cache still when it is parsed
 constexpr std::size_t kBuffer = FileWindow::kLargestPeek + kRead;
 
 }  // namespace
@@ -38,11 +38,11 @@ void FileWindow::move_to(std::uint64_t offset) {
   begin_ = end_ = 0;
 }
 
-void FileWindow::fill(std::size_t wanted) {
+void FileWindow::fill(std::size_t requested) {
   std::copy(buffer_.get() + begin_, buffer_.get() + end_, buffer_.get());
   end_ -= begin_;
   begin_ = 0;
-  while (end_ < wanted) {
+  while (end_ < requested) {
     const std::size_t got = stream_.read(buffer_.get() + end_, std::min(kBuffer - end_, kRead));
     if (got == 0) return;
     end_ += got;

@@ -39,7 +39,7 @@ class FileWindow {
   const std::filesystem::path& path() const { return stream_.path(); }
 
  private:
-  void fill(std::size_t wanted);
+  void fill(std::size_t requested);
 
   ByteStream stream_;
   std::uint64_t offset_ = 0;

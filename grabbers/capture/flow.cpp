@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "grabbers/capture/framing_losses.hpp"
+#include "grabbers/devices/framing_losses.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr std::size_t kPatience = 256 * 1024;  // [bytes] in which a flow must have said something of ours
+constexpr std::size_t kPatience = 256 * 1024;  // [bytes] within which a flow must contain a known telegram
 
 bool is_request(const ColaTelegram& telegram) {
   return telegram.command == "sRN" || telegram.command == "sWN" || telegram.command == "sMN" ||
@@ -25,7 +25,7 @@ Flow::Flow(const FlowKey& key, Devices& devices, Devices::Device* known, const C
       device_(known),
       settings_(settings),
       give_(give),
-      tcp_(*this, static_cast<std::int64_t>(1e9 * settings.longest_wait)) {
+      tcp_(*this, static_cast<std::int64_t>(1e9 * settings.max_wait)) {
   const bool laser = known == nullptr || known->kind == DeviceKind::Laser;
   const bool plate = known == nullptr || known->kind == DeviceKind::Plate;
   if (laser && key.transport == Transport::Tcp) cola_ = std::make_unique<ColaFramer>();
@@ -159,12 +159,12 @@ void Flow::report() {
   auto& log = device_->log;
   const auto& tcp = tcp_.counts();
   log.lose("packets with a wrong checksum", dropped_);
-  log.lose("packets that the capture cut short", cut_short_);
-  log.lose("bytes that TCP carried but the capture lacks", tcp.lost_bytes);
+  log.lose("packets truncated by the capture", cut_short_);
+  log.lose("bytes of TCP missing from the capture", tcp.lost_bytes);
   log.note("TCP connections", tcp.connections);
-  log.note("TCP segments sent again", tcp.repeated_segments);
+  log.note("retransmitted TCP segments", tcp.repeated_segments);
   log.note("TCP segments out of order", tcp.late_segments);
-  log.note("TCP segments that fit nowhere", tcp.strays);
+  log.note("TCP segments out of the window", tcp.out_of_window);
   if (cola_) note_framing(cola_->counts(), log);
   if (plate_) note_framing(plate_->counts(), log);
 }

@@ -6,18 +6,18 @@
 #include <optional>
 #include <vector>
 
-#include "grabbers/capture/devices.hpp"
 #include "grabbers/capture/tcp_stream.hpp"
+#include "grabbers/devices/devices.hpp"
 #include "grabbers/wire/hub_item.hpp"
 #include "grabbers/wire/plate_framer.hpp"
 
 namespace crisp {
 
-/// How the bytes of a capture are understood.
+/// Settings for parsing a capture.
 struct CaptureSettings {
   EncoderWidths encoder_widths = EncoderWidths::Position32;
-  double longest_wait = 5;                 ///< [s] of capture time that a lost TCP segment is waited for
-  std::function<bool()> interrupted = {};  ///< asked while a capture is read from a pipe: whether to give up
+  double max_wait = 5;                     ///< [s] of capture time that a lost TCP segment is waited for
+  std::function<bool()> interrupted = {};  ///< polled while a capture is read from a pipe: whether to give up
 };
 
 /// One direction of one conversation between two ends: finds out what it carries, and hands telegrams and

@@ -6,16 +6,16 @@
 #include <optional>
 #include <tuple>
 
-#include "grabbers/capture/counts.hpp"
-#include "grabbers/capture/network.hpp"
+#include "grabbers/devices/counts.hpp"
+#include "grabbers/devices/network.hpp"
 
 namespace crisp {
 
-/// Puts IP packets together that came in fragments, in any order (RFC 791, RFC 8200). Of bytes that came
-/// twice the first are kept. Bounded: at most 64 packets at a time, none for longer than 30 s.
+/// Reassembles IP packets from fragments in any order (RFC 791, RFC 8200). The first copy of bytes that came
+/// twice is kept. Bounded: at most 64 packets at a time, none for longer than 30 s.
 class FragmentAssembler {
  public:
-  static constexpr std::string_view kIncomplete = "IP packets whose fragments did not all come";
+  static constexpr std::string_view kIncomplete = "IP packets with missing fragments";
 
   /// @param fragment one whose is_fragment() is true
   /// @return the whole packet if this fragment completes it; its payload is valid until the next call

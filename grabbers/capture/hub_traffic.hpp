@@ -12,7 +12,7 @@
 
 namespace crisp {
 
-/// What the devices of a rig send to a hub, as frames on the hub's network interface: a TCP connection a
+/// Encodes the data of a rig's devices as frames on the hub's network interface: a TCP connection a
 /// laser, over which the hub has subscribed to scans, and the plate's datagrams.
 class HubTraffic {
  public:

@@ -10,15 +10,15 @@
 namespace crisp {
 namespace {
 
-constexpr double kTolerable = 0.01;  // share lost of which nobody needs to be told
+constexpr double kTolerable = 0.01;  // share of losses below which there is no warning
 constexpr double kNearlyAll = 0.95;  // with so much lost, a laser is lost
 
 double share(std::uint64_t lost, std::uint64_t all) {
   return all == 0 ? 0 : static_cast<double>(lost) / static_cast<double>(all);
 }
 
-/// What of a laser's scan telegrams could not be read, if that is more than one share of them and less than
-/// another.
+/// Warning of unreadable scan telegrams of a laser, if their share is between these
+/// limits.
 std::string unreadable(const DeviceStatistics& device, double above, double up_to) {
   const auto all = device.items + device.unreadable;
   const double part = share(device.unreadable, all);
@@ -31,8 +31,7 @@ std::string unreadable(const DeviceStatistics& device, double above, double up_t
     most = n;
   }
   return fmt::format(
-      "{:.1f} % of the scans of {} ({} of {}) cannot be used: {} {}. Set its output format "
-      "anew, alike for all of its channels",
+      "{:.1f} % of the scans of {} ({} of {}) are unusable: {} {}. Configure the same output format for all of its channels",
       100 * part, title(device), device.unreadable, all, most, why);
 }
 
@@ -45,12 +44,12 @@ std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, cons
   };
   for (const auto& remark : statistics.remarks) warn(remark);
   if (const auto cut_off = statistics.losses.of(file_loss::kCutOff); cut_off > 0) {
-    warn(fmt::format("the file ends {} bytes into a record: the recording or the copy was cut short",
+    warn(fmt::format("the file ends {} bytes into a record: the recording or the copy was truncated",
                      cut_off));
   }
   const auto skipped = statistics.losses.of(file_loss::kSkippedBytes);
   if (const auto part = share(skipped, statistics.file_bytes); part > kTolerable) {
-    warn(fmt::format("{:.1f} % of the file ({} bytes) are damaged and were skipped; is there a good copy?",
+    warn(fmt::format("{:.1f} % of the file ({} bytes) are damaged and were skipped; use an intact copy",
                      100 * part, skipped));
   }
   for (const auto& device : statistics.devices) {
@@ -59,10 +58,9 @@ std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, cons
     const auto sent = device.items + lost;
     if (device.name.empty() || share(lost, sent) <= kTolerable) continue;
     const bool laser = device.kind == DeviceKind::Laser;
-    warn(
-        fmt::format("{:.1f} % of what {} sent ({} of {} {}) never came, by its own count: look after the "
-                    "cable, the switch and how busy the hub is, or for a good copy",
-                    100 * share(lost, sent), title(device), lost, sent, laser ? "scans" : "readings"));
+    warn(fmt::format(
+        "{:.1f} % of the telegrams of {} ({} of {} {}) were lost, by its own count: check the cable, the switch and the hub's load, or use a complete copy",
+        100 * share(lost, sent), title(device), lost, sent, laser ? "scans" : "readings"));
   }
   return warnings;
 }
@@ -79,12 +77,10 @@ std::vector<std::string> address_conflicts(const CaptureStatistics& statistics) 
   std::vector<std::string> caveats;
   for (const auto& device : statistics.devices) {
     if (device.name.empty() || device.serial_changes < 2) continue;
-    caveats.push_back(
-        fmt::format("{}: {} units (serial numbers {}) send in turn from {}, so its scans are of several "
-                    "lasers. Give each unit an "
-                    "address of its own",
-                    device.name, device.serial_numbers.size(), fmt::join(device.serial_numbers, ", "),
-                    device.address.ip));
+    caveats.push_back(fmt::format(
+        "{}: {} units (serial numbers {}) send by turns from {}, so its scans are of several lasers. Give each unit an address of its own",
+        device.name, device.serial_numbers.size(), fmt::join(device.serial_numbers, ", "),
+        device.address.ip));
   }
   return caveats;
 }

@@ -4,14 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "grabbers/capture/capture_statistics.hpp"
+#include "grabbers/devices/capture_statistics.hpp"
 
 namespace crisp {
 
-/// What a person should know of a source before trusting what is made of it: each device of the rig of which
-/// more than one item in a hundred never came or could not be read, and a file that is damaged to that degree
-/// or ends too early.
-/// @param source  what the warnings call it: the file's name; empty for devices that are live
+/// Warnings of a source's losses: each device of the rig of which more than one item in a hundred was lost or
+/// unreadable, and a file that is damaged to that degree or truncated.
+/// @param source  its name in the warnings: the file's name; empty for live devices
 std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, const std::string& source = "");
 
 /// Caveats on lasers of the rig of which hardly any scan could be read.

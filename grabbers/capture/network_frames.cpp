@@ -20,7 +20,7 @@ namespace {
 
 bool is_ipv6(const Address& address) { return address.ip.find(':') != std::string::npos; }
 
-// Of a hardware address: that it is locally administered, and who made the frame.
+// Parts of a hardware address: the flag of local administration, and the frame's maker.
 constexpr std::uint8_t kLocal = 0x02, kRecordedMark = 0, kSimulatedMark = 0x53;
 constexpr std::size_t kTarget = 0, kSource = 6;  // where a frame has its hardware addresses
 
@@ -46,8 +46,7 @@ void check(const Address& from, const Address& to) {
     }
   }
   if (is_ipv6(from) != is_ipv6(to)) {
-    throw Error(fmt::format("{} and {} cannot talk to each other", from.ip, to.ip),
-                "use IPv4 or IPv6 for both");
+    throw Error(fmt::format("{} and {} cannot communicate", from.ip, to.ip), "use IPv4 or IPv6 for both");
   }
 }
 

@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// Takes one Ethernet frame with its capture time [ns since the Unix epoch].
+/// Receives one Ethernet frame with its capture time [ns since the Unix epoch].
 using FrameSink = std::function<void(std::int64_t, ByteView)>;
 
 /// Puts frames in the order of their times: holds each until a frame that is `hold_ns` younger has come.
@@ -36,10 +36,10 @@ enum class FrameOrigin : std::uint8_t {
 
 FrameOrigin origin_of(ByteView frame);
 
-/// Gives a frame of crisp's the hardware addresses of a simulated one.
+/// Sets a frame's hardware addresses to those of a simulated one.
 void mark_as_simulated(Bytes& frame);
 
-/// How a TCP connection looks on the wire.
+/// Parameters of a TCP connection on the wire.
 struct TcpSettings {
   std::size_t largest_segment = 1460;  ///< [bytes] of payload: what fits in Ethernet's 1500
   double ns_per_byte = 80;             ///< [ns] 100 Mbit/s: how far apart the segments of one telegram are

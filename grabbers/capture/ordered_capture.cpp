@@ -17,7 +17,7 @@ bool is_regular(const std::filesystem::path& path) {
 OrderedCapture::OrderedCapture(const std::filesystem::path& path, std::function<bool()> interrupted)
     : path_(path),
       interrupted_(std::move(interrupted)),
-      order_(is_regular(path) ? survey_capture(path, interrupted_) : CaptureOrder{}) {
+      order_(is_regular(path) ? scan_capture(path, interrupted_) : CaptureOrder{}) {
   open_what_is_due();
   if (is_regular(path)) size_ = std::filesystem::file_size(path);
 }

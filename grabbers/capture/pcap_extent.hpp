@@ -6,7 +6,7 @@
 
 namespace crisp {
 
-/// How far the records of a pcap file reach, read past what is damaged.
+/// Extent of the records of a pcap file, read past damaged ones.
 struct PcapExtent {
   std::uint64_t bytes = 0;            ///< of the file
   std::uint64_t whole = 0;            ///< [bytes] where its last whole record ends

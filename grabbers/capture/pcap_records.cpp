@@ -35,7 +35,7 @@ PcapRecords::PcapRecords(FileWindow& file, Counts& losses) : file_(file), losses
   const auto magic = number_at<std::uint32_t>(begin, 0, order_);
   if (magic == kNanoseconds) ns_per_tick_ = 1;
   if (magic == kExtended) header_size_ = 24;
-  link_type_ = number_at<std::uint32_t>(begin, 20, order_) & 0xFFFF;  // the rest tells of checksums of frames
+  link_type_ = number_at<std::uint32_t>(begin, 20, order_) & 0xFFFF;  // the rest describes frame checksums
   file_.skip(kPcapFileHeader);
 }
 
@@ -48,7 +48,7 @@ std::optional<PcapRecords::Header> PcapRecords::header(ByteView bytes) const {
   return found;
 }
 
-/// The header at `at`, if it looks like that of a packet less than a day away from near_ns.
+/// The header at `at`, if it is plausible for a packet less than a day away from near_ns.
 std::optional<PcapRecords::Header> PcapRecords::believable_header(ByteView bytes, std::size_t at,
                                                                   std::optional<std::int64_t> near_ns) const {
   if (at + header_size_ > bytes.size()) return {};

@@ -4,16 +4,16 @@
 #include <optional>
 
 #include "grabbers/capture/byte_order.hpp"
-#include "grabbers/capture/counts.hpp"
 #include "grabbers/capture/file_window.hpp"
 #include "grabbers/capture/packet.hpp"
+#include "grabbers/devices/counts.hpp"
 
 namespace crisp {
 
 inline constexpr std::size_t kPcapFileHeader = 24;  ///< bytes, before the first record
 
 /// The records of a pcap file: both byte orders, micro- and nanoseconds. Not libpcap, because that ends at
-/// the first damaged record; here the next good one is looked for, and what lies between is counted.
+/// the first damaged record; this reader searches for the next valid one and counts the bytes between.
 class PcapRecords {
  public:
   /// Whether the file begins like a pcap file.

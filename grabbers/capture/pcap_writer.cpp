@@ -35,7 +35,7 @@ Error cannot_write(const std::filesystem::path& path, int error) {
                "check the folder, its permissions and the space on the disk");
 }
 
-/// Where the last whole record ends of those that this program wrote into the file from `begin` on.
+/// End of the last whole record that this program wrote into the file from `begin` on.
 std::uint64_t end_of_own_records(const std::filesystem::path& path, std::uint64_t begin) {
   FileWindow file(path);
   file.skip(begin);
@@ -55,10 +55,11 @@ std::uint64_t end_of_own_records(const std::filesystem::path& path, std::uint64_
 std::uint64_t prepare_to_continue(const std::filesystem::path& path) {
   const PcapExtent extent = pcap_extent(path);
   if (!extent.can_be_continued()) {
-    throw Error(fmt::format("{} is damaged: no reader can make anything of its last {} bytes, nor of what is "
-                            "written behind them",
-                            path.string(), extent.bytes - extent.whole),
-                "give another name");
+    throw Error(
+        fmt::format(
+            "{} is damaged: its last {} bytes are unreadable, and so would be anything written behind them",
+            path.string(), extent.bytes - extent.whole),
+        "give another name");
   }
   if (extent.whole < extent.bytes) std::filesystem::resize_file(path, extent.whole);
   return extent.whole;
@@ -106,13 +107,13 @@ struct PcapWriter::File {
 
   std::FILE* stream() const { return pcap_dump_file(dump.get()); }
 
-  /// Cuts off what was written only in part, and says why.
+  /// Truncates an incomplete record, and throws the cause.
   [[noreturn]] void fail() {
     const int error = errno;
     dump.reset();
     try {
       std::filesystem::resize_file(path, end_of_own_records(path, begin));
-    } catch (const std::exception&) {  // there is not even a header: what failed first is what is told
+    } catch (const std::exception&) {  // there is not even a header: the first failure is reported
     }
     throw cannot_write(path, error);
   }
@@ -148,11 +149,11 @@ void PcapWriter::write(std::int64_t time_ns, ByteView frame) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   if (frame.size() > kSnapshot || time_ns < 0 || time_ns / kSecond > 0xFFFFFFFFLL) {
     throw Error(
-        fmt::format("a frame of {} bytes at {} ns has no place in a pcap file", frame.size(), time_ns),
+        fmt::format("a frame of {} bytes at {} ns cannot be stored in a pcap file", frame.size(), time_ns),
         "frames have at most 262144 bytes and times lie between 1970 and 2106");
   }
   auto& f = *file_;
-  if (!f.dump) throw Error("a capture that was closed cannot be written to");
+  if (!f.dump) throw Error("a closed capture cannot be written to");
   pcap_pkthdr header{};
   header.ts.tv_sec = time_ns / kSecond;
   header.ts.tv_usec = time_ns % kSecond;  // nanoseconds, by the file's precision

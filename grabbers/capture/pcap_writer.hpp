@@ -9,9 +9,9 @@
 
 namespace crisp {
 
-/// What becomes of the file under its name while it is being written.
+/// Treatment of the file under its name while it is being written.
 enum class PcapMode : std::uint8_t {
-  Replace,  ///< written aside and put in its place by close(): never a half-written file under the name
+  Replace,  ///< written aside and renamed by close(): never a half-written file under the name
   Grow,  ///< written in place, behind what a file of the same kind already holds; a record that a crash left
          ///< half written at its end is cut off first, and nothing else
 };

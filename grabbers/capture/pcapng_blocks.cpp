@@ -18,7 +18,7 @@ bool has_packet(std::uint32_t type) {
   return type == kPacket || type == kObsoletePacket || type == kSimplePacket;
 }
 
-/// Packets, and what tells how to read them.
+/// Packets, and the blocks needed to interpret them.
 bool is_of_use(std::uint32_t type) { return has_packet(type) || type == kInterface || type == kStatistics; }
 
 /// Kinds without packets: names, journal entries, secrets, custom blocks.

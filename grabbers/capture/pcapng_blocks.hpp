@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "grabbers/capture/byte_order.hpp"
-#include "grabbers/capture/counts.hpp"
 #include "grabbers/capture/file_window.hpp"
 #include "grabbers/capture/packet.hpp"
+#include "grabbers/devices/counts.hpp"
 
 namespace crisp {
 
 /// The blocks of a pcapng file (draft-ietf-opsawg-pcapng): any number of sections and interfaces, each with
 /// its byte order, link type, time resolution and offset. Not libpcap, because that refuses interfaces of
-/// different link types and sections of different byte orders, and ends at the first damaged block; here the
-/// next good one is looked for, and what lies between is counted.
+/// different link types and sections of different byte orders, and ends at the first damaged block; this
+/// reader searches for the next valid one and counts the bytes between.
 class PcapngBlocks {
  public:
   /// Whether the file begins like a pcapng file.
@@ -30,7 +30,7 @@ class PcapngBlocks {
     std::int64_t offset_s = 0;    ///< if_tsoffset
     std::uint64_t dropped = 0;    ///< isb_ifdrop, as last reported
   };
-  /// What the blocks so far say of those that follow.
+  /// The context that earlier blocks set for later ones.
   struct Section {
     ByteOrder order = ByteOrder::Little;
     std::vector<Interface> interfaces = {};

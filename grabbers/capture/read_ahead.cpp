@@ -7,7 +7,7 @@ namespace crisp {
 namespace {
 
 constexpr std::size_t kBatch = 256;  // items
-// What a clock's window holds of three lasers: while its measurements are assembled, the next is read.
+// A clock's window of three lasers: while its measurements are assembled, the next is read.
 constexpr std::size_t kMostAhead = std::size_t{64} << 20;  // [bytes]
 
 std::size_t bytes_of(const ReadBatch& batch) {

@@ -5,7 +5,7 @@
 
 namespace crisp {
 
-/// The stage grabber.capture, and what `crisp info` says of captures.
+/// Registers grabber.capture, and the inspector of captures for `crisp info`.
 void register_capture(Registrar& registrar);
 
 }  // namespace crisp

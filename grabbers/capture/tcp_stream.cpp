@@ -8,7 +8,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::int64_t kWindow = 1 << 20;           // [bytes] how far from its stream a segment is believed
+constexpr std::int64_t kWindow = 1 << 20;  // [bytes] largest plausible distance of a segment from its stream
 constexpr std::int64_t kLastTry = 130'000'000'000;  // [ns] an unanswered handshake is repeated for 127 s
 constexpr std::size_t kMostHeld = 4 << 20, kMostSegments = 4096;
 
@@ -51,7 +51,7 @@ void TcpStream::place(std::uint32_t sequence, ByteView bytes, std::uint32_t miss
   const auto expected = static_cast<std::uint32_t>(first_ + position_);
   const std::int64_t distance = static_cast<std::int32_t>(sequence - expected);
   if (std::abs(distance) > kWindow) {
-    if (!stray(sequence, bytes, time_ns)) return;
+    if (!continues_held_segment(sequence, bytes, time_ns)) return;
     return place(sequence, bytes, missing, time_ns);
   }
   const auto size = static_cast<std::int64_t>(bytes.size());
@@ -127,12 +127,12 @@ void TcpStream::jump_to(std::uint64_t offset) {
 
 void TcpStream::expire(std::int64_t now_ns) {
   while (!held_.empty() && now_ns - *oldest_held() > max_wait_ns_) skip_hole();
-  if (stray_ && now_ns - stray_->arrival_ns > max_wait_ns_) drop_stray();
+  if (held_segment_ && now_ns - held_segment_->arrival_ns > max_wait_ns_) drop_held_segment();
 }
 
 void TcpStream::finish() {
   while (!held_.empty()) skip_hole();
-  drop_stray();
+  drop_held_segment();
 }
 
 void TcpStream::skip_hole() {
@@ -140,9 +140,9 @@ void TcpStream::skip_hole() {
   release();
 }
 
-void TcpStream::drop_stray() {
-  if (stray_) ++counts_.strays;
-  stray_.reset();
+void TcpStream::drop_held_segment() {
+  if (held_segment_) ++counts_.out_of_window;
+  held_segment_.reset();
 }
 
 std::optional<std::int64_t> TcpStream::oldest_held() const {
@@ -154,23 +154,24 @@ std::optional<std::int64_t> TcpStream::oldest_held() const {
 
 std::optional<std::int64_t> TcpStream::oldest_waiting() const {
   const auto oldest = oldest_held();
-  if (!stray_) return oldest;
-  return std::min(oldest.value_or(stray_->arrival_ns), stray_->arrival_ns);
+  if (!held_segment_) return oldest;
+  return std::min(oldest.value_or(held_segment_->arrival_ns), held_segment_->arrival_ns);
 }
 
-/// Whether the stream goes on from the stray segment held before, which this one continues: a new connection.
-bool TcpStream::stray(std::uint32_t sequence, ByteView bytes, std::int64_t time_ns) {
-  const bool continues =
-      stray_ && sequence == static_cast<std::uint32_t>(stray_->sequence + stray_->bytes.size());
+/// Whether the stream continues from the out-of-window segment held before, which this one follows: a new
+/// connection.
+bool TcpStream::continues_held_segment(std::uint32_t sequence, ByteView bytes, std::int64_t time_ns) {
+  const bool continues = held_segment_ && sequence == static_cast<std::uint32_t>(held_segment_->sequence +
+                                                                                 held_segment_->bytes.size());
   if (continues) {
-    const auto before = std::move(*stray_);
-    stray_.reset();
+    const auto before = std::move(*held_segment_);
+    held_segment_.reset();
     begin(before.sequence, before.arrival_ns);
     deliver(before.bytes, before.arrival_ns);
     return true;
   }
-  drop_stray();
-  stray_ = Stray{sequence, Bytes(bytes.begin(), bytes.end()), time_ns};
+  drop_held_segment();
+  held_segment_ = HeldSegment{sequence, Bytes(bytes.begin(), bytes.end()), time_ns};
   return false;
 }
 

@@ -5,11 +5,11 @@
 #include <map>
 #include <optional>
 
-#include "grabbers/capture/network.hpp"
+#include "grabbers/devices/network.hpp"
 
 namespace crisp {
 
-/// Takes what a TCP stream carries, in the order in which it was sent.
+/// Receives the bytes of a TCP stream, in the order of sending.
 class StreamSink {
  public:
   virtual ~StreamSink() = default;
@@ -21,13 +21,13 @@ class StreamSink {
   virtual void repeated(ByteView bytes) = 0;
 };
 
-/// One direction of a TCP connection, put in order: segments may come in any order, twice, overlapping, or
-/// not at all, and the capture may begin in mid-connection. Bytes keep the time of the packet that first
-/// brought them. A hole is waited for, but not for longer than `max_wait_ns` of capture time or more than
-/// 4 MiB behind it.
+/// One direction of a TCP connection, reassembled: segments may come in any order, twice, overlapping, or not
+/// at all, and the capture may begin in mid-connection. Bytes keep the time of the packet that first brought
+/// them. A hole is waited for, but not for longer than `max_wait_ns` of capture time or more than 4 MiB
+/// behind it.
 ///
-/// A segment far from where the stream is, is either damaged or of a new connection whose begin was not
-/// captured: it is held until the next one says which.
+/// A segment far from the stream's position is either damaged or of a new connection whose begin was not
+/// captured: it is held until the next segment decides.
 class TcpStream {
  public:
   struct Counts {
@@ -36,20 +36,21 @@ class TcpStream {
     std::uint64_t lost_bytes = 0;     ///< never came
     std::uint64_t holes = 0;          ///< in how many places
     std::uint64_t connections = 0;    ///< begun, seen or not
-    std::uint64_t strays = 0;         ///< segments that fit nowhere
+    std::uint64_t out_of_window = 0;  ///< segments that fit nowhere
   };
 
   TcpStream(StreamSink& sink, std::int64_t max_wait_ns) : sink_(sink), max_wait_ns_(max_wait_ns) {}
 
   void take(const TransportPacket& segment, std::int64_t time_ns);
-  /// Gives up holes that were waited for too long.
+  /// Gives up holes that have timed out.
   void expire(std::int64_t now_ns);
   /// The capture ends: gives what waits behind holes.
   void finish();
 
   /// [ns] Arrival of the oldest byte that waits for others, if any does.
   std::optional<std::int64_t> waiting_since() const {
-    return held_.empty() && !stray_ ? std::nullopt : oldest_waiting();  // asked for each packet: mostly empty
+    return held_.empty() && !held_segment_ ? std::nullopt
+                                           : oldest_waiting();  // called for each packet: mostly empty
   }
 
   const Counts& counts() const { return counts_; }
@@ -67,11 +68,11 @@ class TcpStream {
   void hold(std::uint64_t offset, ByteView bytes, std::int64_t time_ns);
   void release();
   void skip_hole();
-  void drop_stray();
+  void drop_held_segment();
   std::optional<std::int64_t> oldest_held() const;
   std::optional<std::int64_t> oldest_waiting() const;
   void jump_to(std::uint64_t offset);
-  bool stray(std::uint32_t sequence, ByteView bytes, std::int64_t time_ns);
+  bool continues_held_segment(std::uint32_t sequence, ByteView bytes, std::int64_t time_ns);
 
   StreamSink& sink_;
   std::int64_t max_wait_ns_;
@@ -82,12 +83,12 @@ class TcpStream {
   std::uint64_t position_ = 0;  ///< of the next byte to deliver, counted from the first
   std::map<std::uint64_t, Held> held_;
   std::size_t held_bytes_ = 0;
-  struct Stray {  ///< a segment that may begin a new connection
+  struct HeldSegment {  ///< a segment that may begin a new connection
     std::uint32_t sequence;
     Bytes bytes;
     std::int64_t arrival_ns;
   };
-  std::optional<Stray> stray_;
+  std::optional<HeldSegment> held_segment_;
   Counts counts_;
 };
 

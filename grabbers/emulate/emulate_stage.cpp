@@ -26,47 +26,38 @@ Address parse_address(const std::string& text) {
 
 void EmulateStage::describe(StageDescription<EmulateStage>& d) {
   d.name("emulate.rig")
-      .summary("is the devices that sent these scans and readings, on this machine's network");
+      .summary("serves recorded scans and encoder readings as SICK devices on this machine's network");
   d.details(
-      "Each laser of the rig becomes a TCP server at its address, which must be one of this machine, and "
-      "speaks "
-      "CoLa-A and CoLa-B with whoever connects: login, configuration, states, errors, and scans for those "
-      "who "
-      "subscribed. The plate becomes a sender of datagrams. Items are sent at the pace at which they were "
-      "received; "
-      "nothing is sent before each laser has somebody to send it to.\n\n"
-      "Faults are drawn for each telegram from the run's seed. A laser that is `restarted` closes its "
-      "connections, "
-      "and its clock and counters begin at zero.\n\n"
-      "A client that does not read misses scans, as it would with the devices; they are counted.");
+      "Each laser of the rig becomes a TCP server at its address, which must be one of this machine, with CoLa-A and CoLa-B: login, configuration, states, errors, and scans for subscribers. The plate becomes a sender of datagrams. Items are sent at the pace of their receipt; nothing is sent before each laser has a client.\n\n"
+      "Faults are drawn for each telegram from the run's seed. A laser that is `restarted` closes its connections, and its clock and counters begin at zero.\n\n"
+      "A client that does not read misses scans, as with real devices; they are counted.");
   d.takes<Scan>().takes<PlateReading>();
   d.option("speed", &EmulateStage::settings_, &EmulatorSettings::speed,
-           "times real time; 0: as fast as the clients take it")
+           "speed relative to real time; 0: as fast as the clients read")
       .range(0, 1e6);
   d.option("wait", &EmulateStage::settings_, &EmulatorSettings::wait_for_clients,
            "whether to wait until each laser has a client");
-  d.option("plate_to", &EmulateStage::plate_to_, "where the plate's datagrams are sent");
+  d.option("plate_to", &EmulateStage::plate_to_, "destination of the plate's datagrams");
   const auto share = [&](const char* name, double EmulatedFaults::*member, const char* help) {
     d.option(name, &EmulateStage::settings_, &EmulatorSettings::faults, member, help).range(0, 1);
   };
-  share("dropped", &EmulatedFaults::dropped, "share of the scans in whose place the connection is closed");
-  share("stalled", &EmulatedFaults::stalled,
-        "share of the telegrams before which nothing is sent for a while");
+  share("dropped", &EmulatedFaults::dropped, "share of scans that are replaced by a closed connection");
+  share("stalled", &EmulatedFaults::stalled, "share of telegrams that are preceded by a silence");
   d.option("stall", &EmulateStage::settings_, &EmulatorSettings::faults, &EmulatedFaults::stall, "that while")
       .unit("s")
       .range(0, 3600);
-  share("split", &EmulatedFaults::split, "share of the telegrams that are sent in pieces of any length");
-  share("damaged", &EmulatedFaults::damaged,
-        "share of the scans and of the plate's sentences with one bit flipped");
-  share("restarted", &EmulatedFaults::restarted, "share of the scans before which the laser starts again");
-  share("lost", &EmulatedFaults::lost, "share of the plate's datagrams that are not sent");
+  share("split", &EmulatedFaults::split, "share of telegrams that are sent in pieces of any length");
+  share("damaged", &EmulatedFaults::damaged, "share of scans and plate sentences with one flipped bit");
+  share("restarted", &EmulatedFaults::restarted,
+        "share of scans that are preceded by a restart of the laser");
+  share("lost", &EmulatedFaults::lost, "share of the plate's datagrams that are lost");
   d.option("skews", &EmulateStage::settings_, &EmulatorSettings::faults, &EmulatedFaults::skews,
-           "by how much each laser's clock runs fast, besides what it did: 100ppm")
+           "additional skew of each laser's clock: 100ppm")
       .unit("1")
       .range(-0.01, 0.01)
       .count(0, 1000);
   d.option("network", &EmulateStage::settings_, &EmulatorSettings::network,
-           "whether lasers may listen at other addresses than loopback, for anyone in the network");
+           "whether lasers may listen at other addresses than loopback, open to the network");
 }
 
 void EmulateStage::check(const RunSettings&) const { parse_address(plate_to_); }
@@ -91,15 +82,15 @@ void EmulateStage::finish(Outputs&, Context& context) {
   if (!emulator_) return;
   emulator_->finish();
   const EmulatedLedger ledger = emulator_->ledger();
-  context.count("scans that a client missed because it did not read", ledger.missed);
-  context.count("scans that nobody had asked for", ledger.unheard);
+  context.count("scans missed by a client that did not read", ledger.missed);
+  context.count("scans without a client", ledger.unheard);
   context.report({{"dropped", ledger.dropped},
                   {"stalled", ledger.stalled},
                   {"damaged", ledger.damaged + ledger.readings_damaged},
                   {"restarted", ledger.restarted},
                   {"lost", ledger.readings_lost}});
-  context.say(fmt::format("emulated {} scans and {} readings of the plate, with {} faults", scans_, readings_,
-                          ledger.faults()));
+  context.print(fmt::format("emulated {} scans and {} encoder readings, with {} faults", scans_, readings_,
+                            ledger.faults()));
   emulator_.reset();
 }
 

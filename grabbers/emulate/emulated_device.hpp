@@ -9,13 +9,13 @@
 
 namespace crisp {
 
-/// What an emulated laser is, for all who are connected to it. It scans as the scans that it is given, and
-/// cannot scan otherwise; which part of them it sends can be set.
+/// State of an emulated laser, common to all its clients. It scans as the given scans do, and
+/// cannot scan otherwise; the sent part of them can be configured.
 struct EmulatedDevice {
   std::string name = "LMS1xx";  ///< that it identifies itself with
   std::string firmware = "V1.80.2";
   bool measuring = true;
-  ScanData last;                       ///< what is answered to who asks for one scan
+  ScanData last;                       ///< the answer to a request for one scan
   std::optional<OutputRange> range;    ///< that somebody set
   std::optional<ScanContent> content;  ///< likewise
 
@@ -23,7 +23,7 @@ struct EmulatedDevice {
   ScanSettings settings() const;
   OutputRange output_range() const;
 
-  /// What of a scan it sends, as it is set.
+  /// The configured part of a scan.
   ScanData sent(ScanData scan) const;
 };
 

@@ -11,7 +11,7 @@
 
 namespace crisp {
 
-/// What befalls an emulated scanner; shares from 0 to 1.
+/// Faults of an emulated scanner; shares from 0 to 1.
 struct EmulatedFaults {
   double dropped = 0;    ///< of scans, in whose place the connection is closed
   double stalled = 0;    ///< of telegrams, before which nothing is sent for a while
@@ -24,7 +24,7 @@ struct EmulatedFaults {
   std::uint64_t seed = 1;
 };
 
-/// What befell it.
+/// Counts of its faults.
 struct EmulatedLedger {
   std::uint64_t delivered = 0;  ///< scans that were sent whole, once for each client
   std::uint64_t unheard = 0;    ///< scans that nobody had subscribed to when they were due
@@ -52,7 +52,7 @@ struct EmulatedLedger {
   }
 };
 
-/// Decides, the same for the same seed, which telegram what befalls.
+/// Draws the fault of each telegram, the same for the same seed.
 class FaultDice {
  public:
   explicit FaultDice(const EmulatedFaults& faults, std::uint64_t device)
@@ -65,7 +65,7 @@ class FaultDice {
   bool restarts() { return chance(faults_.restarted); }
   bool loses() { return chance(faults_.lost); }
 
-  /// How much of what is left of a telegram is sent at once.
+  /// Size of the next piece of a telegram.
   std::size_t piece(std::size_t left) {
     return left > 1 && chance(faults_.split) ? 1 + random_() % (left - 1) : left;
   }

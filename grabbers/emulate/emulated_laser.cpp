@@ -130,8 +130,7 @@ EmulatedLaser::EmulatedLaser(asio::io_context& context, const Address& address, 
   if (failure) {
     throw Error(
         fmt::format("cannot listen at {}:{}: {}", address.ip, address.port, failure.message()),
-        "give a rig whose lasers have addresses of this machine, such as configs/loopback.yaml, and ports "
-        "that no other program uses");
+        "give a rig whose lasers have addresses of this machine, such as configs/loopback.yaml, and ports that no other program uses");
   }
   port_ = acceptor_.local_endpoint().port();
 }
@@ -153,7 +152,7 @@ void EmulatedLaser::accept() {
   });
 }
 
-/// Clients that neither say nor take anything must not keep others out.
+/// Idle clients must not keep others out.
 void EmulatedLaser::close_idle() {
   const auto active_after = std::chrono::steady_clock::now() - longest_idle_;
   std::erase_if(sessions_, [&](const auto& session) {

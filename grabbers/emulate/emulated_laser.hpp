@@ -39,7 +39,7 @@ class EmulatedLaser {
   /// Sends a scan to all who subscribed. Who does not read what was sent misses it.
   void send(ScanData scan);
 
-  /// What befell what was sent so far.
+  /// Counts of the faults so far.
   const EmulatedLedger& ledger() const { return ledger_; }
 
   std::size_t subscribers() const;

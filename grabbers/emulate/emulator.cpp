@@ -18,7 +18,7 @@ namespace {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
-constexpr auto kNap = 2ms;                          // between two looks at what others do
+constexpr auto kNap = 2ms;                          // polling interval of the other threads' state
 constexpr auto kLongestNap = 50ms;                  // so that an interruption is noticed
 constexpr std::size_t kEnoughWaiting = 256 * 1024;  // [bytes] for a client, before the next scan is sent
 
@@ -29,7 +29,8 @@ asio::ip::address ip_of(const std::string& text) {
   return ip;
 }
 
-/// Where the plate's datagrams to a loopback address come from: the rig's plate, if it has one, too.
+/// Source address of the plate's datagrams to a loopback address: the rig's plate, if it has a loopback one,
+/// too.
 asio::ip::address plate_address(const Rig& rig, const asio::ip::address& to) {
   boost::system::error_code unknown;
   const auto own = asio::ip::make_address(rig.plate.address.ip, unknown);
@@ -41,7 +42,7 @@ asio::ip::address plate_address(const Rig& rig, const asio::ip::address& to) {
 void Emulator::check(const EmulatorSettings& settings) const {
   if (!(std::isfinite(settings.speed) && settings.speed >= 0)) {
     throw Error("devices cannot be emulated at that speed",
-                "give how many times real time, or 0 for no pause");
+                "give the speed relative to real time, or 0 for no pause");
   }
   for (const RigLaser& laser : rig_.lasers) {
     if (settings.network || ip_of(laser.address.ip).is_loopback()) continue;

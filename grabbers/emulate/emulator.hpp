@@ -19,7 +19,7 @@
 namespace crisp {
 
 struct EmulatorSettings {
-  double speed = 1;              ///< times real time; 0: as fast as the clients take it
+  double speed = 1;              ///< speed relative to real time; 0: as fast as the clients read
   bool wait_for_clients = true;  ///< whether nothing is sent before each laser has somebody to send it to
   Address plate_to{"127.0.0.1", 4000};  ///< where the plate's datagrams go
   EmulatedFaults faults;
@@ -52,7 +52,7 @@ class Emulator {
   /// Waits until the clients have taken all that was sent, for 2 s at most.
   void finish();
 
-  /// What befell what was sent so far.
+  /// Counts of the faults so far.
   EmulatedLedger ledger();
 
  private:

@@ -129,11 +129,11 @@ Bytes SickResponder::set_content(const ColaTelegram& request) {
 }
 
 Bytes SickResponder::set_scan(const ColaTelegram& request) const {
-  const auto wanted = scan_settings(request, false);
-  if (!wanted) return cola_error(kInvalidData, request.language);
+  const auto requested = scan_settings(request, false);
+  if (!requested) return cola_error(kInvalidData, request.language);
   const ScanSettings own = device_->settings();
-  const unsigned status = (wanted->frequency == own.frequency ? 0 : kOtherFrequency) +
-                          (wanted->resolution == own.resolution ? 0 : kOtherResolution);
+  const unsigned status = (requested->frequency == own.frequency ? 0 : kOtherFrequency) +
+                          (requested->resolution == own.resolution ? 0 : kOtherResolution);
   Values values{byte(status)};
   for (auto& value : to_values(own)) values.push_back(std::move(value));
   return cola_message("sAN", request.name, values, request.language);
@@ -167,9 +167,9 @@ Bytes SickResponder::subscribe(const ColaTelegram& request) {
   if (!is_one_of(request.name, {kScanDataName, "LFErec", "LIDoutputstate", "LIDinputstate"})) {
     return cola_error(kUnknownEvent, request.language);
   }
-  const unsigned wanted = first_byte(request).value_or(0);
-  if (request.name == kScanDataName) wants_scans_ = wanted == 1;
-  return cola_message("sEA", request.name, {byte(wanted)}, request.language);
+  const unsigned requested = first_byte(request).value_or(0);
+  if (request.name == kScanDataName) wants_scans_ = requested == 1;
+  return cola_message("sEA", request.name, {byte(requested)}, request.language);
 }
 
 }  // namespace crisp

@@ -17,7 +17,7 @@ class SickResponder {
   Bytes answer(const ColaTelegram& request);
 
   bool wants_scans() const { return wants_scans_; }
-  /// In which scans are sent: that of the last request, unless the client has chosen one.
+  /// Language of the scans: that of the last request, unless the client has chosen one.
   ColaLanguage language() const { return language_; }
 
  private:

@@ -10,10 +10,10 @@
 
 namespace crisp {
 
-/// Takes what a device sent, in the order of receipt.
+/// Receives a device's items, in the order of receipt.
 using GiveItem = std::function<void(HubItem)>;
 
-/// [ns since the Unix epoch] What the hub's clock says.
+/// [ns since the Unix epoch] The hub's clock.
 using HubClock = std::function<std::int64_t()>;
 
 /// @throws Error if the text is no IP address

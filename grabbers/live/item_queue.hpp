@@ -32,9 +32,9 @@ class ItemQueue {
   }
 
   /// The oldest item; nothing if none came in time, or the queue is closed and empty.
-  std::optional<HubItem> pop(std::chrono::milliseconds patience) {
+  std::optional<HubItem> pop(std::chrono::milliseconds plate_timeout) {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, patience, [this] { return closed_ || !items_.empty(); });
+    changed_.wait_for(lock, plate_timeout, [this] { return closed_ || !items_.empty(); });
     if (items_.empty()) return {};
     HubItem item = std::move(items_.front());
     items_.pop_front();

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "grabbers/capture/capture_statistics.hpp"
+#include "grabbers/devices/capture_statistics.hpp"
 #include "grabbers/live/item_queue.hpp"
 #include "grabbers/live/plate_receiver.hpp"
 #include "grabbers/live/sick_client.hpp"
@@ -25,12 +25,11 @@ struct LiveSettings {
   PlateSettings plate_at;
   std::size_t queue =
       16384;  ///< items that may wait for the pipeline; then the oldest are dropped, and counted
-  HubClock clock = now_ns;  ///< that tells when something was received
+  HubClock clock = now_ns;  ///< stamps the receipts
 };
 
-/// The devices of a rig over the network, as they are now: scans and readings in the order in which this
-/// process received them. A device that is not there is tried again and again; the source ends only when it
-/// is told to.
+/// The devices of a rig over the network: scans and readings in the order in which this process receives
+/// them. It retries unreachable devices; the source ends only when it is stopped.
 class LiveSource final : public ItemSource {
  public:
   /// Connects from now on, in a thread of its own.
@@ -40,15 +39,17 @@ class LiveSource final : public ItemSource {
 
   std::optional<HubItem> next() override;
   /// The next item; nothing if none came in time. After interrupt(), what came before.
-  std::optional<HubItem> next_within(std::chrono::milliseconds patience) { return queue_.pop(patience); }
+  std::optional<HubItem> next_within(std::chrono::milliseconds plate_timeout) {
+    return queue_.pop(plate_timeout);
+  }
 
   /// Items that wait to be taken.
   std::size_t waiting() const { return queue_.size(); }
 
-  /// Says goodbye to the devices: within 100 ms, whatever the network does.
+  /// Ends the connections: within 100 ms, whatever the network does.
   void interrupt() override;
 
-  /// What came so far, and was lost. Damage within a connection is told when that is over.
+  /// Received and lost telegrams so far. Damage within a connection is counted when it has ended.
   CaptureStatistics statistics();
   /// interrupt(), waited for. @return all that came, and was lost
   CaptureStatistics close();

@@ -17,38 +17,26 @@
 namespace crisp {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{50};  // between two looks at whether the run is to stop
+constexpr std::chrono::milliseconds kPatience{50};  // polling interval for a stop of the run
 
-constexpr double kTellEvery = 0.5;  // [s]
-constexpr double kFirstWithin = 5;  // [s] for connecting, logging in and a second try
+constexpr double kReportEvery = 0.5;  // [s]
+constexpr double kFirstWithin = 5;    // [s] for connecting, logging in and a second try
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 constexpr std::string_view kNameOf[] = {"grabber.live", "grabber.sick", "grabber.plate"};
-constexpr std::string_view kSummaryOf[] = {"receives scans and plate readings from the devices themselves",
-                                           "receives scans from the lasers themselves",
-                                           "receives the plate's readings from itself"};
+constexpr std::string_view kSummaryOf[] = {
+    "receives scans and encoder readings from the devices over the network",
+    "receives scans from the lasers over the network",
+    "receives encoder readings from the plate over the network"};
 constexpr std::string_view kAboutLasers =
-    "Each laser of the rig is connected to at its address (port 2112 unless the rig names one). Whether it "
-    "speaks "
-    "CoLa-A or CoLa-B is found out; it is logged into and told to measure, and then sends scans by itself. A "
-    "connection that breaks or falls silent is made anew, the first time after 0.1 s; what never came in "
-    "between is "
-    "counted.";
+    "Connects to each laser of the rig at its address (port 2112 unless the rig names one). The stage detects whether it uses CoLa-A or CoLa-B, logs in and starts the measurement, after which the laser streams scans. A connection that breaks or falls silent is re-established, the first time after 0.1 s; telegrams lost in between are counted.";
 constexpr std::string_view kAboutPlate =
-    "The plate's datagrams are taken at the address `listen` of this machine, from the rig's plate only. "
-    "Over "
-    "`tcp` the rig's plate is connected to, over `serial` a serial line is read; either is opened anew when "
-    "it "
-    "breaks or falls silent.";
+    "The plate's datagrams are received at the local address `listen`, from the rig's plate only. With `tcp` the stage connects to the rig's plate, with `serial` it reads a serial line; either is reopened when it breaks or falls silent.";
 constexpr std::string_view kAboutConfiguration =
-    "Lasers are left as they are configured unless an option says otherwise. What a laser refuses, and scans "
-    "that "
-    "are not as it was told, are said in the summary. Another frequency or resolution makes the motor turn "
-    "anew, "
-    "which takes up to a minute. Nothing is stored beyond the laser's next start.";
+    "Lasers keep their configuration unless an option changes it. The summary lists settings that a laser rejects, and scans that differ from the requested settings. Another frequency or resolution restarts the motor, which takes up to a minute. Settings are not stored beyond the laser's next start.";
 
 }  // namespace
 
@@ -61,33 +49,33 @@ void LiveStage<devices>::describe(StageDescription<LiveStage>& d) {
     about += std::string(kAboutLasers) + "\n\n" + std::string(kAboutConfiguration) + "\n\n";
   }
   if constexpr (kPlate) about += std::string(kAboutPlate) + "\n\n";
-  d.details(about +
-            "Times of receipt are those at which this program took the data. Where the stages below are too "
-            "slow, the "
-            "oldest items are dropped, and counted.");
+  d.details(
+      about +
+      "Times of receipt are those of this program. Where the stages below are too slow, the oldest items are dropped and counted.");
   d.endless();
   if constexpr (kLasers) d.template gives<Scan>();
   if constexpr (kPlate) d.template gives<PlateReading>();
-  d.option("duration", &LiveStage::duration_,
-           "how long from the first item on, which is waited for as long, and at least for 5 s; auto: until "
-           "Ctrl-C")
+  d.option(
+       "duration", &LiveStage::duration_,
+       "duration from the first item on, which is waited for as long, and at least for 5 s; auto: until Ctrl-C")
       .unit("s")
       .at_least(0);
-  d.option("queue", &LiveStage::settings_, &LiveSettings::queue, "items that may wait for the stages below")
+  d.option("queue", &LiveStage::settings_, &LiveSettings::queue,
+           "capacity of the queue to the stages below, in items")
       .range(1, 1e7);
   if constexpr (kLasers) {
     d.option("start", &LiveStage::settings_, &LiveSettings::sick, &SickSettings::start,
-             "whether lasers are logged into and told to measure; otherwise they are only asked for scans");
+             "whether to log into lasers and start their measurement; otherwise scans are only requested");
     d.option("reply_timeout", &LiveStage::settings_, &LiveSettings::sick, &SickSettings::reply_timeout,
-             "how long a laser's answer is waited for")
+             "timeout for a laser's answer")
         .unit("s")
         .range(0.01, 60);
     d.option("silence", &LiveStage::settings_, &LiveSettings::sick, &SickSettings::silence,
-             "without a scan for so long, a laser is connected to anew")
+             "timeout without a scan, after which a laser is reconnected")
         .unit("s")
         .range(0.05, 600);
-    d.option("longest_pause", &LiveStage::settings_, &LiveSettings::sick, &SickSettings::longest_pause,
-             "between two tries to connect, at most")
+    d.option("max_reconnect_delay", &LiveStage::settings_, &LiveSettings::sick,
+             &SickSettings::max_reconnect_delay, "largest delay between two attempts to connect")
         .unit("s")
         .range(0.1, 600);
     describe_configuration(d);
@@ -102,20 +90,19 @@ void LiveStage<devices>::describe_configuration(StageDescription<LiveStage>& d) 
         name, [member](LiveStage & stage) -> auto& { return stage.settings_.sick.configuration.*member; },
         help);
   };
-  option("scan_frequency", &SickConfiguration::frequency,
-         "how often the mirrors are to turn; auto: as they do")
+  option("scan_frequency", &SickConfiguration::frequency, "frequency of the mirrors to set; auto: unchanged")
       .unit("Hz")
       .range(1, 1000);
-  option("resolution", &SickConfiguration::resolution, "angle from beam to beam; auto: as it is")
+  option("resolution", &SickConfiguration::resolution, "angular step to set; auto: unchanged")
       .unit("rad")
       .range(1e-4, 0.1);
   option("output_range", &SickConfiguration::output_range,
-         "first and last angle that are sent, as the lasers report them; none: as it is")
+         "first and last angle to send, as the lasers report them; none: unchanged")
       .unit("rad")
       .count(0, 2);
-  option("remission", &SickConfiguration::remission, "whether remissions are sent; auto: as it is");
+  option("remission", &SickConfiguration::remission, "whether remissions are sent; auto: unchanged");
   option("ntp_off", &SickConfiguration::ntp_off,
-         "whether lasers are told not to have their clocks set over the network");
+         "whether to disable the synchronization of lasers' clocks over the network");
 }
 
 template <LiveDevices devices>
@@ -123,16 +110,15 @@ void LiveStage<devices>::describe_plate(StageDescription<LiveStage>& d) {
   const auto option = [&](const char* name, auto PlateSettings::*member, const char* help) {
     return d.option(name, &LiveStage::settings_, &LiveSettings::plate_at, member, help);
   };
-  option("transport", &PlateSettings::transport, "how the plate's sentences come")
+  option("transport", &PlateSettings::transport, "transport of the plate's sentences")
       .choices({{"udp", PlateTransport::Datagrams},
                 {"tcp", PlateTransport::Tcp},
                 {"serial", PlateTransport::Serial}});
-  option("listen", &PlateSettings::listen,
-         "address of this machine at which the plate's datagrams are taken; 0.0.0.0: all that it has");
+  option("listen", &PlateSettings::listen, "local address that receives the plate's datagrams; 0.0.0.0: all");
   option("serial", &PlateSettings::serial, "the serial line");
   option("baud", &PlateSettings::baud, "bits a second on it").range(50, 4e6);
   option("plate_silence", &PlateSettings::silence,
-         "without a reading for so long, a connection or serial line is opened anew")
+         "timeout without a reading, after which a connection or serial line is reopened")
       .unit("s")
       .range(0.05, 600);
 }
@@ -153,7 +139,7 @@ void LiveStage<devices>::check(const RunSettings& run) const {
   errors.keep_of([&] { crisp::check(settings_.sick.configuration); });
   errors.keep_of([&] {
     if (settings_.sick.start || settings_.sick.configuration.is_empty()) return;
-    throw Error("lasers that are not logged into cannot be configured", "leave out start: false");
+    throw Error("lasers without a login cannot be configured", "remove start: false");
   });
   errors.throw_any();
 }
@@ -164,14 +150,14 @@ void LiveStage<devices>::process(const Inputs&, Outputs& out, Context& context) 
   LiveStatus status;
   const double began = seconds_now();
   std::optional<double> first;
-  double told = began;
+  double reported = began;
   while (!context.interrupted()) {
     const double now = seconds_now();
     const double elapsed = now - first.value_or(began);
     if (duration_ && elapsed > (first ? *duration_ : std::max(*duration_, kFirstWithin))) break;
-    if (context.is_watched() && now - told >= kTellEvery) {
-      told = now;
-      context.tell(status.tell(source.statistics(), now, source.waiting(), running(elapsed)));
+    if (context.is_watched() && now - reported >= kReportEvery) {
+      reported = now;
+      context.set_status(status.report(source.statistics(), now, source.waiting(), running(elapsed)));
     }
     const auto item = source.next_within(kPatience);
     if (!item) continue;
@@ -202,10 +188,10 @@ std::string LiveStage<devices>::running(double elapsed) const {
 template <LiveDevices devices>
 void LiveStage<devices>::report(const CaptureStatistics& statistics, Context& context) const {
   context.report(to_json(statistics));
-  context.say(device_table(statistics));
+  context.print(device_table(statistics));
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
   for (auto& warning : loss_warnings(statistics)) context.warn(std::move(warning));
-  for (auto& caveat : lost_devices(statistics)) context.distrust(std::move(caveat));
+  for (auto& caveat : lost_devices(statistics)) context.mark_untrusted(std::move(caveat));
   for (const auto& device : statistics.devices) {
     for (const auto& [what, n] : device.losses.all()) context.count(device.name + ": " + what, n);
     for (const auto& [what, n] : device.notes.all()) context.count(device.name + ": " + what, n);

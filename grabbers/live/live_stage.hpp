@@ -11,7 +11,7 @@
 
 namespace crisp {
 
-/// What of a rig a live stage grabs.
+/// The devices of a rig that a live stage grabs.
 enum class LiveDevices : std::uint8_t { LasersAndPlate, Lasers, Plate };
 
 /// `grabber.live`, and of it the lasers alone, `grabber.sick`, or the plate alone, `grabber.plate`.

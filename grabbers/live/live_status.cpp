@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "grabbers/capture/capture_report.hpp"
-#include "pipeline/data/robust.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
 
@@ -25,16 +25,16 @@ void LiveStatus::note(const std::string& device, const Counts& counts, double no
     const std::string name = device.empty() ? what : fmt::format("{}: {}", device, what);
     const auto [known, fresh] = events_.try_emplace(name);
     Event& event = known->second;
-    if (n == event.told || (!fresh && now < event.again)) continue;
-    events.push_back(fmt::format("{} ({})", name, n - event.told));
-    event = {.told = n, .again = now + kNotAgainFor};
+    if (n == event.reported || (!fresh && now < event.again)) continue;
+    events.push_back(fmt::format("{} ({})", name, n - event.reported));
+    event = {.reported = n, .again = now + kNotAgainFor};
   }
 }
 
-StageStatus LiveStatus::tell(const CaptureStatistics& statistics, double now, std::size_t waiting,
-                             const std::string& running) {
+StageStatus LiveStatus::report(const CaptureStatistics& statistics, double now, std::size_t waiting,
+                               const std::string& running) {
   StageStatus status{.line = running};
-  const double elapsed = asked_ ? now - *asked_ : 0;
+  const double elapsed = requested_ ? now - *requested_ : 0;
   for (const auto& device : statistics.devices) {
     const std::uint64_t before = std::exchange(items_[device.name], device.items);
     const double rate = elapsed > 0 ? static_cast<double>(device.items - before) / elapsed : 0;
@@ -46,8 +46,8 @@ StageStatus LiveStatus::tell(const CaptureStatistics& statistics, double now, st
     note(device.name, device.notes, now, status.events);
   }
   note("", statistics.losses, now, status.events);
-  asked_ = now;
-  const double latency = latencies_.empty() ? 0 : quantile_of(latencies_, 0.99);
+  requested_ = now;
+  const double latency = latencies_.empty() ? 0 : quantile_in_place(latencies_, 0.99);
   latencies_.clear();
   const std::uint64_t lost = lost_items(statistics);
   status.line += fmt::format(", lost {}, queue {}, latency {:.1f} ms", lost, waiting, 1e3 * latency);

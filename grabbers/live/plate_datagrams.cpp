@@ -44,7 +44,7 @@ void PlateDatagrams::receive() {
 }
 
 void PlateDatagrams::take(std::size_t bytes) {
-  if (from_.address() != plate_) return readings_.note("datagrams from another address than the plate's");
+  if (from_.address() != plate_) return readings_.note("datagrams from other addresses than the plate's");
   readings_.take(ByteView(buffer_).first(bytes));
   readings_.gap();
 }

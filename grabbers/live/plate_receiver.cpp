@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/live/plate_receiver.hpp"
 
-#include "grabbers/capture/framing_losses.hpp"
+#include "grabbers/devices/framing_losses.hpp"
 #include "grabbers/live/plate_datagrams.hpp"
 #include "grabbers/live/plate_stream.hpp"
 

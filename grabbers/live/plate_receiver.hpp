@@ -7,13 +7,13 @@
 #include <optional>
 #include <string>
 
-#include "grabbers/capture/device_log.hpp"
+#include "grabbers/devices/device_log.hpp"
 #include "grabbers/live/endpoints.hpp"
 #include "grabbers/wire/plate_framer.hpp"
 
 namespace crisp {
 
-/// How the plate's sentences come.
+/// Transport of the plate's sentences.
 enum class PlateTransport : std::uint8_t {
   Datagrams,  ///< by UDP, from the rig's plate
   Tcp,        ///< the rig's plate is a TCP server
@@ -25,9 +25,9 @@ struct PlateSettings {
   std::string listen = "127.0.0.1";   ///< the hub's address that datagrams are taken at; 0.0.0.0: all of them
   std::optional<std::uint16_t> port;  ///< of the hub; 0: any that is free; nothing: the rig's, or 4000
   std::string serial = "/dev/ttyUSB0";
-  unsigned baud = 115200;    ///< [bit/s] of the serial line
-  double silence = 2;        ///< [s] without a reading after which a connection or line is opened anew
-  double longest_pause = 5;  ///< [s] between two tries; the first are quicker
+  unsigned baud = 115200;          ///< [bit/s] of the serial line
+  double silence = 2;              ///< [s] without a reading after which a connection or line is opened anew
+  double max_reconnect_delay = 5;  ///< [s] between two tries; the first are quicker
 };
 
 /// From the plate's bytes, however they came, to its readings.
@@ -38,7 +38,7 @@ class PlateReadings {
 
   /// Bytes that came just now. @return whether there was a reading in them
   bool take(ByteView bytes);
-  /// The datagram or connection is over: what is incomplete stays so, and what was damaged is told.
+  /// The datagram or connection is over: reports incomplete and damaged data.
   void gap();
   void note(const std::string& what) { log_.note(what); }
 

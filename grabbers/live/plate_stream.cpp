@@ -33,7 +33,7 @@ class PlateStream final : public PlateReceiver {
         open_(std::move(open)),
         link_(context),
         alarm_(context),
-        back_off_(settings.longest_pause),
+        back_off_(settings.max_reconnect_delay),
         buffer_(kPlatePiece) {}
 
   void start() override {
@@ -89,7 +89,7 @@ class PlateStream final : public PlateReceiver {
   double silence_;  ///< [s]
   Open open_;
   Link link_;
-  std::uint64_t link_number_ = 0;  ///< what an earlier one still has to say is not heard
+  std::uint64_t link_number_ = 0;  ///< callbacks of an earlier one are ignored
   Alarm alarm_;
   BackOff back_off_;
   Bytes buffer_;

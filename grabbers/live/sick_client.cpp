@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "grabbers/capture/framing_losses.hpp"
+#include "grabbers/devices/framing_losses.hpp"
 
 namespace crisp {
 namespace {
@@ -36,7 +36,7 @@ SickClient::SickClient(asio::io_context& context, DeviceLog& log, const Address&
       clock_(std::move(clock)),
       socket_(context),
       alarm_(context),
-      back_off_(settings_.longest_pause),
+      back_off_(settings_.max_reconnect_delay),
       buffer_(kPiece),
       language_(settings_.language) {}
 
@@ -56,15 +56,15 @@ void SickClient::connect() {
 void SickClient::begin_dialogue() {
   framer_ = {};
   languages_tried_ = 1;
-  refusals_told_ = 0;
+  refusals_reported_ = 0;
   compared_ = settings_.configuration.is_empty();
   dialogue_.emplace(language_, settings_.start, settings_.configuration);
   read();
-  ask();
+  request_scan();
 }
 
-void SickClient::ask() {
-  say(dialogue_->request());
+void SickClient::request_scan() {
+  send(dialogue_->request());
   alarm_.set(dialogue_->is_slow() ? kMotor : settings_.reply_timeout, [this] { not_answered(); });
 }
 
@@ -76,7 +76,7 @@ void SickClient::not_answered() {
   ++languages_tried_;
   language_ = other(language_);
   dialogue_.emplace(language_, settings_.start, settings_.configuration);
-  ask();
+  request_scan();
 }
 
 void SickClient::read() {
@@ -123,16 +123,16 @@ void SickClient::note_difference(const Scan& scan) {
 }
 
 void SickClient::proceed(SickDialogue::Effect effect) {
-  for (; refusals_told_ < dialogue_->refusals().size(); ++refusals_told_) {
-    log_.note("refused by the laser: " + dialogue_->refusals()[refusals_told_]);
+  for (; refusals_reported_ < dialogue_->refusals().size(); ++refusals_reported_) {
+    log_.note("refused by the laser: " + dialogue_->refusals()[refusals_reported_]);
   }
-  if (effect == SickDialogue::Effect::AskLater) return alarm_.set(kPoll, [this] { ask(); });
+  if (effect == SickDialogue::Effect::RequestLater) return alarm_.set(kPoll, [this] { request_scan(); });
   if (effect == SickDialogue::Effect::None) return;
   if (dialogue_->step() == SickStep::Refused) {
     over_ = "the laser refused to send scans";
     return;
   }
-  if (dialogue_->step() != SickStep::Scans) return ask();
+  if (dialogue_->step() != SickStep::Scans) return request_scan();
   back_off_.reset();
   await_scan();
 }
@@ -165,11 +165,11 @@ void SickClient::stop() {
   if (stopping_) return;
   stopping_ = true;
   if (!dialogue_ || dialogue_->step() != SickStep::Scans) return close();
-  say(unsubscribe_request(language_));
+  send(unsubscribe_request(language_));
   alarm_.set(kFarewell, [this] { close(); });
 }
 
-void SickClient::say(const Bytes& telegram) {
+void SickClient::send(const Bytes& telegram) {
   const auto kept = std::make_shared<const Bytes>(telegram);
   asio::async_write(socket_, asio::buffer(*kept),
                     [this, kept, mine = connection_](const error_code& failure, std::size_t) {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "grabbers/capture/device_log.hpp"
+#include "grabbers/devices/device_log.hpp"
 #include "grabbers/live/alarm.hpp"
 #include "grabbers/live/endpoints.hpp"
 #include "grabbers/live/sick_dialogue.hpp"
@@ -16,15 +16,15 @@ namespace crisp {
 
 struct SickSettings {
   ColaLanguage language = ColaLanguage::B;  ///< that is tried first
-  bool start = true;                ///< log in and start the measurement; otherwise only ask for scans
+  bool start = true;                ///< log in and start the measurement; otherwise only request scans
   SickConfiguration configuration;  ///< how lasers are to measure, where anything is wanted
   double reply_timeout = 1;         ///< [s] for a connection, and for each answer
   double silence = 2;               ///< [s] without a scan after which the connection is made anew
-  double longest_pause = 5;         ///< [s] between two tries; the first are quicker
+  double max_reconnect_delay = 5;   ///< [s] between two tries; the first are quicker
   EncoderWidths encoder_widths = EncoderWidths::Position32;
 };
 
-/// One laser on the network: connects, finds out its language, asks for scans, and does so again whenever the
+/// One laser on the network: connects, detects its language, requests scans, and reconnects whenever the
 /// connection breaks or falls silent. All of it happens in the thread that runs the io_context.
 class SickClient {
  public:
@@ -42,7 +42,7 @@ class SickClient {
  private:
   void connect();
   void begin_dialogue();
-  void ask();
+  void request_scan();
   void not_answered();
   void read();
   void take(std::size_t bytes);
@@ -52,7 +52,7 @@ class SickClient {
   void await_scan();
   void fail(const std::string& reason);
   void close();
-  void say(const Bytes& telegram);
+  void send(const Bytes& telegram);
   void note_difference(const Scan& scan);
 
   boost::asio::io_context& context_;
@@ -65,11 +65,11 @@ class SickClient {
   boost::asio::ip::tcp::socket socket_;
   Alarm alarm_;
   BackOff back_off_;
-  std::uint64_t connection_ = 0;  ///< what an earlier one still has to say is not heard
+  std::uint64_t connection_ = 0;  ///< callbacks of an earlier one are ignored
   Bytes buffer_;
   ColaFramer framer_;
   std::optional<SickDialogue> dialogue_;
-  std::size_t refusals_told_ = 0;
+  std::size_t refusals_reported_ = 0;
   ColaLanguage language_;  ///< that was understood last
   unsigned languages_tried_ = 0;
   bool compared_ = false;            ///< a scan of this connection with the configuration

@@ -24,24 +24,24 @@ void check(const SickConfiguration& configuration) {
   if (!good) throw Error("the output range is no range", "give its first and last angle: [-45deg, 225deg]");
 }
 
-std::string difference(const SickConfiguration& wanted, const Scan& scan) {
+std::string difference(const SickConfiguration& requested, const Scan& scan) {
   std::string found;
   const auto add = [&](std::string what) { found += (found.empty() ? "" : ", ") + std::move(what); };
-  if (wanted.frequency && std::abs(*wanted.frequency - scan.scan_frequency) > kHertz) {
-    add(fmt::format("{:g} Hz instead of {:g} Hz", scan.scan_frequency, *wanted.frequency));
+  if (requested.frequency && std::abs(*requested.frequency - scan.scan_frequency) > kHertz) {
+    add(fmt::format("{:g} Hz instead of {:g} Hz", scan.scan_frequency, *requested.frequency));
   }
-  if (wanted.resolution && std::abs(*wanted.resolution - scan.angle_step) > kRounding) {
+  if (requested.resolution && std::abs(*requested.resolution - scan.angle_step) > kRounding) {
     add(fmt::format("{:.4g} deg from beam to beam instead of {:.4g} deg", scan.angle_step / kDegree,
-                    *wanted.resolution / kDegree));
+                    *requested.resolution / kDegree));
   }
   const Echo& echo = scan.echoes.front();
-  if (wanted.remission && *wanted.remission == echo.remissions.empty()) {
-    add(*wanted.remission ? "no remissions" : "remissions that were not wanted");
+  if (requested.remission && *requested.remission == echo.remissions.empty()) {
+    add(*requested.remission ? "no remissions" : "remissions that were not requested");
   }
-  if (!wanted.output_range.empty()) {
+  if (!requested.output_range.empty()) {
     const double last = scan.start_angle + scan.angle_step * static_cast<double>(echo.ranges.size() - 1);
-    const bool begins = std::abs(scan.start_angle - wanted.output_range[0]) < scan.angle_step + kRounding;
-    const bool ends = std::abs(last - wanted.output_range[1]) < scan.angle_step + kRounding;
+    const bool begins = std::abs(scan.start_angle - requested.output_range[0]) < scan.angle_step + kRounding;
+    const bool ends = std::abs(last - requested.output_range[1]) < scan.angle_step + kRounding;
     if (!begins || !ends) {
       add(fmt::format("beams from {:.4g} to {:.4g} deg", scan.start_angle / kDegree, last / kDegree));
     }

@@ -9,7 +9,7 @@
 
 namespace crisp {
 
-/// How a laser is to measure; what is absent stays as it is.
+/// Requested settings of a laser; absent ones stay unchanged.
 struct SickConfiguration {
   std::optional<double> frequency;   ///< [Hz] of the mirror
   std::optional<double> resolution;  ///< [rad] from beam to beam
@@ -24,8 +24,8 @@ struct SickConfiguration {
 /// @throws Error if the range is not two ascending angles within a turn
 void check(const SickConfiguration& configuration);
 
-/// In what a scan is not as the laser was told to measure, in words; or "". What a laser says of its settings
-/// may differ from how it measures, so that the scan is what counts.
-std::string difference(const SickConfiguration& wanted, const Scan& scan);
+/// Difference between a scan and the requested settings, in words; or "". A laser's reported settings may
+/// differ from its measurement, so that the scan is decisive.
+std::string difference(const SickConfiguration& requested, const Scan& scan);
 
 }  // namespace crisp

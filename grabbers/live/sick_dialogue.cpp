@@ -9,8 +9,8 @@
 
 namespace crisp {
 
-SickDialogue::SickDialogue(ColaLanguage language, bool start, SickConfiguration wanted)
-    : language_(language), start_(start || !wanted.is_empty()), wanted_(std::move(wanted)) {}
+SickDialogue::SickDialogue(ColaLanguage language, bool start, SickConfiguration requested)
+    : language_(language), start_(start || !requested.is_empty()), requested_(std::move(requested)) {}
 
 Bytes SickDialogue::request() const {
   if (step_ >= SickStep::Scans) return {};
@@ -23,12 +23,12 @@ SickDialogue::Effect SickDialogue::take(const ColaTelegram& telegram) {
   const SickRequest request = now();
   const bool error = telegram.command == "sFA";
   if (!error && (telegram.command != request.answer || telegram.name != request.name)) return Effect::None;
-  if (step_ == SickStep::DetectLanguage) return advance();  // whatever it says, it understood
+  if (step_ == SickStep::DetectLanguage) return advance();  // any answer shows that it understood
   if (!error && is_granted(step_, telegram)) {
     if (step_ == SickStep::ReadScanSettings) settings_ = *scan_settings(telegram, false);
     return advance();
   }
-  if (step_ == SickStep::AwaitReady && !error) return Effect::AskLater;
+  if (step_ == SickStep::AwaitReady && !error) return Effect::RequestLater;
   refusals_.push_back(fmt::format("{} {}: {}", request.command, request.name, refusal_text(step_, telegram)));
   if (step_ != SickStep::Subscribe) return advance();  // the laser may send scans all the same
   step_ = SickStep::Refused;
@@ -42,15 +42,16 @@ bool SickDialogue::needs(SickStep step) const {
     case SickStep::Run:
       return start_;
     case SickStep::ReadScanSettings:
-      return wanted_.sets_mirror() || !wanted_.output_range.empty();
+      return requested_.sets_mirror() || !requested_.output_range.empty();
     case SickStep::SetScanSettings:
-      return wanted_.sets_mirror() && changed(settings_, wanted_) != settings_;  // the motor would turn anew
+      return requested_.sets_mirror() &&
+             changed(settings_, requested_) != settings_;  // the motor would turn anew
     case SickStep::SetScanContent:
-      return wanted_.remission.has_value();
+      return requested_.remission.has_value();
     case SickStep::SetOutputRange:
-      return !wanted_.output_range.empty();
+      return !requested_.output_range.empty();
     case SickStep::SetNtpOff:
-      return wanted_.ntp_off;
+      return requested_.ntp_off;
     default:
       return true;
   }

@@ -20,13 +20,13 @@ std::int32_t angle_units(double angle) {
   return static_cast<std::int32_t>(std::lround(angle / kDegree * kUnitsPerDegree));
 }
 
-OutputRange wanted_range(const SickConfiguration& wanted, const ScanSettings& now) {
-  return {.resolution = changed(now, wanted).resolution,
-          .first = angle_units(wanted.output_range.at(0)),
-          .last = angle_units(wanted.output_range.at(1))};
+OutputRange requested_range(const SickConfiguration& requested, const ScanSettings& now) {
+  return {.resolution = changed(now, requested).resolution,
+          .first = angle_units(requested.output_range.at(0)),
+          .last = angle_units(requested.output_range.at(1))};
 }
 
-/// What an answer to mLMPsetscancfg says by its status.
+/// Meaning of the status in an answer to mLMPsetscancfg.
 std::string_view scan_settings_status(unsigned status) {
   static constexpr std::array<std::string_view, 5> kTexts{
       "done", "the frequency is not possible", "the resolution is not possible",
@@ -36,27 +36,27 @@ std::string_view scan_settings_status(unsigned status) {
 
 }  // namespace
 
-ScanSettings changed(ScanSettings now, const SickConfiguration& wanted) {
-  if (wanted.frequency) {
-    now.frequency = static_cast<std::uint32_t>(std::lround(*wanted.frequency * kFrequencyUnits));
+ScanSettings changed(ScanSettings now, const SickConfiguration& requested) {
+  if (requested.frequency) {
+    now.frequency = static_cast<std::uint32_t>(std::lround(*requested.frequency * kFrequencyUnits));
   }
-  if (wanted.resolution) now.resolution = static_cast<std::uint32_t>(angle_units(*wanted.resolution));
+  if (requested.resolution) now.resolution = static_cast<std::uint32_t>(angle_units(*requested.resolution));
   return now;
 }
 
-SickRequest sick_request(SickStep step, const SickConfiguration& wanted, const ScanSettings& now) {
+SickRequest sick_request(SickStep step, const SickConfiguration& requested, const ScanSettings& now) {
   switch (step) {
     case SickStep::LogIn:
       return {"sMN", "SetAccessMode", {kAuthorisedClient, kItsPassword}, "sAN"};
     case SickStep::ReadScanSettings:
       return {"sRN", "LMPscancfg", {}, "sRA"};
     case SickStep::SetScanSettings:
-      return {"sMN", "mLMPsetscancfg", to_values(changed(now, wanted)), "sAN"};
+      return {"sMN", "mLMPsetscancfg", to_values(changed(now, requested)), "sAN"};
     case SickStep::SetScanContent:
-      return {"sWN", "LMDscandatacfg", to_values(ScanContent{.remission = *wanted.remission, .wide = true}),
-              "sWA"};
+      return {"sWN", "LMDscandatacfg",
+              to_values(ScanContent{.remission = *requested.remission, .wide = true}), "sWA"};
     case SickStep::SetOutputRange:
-      return {"sWN", "LMPoutputRange", to_values(wanted_range(wanted, now)), "sWA"};
+      return {"sWN", "LMPoutputRange", to_values(requested_range(requested, now)), "sWA"};
     case SickStep::SetNtpOff:
       return {"sWN", "TSCRole", {std::uint8_t{0}}, "sWA"};
     case SickStep::StartMeasuring:

@@ -11,7 +11,7 @@
 
 namespace crisp {
 
-/// How far a conversation with a laser is.
+/// Steps of the dialogue with a laser.
 enum class SickStep : std::uint8_t {
   DetectLanguage,    ///< a harmless question, in the hope that it is understood
   LogIn,             ///< as the authorised client
@@ -22,26 +22,26 @@ enum class SickStep : std::uint8_t {
   SetNtpOff,
   StartMeasuring,
   Run,         ///< leaves the login and puts settings in force
-  AwaitReady,  ///< asked again and again until the laser measures
+  AwaitReady,  ///< polled until the laser measures
   Subscribe,
   Scans,    ///< they come by themselves
   Refused,  ///< the laser does not send scans
 };
 
-/// What is asked of a laser in one step, and what answers it.
+/// The request of one step, and its answer.
 struct SickRequest {
   std::string_view command, name;
   std::vector<ColaValue> parameters;
   std::string_view answer;  ///< the command of what is answered
 };
 
-/// @param now  the laser's settings, as it told them
-SickRequest sick_request(SickStep step, const SickConfiguration& wanted, const ScanSettings& now);
+/// @param now  the laser's current settings, as it reported them
+SickRequest sick_request(SickStep step, const SickConfiguration& requested, const ScanSettings& now);
 
 /// The settings that `now` are in force with what is wanted in their place.
-ScanSettings changed(ScanSettings now, const SickConfiguration& wanted);
+ScanSettings changed(ScanSettings now, const SickConfiguration& requested);
 
-/// Whether an answer (that is no sFA) says that what was asked for is so.
+/// Whether an answer (that is no sFA) confirms the request.
 bool is_granted(SickStep step, const ColaTelegram& answer);
 
 /// Why it is not so, in words: "answered 2 (the resolution is not possible)".

@@ -14,32 +14,24 @@
 namespace crisp {
 namespace {
 
-/// What became of doubles, if it is more than a cloud's own noise would hide.
+/// Warning of rounded doubles, if the rounding exceeds a cloud's own noise.
 std::string rounding_in_words(double rounding, const std::array<double, 3>& shift) {
   return fmt::format(
-      "its coordinates are kept as floats, which changes them by up to {:.3g} m; to keep them, subtract a "
-      "shift: shift: [{:.0f}m, {:.0f}m, {:.0f}m]",
+      "its coordinates are rounded to floats, which changes them by up to {:.3g} m; to avoid it, subtract a shift: shift: [{:.0f}m, {:.0f}m, {:.0f}m]",
       rounding, shift[0], shift[1], shift[2]);
 }
 
 }  // namespace
 
 void GrabCloudStage::describe(StageDescription<GrabCloudStage>& d) {
-  d.name("grabber.cloud").summary("reads the cloud of a PCD file");
+  d.name("grabber.cloud").summary("reads a cloud from a PCD file");
   d.details(
-      "Of any program's PCD files, in all their formats: x, y and z must be there; intensity, laser, beam "
-      "and "
-      "time are 0 where they are not; other fields, and the order of an image, are not kept. A cloud that "
-      "write.pcd wrote in several files comes in as many "
-      "pieces.\n\n"
-      "Coordinates of a cloud are single (float), as PCL's are: exact to a tenth of a millimetre up to 1 km "
-      "from the origin. A file with doubles far from it, on a map's grid say, is rounded, and warned of; "
-      "subtract a shift.");
+      "Reads PCD files of any program, in all their formats: x, y and z are required; missing intensity, laser, beam and time are 0; other fields, and the order of an image, are dropped. A cloud that write.pcd wrote as several files is read piece by piece.\n\n"
+      "Coordinates of a cloud are single precision (float), as in PCL: exact to a tenth of a millimetre up to 1 km from the origin. Double coordinates far from it, on a map's grid for example, are rounded with a warning; subtract a shift.");
   d.gives<Cloud>();
-  d.option("file", &GrabCloudStage::file_,
-           "the PCD file, or the name that a cloud in several files was given")
-      .required();
-  d.option("shift", &GrabCloudStage::shift_, "what is subtracted from x, y and z before they become single")
+  d.option("file", &GrabCloudStage::file_, "PCD file, or base name of a cloud in several files").required();
+  d.option("shift", &GrabCloudStage::shift_,
+           "offset subtracted from x, y and z before rounding to single precision")
       .unit("m")
       .range(-1e9, 1e9)
       .count(3, 3);
@@ -61,7 +53,7 @@ void GrabCloudStage::process(const Inputs&, Outputs& out, Context& context) {
     if (rounding == 0 && change > 0) shift = suggested_shift(table);
     rounding = std::max(rounding, change);
     context.reads(file);
-    context.count("points that are not numbers", not_finite);
+    context.count("points with coordinates that are no numbers", not_finite);
     count_surplus(table, file, context);
     if (!context.interrupted()) out.give(std::move(cloud));
   });

@@ -33,21 +33,18 @@ void refuse_other_rigs(const Measurements& beams, const Rig& rig) {
   if (largest != beams.laser.end() && *largest >= rig.lasers.size()) {
     throw Error(
         fmt::format("has measurements of laser {}, but the rig has {}", *largest + 1, rig.lasers.size()),
-        "give the rig that they were taken with: --rig");
+        "give the rig of the recording: --rig");
   }
 }
 
 }  // namespace
 
 void GrabMeasurementsStage::describe(StageDescription<GrabMeasurementsStage>& d) {
-  d.name("grabber.pcd").summary("reads raw measurements that an earlier run wrote");
+  d.name("grabber.pcd").summary("reads raw measurements of an earlier run");
   d.details(
-      "Gives exactly what write.measurements was given. Where NAME.plate.pcd is missing, the plate's "
-      "trajectory "
-      "is made of the angles that stand beside the measurements; it then ends with them.");
+      "Gives exactly the measurements of write.measurements. Where NAME.plate.pcd is missing, the plate's trajectory is made of the plate angles of the measurements; it then ends with them.");
   d.gives<PlateTrajectory>().gives<Measurements>();
-  d.option("file", &GrabMeasurementsStage::file_, "NAME.pcd, as it was given to write.measurements")
-      .required();
+  d.option("file", &GrabMeasurementsStage::file_, "input file NAME.pcd of write.measurements").required();
   d.option("max_gap", &GrabMeasurementsStage::max_gap_,
            "longest silence of the encoder to interpolate across, where NAME.plate.pcd is missing")
       .unit("s")
@@ -62,7 +59,7 @@ void GrabMeasurementsStage::process(const Inputs&, Outputs& out, Context& contex
     }
     const auto read = about(file, [&] { return measurements_of(table); });
     const Measurements& beams = read.beams;
-    context.count("measurements that cannot be", read.impossible);
+    context.count("impossible measurements", read.impossible);
     count_surplus(table, file, context);
     about(file, [&] { refuse_other_rigs(beams, context.rig()); });
     auto plate = trajectory(table, file, context);

@@ -66,8 +66,7 @@ Inspection inspect(const std::filesystem::path& file, const Rig&) {
                                 format_of(table.header().format), "field", "type", "least", "most");
   inspection.data = {{"points", table.rows()}, {"format", format_of(table.header().format)}};
   if (table.surplus() > 0) {
-    inspection.text +=
-        fmt::format("\n  {} more points stand behind those that POINTS gives", table.surplus());
+    inspection.text += fmt::format("\n  {} more points follow those that POINTS counts", table.surplus());
     inspection.data["surplus_points"] = table.surplus();
   }
   for (const PcdField& field : table.header().fields) add_field(table, field, inspection);

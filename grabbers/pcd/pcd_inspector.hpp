@@ -5,7 +5,7 @@
 
 namespace crisp {
 
-/// Says what a PCD file holds, of crisp or of any other program: points, fields, and how far each reaches.
+/// Describes a PCD file of crisp or of any other program: points, fields, and the range of each.
 Inspector pcd_inspector();
 
 }  // namespace crisp

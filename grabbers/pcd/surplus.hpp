@@ -12,12 +12,11 @@ namespace crisp {
 
 /// Counts points that stand in a file behind those that its header gives, and warns of them.
 inline void count_surplus(const PcdTable& table, const std::filesystem::path& file, Context& context) {
-  context.count("points beyond those that the header gives", table.surplus());
+  context.count("points beyond the header's count", table.surplus());
   if (table.surplus() == 0) return;
-  context.warn(
-      fmt::format("{}: {} points stand behind the {} that POINTS gives, and were not read; correct WIDTH and "
-                  "POINTS, if they belong to it",
-                  file.string(), table.surplus(), table.rows()));
+  context.warn(fmt::format(
+      "{}: {} points follow the {} that POINTS counts, and were not read; correct WIDTH and POINTS if they belong to the cloud",
+      file.string(), table.surplus(), table.rows()));
 }
 
 }  // namespace crisp

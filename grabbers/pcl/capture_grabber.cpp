@@ -16,7 +16,7 @@ CaptureGrabber::CaptureGrabber(std::filesystem::path file, Rig rig, PlaySettings
       settings_(std::move(settings)) {
   if (!std::isfinite(settings_.speed) || settings_.speed < 0) {
     throw Error("a capture cannot be played at that speed",
-                "give how many times real time, or 0 for as fast as it goes");
+                "give the speed relative to real time, or 0 for as fast as possible");
   }
 }
 

@@ -8,7 +8,7 @@
 
 namespace crisp {
 
-/// How a capture is played.
+/// Settings for playing a capture.
 struct PlaySettings {
   double speed = 0;         ///< times real time; 0: as fast as the callbacks take it
   CaptureSettings capture;  ///< how its bytes are understood
@@ -22,7 +22,7 @@ class CaptureGrabber : public SourceGrabber {
   explicit CaptureGrabber(std::filesystem::path file, Rig rig = default_rig(), PlaySettings settings = {});
   ~CaptureGrabber() noexcept override;
 
-  /// What the capture held and lost: of the last run that came to the capture's end.
+  /// Statistics of the capture, by the last complete run.
   CaptureStatistics statistics() const;
 
  protected:

@@ -7,7 +7,7 @@
 #include "grabbers/pcl/source_grabber.hpp"
 #include "pipeline/data/calibration.hpp"
 #include "pipeline/data/cloud.hpp"
-#include "pipeline/model/known_mirrors.hpp"
+#include "pipeline/model/mirror_angle_cache.hpp"
 #include "pipeline/model/sensor_model.hpp"
 #include "plugins/assemble/revolutions.hpp"
 #include "plugins/clock/online_aligner.hpp"

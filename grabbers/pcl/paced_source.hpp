@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// Gives another source's items at the pace at which the hub received them.
+/// Gives another source's items at the pace of their receipt.
 class PacedSource final : public ItemSource {
  public:
   /// @param speed how many times faster than real time, > 0

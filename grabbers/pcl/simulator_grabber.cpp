@@ -10,7 +10,7 @@
 namespace crisp {
 namespace {
 
-/// What the hub would have received, one item after the other.
+/// The hub's simulated data, one item after the other.
 class SimulatedSource final : public ItemSource {
  public:
   SimulatedSource(const RecordingSettings& settings, const Scene& scene, const TermRegistry& terms)
@@ -43,7 +43,7 @@ SimulatorGrabber::SimulatorGrabber(const RecordingSettings& settings, const Scen
       truth_(RecordingSimulator(settings, scene, terms).truth()) {
   if (!std::isfinite(speed) || speed < 0) {
     throw Error("a simulation cannot be played at that speed",
-                "give how many times real time, or 0 for as fast as it goes");
+                "give the speed relative to real time, or 0 for as fast as possible");
   }
 }
 

@@ -18,7 +18,7 @@ class SimulatorGrabber : public SourceGrabber {
   SimulatorGrabber(const RecordingSettings& settings, const Scene& scene, double speed = 0,
                    const TermRegistry& terms = {});
 
-  /// What is hidden in what it gives.
+  /// The simulated truth.
   const RecordingTruth& truth() const { return truth_; }
 
  private:

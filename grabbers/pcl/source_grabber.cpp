@@ -51,7 +51,7 @@ void SourceGrabber::run(ItemSource& source) {
   std::exception_ptr error;
   try {
     pull(source);
-  } catch (...) {  // of the source or of a callback: told by error(), since nobody could catch it here
+  } catch (...) {  // from the source or a callback: reported by error(), since nobody could catch it here
     error = std::current_exception();
   }
   const std::lock_guard lock(mutex_);

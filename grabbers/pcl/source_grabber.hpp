@@ -17,8 +17,8 @@
 
 namespace crisp {
 
-/// Makes a pcl::Grabber of any source of items: a thread pulls them and calls what was registered, in the
-/// order of their receipt. Signals:
+/// Adapts any source of items to a pcl::Grabber: a thread pulls them and calls the registered callbacks, in
+/// the order of their receipt. Signals:
 ///
 ///     void(const std::shared_ptr<const crisp::Scan>&)
 ///     void(const crisp::PlateReading&)
@@ -53,7 +53,7 @@ class SourceGrabber : public ::pcl::Grabber {
   /// [Hz] Scans a second, all lasers together, by the hub's clock; 0 before the second scan.
   float getFramesPerSecond() const override { return frames_per_second_; }
 
-  /// What ended the last run early, an error of the source or of a callback; null if nothing did.
+  /// The error of the source or of a callback that ended the last run early; null if there was none.
   std::exception_ptr error() const;
 
  protected:

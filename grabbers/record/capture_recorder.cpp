@@ -51,17 +51,15 @@ bool is_there(const std::filesystem::path& file) {
   return std::filesystem::is_regular_file(file, none) && std::filesystem::file_size(file, none) > 0;
 }
 
-/// What is to be said of a recording that is about to be written on; empty if it is sound.
+/// A note on a recording that is about to be continued; empty if it is sound.
 std::string note_on(const std::filesystem::path& file, const PcapExtent& extent) {
   if (extent.whole < extent.bytes)
     return fmt::format(
-        "{} ended within a record, as after a crash or a power cut: the {} bytes of that record were cut "
-        "off",
+        "{} ended within a record, as after a crash or a power cut: the {} bytes of that record were cut off",
         file.string(), extent.bytes - extent.whole);
   if (extent.damaged_records > 0)
     return fmt::format(
-        "{} is damaged: {} bytes of it in {} places cannot be read. The recording goes on behind all that "
-        "is there",
+        "{} is damaged: {} bytes of it in {} places are unreadable. The recording continues at its end",
         file.string(), extent.damaged_bytes, extent.damaged_records);
   return {};
 }
@@ -70,13 +68,12 @@ std::string note_on(const std::filesystem::path& file, const PcapExtent& extent)
 
 void refuse_foreign(const std::filesystem::path& file) {
   if (is_link_to_file(file))
-    throw Error(file.string() + " is a symbolic link, behind which nothing is recorded",
+    throw Error(file.string() + " is a symbolic link, which is not recorded into",
                 "name the file that it leads to, or remove the link");
   if (!is_there(file)) return;
   const FrameOrigin origin = origin_of_file(file);
   if (origin == FrameOrigin::Recorded) return;
-  throw Error(fmt::format("{} is there already and is {}, which cannot be continued: only a recording of "
-                          "crisp's can",
+  throw Error(fmt::format("{} exists and is {}, which cannot be continued: only a recording of crisp can",
                           file.string(),
                           origin == FrameOrigin::Simulated ? "a simulated capture" : "of another program"),
               "give another name or folder, or move the file away");
@@ -124,7 +121,7 @@ CaptureRecorder::CaptureRecorder(std::filesystem::path file, Rig rig, const Reco
 CaptureRecorder::~CaptureRecorder() {
   try {
     close();
-  } catch (const Error&) {  // close() tells it to those who ask; what is on the disk is whole all the same
+  } catch (const Error&) {  // close() reports it; the data on disk are intact all the same
   }
 }
 
@@ -154,10 +151,9 @@ void CaptureRecorder::open() {
       if (auto note = note_on(path, extent); !note.empty()) notes_.push_back(std::move(note));
       break;
     }
-    notes_.push_back(
-        fmt::format("{} is damaged: its last {} bytes cannot be read, nor could what is written behind "
-                    "them. It stays as it is, and the recording goes on in another file",
-                    path.string(), extent.bytes - extent.whole));
+    notes_.push_back(fmt::format(
+        "{} is damaged: its last {} bytes are unreadable, and so would be anything written behind them. It stays unchanged, and the recording continues in another file",
+        path.string(), extent.bytes - extent.whole));
   }
   file_ = std::make_unique<File>(path, rig_);
   file_->pcap.flush();  // readable from the beginning on
@@ -167,7 +163,7 @@ void CaptureRecorder::open() {
 void CaptureRecorder::rotate(std::int64_t now_ns) {
   const double seconds = file_->first_ns ? 1e-9 * static_cast<double>(now_ns - *file_->first_ns) : 0;
   const bool full =
-      settings_.most_bytes > 0 && static_cast<double>(file_->pcap.bytes()) >= settings_.most_bytes;
+      settings_.max_bytes > 0 && static_cast<double>(file_->pcap.bytes()) >= settings_.max_bytes;
   if (!full && (settings_.most_seconds == 0 || seconds < settings_.most_seconds)) return;
   end_file();
   open();
@@ -188,7 +184,7 @@ void CaptureRecorder::record(const HubItem& item) {
 }
 
 void CaptureRecorder::write(HubItem item) {
-  if (closed_) throw Error("a capture that was closed cannot be written to");
+  if (closed_) throw Error("a closed capture cannot be written to");
   writer_->push(std::move(item));
   if (settings_.safe_after == 0) writer_->drain();
 }

@@ -25,14 +25,14 @@ void refuse_foreign(const std::filesystem::path& file);
 struct RecorderSettings {
   double safe_after =
       0.5;  ///< [s] within which what was written is on the disk, whatever happens to the machine
-  double most_bytes = 0;    ///< of a file, about; then the next is begun; 0: no limit
+  double max_bytes = 0;     ///< of a file, about; then the next is begun; 0: no limit
   double most_seconds = 0;  ///< of a file, by the items' receipt; 0: no limit
 };
 
-/// Writes scans and readings as the capture that the hub's network interface would have made of them: a
-/// reader gives them back as they are, times of receipt included. The file grows in place and holds whole
-/// records only, so that it can be read whenever and however the writing ends. A thread of its own writes, so
-/// that nobody waits for the disk, and what came is on it soon, whether anything more comes or not.
+/// Records scans and readings as a capture of the hub's network interface: a reader gives them back
+/// unchanged, times of receipt included. The file grows in place and holds whole records only, so that it is
+/// readable whenever and however the writing ends. It is written in a thread of its own, so that nobody waits
+/// for the disk, and is flushed soon, whether anything more comes or not.
 class CaptureRecorder {
  public:
   /// @param file  the first one; the next are name-2.pcap, name-3.pcap … A recording that exists is written
@@ -52,7 +52,7 @@ class CaptureRecorder {
   // Once it is closed, or has thrown:
   const std::vector<std::filesystem::path>& files() const { return files_; }
   std::uint64_t recorded() const { return recorded_; }  ///< items
-  /// What is to be said of recordings that were there already and damaged.
+  /// Notes on existing recordings that were damaged.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
@@ -70,7 +70,7 @@ class CaptureRecorder {
   RecorderSettings settings_;
   bool closed_ = false;
 
-  // of the thread that writes, until it has nothing left to do
+  // owned by the writing thread until it has finished
   std::vector<std::filesystem::path> files_;
   std::vector<std::string> notes_;
   std::size_t names_ = 0;  ///< that were used or passed over: hub.pcap, hub-2.pcap …

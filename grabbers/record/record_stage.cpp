@@ -6,35 +6,21 @@
 namespace crisp {
 
 void RecordStage::describe(StageDescription<RecordStage>& d) {
-  d.name("write.capture").summary("records scans and plate readings as a capture that grabber.capture reads");
+  d.name("write.capture").summary("records scans and encoder readings as a capture for grabber.capture");
   d.details(
-      "A pcap file with nanosecond stamps, as the hub's network interface would have been captured: a TCP "
-      "connection "
-      "a laser (CoLa-B) and the plate's datagrams. What is read from it are the same scans and readings with "
-      "the same "
-      "times of receipt.\n\n"
-      "The file grows in place, and what was received is on the disk soon after: neither Ctrl-C nor a power "
-      "cut "
-      "leaves a file that cannot be read. A recording that is there already is written on, behind what of it "
-      "is damaged; "
-      "if nothing behind its end could be read, it stays as it is and file-2.pcap is begun. A simulated "
-      "capture, or "
-      "another program's file, of "
-      "that "
-      "name is refused. A disk that is full ends the "
-      "recording, "
-      "and the run's summary says so; the other stages go on.");
+      "A pcap file with nanosecond stamps, as a capture of the hub's network interface: a TCP connection per laser (CoLa-B) and the plate's datagrams. Reading it gives the same scans and readings with the same times of receipt.\n\n"
+      "The file grows in place, and received data are on disk soon after: neither Ctrl-C nor a power cut leaves an unreadable file. An existing recording is continued after its last intact record; if nothing behind its end could be read, it stays unchanged and file-2.pcap is begun. A simulated capture or another program's file of that name is an error. A full disk ends the recording, which the summary reports; the other stages go on.");
   d.takes<Scan>().takes<PlateReading>();
   d.option("file", &RecordStage::file_, "the capture").writes({"<stem>-#<ext>"}).required();
-  d.option("most_bytes", &RecordStage::settings_, &RecorderSettings::most_bytes,
-           "about so large a file may become; then file-2.pcap is begun, and so on; 0: no limit")
+  d.option("max_bytes", &RecordStage::settings_, &RecorderSettings::max_bytes,
+           "approximate size limit of a file; then file-2.pcap is begun, and so on; 0: no limit")
       .range(0, 1e15);
-  d.option("most_seconds", &RecordStage::settings_, &RecorderSettings::most_seconds,
-           "so much time a file may hold; then the next is begun; 0: no limit")
+  d.option("max_duration", &RecordStage::settings_, &RecorderSettings::most_seconds,
+           "duration limit of a file; then the next is begun; 0: no limit")
       .unit("s")
       .range(0, 1e9);
   d.option("safe_after", &RecordStage::settings_, &RecorderSettings::safe_after,
-           "within which what was received is on the disk")
+           "maximum delay until received data are on disk")
       .unit("s")
       .range(0, 60);
 }
@@ -55,8 +41,8 @@ void RecordStage::write(HubItem item, Context& context) {
 void RecordStage::fail(const Error& error, Context& context) {
   failed_ = true;
   const std::string what = "the recording ended early: " + error.message();
-  context.distrust(what);
-  context.tell({.line = "the recording has ended", .events = {what}});
+  context.mark_untrusted(what);
+  context.set_status({.line = "the recording has ended", .events = {what}});
   end();
 }
 
@@ -79,7 +65,7 @@ void RecordStage::end() {
 void RecordStage::finish(Outputs&, Context& context) {
   if (given_ == 0) {
     throw Error("nothing was received, so that there is no capture to write",
-                "see whether the devices are switched on and at the rig's addresses");
+                "check that the devices are switched on and at the rig's addresses");
   }
   try {
     if (recorder_) recorder_->close();

@@ -52,12 +52,12 @@ void add_terms(Calibration& truth, const std::vector<Effect>& effects, const Ter
     if (!terms.knows(effect.name)) {
       std::string advice = "grabber.simulate can";
       if (effect.name == "scene.moving") {
-        advice = "things move where the scene says so: `walk` of a thing in a scene_file, or scene: people";
+        advice = "the scene determines what moves: `walk` of a thing in a scene_file, or scene: people";
       }
       if (effect.name == "encoder.slip")
-        advice = "no stage simulates it; diagnose.encoder finds it in captures";
-      throw Error(effect.name + " is no term of the sensor model, so that this stage cannot simulate it",
-                  advice, effect.place);
+        advice = "no stage simulates it; diagnose.encoder estimates it from captures";
+      throw Error(effect.name + " is no term of the sensor model, so this stage cannot simulate it", advice,
+                  effect.place);
     }
     const TermInfo& info = terms.get(effect.name)->info();
     if (info.scope == Scope::kPlate) set(truth.plate_terms, info, effect);

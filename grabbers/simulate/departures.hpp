@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// How far the true parameters may lie from the nominal ones.
+/// Largest deviations of the true parameters from the nominal ones.
 struct Departures {
   double tau = 0;     ///< [m]
   double alpha = 0;   ///< [rad]

@@ -18,7 +18,7 @@ struct Step {
 struct DeviceClock {
   double start = 0;                 ///< [s] what it reads at hub time 0
   double skew = 0;                  ///< hub seconds a device second − 1, at hub time 0: as ClockMap has it
-  double drift = 0;                 ///< [1/s] by how much the skew grows in a second
+  double drift = 0;                 ///< [1/s] growth of the skew per second
   std::vector<double> resets = {};  ///< [s] hub times at which it starts again from zero; ascending
   Step step = {};                   ///< a jump of what it reads
 
@@ -26,7 +26,7 @@ struct DeviceClock {
   double seconds(double hub_time) const;
   /// The same in whole microseconds as telegrams carry them: wraps at 2^32.
   std::uint32_t microseconds(double hub_time) const;
-  /// How many resets came before.
+  /// Number of earlier resets.
   std::size_t resets_before(double hub_time) const;
 };
 

@@ -8,7 +8,7 @@
 namespace crisp {
 namespace {
 
-/// Where a parameter of an effect lies: in what a laser has, or in what every device has.
+/// Target of an effect's parameter: a laser's settings, or those of any device.
 struct Row {
   std::string effect;
   std::string parameter;
@@ -59,15 +59,15 @@ const Row* find_row(const std::string& effect, const std::string& parameter) {
   return found == rows().end() ? nullptr : &*found;
 }
 
-bool befalls_devices(const std::string& effect) {
+bool affects_devices(const std::string& effect) {
   return std::ranges::any_of(rows(), [&](const Row& row) { return row.effect == effect; });
 }
 
-bool befalls_clocks(const std::string& effect) {
+bool affects_clocks(const std::string& effect) {
   return std::ranges::any_of(rows(), [&](const Row& row) { return row.effect == effect && row.of_device; });
 }
 
-bool befalls(const Effect& effect, std::size_t device) { return !effect.owner || *effect.owner == device; }
+bool affects(const Effect& effect, std::size_t device) { return !effect.owner || *effect.owner == device; }
 
 void set(const Row& row, std::size_t device, double value, RecordingSettings& settings) {
   if (row.of_device) {
@@ -77,7 +77,7 @@ void set(const Row& row, std::size_t device, double value, RecordingSettings& se
   }
 }
 
-void draw_nothing_beside(const Effect& measured, std::size_t device, RecordingSettings& settings) {
+void draw_nothing_else(const Effect& measured, std::size_t device, RecordingSettings& settings) {
   if (measured.name == "clock.drift") settings.device_effects[device].drawn = false;
   if (measured.name == "mirror.period") settings.scanner.laser_effects[device].mirror_drawn = false;
 }
@@ -87,7 +87,7 @@ void draw_nothing_beside(const Effect& measured, std::size_t device, RecordingSe
 std::vector<EffectInfo> recording_catalogue(const TermRegistry& terms) {
   std::vector<EffectInfo> catalogue = effect_catalogue(terms);
   for (auto& info : catalogue) {
-    if (befalls_clocks(info.name)) info.scope = Scope::kDevice;
+    if (affects_clocks(info.name)) info.scope = Scope::kDevice;
   }
   return catalogue;
 }
@@ -95,7 +95,7 @@ std::vector<EffectInfo> recording_catalogue(const TermRegistry& terms) {
 std::vector<EffectInfo> laser_catalogue(const TermRegistry& terms) {
   std::vector<EffectInfo> catalogue = effect_catalogue(terms);
   std::erase_if(catalogue, [](const EffectInfo& info) {
-    return !befalls_devices(info.name) || befalls_clocks(info.name);
+    return !affects_devices(info.name) || affects_clocks(info.name);
   });
   return catalogue;
 }
@@ -108,13 +108,13 @@ std::vector<Effect> apply_device_effects(std::vector<Effect> effects, RecordingS
     for (const auto& [parameter, value] : effect.values) {
       const Row* row = find_row(effect.name, parameter);
       for (std::size_t device = 0; row && device <= lasers; ++device) {
-        if (!befalls(effect, device)) continue;
+        if (!affects(effect, device)) continue;
         set(*row, device, value, settings);
-        if (effect.measured) draw_nothing_beside(effect, device, settings);
+        if (effect.measured) draw_nothing_else(effect, device, settings);
       }
     }
   }
-  std::erase_if(effects, [](const Effect& effect) { return befalls_devices(effect.name); });
+  std::erase_if(effects, [](const Effect& effect) { return affects_devices(effect.name); });
   return effects;
 }
 

@@ -10,14 +10,14 @@
 
 namespace crisp {
 
-/// What of the catalogue can be simulated in a recording: where there are telegrams, a clock that drifts is a
-/// device's own, and so also the plate's. What a scene does is in it, to be refused with a word.
+/// The catalogue's effects that can be simulated in a recording: with telegrams, a clock's drift is a
+/// device's own, and so also the plate's. The scene's effects are in it, to be rejected with advice.
 std::vector<EffectInfo> recording_catalogue(const TermRegistry& terms);
 
-/// Of the catalogue what befalls a laser's noise and mirror: what is simulated of a device without telegrams.
+/// The catalogue's effects of a laser's noise and mirror, which are simulated without telegrams.
 std::vector<EffectInfo> laser_catalogue(const TermRegistry& terms);
 
-/// Puts the effects that befall devices (clocks, links, mirrors, noise) into the settings. Those of the true
+/// Applies effects of devices (clocks, links, mirrors, noise) to the settings. Effects of the true
 /// calibration, which are terms, are left.
 ///
 /// @return the others

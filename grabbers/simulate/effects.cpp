@@ -18,9 +18,9 @@ class Reader {
  public:
   Reader(const Rig& rig, const std::vector<EffectInfo>& catalogue) : rig_(rig), catalogue_(catalogue) {}
 
-  std::vector<Effect> read(const OptionGroups& wanted) {
+  std::vector<Effect> read(const OptionGroups& requested) {
     std::vector<Effect> effects;
-    for (const auto& group : wanted) {
+    for (const auto& group : requested) {
       Effect effect{.name = group.name, .owner = {}, .values = {}, .place = group.place};
       take_owner(effect);
       const EffectInfo* info = find(effect.name);
@@ -50,10 +50,10 @@ class Reader {
   std::string suggestion(const std::string& name) const {
     std::vector<std::string> names;
     for (const auto& info : catalogue_) names.push_back(info.name);
-    return did_you_mean(name, names, "`crisp effects` lists those that there are");
+    return did_you_mean(name, names, "`crisp effects` lists the effects");
   }
 
-  /// Takes the owner off a name that is none as a whole: effects may begin with "plate." themselves.
+  /// Splits the owner off a name that is no effect as a whole: effects may begin with "plate." themselves.
   void take_owner(Effect& effect) const {
     const auto dot = effect.name.find('.');
     if (find(effect.name) || dot == std::string::npos) return;
@@ -69,7 +69,7 @@ class Reader {
     effect.name.erase(0, dot + 1);
   }
 
-  /// Of an effect that there is, put behind something that the rig does not have.
+  /// Whether an existing effect has an owner that the rig does not have.
   bool names_no_device(const OptionGroup& group) {
     const auto dot = group.name.find('.');
     if (dot == std::string::npos || !find(group.name.substr(dot + 1))) return false;
@@ -91,7 +91,7 @@ class Reader {
       fail(effect.place, info.name + " is the plate's, not one laser's", "leave the owner out");
     } else if (info.scope == Scope::kLaser && plate) {
       fail(effect.place, info.name + " is each laser's, not the plate's",
-           "put a laser's name in front, or none for all of them");
+           "put a laser's name in front, or none for all lasers");
     }
   }
 
@@ -129,9 +129,9 @@ class Reader {
 
 }  // namespace
 
-std::vector<Effect> read_effects(const OptionGroups& wanted, const Rig& rig,
+std::vector<Effect> read_effects(const OptionGroups& requested, const Rig& rig,
                                  const std::vector<EffectInfo>& catalogue) {
-  return Reader(rig, catalogue).read(wanted);
+  return Reader(rig, catalogue).read(requested);
 }
 
 }  // namespace crisp

@@ -13,14 +13,14 @@
 
 namespace crisp {
 
-/// An effect of the catalogue that was asked for.
+/// A requested effect of the catalogue.
 struct Effect {
   std::string name;                  ///< "mirror.cone"
   std::optional<std::size_t> owner;  ///< index of the only laser that has it, or the number of lasers for the
                                      ///< plate; nothing: all that can have it
   std::vector<std::pair<std::string, double>> values;  ///< of the parameters that were given, in SI
-  Place place;                                         ///< where it was asked for
-  bool measured = false;  ///< on a real device: it is in place of what would be drawn, not beside it
+  Place place;                                         ///< where it was requested
+  bool measured = false;                               ///< on a real device: it replaces what would be drawn
 };
 
 /// Understands a map of effects: `{encoder.eccentricity: {a: 0.1deg}, laser2.mirror.cone: {kappa: 0.3deg}}`.
@@ -30,7 +30,7 @@ struct Effect {
 /// @throws Errors    with every mistake: names that are not known (and which is near), owners that cannot
 /// have
 ///                   the effect, values in a wrong unit or beyond the bounds
-std::vector<Effect> read_effects(const OptionGroups& wanted, const Rig& rig,
+std::vector<Effect> read_effects(const OptionGroups& requested, const Rig& rig,
                                  const std::vector<EffectInfo>& catalogue);
 
 }  // namespace crisp

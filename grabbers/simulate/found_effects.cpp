@@ -21,9 +21,9 @@ struct Found {
   std::vector<Parameter> parameters;
 };
 
-/// Weibull's law for delays of a median and a 95th percentile [s]; the exponential one where these are none
-/// of such a law.
-std::vector<Parameter> law_of_delays(double median, double high) {
+/// Weibull distribution of delays with this median and 95th percentile [s]; exponential where no Weibull
+/// distribution has them.
+std::vector<Parameter> delay_distribution(double median, double high) {
   constexpr double kLeast = 0.2, kMost = 5;
   const double in_20 = std::log(20.0);  // −ln of the share that is later than the percentile
   const double in_2 = std::numbers::ln2;
@@ -38,7 +38,8 @@ void add_clocks_and_links(const Findings& findings, std::vector<Found>& all) {
     const DeviceFacts& facts = findings.devices[i];
     const std::string where = fmt::format("devices[{}]", i);
     all.push_back({where, "clock.drift", facts.device, {{.name = "skew", .unit = "1", .value = facts.skew}}});
-    all.push_back({where, "latency.jitter", facts.device, law_of_delays(facts.delay_median, facts.delay_95)});
+    all.push_back(
+        {where, "latency.jitter", facts.device, delay_distribution(facts.delay_median, facts.delay_95)});
   }
 }
 
@@ -46,7 +47,7 @@ void add_mirrors(const Findings& findings, std::vector<Found>& all) {
   for (std::size_t i = 0; i < findings.devices.size(); ++i) {
     const DeviceFacts& facts = findings.devices[i];
     if (!(facts.period > 0 && facts.nominal_period > 0)) continue;
-    // The period was told by the laser's own clock.
+    // The period is measured by the laser's own clock.
     const double excess = facts.period * (1 + facts.skew) - facts.nominal_period;
     const std::string where = fmt::format("devices[{}]", i);
     all.push_back({where, "mirror.period", facts.device, {{.name = "excess", .unit = "s", .value = excess}}});
@@ -81,8 +82,7 @@ void check_device(const Found& found, const std::string& file, const Rig& rig) {
   if (std::ranges::find(names, found.scope) != names.end()) return;
   throw Error(
       fmt::format("{}: {} is of '{}', which the rig does not have", found.where, found.cause, found.scope),
-      fmt::format("it has {} and {}: give --rig the rig that was diagnosed", fmt::join(names, ", "),
-                  rig.plate.name),
+      fmt::format("it has {} and {}: give --rig the diagnosed rig", fmt::join(names, ", "), rig.plate.name),
       {file});
 }
 
@@ -102,28 +102,30 @@ OptionGroup as_option(const Found& found, const std::string& file) {
 FoundEffects effects_of(const Findings& findings, const std::string& file, const Rig& rig,
                         const std::vector<EffectInfo>& catalogue) {
   FoundEffects result;
-  OptionGroups wanted;
+  OptionGroups requested;
   for (const Found& found : all_found(findings)) {
     const auto info = std::ranges::find(catalogue, found.cause, &EffectInfo::name);
     if (info == catalogue.end() || info->scope != Scope::kScene) check_device(found, file, rig);
     if (found.cause == "noise.mixed_pixels") {
-      result.others.push_back(fmt::format(
-          "{} of {}: the file has the share of edges, not the width of the spot", found.cause, found.scope));
+      result.others.push_back(
+          fmt::format("{} of {}: the file holds the fraction of edges, not the width of the spot",
+                      found.cause, found.scope));
     } else if (std::ranges::any_of(found.parameters, [](const auto& p) { return std::isnan(p.value); })) {
       result.others.push_back(
-          fmt::format("{} of {}, which the file does not know", found.cause, found.scope));
+          fmt::format("{} of {}, which the file does not hold", found.cause, found.scope));
     } else if (info != catalogue.end() && info->scope != Scope::kScene) {
-      wanted.push_back(as_option(found, file));
+      requested.push_back(as_option(found, file));
     } else {
       result.others.push_back(fmt::format("{} of {}", found.cause, found.scope));
     }
   }
   for (const UnnamedFinding& finding : findings.unnamed) {
     if (!finding.accepted) continue;
-    result.others.push_back(fmt::format("{} of {} over the {}, unnamed: the file has its size, not its shape",
-                                        finding.quantity, finding.scope, finding.covariate));
+    result.others.push_back(
+        fmt::format("{} of {} over the {}, unnamed: the file holds its amplitude, not its shape",
+                    finding.quantity, finding.scope, finding.covariate));
   }
-  result.effects = read_effects(wanted, rig, catalogue);
+  result.effects = read_effects(requested, rig, catalogue);
   for (Effect& effect : result.effects) effect.measured = true;
   return result;
 }

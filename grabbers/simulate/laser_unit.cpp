@@ -16,14 +16,14 @@ constexpr double kMillimetres = 1e3;                              // [1/m] range
 constexpr double kFarthest = 65;                                  // [m] in 16 bits of millimetres
 constexpr std::uint32_t kFirstSerialNumber = 18090001;
 constexpr double kRounding = 1e-9;         // [rad] that an angle may be off on the wire
-constexpr std::size_t kHeaderBytes = 110;  // what a telegram needs beside its values, about
+constexpr std::size_t kHeaderBytes = 110;  // approximate size of a telegram without its values
 
 void check_unit(const ScannerSettings& settings, const FieldOfView& field) {
   if (settings.range.max_distance > kFarthest) {
     throw Error("a laser's telegrams cannot hold ranges beyond 65 m", "lower the largest distance");
   }
   if (!settings.beams.empty()) {
-    throw Error("a telegram holds all beams of the field of view, not chosen ones",
+    throw Error("a telegram holds all beams of the field of view, not selected ones",
                 "narrow the field of view instead");
   }
   const auto step = static_cast<std::uint16_t>(std::lround(field.step * kTenThousandths));
@@ -86,7 +86,7 @@ void LaserUnit::fill_header(ScanData& data, const Sweep& sweep, double sent) {
     scan_counter_ = 0;
     scans_since_start_ = 0;
   }
-  // The rig says how the device's stamp relates to the first possible beam: invert exactly that.
+  // The rig defines the offset of the device's stamp from the first possible beam: invert exactly that.
   const double stamp = sweep.revolution.begin - rig_.period_offset * sweep.revolution.period -
                        rig_.time_offset + truth_.stamp_lag;
   data.serial_number = kFirstSerialNumber + index_;

@@ -27,7 +27,7 @@ LinkSettings with_bursts(LinkSettings link, const BurstSettings& bursts) {
   if (together(most) < bursts.together) {
     throw Error(fmt::format("no link holds back a share of {:.3g} of its telegrams together by {:.3g} s only",
                             bursts.together, bursts.wait),
-                "make latency.bursts.wait longer, or together less");
+                "raise latency.bursts.wait, or lower together");
   }
   constexpr int kHalvings = 60;
   for (int step = 0; step < kHalvings; ++step) {

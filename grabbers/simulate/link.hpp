@@ -14,12 +14,12 @@ struct LinkSettings {
   double minimum = 1e-3;     ///< [s] shortest way that this kind of device can have
   double jitter = 1e-4;      ///< [s] mean of the delay beyond that, by Weibull's law
   double shape = 1;          ///< of that law; 1: exponential, below: a longer tail
-  double stall_rate = 0.2;   ///< [1/s] how often the link stalls: what is sent meanwhile arrives in a burst
+  double stall_rate = 0.2;   ///< [1/s] rate of the link's stalls: telegrams sent meanwhile arrive in a burst
   double stall_time = 5e-3;  ///< [s] mean duration of a stall
   double seconds_per_byte = 80e-9;  ///< [s] 100 Mbit/s: telegrams follow each other no closer
 };
 
-/// What is held back and handed on several at a time: `latency.bursts` of the catalogue.
+/// Telegrams held back and handed on several at a time: `latency.bursts` of the catalogue.
 struct BurstSettings {
   double together = 0;     ///< share of the telegrams that come together with the one before; 0: none
   double interval = 0.02;  ///< [s] between two telegrams, as they are sent

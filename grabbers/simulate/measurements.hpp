@@ -15,11 +15,11 @@
 
 namespace crisp {
 
-/// What perfectly aligned clocks would have made of a recording.
+/// A recording's measurements with perfectly aligned clocks.
 struct SimulatedMeasurements {
   Measurements beams;
   std::vector<std::uint32_t> surface;  ///< for each beam, the index of the scene's thing that it met
-  std::vector<float> cos_incidence;    ///< of each beam on it, which `beams` is not told
+  std::vector<float> cos_incidence;    ///< of each beam on it, which `beams` does not contain
   PlateTrajectory plate;    ///< reaches 0.25 s beyond the beams at both ends, so that any lag is covered
   Calibration truth;        ///< of which the beams were made
   std::size_t no_echo = 0;  ///< beams that nothing came back from
@@ -28,9 +28,9 @@ struct SimulatedMeasurements {
 /// Simulates measurements without clocks, telegrams or delays: times are hub times whose only error is the η
 /// of the true calibration, φ_j = φ(t_j + η).
 ///
-/// @param scene     in the base's frame
+/// @param terms     with the ones that `settings.truth` names
 /// @param terms     that `settings.truth` names
-/// @throws Error    if the settings make no sense
+/// @throws Error    if the settings are inconsistent
 SimulatedMeasurements simulate_measurements(const ScannerSettings& settings, const Scene& scene,
                                             const TermRegistry& terms = {});
 

@@ -13,7 +13,7 @@ Mirror::Mirror(const MirrorSettings& settings, std::uint64_t seed, const std::st
   if (!(settings.frequency > 0)) throw Error("the mirror of " + laser + " must turn faster than 0 Hz");
   if (!(std::abs(settings.slowest) < 0.5 && std::abs(excess * settings.frequency) < 0.5 &&
         settings.wander >= 0 && settings.wander < 0.5 && settings.jitter >= 0 && settings.jitter < 0.05)) {
-    throw Error("the mirror of " + laser + " departs too far from its nominal period");
+    throw Error("the mirror of " + laser + " is too far from its nominal period");
   }
   constexpr double kTurn = 2 * std::numbers::pi;
   RandomStream random(seed, laser + ".mirror");

@@ -9,7 +9,7 @@
 
 namespace crisp {
 
-/// How a laser's mirror turns: real units are up to 0.6 % slow and wander by 0.2 % within seconds.
+/// Motion of a laser's mirror: real units are up to 0.6 % slow and wander by 0.2 % within seconds.
 struct MirrorSettings {
   double frequency = 50;  ///< [Hz] nominal
   double slowest = 6e-3;  ///< each unit's mean period is drawn: longer than nominal by up to this share

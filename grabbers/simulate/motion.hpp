@@ -9,7 +9,7 @@
 
 namespace crisp {
 
-/// How the plate turns.
+/// Motion of the plate.
 enum class MotionKind {
   constant,     ///< at `max_rate`
   varying,      ///< smoothly between `min_rate` and `max_rate`, at random
@@ -39,7 +39,7 @@ class Motion {
   /// @throws Error       if there are none, or their times do not ascend
   explicit Motion(std::vector<Knot> knots, double first_angle = 0);
 
-  /// The plate at any time [s]: always known. (Optional as the sensor model asks for it.)
+  /// The plate at any time [s]: always known. (Optional as the sensor model requires it.)
   std::optional<PlateState> at(double t) const;
 
  private:

@@ -11,18 +11,18 @@
 
 namespace crisp {
 
-/// What a laser makes of a true distance. The defaults are those of the LMS-151's data sheet.
+/// A laser's range measurement of a true distance. The defaults are those of the LMS-151's data sheet.
 struct RangeSettings {
   double sigma = 0.012;      ///< [m] standard deviation of the noise
   double quantum = 0.001;    ///< [m] ranges are multiples of it; 0: not rounded
-  double max_distance = 50;  ///< [m] nothing comes back from beyond
+  double max_distance = 50;  ///< [m] largest range with an echo
 };
 
 /// How one laser's noise departs from a plain normal one: effects `noise.*` of the catalogue. The defaults
 /// change nothing.
 struct NoiseEffects {
   double sigma = 0;           ///< [m] standard deviation; 0: of RangeSettings::sigma
-  double slope = 0;           ///< standard deviation a metre of range, far away
+  double slope = 0;           ///< asymptotic standard deviation per metre of range
   double spread = 0;          ///< [m] standard deviation at 45° that the incidence adds
   double jitter = 0;          ///< [m] standard deviation that an echo of remission 1 adds
   double tail_share = 0;      ///< share of the ranges whose noise is `tail_scale` times as large
@@ -44,7 +44,8 @@ class RangeNoise {
   RangeNoise(const RangeSettings& range, const NoiseEffects& effects, std::uint64_t seed,
              const std::string& laser);
 
-  /// What fate has for one beam, whatever it will meet. To be drawn for every beam, in the order of firing.
+  /// Random numbers of one beam, independent of the surface. To be drawn for every beam, in the order of
+  /// firing.
   struct Draw {
     double normal = 0;  ///< of variance 1, or larger in the tail
     double shift = 0;   ///< [m]

@@ -8,8 +8,8 @@
 
 namespace crisp {
 
-/// The room of the Monte Carlo of Sheehan, Harrison and Newman, section 5.2, as far as it is told: two
-/// dimensions, so upright walls only; some 9 × 7 m with a bay, so that it looks different from every side.
+/// The room of the Monte Carlo of Sheehan, Harrison and Newman, section 5.2, as far as it is described: two
+/// dimensions, so upright walls only; some 9 × 7 m with a bay, so that it differs from every side.
 Scene paper_room();
 
 /// Their scanner: σ = 12 mm, τ = 0.20 m, α = 0, of each laser only the two beams in the plate's plane

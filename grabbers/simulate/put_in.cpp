@@ -11,7 +11,7 @@
 namespace crisp {
 namespace {
 
-/// Incidence is not known of a scan, and neighbours in a scan do not say what a wider spot would have met.
+/// A scan does not contain incidences, nor the surfaces that a wider spot would have met.
 constexpr auto kPossible = std::to_array<std::string_view>(
     {"clock.drift", "clock.step", "latency.step", "mirror.period", "noise.heavy_tail", "noise.normal",
      "noise.quantisation", "noise.range_dependent", "noise.remission_dependent", "noise.two_peaks",

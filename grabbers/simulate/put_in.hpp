@@ -12,18 +12,17 @@
 
 namespace crisp {
 
-/// Of the catalogue what can be put into scans that were recorded: their ranges and times are all that there
-/// is.
+/// The catalogue's effects that can be injected into recorded scans, i.e. those of ranges and times.
 std::vector<EffectInfo> put_in_catalogue(const TermRegistry& terms);
 
-/// What befalls one laser's recorded scans. Instants count from the receipt of its first scan.
+/// Effects injected into one laser's recorded scans. Instants count from the receipt of its first scan.
 struct PutInEffects {
   LaserEffects laser;
   DeviceEffects device;
   Step range;  ///< [m] by which its ranges grow
 };
 
-/// Of each laser of the rig. @param effects  of put_in_catalogue()
+/// The injected effects of each laser of the rig. @param effects  of put_in_catalogue()
 std::vector<PutInEffects> put_in_effects(const std::vector<Effect>& effects, const Rig& rig);
 
 /// Changes the scans of one laser as if it had had these effects besides its own.

@@ -9,7 +9,7 @@
 
 namespace crisp {
 
-/// `simulate.put_in`: a known change in scans that were recorded, to see what a measure answers.
+/// `simulate.inject`: a known change in scans that were recorded, to see what a measure answers.
 class PutInStage final : public Stage {
  public:
   static void describe(StageDescription<PutInStage>& d);
@@ -19,7 +19,7 @@ class PutInStage final : public Stage {
  private:
   std::vector<Effect> effects(const RunSettings& run) const;
 
-  OptionGroups wanted_;
+  OptionGroups requested_;
   std::vector<PutIn> lasers_;  // of the rig
 };
 

@@ -43,7 +43,7 @@ Vector3d checked_normal(const Surface& surface) {
   return normal;
 }
 
-/// Where the ray enters the box, or infinity if it misses it.
+/// Distance at which the ray enters the box, or infinity if it misses it.
 double entry(const Eigen::AlignedBox3d& box, const Ray& ray, const Vector3d& inverse) {
   const Eigen::Array3d a = (box.min() - ray.origin).array() * inverse.array();
   const Eigen::Array3d b = (box.max() - ray.origin).array() * inverse.array();
@@ -58,7 +58,7 @@ double distance_to_segment(const Vector3d& point, const Vector3d& a, const Vecto
   return (a + u * along - point).norm();
 }
 
-/// Where a body stops a beam.
+/// Intersection of a beam with a body.
 std::optional<Hit> stop(const Body& body, const Ray& ray, const Shot& shot) {
   const Vector3d off = body.walk.at(shot.time);
   const auto inside = passage(body.shape, {.origin = ray.origin - off, .direction = ray.direction});

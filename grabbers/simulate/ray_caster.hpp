@@ -12,7 +12,7 @@
 
 namespace crisp {
 
-/// Where a ray first meets the scene.
+/// First intersection of a ray with the scene.
 struct Hit {
   double distance = 0;        ///< [m] along the ray
   std::uint32_t surface = 0;  ///< index of the thing: of Scene::surfaces and, after them, Scene::bodies
@@ -20,7 +20,7 @@ struct Hit {
       0;  ///< |cos β| between the ray and the surface's normal; of foliage one half, its mean
 };
 
-/// What differs from one shot of a beam to the next.
+/// Data that differ from one shot of a beam to the next.
 struct Shot {
   double time = 0;                 ///< [s] true time, for what moves
   RandomStream* chance = nullptr;  ///< draws how far the beam gets into foliage; none: as far as in the mean

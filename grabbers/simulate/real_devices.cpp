@@ -35,9 +35,9 @@ bool is_in(const std::vector<EffectInfo>& catalogue, const std::string& effect) 
 }
 
 /// Which real device each laser, or the plate, is like.
-std::map<std::string, std::string> likenesses(const std::vector<std::string>& wanted, const Rig& rig) {
+std::map<std::string, std::string> likenesses(const std::vector<std::string>& requested, const Rig& rig) {
   std::map<std::string, std::string> device_of;
-  for (const std::string& wish : wanted) {
+  for (const std::string& wish : requested) {
     if (const auto sign = wish.find('='); sign != std::string::npos) {
       device_of[wish.substr(0, sign)] = wish.substr(sign + 1);
       continue;
@@ -54,10 +54,10 @@ const std::vector<std::string>& real_devices() {
   return kNames;
 }
 
-std::vector<Effect> effects_of_real_devices(const std::vector<std::string>& wanted, const Rig& rig,
+std::vector<Effect> effects_of_real_devices(const std::vector<std::string>& requested, const Rig& rig,
                                             const std::vector<EffectInfo>& catalogue) {
   OptionGroups all;
-  for (const auto& [owner, device] : likenesses(wanted, rig)) {
+  for (const auto& [owner, device] : likenesses(requested, rig)) {
     for (OptionGroup& habit : habits_of(device)) {
       if (!is_in(catalogue, habit.name)) continue;
       habit.name = owner + "." + habit.name;

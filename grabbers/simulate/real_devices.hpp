@@ -18,7 +18,7 @@ const std::vector<std::string>& real_devices();
 /// @param catalogue  what can be simulated; other habits are left out
 /// @throws Error or Errors  for devices that are not known, owners that the rig does not have, and owners
 ///                          that cannot have such habits
-std::vector<Effect> effects_of_real_devices(const std::vector<std::string>& wanted, const Rig& rig,
+std::vector<Effect> effects_of_real_devices(const std::vector<std::string>& requested, const Rig& rig,
                                             const std::vector<EffectInfo>& catalogue);
 
 }  // namespace crisp

@@ -60,7 +60,7 @@ RecordedCapture::RecordedCapture(std::filesystem::path path, RecordingSettings s
       hub_(settings_.scanner.rig, settings_.telegrams.language,
            [this](std::int64_t ns, ByteView frame) { wire_.push(ns, frame); }),
       restarts_(settings_.scanner.rig.lasers.size()) {
-  constexpr std::int64_t kBefore = 200 * kMillisecond;  // the plate's readings begin 100 ms before time 0
+  constexpr std::int64_t kBefore = 200 * kMillisecond;  // the encoder readings begin 100 ms before time 0
   for (std::size_t i = 0; i < restarts_.size(); ++i) {
     hub_.connect(i, settings_.start_ns - kBefore + static_cast<std::int64_t>(i) * kMillisecond);
   }

@@ -12,7 +12,7 @@
 
 namespace crisp {
 
-/// What befalls frames between the devices and the file.
+/// Faults of frames between the devices and the file.
 struct WireFaults {
   double lost = 0;      ///< share that the capture does not hold
   double repeated = 0;  ///< share that is there twice, the second some milliseconds later

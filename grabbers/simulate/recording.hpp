@@ -16,7 +16,7 @@
 
 namespace crisp {
 
-/// What reached the hub: one telegram of a laser or one reading of the plate.
+/// An item received by the hub: one telegram of a laser or one encoder reading.
 using HubEvent = std::variant<LaserTelegram, PlateReading>;
 
 std::int64_t receipt_ns(const HubEvent& event);
@@ -38,7 +38,7 @@ class RecordingSimulator {
 
   const RecordingTruth& truth() const { return truth_; }
   const Motion& motion() const { return motion_; }
-  /// How much of the duration has been simulated, 0 to 1.
+  /// Simulated fraction of the duration, 0 to 1.
   double progress() const;
 
  private:

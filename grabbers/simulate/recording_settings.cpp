@@ -46,7 +46,7 @@ void check_names(const RecordingSettings& settings) {
     const bool laser = std::any_of(rig.lasers.begin(), rig.lasers.end(),
                                    [&](const auto& known) { return known.name == name; });
     if (!laser && name != rig.plate.name) {
-      throw Error("a fault is to befall the device '" + name + "', which the rig does not have");
+      throw Error("a fault is set for the device '" + name + "', which the rig does not have");
     }
   };
   for (const auto& silence : settings.faults.silences) check(silence.device);

@@ -13,7 +13,7 @@
 
 namespace crisp {
 
-/// How the devices' clocks are drawn: each starts anywhere within its 32 bits.
+/// Distribution of the devices' clocks: each starts anywhere within its 32 bits.
 struct ClockSettings {
   double skew = 250e-6;  ///< largest |skew|
   double drift = 0;      ///< [1/s] largest |growth of the skew|
@@ -22,11 +22,11 @@ struct ClockSettings {
 /// Whether telegrams carry remissions, and how wide.
 enum class RemissionChannel { none, bits8, bits16 };
 
-/// What a laser's telegrams look like and when they leave.
+/// Content and timing of a laser's telegrams.
 struct TelegramSettings {
   ColaLanguage language = ColaLanguage::B;
   RemissionChannel remission = RemissionChannel::bits8;
-  double handover = 3.1e-3;        ///< [s] from the end of the mirror's turn to the transmission stamp
+  double handover = 3.1e-3;        ///< [s] delay from the end of the mirror's turn to the transmission stamp
   double handover_jitter = 29e-6;  ///< [s] its standard deviation
   unsigned settling_scans = 0;     ///< so many scans after a start have device status 1: motor not at speed
 };
@@ -44,10 +44,10 @@ struct Restart {
   double time = 0;  ///< [s]
 };
 
-/// What goes wrong on the way.
+/// Faults of the transmission.
 struct FaultSettings {
-  double lost_scans = 0;     ///< share of the scan telegrams that never arrive
-  double lost_readings = 0;  ///< share of the plate's readings that never arrive
+  double lost_scans = 0;     ///< share of scan telegrams that are lost
+  double lost_readings = 0;  ///< share of encoder readings that are lost
   std::vector<Silence> silences;
   std::vector<Restart> restarts;
 
@@ -75,7 +75,7 @@ struct DeviceTruth {
   LinkSettings link;         ///< those of its kind, with its own jitter and bursts
   double minimum_delay = 0;  ///< [s] of its link
   Step latency;              ///< of the minimum delay
-  double stamp_lag = 0;      ///< [s] how much later the scan's stamp is than the rig's offsets say
+  double stamp_lag = 0;      ///< [s] delay of the scan's stamp beyond the rig's offsets
 };
 
 /// A recording of the scanner through its devices' clocks and telegrams.
@@ -92,7 +92,7 @@ struct RecordingSettings {
   std::int64_t start_ns = 1'767'225'600'000'000'000;  ///< [ns since the Unix epoch] hub time 0
 };
 
-/// All that a recording hides.
+/// The truth of a recording.
 struct RecordingTruth {
   Calibration calibration;
   std::vector<DeviceTruth> lasers;

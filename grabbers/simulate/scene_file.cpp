@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 constexpr std::size_t kMostSurfaces = 200'000;  // of all shapes together, so that memory stays bounded
 constexpr std::int64_t kMostCopies = 10'000;
 constexpr double kMostSpeed = 1000;  // [m/s]
-constexpr double kMostTimes = 1e4;   // larger, or smaller, than what is strewn
+constexpr double kMostTimes = 1e4;   // largest size factor of scattered copies, or its inverse
 
 struct Stand {
   Vector3d position;
@@ -74,7 +74,7 @@ class SceneReader {
     return scene;
   }
 
-  /// One thing: what it is made of, turned, moved, and repeated or strewn.
+  /// One item: its primitives, turned, moved, and repeated or scattered.
   Scene read_item(const YamlNode& node, const std::string& what) {
     YamlMap map(node, what, errors_);
     if (node.kind != YamlNode::Kind::map) return {};
@@ -85,7 +85,7 @@ class SceneReader {
     place(scene, read_bounded(map, "yaw", "rad", 0, kMostYaw), Vector3d::Zero());
     place(scene, 0, read_vector(map, "at", Vector3d::Zero(), errors_));
     if (const YamlNode* repetition = map.find("repeat")) scene = repeated(*repetition, scene);
-    if (const YamlNode* strewing = map.find("strew")) scene = strewn(*strewing, scene);
+    if (const YamlNode* strewing = map.find("strew")) scene = mixed(*strewing, scene);
     map.refuse_others();
     total_ += scene.things();
     if (total_ > kMostSurfaces) map.fail(node.place, fmt::format("more than {} surfaces", kMostSurfaces));
@@ -107,14 +107,14 @@ class SceneReader {
     for (auto& body : scene.bodies) look(body);
   }
 
-  /// What only bodies can be: foliage, or on the move.
+  /// Properties that only bodies can have: foliage and motion.
   void read_body(YamlMap& map, Scene& scene) {
     const YamlNode* depth = map.find("depth");
     const YamlNode* walk = map.find("walk");
     if (!depth && !walk) return;
     if (!scene.surfaces.empty()) {
-      map.fail((depth ? depth : walk)->place, "flat surfaces are neither foliage nor do they walk",
-               "say so of each box, cylinder, sphere or ellipsoid of the shape");
+      map.fail((depth ? depth : walk)->place, "flat surfaces can have neither depth nor a walk",
+               "set them on each box, cylinder, sphere or ellipsoid of the shape");
     }
     const double reach = read_bounded(map, "depth", "m", 0, kMostLength);
     if (depth && !(reach > 0)) map.fail(depth->place, "'depth' is not above 0");
@@ -134,7 +134,7 @@ class SceneReader {
     double length = 0;
     for (std::size_t i = 1; i < walk.along.size(); ++i) length += (walk.along[i] - walk.along[i - 1]).norm();
     if (!(length > 0))
-      fail(node.place, "the walk leads nowhere", "give at least two places: along: [[0, 0, 0], [3, 0, 0]]");
+      fail(node.place, "the walk has no length", "give at least two places: along: [[0, 0, 0], [3, 0, 0]]");
     if (!(walk.speed > 0)) fail(node.place, "'speed' is not above 0");
     return walk;
   }
@@ -154,7 +154,7 @@ class SceneReader {
   }
 
   /// Copies at random places, turned at random and of random size.
-  Scene strewn(const YamlNode& node, const Scene& scene) {
+  Scene mixed(const YamlNode& node, const Scene& scene) {
     YamlMap map(node, "strew", errors_);
     const std::size_t count = copies(map, node, scene);
     const Vector3d from = require_vector(map, "from", errors_);
@@ -166,7 +166,7 @@ class SceneReader {
     map.refuse_others();
     if (!(smallest >= 1 / kMostTimes && largest >= smallest)) {
       fail(node.place,
-           "sizes are to be strewn with 0.0001 <= smallest <= largest, as multiples of what is strewn");
+           "sizes of scattered copies need 0.0001 <= smallest <= largest, as multiples of the original's");
       return scene;
     }
     RandomStream random(seed, "strew");
@@ -174,7 +174,7 @@ class SceneReader {
     for (std::size_t i = 0; i < count; ++i) {
       const auto where = place_in(from, to, clear, random);
       if (!where) {
-        fail(node.place, "there is no room to strew in that is clear of the scanner",
+        fail(node.place, "no place for scattered copies is clear of the scanner",
              "make the region larger, or `clear` smaller");
         break;
       }
@@ -198,7 +198,7 @@ class SceneReader {
     return std::nullopt;
   }
 
-  /// How many copies of a scene are wanted; 1 if that is too many.
+  /// Requested number of copies of a scene; 1 if it is too large.
   static std::size_t copies(YamlMap& map, const YamlNode& node, const Scene& scene) {
     map.require("count");
     const auto count = static_cast<std::size_t>(map.integer("count", 1, 1, kMostCopies));

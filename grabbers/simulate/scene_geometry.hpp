@@ -10,12 +10,12 @@
 
 namespace crisp {
 
-/// What an item of a scene's file is: the one box, rectangle, polygon, run of walls, cylinder, sphere,
-/// ellipsoid or shape that it names. Boxes are six flat surfaces, or one body where the item is foliage or
+/// Geometry of an item of a scene's file: the one box, rectangle, polygon, run of walls, cylinder, sphere,
+/// ellipsoid or shape that it names. Boxes are six flat surfaces, or one body if the item is foliage or
 /// walks.
 ///
-/// @param shapes  that were described before, by name
-/// @param errors  gets what is wrong
+/// @param shapes  described before, by name
+/// @param errors  receives the errors
 Scene read_geometry(YamlMap& item, const Place& place, const std::map<std::string, Scene>& shapes,
                     std::vector<Error>& errors);
 

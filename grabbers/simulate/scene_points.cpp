@@ -21,7 +21,7 @@ Vector3d read_point(const YamlNode& node, const std::string& what, std::size_t d
   for (std::size_t i = 0; i < dimensions; ++i) {
     std::string wrong;
     const auto value = read_number(node.items[i], "m", wrong);
-    if (value && std::abs(*value) > kMostLength) wrong = fmt::format("{:g} m cannot be meant", *value);
+    if (value && std::abs(*value) > kMostLength) wrong = fmt::format("{:g} m is implausible", *value);
     if (!wrong.empty()) {
       errors.emplace_back(fmt::format("{}: {}", what, wrong), "", node.items[i].place);
     } else {
@@ -57,8 +57,8 @@ double read_bounded(YamlMap& map, const std::string& key, const std::string& uni
   const double value = map.number(key, unit, fallback);
   if (std::abs(value) <= most) return value;
   map.fail(map.find(key)->place,
-           fmt::format("'{}': {:g}{} cannot be meant", key, value, unit.empty() ? "" : " " + unit),
-           fmt::format("its size is at most {:g}{}", most, unit.empty() ? "" : " " + unit));
+           fmt::format("'{}': {:g}{} is implausible", key, value, unit.empty() ? "" : " " + unit),
+           fmt::format("its magnitude is at most {:g}{}", most, unit.empty() ? "" : " " + unit));
   return fallback;
 }
 

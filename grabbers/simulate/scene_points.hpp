@@ -24,7 +24,7 @@ Eigen::Vector3d read_vector(YamlMap& map, const std::string& key, const Eigen::V
 /// The point under a key that must be there.
 Eigen::Vector3d require_vector(YamlMap& map, const std::string& key, std::vector<Error>& errors);
 
-/// The number under a key, in SI. One whose size is beyond `most` is an error: it cannot be meant, and a
+/// The number under a key, in SI. One whose size is beyond `most` is an error: it is implausible, and a
 /// world made of it would be none.
 double read_bounded(YamlMap& map, const std::string& key, const std::string& unit, double fallback,
                     double most);

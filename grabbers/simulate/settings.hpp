@@ -27,7 +27,7 @@ struct FieldOfView {
   double angle_of(std::size_t beam) const { return first + static_cast<double>(beam) * step; }  ///< [rad]
 };
 
-/// What a laser of a kind of its own reports, and how often.
+/// Scan pattern of a laser of a kind of its own.
 struct ScanPattern {
   FieldOfView field;
   double frequency = 50;  ///< [Hz] nominal rate of the mirror
@@ -45,7 +45,7 @@ struct Interleave {
   }
 };
 
-/// How one laser departs from the others of its kind, beyond what the true calibration says.
+/// Deviations of one laser from the others of its kind, beyond the true calibration.
 struct LaserEffects {
   NoiseEffects noise;
   double mirror_wander = 0;  ///< RMS of slow changes of its mirror's period, as a share; 0: of its kind
@@ -54,8 +54,8 @@ struct LaserEffects {
   bool mirror_drawn = true;  ///< false: an excess of 0 is one of 0
 };
 
-/// The scanner to simulate: what is true of it. Lasers are of one kind unless `patterns` says otherwise;
-/// their mirrors, clocks and noise are their own.
+/// Settings of the simulated scanner. Lasers are of one kind unless `patterns` differ; their mirrors, clocks
+/// and noise are their own.
 struct ScannerSettings {
   Rig rig = default_rig();
   Calibration truth = nominal_calibration(default_rig());  ///< one laser each of the rig, in its order
@@ -66,14 +66,14 @@ struct ScannerSettings {
   RangeSettings range;
   std::vector<LaserEffects> laser_effects;  ///< one a laser; empty: none
   MotionSettings motion;
-  double plate_frequency = 500;   ///< [Hz] encoder readings a second
+  double plate_frequency = 500;   ///< [Hz] rate of encoder readings
   bool encoder_quantised = true;  ///< whole counts, as the encoder reports them; false: exact angles
   double duration = 10;           ///< [s]
   std::uint64_t seed = 1;
 
   ScanPattern pattern_of_all() const { return {.field = field, .frequency = mirror.frequency}; }
 
-  /// What one laser reports, and how often.
+  /// Scan pattern of one laser.
   ScanPattern pattern_of(std::size_t laser) const {
     return patterns.empty() ? pattern_of_all() : patterns.at(laser);
   }

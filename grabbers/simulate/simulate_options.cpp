@@ -5,17 +5,15 @@
 namespace crisp {
 
 void SimulateStage::describe(Description& d) {
-  d.name("grabber.simulate").summary("simulates a scanner in a known scene, telegrams, clocks and all");
+  d.name("grabber.simulate")
+      .summary("simulates a scanner in a known scene, with telegrams, clocks and network delays");
   d.details(
-      "Gives what the hub would have received, in the order of receipt. What is hidden in it (the true "
-      "calibration, the clocks, the delays) is drawn from the seed and written to `truth`, which is a "
-      "calibration that `assemble.deskew` can use. The same seed gives the same bytes.\n\n"
-      "Delays are chosen so that each laser has exactly its true η: the plate's minimum delay less the "
-      "laser's. Shares are between 0 and 1.");
+      "Gives the hub's received scans and readings, in the order of receipt. The truth (calibration, clocks, delays) is drawn from the seed and written to `truth`, a calibration for `assemble.deskew`. The same seed gives the same bytes.\n\n"
+      "Delays are chosen so that each laser has exactly its true η: the plate's minimum delay less the laser's. Shares are between 0 and 1.");
   d.gives<Scan>().gives<PlateReading>();
   describe_scanner(d);
   describe_truth(d, &SimulateStage::hidden_);
-  describe_likeness(d, &SimulateStage::likeness_);
+  describe_realism(d, &SimulateStage::realism_);
   describe_plate(d);
   describe_lasers(d);
   describe_stamps(d);
@@ -26,20 +24,19 @@ void SimulateStage::describe(Description& d) {
 void SimulateStage::describe_scanner(Description& d) {
   using S = SimulateStage;
   describe_scene(d, &S::scene_);
-  d.option("duration", &S::scanner, &ScannerSettings::duration, "how long to record")
+  d.option("duration", &S::scanner, &ScannerSettings::duration, "duration of the recording")
       .unit("s")
       .range(0.01, 1e5);
-  d.option("start", &S::start_, "the hub's clock at the begin, since 1970").unit("s").range(0, 9e9);
-  d.option("seed", &S::seed_, "of all that is drawn at random; auto: the run's");
-  d.option("capture", &S::capture_file_, "pcap file to write what the network would have carried to")
-      .writes();
-  d.option("truth", &S::truth_file_, "file to write the true calibration, clocks and delays to").writes();
+  d.option("start", &S::start_, "the hub's clock at the start, since 1970").unit("s").range(0, 9e9);
+  d.option("seed", &S::seed_, "seed of the simulation; auto: the run's");
+  d.option("capture", &S::capture_file_, "pcap file for the simulated network traffic").writes();
+  d.option("truth", &S::truth_file_, "file for the true calibration, clocks and delays").writes();
 }
 
 void SimulateStage::describe_plate(Description& d) {
   using S = SimulateStage;
   describe_motion(d, &S::motion);
-  d.option("plate_frequency", &S::scanner, &ScannerSettings::plate_frequency, "encoder readings a second")
+  d.option("plate_frequency", &S::scanner, &ScannerSettings::plate_frequency, "rate of encoder readings")
       .unit("Hz")
       .range(1, 1e5);
 }
@@ -49,7 +46,8 @@ void SimulateStage::describe_lasers(Description& d) {
   d.option("sigma", &S::range, &RangeSettings::sigma, "standard deviation of the ranges' noise")
       .unit("m")
       .range(0, 10);
-  d.option("quantum", &S::range, &RangeSettings::quantum, "step of the ranges; telegrams have 1 mm at best")
+  d.option("quantum", &S::range, &RangeSettings::quantum,
+           "quantization step of the ranges; telegrams have 1 mm at best")
       .unit("m")
       .range(0, 1);
   describe_field(d, &S::scanner);
@@ -67,17 +65,17 @@ void SimulateStage::describe_stamps(Description& d) {
                 {"8bit", RemissionChannel::bits8},
                 {"16bit", RemissionChannel::bits16}});
   d.option("handover", &S::settings_, &RecordingSettings::telegrams, &TelegramSettings::handover,
-           "from the end of the mirror's turn to the transmission stamp")
+           "delay from the end of the mirror's turn to the transmission stamp")
       .unit("s")
       .range(0, 1);
   d.option("handover_jitter", &S::settings_, &RecordingSettings::telegrams,
-           &TelegramSettings::handover_jitter, "standard deviation of it")
+           &TelegramSettings::handover_jitter, "standard deviation of that delay")
       .unit("s")
       .range(0, 1);
   d.option("settling_scans", &S::settings_, &RecordingSettings::telegrams, &TelegramSettings::settling_scans,
-           "so many scans after a start say that the motor is not at speed");
+           "number of scans after a start that are marked as taken before the motor is at speed");
   d.option("stamp_lags", &S::settings_, &RecordingSettings::stamp_lags,
-           "how much later than the rig says each laser stamps its scans; empty: not at all")
+           "delay of each laser's scan stamps beyond the rig's offsets; empty: none")
       .unit("s")
       .range(-1, 1);
   d.option("clock_skew", &S::settings_, &RecordingSettings::clocks, &ClockSettings::skew,
@@ -100,7 +98,7 @@ void SimulateStage::describe_links(Description& d) {
         .unit("s")
         .range(0, 10);
     d.option(who + "_stall_rate", &S::settings_, link, &LinkSettings::stall_rate,
-             "how often the link stalls: what is sent meanwhile arrives in a burst")
+             "rate of the link's stalls: telegrams sent meanwhile arrive in a burst")
         .unit("Hz")
         .range(0, 100);
     d.option(who + "_stall_time", &S::settings_, link, &LinkSettings::stall_time, "mean duration of a stall")
@@ -114,20 +112,19 @@ void SimulateStage::describe_links(Description& d) {
 void SimulateStage::describe_faults(Description& d) {
   using S = SimulateStage;
   d.option("lost_scans", &S::settings_, &RecordingSettings::faults, &FaultSettings::lost_scans,
-           "share of the scan telegrams that never arrive")
+           "share of scan telegrams that are lost")
       .range(0, 1);
   d.option("lost_readings", &S::settings_, &RecordingSettings::faults, &FaultSettings::lost_readings,
-           "share of the plate's readings that never arrive")
+           "share of encoder readings that are lost")
       .range(0, 1);
-  d.option("silences", &S::silences_, "when a device says nothing: `laser2@3s+1s` for a second from 3 s on");
-  d.option("restarts", &S::restarts_, "when a device starts again, its clock at zero: `laser1@5s`");
-  d.option("lost_frames", &S::wire_faults_, &WireFaults::lost, "share of the frames that the capture lacks")
+  d.option("silences", &S::silences_, "silences of devices: `laser2@3s+1s` for one second from 3 s on");
+  d.option("restarts", &S::restarts_, "restarts of devices, with the clock at zero: `laser1@5s`");
+  d.option("lost_frames", &S::wire_faults_, &WireFaults::lost, "share of frames missing from the capture")
       .range(0, 1);
   d.option("repeated_frames", &S::wire_faults_, &WireFaults::repeated,
-           "share of the frames that the capture holds twice")
+           "share of frames that the capture holds twice")
       .range(0, 1);
-  d.option("damaged_frames", &S::wire_faults_, &WireFaults::damaged,
-           "share of the capture's frames with a flipped bit")
+  d.option("damaged_frames", &S::wire_faults_, &WireFaults::damaged, "share of frames with a flipped bit")
       .range(0, 1);
 }
 

@@ -60,7 +60,7 @@ void SimulateStage::check(const RunSettings& run) const {
   const auto catalogue = recording_catalogue(terms);
   std::vector<Effect> effects;
   check_all([&] { planned.scanner.truth = hidden_.drawn(run, planned.scanner.seed); },
-            [&] { effects = effects_of_real_devices(likeness_.devices, run.rig, catalogue); },
+            [&] { effects = effects_of_real_devices(realism_.devices, run.rig, catalogue); },
             [&] {
               std::ranges::move(read_effects(hidden_.effects, run.rig, catalogue),
                                 std::back_inserter(effects));
@@ -77,7 +77,7 @@ void SimulateStage::process(const Inputs&, Outputs& out, Context& context) {
   kinds_.apply(simulated_.scanner);
   simulated_.scanner.truth = hidden_.load(context, simulated_.scanner.seed);
   const auto catalogue = recording_catalogue(terms);
-  auto effects = likeness_.load(catalogue, context);
+  auto effects = realism_.load(catalogue, context);
   std::ranges::move(read_effects(hidden_.effects, context.rig(), catalogue), std::back_inserter(effects));
   add_terms(simulated_.scanner.truth, apply_device_effects(std::move(effects), simulated_), terms);
   const Scene surroundings = scene_.load(context);
@@ -105,18 +105,18 @@ void SimulateStage::process(const Inputs&, Outputs& out, Context& context) {
                   {"seed", simulated_.scanner.seed},
                   {"scans", scans},
                   {"readings", readings}});
-  context.say(fmt::format("simulated {:g} s in the {} (seed {}): {} scans, {} readings of the plate",
-                          simulated_.scanner.duration, simulated_scene_, simulated_.scanner.seed, scans,
-                          readings));
+  context.print(fmt::format("simulated {:g} s in the {} (seed {}): {} scans, {} encoder readings",
+                            simulated_.scanner.duration, simulated_scene_, simulated_.scanner.seed, scans,
+                            readings));
 }
 
 void SimulateStage::finish(Outputs&, Context& context) {
   if (capture_) {
     capture_->close();
     context.wrote(capture_file_);
-    context.count("frames left out on purpose", capture_->faults().lost);
-    context.count("frames repeated on purpose", capture_->faults().repeated);
-    context.count("frames damaged on purpose", capture_->faults().damaged);
+    context.count("injected frame losses", capture_->faults().lost);
+    context.count("injected frame repetitions", capture_->faults().repeated);
+    context.count("injected frame damages", capture_->faults().damaged);
     capture_.reset();
   }
   if (!truth_file_.empty()) {

@@ -18,8 +18,8 @@
 
 namespace crisp {
 
-/// `grabber.simulate`: gives what the hub would have received from a scanner in a known scene, and writes the
-/// capture and the truth where it is told to.
+/// `grabber.simulate`: simulates the hub's received data from a scanner in a known scene, and optionally
+/// writes the capture and the truth.
 class SimulateStage final : public Stage {
  public:
   static void describe(StageDescription<SimulateStage>& d);
@@ -37,7 +37,7 @@ class SimulateStage final : public Stage {
   static void describe_links(Description& d);
   static void describe_faults(Description& d);
 
-  // What the options are declared on.
+  // Target of the options.
   ScannerSettings& scanner() { return settings_.scanner; }
   RangeSettings& range() { return settings_.scanner.range; }
   MotionSettings& motion() { return settings_.scanner.motion; }
@@ -48,7 +48,7 @@ class SimulateStage final : public Stage {
   TruthChoice hidden_{.departures = {.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04},
                       .calibration_file = {},
                       .effects = {}};
-  LikenessChoice likeness_;
+  RealismChoice realism_;
   KindChoice kinds_;
   WireFaults wire_faults_;
   SceneChoice scene_;

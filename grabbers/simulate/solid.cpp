@@ -28,7 +28,7 @@ Vector3d turned(const Vector3d& point, double yaw) {
   return result;
 }
 
-/// Where s with a s² + 2 b s + c ≤ 0, a > 0, begins and ends.
+/// Interval of s with a s² + 2 b s + c ≤ 0, a > 0.
 std::optional<Passage> roots(double a, double b, double c) {
   const double discriminant = b * b - a * c;
   if (!(discriminant > 0)) return std::nullopt;
@@ -45,7 +45,7 @@ std::optional<Passage> both(const std::optional<Passage>& a, const std::optional
   return common.in < common.out ? std::optional(common) : std::nullopt;
 }
 
-/// Where a line with this start and rate lies between two values.
+/// Interval in which a line with this start and rate lies between two values.
 std::optional<Passage> between(double low, double high, double start, double rate) {
   constexpr double kEver = std::numeric_limits<double>::infinity();
   if (rate == 0) {
@@ -92,7 +92,7 @@ std::optional<Passage> through(const Block& b, const Ray& ray) {
   return both(inside, between(-b.half.z(), b.half.z(), start.z(), rate.z()));
 }
 
-/// Of a shape that is a product of intervals: how far off each coordinate is from its interval's border,
+/// For a shape that is a product of intervals: the distance of each coordinate from its interval's border,
 /// positive outside.
 template <int N>
 double from_product(const Eigen::Matrix<double, N, 1>& off) {

@@ -60,7 +60,7 @@ Eigen::AlignedBox3d bounds(const Solid& solid);
 /// `scale`, then moved by `by` [m].
 Solid placed(const Solid& solid, double yaw, const Eigen::Vector3d& by, double scale = 1);
 
-/// @throws Error  if the solid has no volume; `name` says which it is
+/// @throws Error  if the solid has no volume; `name` is its name in the message
 void check(const Solid& solid, const std::string& name);
 
 }  // namespace crisp

@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kAround = 6;
 
-/// Of seven parts of equal area of a disk of diameter 1, a middle one and six around it, how far from the
-/// middle the outer ones' centres of mass are: the middle one has a radius of √(1/7) / 2, and a sector of 60°
-/// from there to 1/2 its centre at 2/3 (R³ − r³) / (R² − r²) · sin 30° / (π/6).
+/// Distance of the outer parts' centres of mass, for seven parts of equal area of a disk of diameter 1, a
+/// middle one and six around it: the middle one has a radius of √(1/7) / 2, and a sector of 60° from there to
+/// 1/2 its centre at 2/3 (R³ − r³) / (R² − r²) · sin 30° / (π/6).
 constexpr double kOut = 0.3513;
 
 /// Lambert's echo fades with the square of the range from 10 m on.
@@ -35,7 +35,7 @@ SpotEcho together(std::span<const SpotEcho> echoes) {
   return result;
 }
 
-/// Of echoes sorted by distance, the strongest of those that gaps wider than `merge` separate.
+/// The strongest of the echoes, sorted by distance, that gaps wider than `merge` separate.
 SpotEcho strongest(std::span<const SpotEcho> echoes, double merge) {
   std::optional<SpotEcho> best;
   for (std::size_t begin = 0; begin < echoes.size();) {

@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// What one beam met, as the laser hears it.
+/// A beam's echo as the laser receives it.
 struct SpotEcho {
   Hit hit;              ///< of the strongest ray; its distance is the echo's
   double strength = 0;  ///< share of the light that a white surface would send back to the near laser, 0 to 1

@@ -15,7 +15,7 @@ namespace {
 constexpr double kFirstPossibleBeam = -45 * kDegree;  // reported angle that the mirror's index stands for
 constexpr double kSmallestRange = 0.016;              // [m] what a device sends below is a code, not a range
 
-/// What a device of 8 bits makes of an echo.
+/// Remission of an echo by a device of 8 bits.
 float remission(const SpotEcho& echo) { return static_cast<float>(std::round(254 * echo.strength)); }
 
 /// The range that the model's terms turn into the true distance: found by stepping, since terms are small.

@@ -15,7 +15,7 @@
 
 namespace crisp {
 
-/// What one laser saw in one turn of its mirror.
+/// Measurements of one laser in one turn of its mirror.
 struct Sweep {
   std::uint16_t laser = 0;  ///< index in the rig
   Revolution revolution;

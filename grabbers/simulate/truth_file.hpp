@@ -9,11 +9,11 @@
 
 namespace crisp {
 
-/// The truth of a simulation as a calibration that assembly can use, and in its provenance, all as text: the
-/// scene, seed and settings, and what clock alignment should find of each device: `laser1.clock.skew` (hub
-/// seconds a device second − 1), `.clock.start` [s], `.clock.drift` [1/s], `.minimum_delay` [s], `.stamp_lag`
-/// [s]. Effects of clocks, links, mirrors and noise are there as `effect laser1.noise.heavy_tail.share`;
-/// those that are terms are in the calibration itself.
+/// The truth of a simulation as a calibration for assembly; its provenance holds, as text, the scene, seed
+/// and settings, and the true clock of each device: `laser1.clock.skew` (hub seconds a device second − 1),
+/// `.clock.start` [s], `.clock.drift` [1/s], `.minimum_delay` [s], `.stamp_lag` [s]. Effects of clocks,
+/// links, mirrors and noise are there as `effect laser1.noise.heavy_tail.share`; effects that are terms are
+/// in the calibration itself.
 Calibration truth_to_write(const RecordingTruth& truth, const RecordingSettings& settings,
                            const std::string& scene);
 

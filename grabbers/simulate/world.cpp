@@ -45,11 +45,12 @@ Calibration TruthChoice::drawn(const RunSettings& run, std::uint64_t seed) const
 
 Calibration TruthChoice::load(Context& context, std::uint64_t seed) const {
   if (calibration_file.empty()) return drawn(context.run(), seed);
-  Calibration truth = read_calibration(calibration_file, judge_by(known_terms(context.run())));
+  Calibration truth = read_calibration(calibration_file, judge_by(known_terms(context.run())),
+                                       [&](const Error& old) { context.warn(old.what()); });
   context.reads(calibration_file);
   check_lasers(truth, context.rig(), calibration_file);
   // Whatever it is of the scanner that it was made for, of the simulated one it is the truth.
-  truth.doubts.clear();
+  truth.caveats.clear();
   return truth;
 }
 
@@ -57,14 +58,14 @@ void KindChoice::apply(ScannerSettings& scanner) const {
   scanner.patterns = read_patterns(lasers, scanner.rig, scanner.pattern_of_all());
 }
 
-std::vector<Effect> LikenessChoice::load(const std::vector<EffectInfo>& catalogue, Context& context) const {
+std::vector<Effect> RealismChoice::load(const std::vector<EffectInfo>& catalogue, Context& context) const {
   std::vector<Effect> effects = effects_of_real_devices(devices, context.rig(), catalogue);
   if (findings_file.empty()) return effects;
-  const Findings findings = read_findings(findings_file);
+  const Findings findings = read_findings(findings_file, [&](const Error& old) { context.warn(old.what()); });
   context.reads(findings_file);
   FoundEffects found = effects_of(findings, findings_file.string(), context.rig(), catalogue);
   if (!found.others.empty()) {
-    context.say(fmt::format("not simulated of what was found: {}", fmt::join(found.others, ", ")));
+    context.print(fmt::format("findings that are not simulated: {}", fmt::join(found.others, ", ")));
   }
   context.report({{"findings_simulated", found.effects.size()}, {"findings_not_simulated", found.others}});
   std::ranges::move(found.effects, std::back_inserter(effects));

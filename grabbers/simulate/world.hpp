@@ -23,7 +23,7 @@ struct SceneChoice {
   Scene load(Context& context) const;
 };
 
-/// What is true of the scanner that a stage simulates.
+/// The truth of the scanner that a stage simulates.
 struct TruthChoice {
   Departures departures;
   std::filesystem::path calibration_file;  ///< in place of one that is drawn around nominal, unless empty
@@ -41,19 +41,19 @@ struct TruthChoice {
 struct KindChoice {
   OptionGroups lasers;  ///< by name: see read_patterns()
 
-  /// Gives the scanner the field of view and rate of each laser of its rig. @throws Errors as read_patterns()
+  /// Sets the field of view and rate of each laser of the scanner's rig. @throws Errors as read_patterns()
   void apply(ScannerSettings& scanner) const;
 };
 
 /// Which real devices those that a stage simulates are like.
-struct LikenessChoice {
+struct RealismChoice {
   std::vector<std::string> devices;  ///< see effects_of_real_devices()
   std::filesystem::path
       findings_file;  ///< of a diagnosis, unless empty: see effects_of(); goes before `devices`
 
-  /// What befalls the simulated ones. What cannot be simulated of what was found is told to people, by name.
+  /// The effects of the simulated devices. Findings that cannot be simulated are reported by name.
   ///
-  /// @param catalogue         what can be simulated
+  /// @param catalogue         effects that can be simulated
   /// @throws Error or Errors  as effects_of_real_devices(), read_findings() and effects_of() do
   std::vector<Effect> load(const std::vector<EffectInfo>& catalogue, Context& context) const;
 

@@ -16,29 +16,28 @@ namespace crisp {
 /// @param way  to a SceneChoice
 template <class S, class Way>
 void describe_scene(StageDescription<S>& d, Way way) {
-  d.option("scene", way, &SceneChoice::name, "what stands around the scanner; paper: the room of the paper")
+  d.option("scene", way, &SceneChoice::name, "scene around the scanner; paper: the room of the paper")
       .choices({"office", "hall", "street", "workshop", "garden", "people", "paper"});
-  d.option("scene_file", way, &SceneChoice::file, "a scene of your own in YAML, in place of `scene`");
+  d.option("scene_file", way, &SceneChoice::file, "scene file in YAML, instead of `scene`");
 }
 
 /// @param way  to a LikenessChoice
 template <class S, class Way>
-void describe_likeness(StageDescription<S>& d, Way way) {
-  d.option("devices", way, &LikenessChoice::devices,
-           "real devices that the simulated ones scatter, turn and keep time like, as they were measured: "
-           "`lms111` (every "
-           "laser), `laser2=tim781s`, `plate=esp32_wifi`; known are " +
-               fmt::format("{}", fmt::join(real_devices(), ", ")));
-  d.option("findings", way, &LikenessChoice::findings_file,
-           "a diagnosis.json: what was found and accepted befalls the simulated scanner, and each device has "
-           "the noise, clock, delays and mirror that were measured");
+void describe_realism(StageDescription<S>& d, Way way) {
+  d.option(
+      "devices", way, &RealismChoice::devices,
+      "real devices whose measured noise, mirrors and clocks the simulated ones have: `lms111` (every laser), `laser2=tim781s`, `plate=esp32_wifi`; known are " +
+          fmt::format("{}", fmt::join(real_devices(), ", ")));
+  d.option(
+      "findings", way, &RealismChoice::findings_file,
+      "a diagnosis.json: its accepted findings apply to the simulated scanner, with each device's measured noise, clock, delays and mirror");
 }
 
 /// @param way  to a TruthChoice
 template <class S, class Way>
 void describe_truth(StageDescription<S>& d, Way way) {
   d.option("calibration", way, &TruthChoice::calibration_file,
-           "the true calibration; without one it is drawn around nominal");
+           "true calibration; by default it is drawn around nominal");
   const auto off = &TruthChoice::departures;
   d.option("tau_off", way, off, &Departures::tau, "largest departure of a drawn τ from nominal")
       .unit("m")
@@ -55,8 +54,7 @@ void describe_truth(StageDescription<S>& d, Way way) {
       .range(0, 1);
   d.option(
       "effects", way, &TruthChoice::effects,
-      "what departs from a plain scanner: `{encoder.eccentricity: {a: 0.1deg}, laser2.mirror.cone: {kappa: "
-      "0.3deg}}`, by the names that `crisp effects` lists; without an owner it befalls all that can have it");
+      "effects of the simulated scanner: `{encoder.eccentricity: {a: 0.1deg}, laser2.mirror.cone: {kappa: 0.3deg}}`, named as in `crisp effects`; without an owner an effect applies to all that can have it");
 }
 
 /// @param way  to a MotionSettings
@@ -67,16 +65,17 @@ void describe_motion(StageDescription<S>& d, Way way) {
                 {"varying", MotionKind::varying},
                 {"reversal", MotionKind::reversal},
                 {"stop_and_go", MotionKind::stop_and_go}});
-  d.option("min_rate", way, &MotionSettings::min_rate, "slowest rate of a varying motion")
+  d.option("min_rate", way, &MotionSettings::min_rate, "lowest rate of a varying motion")
       .unit("Hz")
       .range(-50, 50);
-  d.option("max_rate", way, &MotionSettings::max_rate, "fastest rate, or the only one")
+  d.option("max_rate", way, &MotionSettings::max_rate, "highest rate, or the constant rate")
       .unit("Hz")
       .range(-50, 50);
-  d.option("change_time", way, &MotionSettings::change_time, "how long a change of the rate takes")
+  d.option("change_time", way, &MotionSettings::change_time, "duration of a change of the rate")
       .unit("s")
       .range(0.01, 1e4);
-  d.option("hold_time", way, &MotionSettings::hold_time, "how long reversal and stop_and_go hold a rate")
+  d.option("hold_time", way, &MotionSettings::hold_time,
+           "duration for which reversal and stop_and_go hold a rate")
       .unit("s")
       .range(0, 1e4);
 }
@@ -84,9 +83,9 @@ void describe_motion(StageDescription<S>& d, Way way) {
 /// @param way  to a KindChoice
 template <class S, class Way>
 void describe_kinds(StageDescription<S>& d, Way way) {
-  d.option("lasers", way, &KindChoice::lasers,
-           "lasers of another kind: `{laser2: {first_angle: -5deg, last_angle: 185deg, step: 0.25deg, "
-           "mirror_frequency: 25Hz}}`; what is not given is as for all");
+  d.option(
+      "lasers", way, &KindChoice::lasers,
+      "lasers of another kind: `{laser2: {first_angle: -5deg, last_angle: 185deg, step: 0.25deg, mirror_frequency: 25Hz}}`; missing keys are as for all");
 }
 
 /// @param way  to a ScannerSettings
@@ -94,8 +93,8 @@ template <class S, class Way>
 void describe_field(StageDescription<S>& d, Way way) {
   const auto field = &ScannerSettings::field;
   const auto mirror = &ScannerSettings::mirror;
-  d.option("reach", way, &ScannerSettings::range, &RangeSettings::max_distance,
-           "nothing comes back from beyond")
+  d.option("max_range", way, &ScannerSettings::range, &RangeSettings::max_distance,
+           "largest range with an echo")
       .unit("m")
       .range(0.1, 65);
   d.option("first_angle", way, field, &FieldOfView::first, "reported angle of the first beam").unit("rad");
@@ -105,10 +104,10 @@ void describe_field(StageDescription<S>& d, Way way) {
       .unit("Hz")
       .range(1, 1000);
   d.option("mirror_slowest", way, mirror, &MirrorSettings::slowest,
-           "each mirror's mean period is drawn: up to this share longer than nominal")
+           "largest excess of a mirror's mean period over nominal, which is drawn")
       .unit("1")
       .range(0, 0.1);
-  d.option("mirror_wander", way, mirror, &MirrorSettings::wander, "largest slow departure of the period")
+  d.option("mirror_wander", way, mirror, &MirrorSettings::wander, "largest slow deviation of the period")
       .unit("1")
       .range(0, 0.1);
   d.option("mirror_jitter", way, mirror, &MirrorSettings::jitter, "standard deviation of each single period")

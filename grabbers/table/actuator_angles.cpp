@@ -41,7 +41,7 @@ std::uint32_t ActuatorAngles::count_at(double angle) const {
 PlateTrajectory ActuatorAngles::trajectory(std::int64_t epoch_ns, double max_gap) const {
   if (times_.size() < 2) {
     throw Error("there are fewer than two angles of the actuator at different times",
-                "are its times where they are looked for, and in the right unit?");
+                "check the time column of the actuator, and its unit");
   }
   return {epoch_ns, times_, angles_, max_gap};
 }

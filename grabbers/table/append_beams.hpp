@@ -8,7 +8,7 @@
 
 namespace crisp {
 
-/// Where and when the beams of a scan were fired.
+/// Angles and firing times of a scan's beams.
 struct BeamSequence {
   double first_angle = 0;  ///< [rad] of beam 0: reported angle less mount
   double angle_step = 0;   ///< [rad]

@@ -11,7 +11,7 @@ namespace crisp {
 
 namespace {
 
-/// Takes the exponent off a number: "1.5e-3" → "1.5" and -3. Nothing where there is none that is sensible.
+/// Splits the exponent off a number: "1.5e-3" → "1.5" and -3. Nothing without a valid one.
 std::optional<int> take_exponent(std::string_view& text) {
   constexpr int kLargest = 400;  // as a double's, and some more
   const auto e = text.find_first_of("eE");

@@ -13,7 +13,7 @@ namespace crisp {
 enum class TimeUnit { s, ms, us, ns };
 enum class LengthUnit { m, cm, mm };
 
-/// What stands where in a table. Columns count from 1. A row is a scan, or, where `mirror_column` is given,
+/// Columns of a table, from 1. A row is a scan, or, if `mirror_column` is given,
 /// one beam.
 struct TableFormat {
   std::optional<int> time_column;  ///< when the row's first beam was fired

@@ -17,13 +17,13 @@
 
 namespace crisp {
 
-/// What the actuator does while a scan is taken.
+/// Motion of the actuator during a scan.
 enum class ActuatorMotion {
   moves,   ///< the row's angle is that at its time
   stands,  ///< it has the row's angle from the first beam to the last, and steps in between
 };
 
-/// What a table's rows leave unsaid.
+/// Settings that a table's rows do not contain.
 struct TableScanSettings {
   double start_angle = 0;    ///< [rad] reported angle of the first beam
   double angle_step = 0;     ///< [rad]
@@ -38,24 +38,24 @@ struct TableScan {
   std::optional<PlateReading> reading;  ///< nothing where the row before has one of the same instant
 };
 
-/// Makes of rows what other grabbers give: scans and readings as they were received, for a clock stage, and
+/// Converts rows: scans and readings as they were received, for a clock stage, and
 /// measurements with the actuator's angle on the table's own time, where laser and actuator share one clock.
 class TableItems {
  public:
   /// @param rig  its plate is the actuator: angles are rounded to its encoder's steps
   TableItems(const TableFormat& format, const TableScanSettings& settings, Rig rig);
 
-  /// When the next row was measured, by whatever tells it. Nothing for one that is out of order, repeated, or
-  /// of a laser that the rig does not have, which is counted.
+  /// The time of the next row, by its stamp or its count. Nothing for a row that is out of order, repeated,
+  /// or of a laser that the rig does not have, which is counted.
   std::optional<std::int64_t> admit(const TableRow& row);
-  /// Takes a row that was just admitted. @param time_ns  what admit() said
+  /// Adds a row that was just admitted. @param time_ns  the result of admit()
   TableScan add(const TableRow& row, std::int64_t time_ns);
   /// Both, for those who want every row.
   std::optional<TableScan> add(const TableRow& row);
 
-  /// Of all rows so far. @throws Error if there are fewer than two angles at different times
+  /// The trajectory of all rows so far. @throws Error if there are fewer than two angles at different times
   PlateTrajectory trajectory() const;
-  /// Of the rows so far, a scan each (or all beams of a laser that follow one another); forgets them.
+  /// The measurements of the rows so far, a scan each (or all consecutive beams of a laser); forgets them.
   std::vector<std::shared_ptr<const Measurements>> take_measurements();
   /// The same, of those that were over at this time [s since the epoch] and came before all that were not.
   std::vector<std::shared_ptr<const Measurements>> take_measurements_until(double time);

@@ -23,7 +23,7 @@ bool TableLines::fill() {
   at_ = 0;
   if (in_.bad()) {
     throw Error("cannot read " + name_ + " on after line " + std::to_string(number_),
-                "is it a file, and is its disk sound?");
+                "check that it is a file, and its disk");
   }
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (!begun_ && buffer_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();

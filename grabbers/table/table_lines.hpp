@@ -11,7 +11,7 @@ namespace crisp {
 /// the first. Memory is bounded, whatever the text is.
 class TableLines {
  public:
-  /// Of what is longer, a line keeps one character more than this.
+  /// A longer line is kept to one character more than this.
   static constexpr std::size_t kLongest = 1 << 20;
 
   /// @param name  of the text, for messages

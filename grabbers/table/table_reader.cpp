@@ -11,19 +11,19 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kMostRanges = 65536;  // as many beams as a measurement's index can tell
+constexpr std::size_t kMostRanges = 65536;  // beams that a measurement's index can number
 constexpr double kLargestAngle = 1e6;       // [rad]
 constexpr double kLargestRange = 1e5;       // [m]
 
 bool separates(char c) { return c == ',' || c == ';' || c == '\t' || c == ' '; }
 
-/// What is wrong with a row, and at which character of it.
+/// A fault of a row, with its position in the row.
 struct Fault {
   const char* what;
   std::size_t at;
 };
 
-/// The fields of a line. Spaces beside a comma belong to no field.
+/// The fields of a line. Spaces next to a comma belong to no field.
 class Fields {
  public:
   explicit Fields(std::string_view text) {
@@ -55,13 +55,13 @@ class Fields {
     double value = 0;
     const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
     if (failure != std::errc() || end != field.data() + field.size()) {
-      throw Fault{"rows with something that is no number", start(column - 1)};
+      throw Fault{"rows with a field that is no number", start(column - 1)};
     }
     return value;
   }
   std::int64_t decimal(std::size_t column, int exponent) const {
     const auto value = shifted_decimal(text(column), exponent);
-    if (!value) throw Fault{"rows with a time or count that cannot be", start(column - 1)};
+    if (!value) throw Fault{"rows with an impossible time or count", start(column - 1)};
     return *value;
   }
 
@@ -97,7 +97,7 @@ double angle_of(const Fields& fields, int column, AngleUnit unit, double rad = 1
   if (unit == AngleUnit::rad) rad = 1;
   const double value = fields.number(static_cast<std::size_t>(column)) * rad;
   if (!(std::abs(value) <= kLargestAngle)) {
-    throw Fault{"rows with an angle that cannot be", fields.start(static_cast<std::size_t>(column) - 1)};
+    throw Fault{"rows with an impossible angle", fields.start(static_cast<std::size_t>(column) - 1)};
   }
   return value;
 }
@@ -113,7 +113,7 @@ std::size_t count_of(const Fields& fields, const TableFormat& format) {
   if (format.count_column) {
     const auto counted = fields.decimal(static_cast<std::size_t>(*format.count_column), 0);
     if (counted < 0 || static_cast<std::size_t>(counted) > left) {
-      throw Fault{"rows with fewer ranges than they say", fields.start(fields.size())};
+      throw Fault{"rows with fewer ranges than their count", fields.start(fields.size())};
     }
     left = static_cast<std::size_t>(counted);
   }
@@ -136,8 +136,8 @@ void read_ranges(const Fields& fields, const TableFormat& format, TableRow& row)
   }
 }
 
-/// Where the first decimal comma is in a line that others than commas part into numbers such as 0,5: nothing
-/// where commas part numbers, too, or points are decimal.
+/// Position of the first decimal comma in a line whose numbers such as 0,5 are separated by other characters:
+/// nothing if commas separate numbers, too, or points are decimal.
 std::optional<std::size_t> decimal_comma(std::string_view line) {
   constexpr std::string_view kOthers = "; \t";
   const std::size_t begin = std::min(line.size(), line.find_first_not_of(kOthers));
@@ -178,7 +178,7 @@ std::optional<TableRow> TableReader::parse(std::string_view text) {
     if (format_.laser_column) {
       const auto laser = fields.decimal(column(*format_.laser_column), 0);
       if (laser < 0 || laser >= static_cast<std::int64_t>(kMostRanges)) {
-        throw Fault{"rows of a laser that cannot be", fields.start(column(*format_.laser_column) - 1)};
+        throw Fault{"rows of an impossible laser", fields.start(column(*format_.laser_column) - 1)};
       }
       row.laser = static_cast<std::uint16_t>(laser);
     }
@@ -212,7 +212,7 @@ std::optional<TableRow> TableReader::next() {
     if (lines_.number() == 1 && (std::isalpha(static_cast<unsigned char>(text[begin])) || text[begin] == '"'))
       continue;
     if (const auto comma = decimal_comma(text)) {
-      throw Error("the numbers have decimal commas, and here a comma parts two numbers",
+      throw Error("the numbers have decimal commas, and here a comma separates two numbers",
                   "write them with points, and with one kind of separator: 0.5;1.25",
                   Place{name_, lines_.number(), static_cast<int>(*comma) + 1});
     }

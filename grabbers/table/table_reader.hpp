@@ -24,12 +24,12 @@ class TableReader {
       : lines_(in, name), name_(std::move(name)), format_(format) {}
 
   /// The next row that can be read, or nothing at the end. @throws Error as TableLines, and where
-  /// numbers have decimal commas, which cannot be told from the commas between numbers
+  /// numbers have decimal commas, which are indistinguishable from the commas between numbers
   std::optional<TableRow> next();
 
-  /// How many rows were left out, by what is wrong with them.
+  /// Number of dropped rows, by their fault.
   const std::map<std::string, std::uint64_t>& losses() const { return losses_; }
-  /// What was wrong first, and where; nothing if all rows could be read.
+  /// The first fault with its place; nothing if all rows could be read.
   const std::optional<Error>& first_fault() const { return first_fault_; }
   std::uint64_t rows() const { return rows_; }  ///< that could be read so far
 

@@ -28,33 +28,32 @@ void describe_columns(StageDescription<TableStage>& d, TableFormat TableStage::*
     d.option(name, format, member, help)
         .choices({{"s", TimeUnit::s}, {"ms", TimeUnit::ms}, {"us", TimeUnit::us}, {"ns", TimeUnit::ns}});
   };
-  column("time_column", &TableFormat::time_column, "when the row's first beam was fired; auto: not there");
+  column("time_column", &TableFormat::time_column, "firing time of the row's first beam; auto: none");
   time_unit("time_unit", &TableFormat::time_unit, "of that");
-  column("receipt_column", &TableFormat::receipt_column, "when the row was received; auto: not there");
+  column("receipt_column", &TableFormat::receipt_column, "time of receipt of the row; auto: none");
   time_unit("receipt_unit", &TableFormat::receipt_unit, "of that");
   column("counter_column", &TableFormat::counter_column,
-         "the device's count of its scans, which times them where there is a clock stage; auto: not there");
-  d.option("counter_modulus", format, &TableFormat::counter_modulus, "where that begins anew").at_least(2);
-  d.option("period", format, &TableFormat::period, "nominal time between two scans; 0: not known")
+         "the device's count of its scans, their time for a clock stage; auto: none");
+  d.option("counter_modulus", format, &TableFormat::counter_modulus, "modulus of that count").at_least(2);
+  d.option("period", format, &TableFormat::period, "nominal time between two scans; 0: unknown")
       .unit("s")
       .range(0, 1000);
-  column("angle_column", &TableFormat::angle_column, "the actuator's angle; auto: the laser stands still");
-  d.option("angle_unit", format, &TableFormat::angle_unit,
-           "of all angles in the table; counts: the actuator's are counts of the rig's encoder, and mirror "
-           "angles in "
-           "rad")
+  column("angle_column", &TableFormat::angle_column, "angle of the actuator; auto: the laser is stationary");
+  d.option(
+       "angle_unit", format, &TableFormat::angle_unit,
+       "unit of all angles in the table; counts: the actuator's are counts of the rig's encoder, and mirror angles in rad")
       .choices({{"rad", AngleUnit::rad}, {"deg", AngleUnit::deg}, {"counts", AngleUnit::counts}});
-  column("range_column", &TableFormat::range_column, "the first range; auto: rows are times alone");
-  column("count_column", &TableFormat::count_column, "how many ranges there are; auto: up to the row's end");
+  column("range_column", &TableFormat::range_column, "first range; auto: rows are times alone");
+  column("count_column", &TableFormat::count_column, "number of ranges; auto: up to the row's end");
   d.option("range_unit", format, &TableFormat::range_unit, "of ranges")
       .choices({{"m", LengthUnit::m}, {"cm", LengthUnit::cm}, {"mm", LengthUnit::mm}});
   d.option("invalid_from", format, &TableFormat::invalid_from,
-           "ranges from there on, in their unit, mean that there is no echo, as 0 and less always do");
-  column("remission_column", &TableFormat::remission_column, "the first remission; auto: there are none");
+           "limit from which ranges, in their unit, mean no echo, as 0 and less always do");
+  column("remission_column", &TableFormat::remission_column, "first remission; auto: none");
   column("mirror_column", &TableFormat::mirror_column,
-         "the reported angle of the row's only beam, where a row is one beam; auto: a row is a scan");
+         "reported angle of the row's beam, where a row is one beam; auto: a row is a scan");
   column("laser_column", &TableFormat::laser_column,
-         "number of the laser in the rig, from 0; auto: it has one");
+         "number of the laser in the rig, from 0; auto: the rig has one");
 }
 
 }  // namespace
@@ -62,20 +61,9 @@ void describe_columns(StageDescription<TableStage>& d, TableFormat TableStage::*
 void TableStage::describe(StageDescription<TableStage>& d) {
   d.name("grabber.table").summary("reads scans with the actuator's angles from text in columns (CSV)");
   d.details(
-      "For any laser on an actuator whose recording is a table: a scan a row, or a beam a row, numbers apart "
-      "by "
-      "commas, semicolons, tabs or spaces. Lines that begin with # or % and a first line of names are passed "
-      "over. A "
-      "row that cannot be read is left out and counted; the first is named with its line and column.\n\n"
-      "Where laser and actuator share a clock, the measurements that it gives can be placed at once. "
-      "Otherwise a "
-      "clock stage below takes the scans and readings: by the device's count of its scans where there is "
-      "one, "
-      "else by its time.\n\n"
-      "The rig's plate is the actuator, whatever it turns; angles are rounded to its "
-      "`counts_per_revolution`. "
-      "docs/reality-gap.md says how a tilting unit is described. Of a laser without an actuator there are no "
-      "readings, and of a table without ranges no measurements: its times are there for `diagnose.stamps`.");
+      "For any laser on an actuator whose recording is a table: a scan a row, or a beam a row, numbers separated by commas, semicolons, tabs or spaces. Lines that begin with # or % and a first line of names are skipped. An unreadable row is dropped and counted; the first is named with its line and column.\n\n"
+      "Where laser and actuator share a clock, the resulting measurements can be placed at once. Otherwise a clock stage below aligns the scans and readings: by the device's count of its scans where there is one, else by its time.\n\n"
+      "The rig's plate is the actuator, whatever it turns; angles are rounded to its `counts_per_revolution`. docs/reports/reality-gap.md describes a tilting unit. Without an actuator there are no readings, and without ranges no measurements: the times of such a table are for `diagnose.clocks`.");
   d.gives<Scan>().gives<PlateReading>().gives<PlateTrajectory>().gives<Measurements>();
   d.option("file", &TableStage::file_, "the table").required();
   describe_columns(d, &TableStage::format_);
@@ -90,16 +78,14 @@ void TableStage::describe(StageDescription<TableStage>& d) {
       .unit("s")
       .range(0, 10);
   d.option("actuator", settings, &TableScanSettings::actuator,
-           "what it does while a row is measured: it moves, or it stands at the row's angle")
+           "motion of the actuator during a row: it moves, or it stands at the row's angle")
       .choices({{"moves", ActuatorMotion::moves}, {"stands", ActuatorMotion::stands}});
   d.option("max_gap", settings, &TableScanSettings::max_gap,
            "longest silence of the angles to interpolate across")
       .unit("s")
       .range(1e-6, 1e6);
-  d.option("begin", &TableStage::begin_, "what is earlier than this after the first row is left out")
-      .unit("s")
-      .at_least(0);
-  d.option("duration", &TableStage::duration_, "how much is given from there on; auto: all of it")
+  d.option("begin", &TableStage::begin_, "start of the used part, after the first row").unit("s").at_least(0);
+  d.option("duration", &TableStage::duration_, "duration of the used part; auto: to the end")
       .unit("s")
       .at_least(0);
 }
@@ -132,18 +118,19 @@ void TableStage::check(const RunSettings& run) const {
     if (wrong) errors.add(Error(std::move(what), std::move(advice)));
   };
   const bool timed = format_.time_column || format_.receipt_column;
-  refuse_if(!timed && format_.period == 0, "nothing says when the rows were measured",
+  refuse_if(!timed && format_.period == 0, "the times of the rows are not defined",
             "give time_column, receipt_column or the period");
   refuse_if(timed && format_.counter_column && format_.period == 0,
-            "a count of scans is no time without the time between two of them", "give the period");
+            "a count of scans requires the time between two scans", "give the period");
   refuse_if(
       !format_.range_column && (format_.mirror_column || format_.count_column || format_.remission_column),
-      "nothing says where the ranges are", "give range_column");
+      "no column of ranges is given", "give range_column");
   refuse_if(format_.range_column && !format_.mirror_column && settings_.angle_step == 0,
             "all beams of a scan would have the same angle", "give angle_step, or mirror_column");
-  refuse_if(run.rig.lasers.size() > 1 && !format_.laser_column,
-            fmt::format("the rig has {} lasers, and nothing says whose a row is", run.rig.lasers.size()),
-            "give laser_column, or a rig of one laser");
+  refuse_if(
+      run.rig.lasers.size() > 1 && !format_.laser_column,
+      fmt::format("the rig has {} lasers, and no column assigns the rows to them", run.rig.lasers.size()),
+      "give laser_column, or a rig of one laser");
   errors.throw_any();
 }
 
@@ -156,15 +143,15 @@ void TableStage::read(TableReader& reader, TableItems& items, Outputs& out, Cont
     if (!first_ns) first_ns = time_ns;
     const double since = 1e-9 * static_cast<double>(*time_ns - *first_ns) - begin_;
     if (since < 0 || (duration_ && since >= *duration_)) {
-      context.count("rows left out because of begin and duration");
+      context.count("rows outside of begin and duration");
       continue;
     }
     const auto item = items.add(*row, *time_ns);
     if (item.reading) out.give(*item.reading);
     if (item.scan) out.give(item.scan);
     if (items.beams_held() >= kPiece) give_piece(items, out);
-    constexpr std::uint64_t kTellEvery = 1000;
-    if (++rows % kTellEvery == 0) {
+    constexpr std::uint64_t kReportEvery = 1000;
+    if (++rows % kReportEvery == 0) {
       if (context.interrupted()) return;
       context.progress(Progress{static_cast<double>(rows), 0, "rows", "reading the table"});
     }
@@ -212,29 +199,26 @@ void TableStage::report(const TableReader& reader, const TableItems& items, std:
     if (std::filesystem::file_size(file_, none) == 0) throw Error(file_.string() + " is empty");
     if (fault) throw Error("no row can be read: " + fault->message(), "correct the columns", fault->place());
     throw Error(file_.string() + (format_.range_column ? " holds no range" : " holds no row"),
-                "is it the right table, and are its columns right?");
+                "check the table and its columns");
   }
   if (fault) context.warn(to_string(fault->place()) + ": here is the first of the " + fault->message());
   if (const int line = items.first_early_line(); line > 0) {
     context.warn(
         to_string(Place{file_.string(), line, 1}) +
-        ": here is the first of the rows that are earlier than the row before. If the row before leaps "
-        "ahead, take it out; if rows are in another order, sort them by their time");
+        ": here is the first of the rows that are earlier than the row before. If the row before jumps ahead, remove it; if rows are in another order, sort them by their time");
   }
   if (items.large_steps() > 0) {
-    context.warn(
-        fmt::format("{} of {} angles are a turn and a half or more from the one before; is angle_unit right? "
-                    "Counts of an "
-                    "encoder are angle_unit: counts",
-                    items.large_steps(), items.rows()));
+    context.warn(fmt::format(
+        "{} of {} angles are a turn and a half or more from the one before; check angle_unit (for counts of an encoder, angle_unit: counts)",
+        items.large_steps(), items.rows()));
   }
   if (2 * items.overlapping() > items.rows()) {
     context.warn(fmt::format(
-        "{} of {} rows begin before the last beam of the row before was fired; is beam_interval right?",
+        "{} of {} rows begin before the last beam of the row before was fired; check beam_interval",
         items.overlapping(), items.rows()));
   }
   context.report({{"rows", items.rows()}, {"beams", beams}});
-  context.say(fmt::format("{} rows with {} ranges", items.rows(), beams));
+  context.print(fmt::format("{} rows with {} ranges", items.rows(), beams));
 }
 
 }  // namespace crisp

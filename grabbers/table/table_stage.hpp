@@ -22,7 +22,7 @@ class TableStage final : public Stage {
  private:
   void check_columns() const;
   void read(TableReader& reader, TableItems& items, Outputs& out, Context& context) const;
-  /// Gives what is over, so that memory does not grow with the table.
+  /// Gives completed items, so that memory does not grow with the table.
   static void give_piece(TableItems& items, Outputs& out);
   void report(const TableReader& reader, const TableItems& items, std::uint64_t beams,
               Context& context) const;

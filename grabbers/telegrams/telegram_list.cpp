@@ -23,7 +23,7 @@ class WatchedText final : public std::streambuf {
  public:
   WatchedText(std::istream& text, const std::string& name) : text_(text), name_(name), buffer_(1 << 16) {}
 
-  /// Of the n-th byte, from 0, of those that were handed on last.
+  /// Place of the n-th byte, from 0, of the last bytes handed on.
   Place place_of(std::size_t byte) const {
     const auto read = static_cast<std::size_t>(gptr() - eback());
     const std::size_t in_buffer = std::min(byte - std::min(byte, begin_), read);
@@ -40,7 +40,7 @@ class WatchedText final : public std::streambuf {
     const std::string_view passed(buffer_.data(), static_cast<std::size_t>(egptr() - eback()));
     since_element_ += passed.size();
     if (since_element_ > kLongestElement)
-      throw Error("an element of more than 64 MiB begins before this", "is it a list of telegrams?",
+      throw Error("an element of more than 64 MiB begins before this", "check that it is a list of telegrams",
                   place_of(begin_ + passed.size()));
     text_.read(next_.data(), static_cast<std::streamsize>(next_.size()));
     const auto got = static_cast<std::size_t>(text_.gcount());
@@ -111,7 +111,7 @@ std::optional<std::int64_t> nanoseconds(const nlohmann::json& time) {
   return std::llround(1e9 * seconds);
 }
 
-/// What an element of the list holds; nothing, and counted, if that is no telegram.
+/// Telegram of an element of the list; nothing, and counted, if it is none.
 std::optional<ListedTelegram> telegram_of(const nlohmann::json& entry, Counts& losses) {
   const auto* payload = at(entry, {"_source", "layers", "tcp", "tcp.payload"});
   const auto* time = at(entry, {"_source", "layers", "tcp", "Timestamps", "tcp.time_relative"});
@@ -153,7 +153,7 @@ void read_telegram_list(std::istream& text, const std::string& name, Counts& los
   } catch (const nlohmann::json::exception& error) {
     const auto* where = dynamic_cast<const nlohmann::json::parse_error*>(&error);
     const std::size_t byte = where != nullptr && where->byte > 0 ? where->byte - 1 : 0;
-    throw Error("this is no JSON", "is it a list of telegrams, and whole?", watched.place_of(byte));
+    throw Error("this is no JSON", "check that it is a complete list of telegrams", watched.place_of(byte));
   }
 }
 

@@ -6,7 +6,7 @@
 #include <istream>
 #include <string>
 
-#include "grabbers/capture/counts.hpp"
+#include "grabbers/devices/counts.hpp"
 #include "grabbers/wire/bytes.hpp"
 
 namespace crisp {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <istream>
 
-#include "grabbers/capture/device_log.hpp"
-#include "grabbers/capture/framing_losses.hpp"
 #include "grabbers/capture/loss_warnings.hpp"
+#include "grabbers/devices/device_log.hpp"
+#include "grabbers/devices/framing_losses.hpp"
 #include "grabbers/telegrams/telegram_list.hpp"
 #include "pipeline/files/byte_stream.hpp"
 
@@ -28,11 +28,7 @@ std::optional<std::size_t> laser_named(const std::string& name, const Rig& rig) 
 void TelegramsStage::describe(StageDescription<TelegramsStage>& d) {
   d.name("grabber.telegrams").summary("reads scans of a SICK laser from a list of its telegrams (JSON)");
   d.details(
-      "The lists are those that pcap_json_converter of sick_scan_xd makes of captures for its emulator: of "
-      "each telegram of the dialogue its bytes in hexadecimal, and the time [s] since the recording began at "
-      "which the first of its packets came in. There are no addresses in them: all is of one laser of the "
-      "rig. "
-      "What is damaged, repeated or missing is counted, as in captures.");
+      "Reads the lists that pcap_json_converter of sick_scan_xd makes of captures for its emulator: the bytes of each telegram in hexadecimal, and the receipt time [s] of its first packet since the recording's start. They hold no addresses: all telegrams are of one laser of the rig. Damaged, repeated and missing telegrams are counted, as for captures.");
   d.gives<Scan>();
   d.option("file", &TelegramsStage::file_, "the list").required();
   d.option("laser", &TelegramsStage::laser_, "name of the laser in the rig; empty: the first");
@@ -61,14 +57,14 @@ void TelegramsStage::process(const Inputs&, Outputs& out, Context& context) {
   std::uint64_t telegrams = 0;
   read_telegram_list(text, file_.string(), losses, [&](const ListedTelegram& telegram) {
     framer.feed(telegram.bytes, telegram.time_ns, take);
-    constexpr std::uint64_t kTellEvery = 1000;
-    if (telegrams++ % kTellEvery == 0)
+    constexpr std::uint64_t kReportEvery = 1000;
+    if (telegrams++ % kReportEvery == 0)
       context.progress(Progress{static_cast<double>(telegrams), 0, "telegrams", "reading telegrams"});
   });
   framer.gap(take);
   note_framing(framer.counts(), log);
   const DeviceStatistics statistics = log.statistics();
-  for (auto& caveat : lost_devices({.devices = {statistics}})) context.distrust(std::move(caveat));
+  for (auto& caveat : lost_devices({.devices = {statistics}})) context.mark_untrusted(std::move(caveat));
   for (auto& warning : loss_warnings({.devices = {statistics}}, file_.filename().string())) {
     context.warn(std::move(warning));
   }
@@ -76,9 +72,9 @@ void TelegramsStage::process(const Inputs&, Outputs& out, Context& context) {
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
   for (const auto& [what, n] : statistics.notes.all()) context.count(what, n);
   context.report({{"telegrams", telegrams}, {"scans", statistics.items}});
-  context.say(fmt::format("{} scans of {} in {} telegrams", statistics.items, own.name, telegrams));
+  context.print(fmt::format("{} scans of {} in {} telegrams", statistics.items, own.name, telegrams));
   if (statistics.items == 0) {
-    throw Error(file_.string() + " holds no scan", "are LMDscandata telegrams of a laser in it?");
+    throw Error(file_.string() + " holds no scan", "check that it holds LMDscandata telegrams of a laser");
   }
 }
 

@@ -35,15 +35,9 @@ std::optional<TransportPacket> datagram_of(const Packet& packet) {
 void VelodyneStage::describe(StageDescription<VelodyneStage>& d) {
   d.name("grabber.velodyne").summary("reads the lasers of a Velodyne VLP-16 from a capture");
   d.details(
-      "A VLP-16 is sixteen lasers with a fixed beam each on one turning head: the rig describes each by its "
-      "mount, "
-      "minus (90deg + its elevation), with alpha = -90deg (configs/real/vlp16_rig.yaml). The head's azimuth, "
-      "which "
-      "grows clockwise, is the plate's angle with the other sign; between packets' blocks it is "
-      "interpolated. Times are "
-      "the device's, counted from the first packet's receipt. Packets of other kinds are counted.");
+      "A VLP-16 is sixteen lasers with a fixed beam each on one turning head: the rig describes each by its mount, minus (90deg + its elevation), with alpha = -90deg (configs/real/vlp16_rig.yaml). The head's azimuth, which grows clockwise, is the plate's angle with the other sign; between packets' blocks it is interpolated. Times are the device's, counted from the first packet's receipt. Packets of other kinds are counted.");
   d.gives<PlateTrajectory>().gives<Measurements>();
-  d.option("file", &VelodyneStage::file_, "the capture (pcap or pcapng)").required();
+  d.option("file", &VelodyneStage::file_, "capture (pcap or pcapng)").required();
 }
 
 void VelodyneStage::check(const RunSettings& run) const {
@@ -125,11 +119,11 @@ void VelodyneStage::process(const Inputs&, Outputs& out, Context& context) {
   }
   for (const auto& [what, n] : capture.losses().all()) context.count(what, n);
   if (times_.size() < 2) {
-    throw Error(file_.string() + " holds no measurements of a VLP-16", "was the right interface captured?");
+    throw Error(file_.string() + " holds no measurements of a VLP-16", "check the captured interface");
   }
   const double turns = std::abs(angles_.back() - first_angle_) / (2 * std::numbers::pi);
   context.report({{"packets", packets}, {"turns", turns}});
-  context.say(
+  context.print(
       fmt::format("{} packets, {:.2f} turns in {:.3f} s", packets, turns, times_.back() - first_time_));
   give_until(std::numeric_limits<double>::infinity(), out);
 }

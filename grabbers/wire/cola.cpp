@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, 26> kErrorTexts = {
     "write access denied at this user level: log in first",
     "unknown command for the name server",
     "unknown CoLa command",
-    "server busy: ask again later",
+    "server busy: retry later",
     "array index out of bounds",
     "unknown event",
     "value too large for its type",

@@ -13,7 +13,7 @@ namespace crisp {
 /// and a checksum.
 enum class ColaLanguage : std::uint8_t { A, B };
 
-/// Longest payload of one telegram that is believed [bytes].
+/// Longest plausible payload of one telegram [bytes].
 inline constexpr std::size_t kLargestColaPayload = 64 * 1024;
 
 /// One telegram, its payload taken apart; views into the payload.
@@ -34,13 +34,13 @@ Bytes cola_frame(ByteView payload, ColaLanguage language);
 /// Exclusive or of all bytes: the checksum of CoLa-B.
 std::uint8_t cola_checksum(ByteView payload);
 
-/// Takes a payload (without framing) apart; nothing if it does not begin like a telegram.
+/// Parses a payload (without framing); nothing if it does not begin like a telegram.
 std::optional<ColaTelegram> parse_cola(ByteView payload, ColaLanguage language);
 
 /// The code of an sFA telegram; nothing for other telegrams and for codes that cannot be read.
 std::optional<unsigned> cola_error_code(const ColaTelegram& telegram);
 
-/// What the code of an sFA telegram means, in words.
+/// Meaning of the code of an sFA telegram, in words.
 std::string_view cola_error_text(unsigned code);
 
 }  // namespace crisp

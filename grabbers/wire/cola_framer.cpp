@@ -10,11 +10,11 @@ namespace {
 
 constexpr std::uint8_t kStart = 0x02, kEnd = 0x03;
 constexpr std::size_t kHeaderB = 8;          // 02 02 02 02 and the length
-constexpr std::size_t kSmallestPayload = 4;  // "sFA" and a code, "sRN X": nothing shorter says anything
+constexpr std::size_t kSmallestPayload = 4;  // "sFA" and a code, "sRN X": nothing shorter is a telegram
 
 enum class Verdict : std::uint8_t { Whole, Incomplete, NoTelegram, BadChecksum };
 
-/// What begins at a byte of the stream.
+/// Candidate telegram at a byte of the stream.
 struct Candidate {
   Verdict verdict = Verdict::NoTelegram;
   ColaLanguage language = ColaLanguage::B;

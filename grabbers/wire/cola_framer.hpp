@@ -17,20 +17,20 @@ struct ColaFrame {
 };
 
 /// Finds CoLa-A and CoLa-B telegrams in a byte stream that is cut anywhere, may begin inside a telegram and
-/// may be damaged. A telegram is believed only whole: with its end (A) or its checksum (B); after a false
-/// start the search goes on from the next byte. What is found does not depend on how the stream was cut into
+/// may be damaged. A telegram is accepted only whole: with its end (A) or its checksum (B); after a false
+/// start the search goes on from the next byte. The result does not depend on how the stream was cut into
 /// pieces. Memory is bounded by one largest telegram and one piece.
 class ColaFramer {
  public:
   struct Counts {
     std::uint64_t telegrams = 0;
-    std::uint64_t skipped_bytes = 0;       ///< bytes that belong to no whole telegram
+    std::uint64_t skipped_bytes = 0;       ///< bytes outside of whole telegrams
     std::uint64_t resynchronisations = 0;  ///< telegrams found behind skipped bytes
     std::uint64_t checksum_failures = 0;   ///< CoLa-B telegrams refused for their checksum
     std::uint64_t cut = 0;                 ///< telegrams whose rest was missing at a gap or at the end
   };
 
-  /// Takes the next bytes and calls `sink(const ColaFrame&)` for each telegram that they complete; the
+  /// Parses the next bytes and calls `sink(const ColaFrame&)` for each telegram that they complete; the
   /// frame's payload is valid during the call.
   /// @param arrival_ns [ns] hub time at which these bytes arrived
   template <class Sink>
@@ -39,8 +39,8 @@ class ColaFramer {
     while (const auto frame = next(false)) sink(*frame);
   }
 
-  /// Says that bytes are missing here, or that the stream ends: what is incomplete will never be whole. Calls
-  /// `sink` for telegrams that a false start had hidden.
+  /// Marks missing bytes, or the stream's end: incomplete telegrams are given up. Calls `sink` for telegrams
+  /// that a false start had hidden.
   template <class Sink>
   void gap(Sink&& sink) {
     while (const auto frame = next(true)) sink(*frame);

@@ -31,15 +31,15 @@ constexpr std::string_view to_string(FieldFailure failure) {
     case FieldFailure::BadFlag:
       return "a flag is neither 0 nor 1";
     case FieldFailure::BadText:
-      return "a text does not end where its length says";
+      return "a text does not end at its stated length";
     case FieldFailure::TooMany:
       return "more blocks than any device sends";
   }
   return "unknown";
 }
 
-/// What both languages' readers share. The first failure sticks, and what is read after it stays unchanged:
-/// a reader of fields may read on and ask once at the end.
+/// Common base of both languages' readers. The first failure sticks, and later reads change nothing: a reader
+/// of fields may read on and test once at the end.
 class FieldReader {
  public:
   bool ok() const { return failure_ == FieldFailure::None; }

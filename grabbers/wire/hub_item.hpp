@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// What the hub receives: a scan of a laser or a reading of the plate.
+/// An item received by the hub: a scan of a laser or an encoder reading.
 using HubItem = std::variant<std::shared_ptr<const Scan>, PlateReading>;
 
 /// [ns since the Unix epoch] When the hub received it.
@@ -19,7 +19,7 @@ inline std::int64_t receipt_ns(const HubItem& item) {
   return scan != nullptr ? (*scan)->receipt_ns : std::get<PlateReading>(item).receipt_ns;
 }
 
-/// Where items come from, one after the other: a capture, live devices, a simulator.
+/// A sequential source of items: a capture, live devices, a simulator.
 class ItemSource {
  public:
   ItemSource() = default;

@@ -8,7 +8,7 @@ void PlateFramer::gap() {
   line_.clear();
 }
 
-/// Takes those bytes off the front that are within a sentence and do not end it; returns how many.
+/// Consumes the bytes that are within a sentence and do not end it; returns their number.
 std::size_t PlateFramer::lengthen(ByteView bytes) {
   if (line_.empty() || line_.size() > kLongestPlateSentence) return 0;
   const auto room = bytes.first(std::min(bytes.size(), kLongestPlateSentence + 1 - line_.size()));

@@ -29,7 +29,7 @@ class PlateFramer {
     std::uint64_t of(PlateFailure failure) const { return failures[static_cast<std::size_t>(failure)]; }
   };
 
-  /// Takes the next bytes and calls `sink(const PlateReading&)` for each reading that they complete.
+  /// Parses the next bytes and calls `sink(const PlateReading&)` for each reading that they complete.
   /// @param arrival_ns [ns] hub time at which these bytes arrived: the reading's receipt time
   template <class Sink>
   void feed(ByteView bytes, std::int64_t arrival_ns, Sink&& sink) {
@@ -44,7 +44,7 @@ class PlateFramer {
     }
   }
 
-  /// Says that bytes are missing here, or that the datagram or stream ends.
+  /// Marks missing bytes, or the end of the datagram or stream.
   void gap();
 
   const Counts& counts() const { return counts_; }

@@ -19,7 +19,7 @@ std::uint8_t checksum(std::string_view body) {
                          [](std::uint8_t sum, char c) { return static_cast<std::uint8_t>(sum ^ c); });
 }
 
-/// Takes one decimal field off the front of `fields`.
+/// Parses one decimal field at the front of `fields`.
 template <class Number>
 bool take(std::string_view& fields, Number& value) {
   const auto* end = fields.data() + fields.size();

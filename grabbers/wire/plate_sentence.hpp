@@ -12,7 +12,7 @@ namespace crisp {
 /// Longest sentence of the plate, without its line end; longer lines are damage.
 inline constexpr std::size_t kLongestPlateSentence = 82;  // NMEA 0183's limit
 
-/// Why a line is no reading of the plate.
+/// Why a line is no encoder reading.
 enum class PlateFailure : std::uint8_t {
   None,
   OtherSentence,  ///< a good sentence of another kind ("$GPRMC,…")

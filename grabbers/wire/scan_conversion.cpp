@@ -20,7 +20,7 @@ std::size_t echo_number(const ChannelBlock& channel, std::string_view kind) {
   return n >= 1 && n <= kMostEchoes ? n : 0;
 }
 
-/// What gathers the channels of one telegram into one scan.
+/// Merges the channels of one telegram into one scan.
 class Gathering {
  public:
   explicit Gathering(Scan& scan) : scan_(scan) {}

@@ -43,7 +43,7 @@ struct ChannelBlock {
   bool operator==(const ChannelBlock&) const = default;
 };
 
-/// Where the device believes to be.
+/// The device's own estimate of its position.
 struct PositionBlock {
   std::array<float, 6> pose{};  ///< x, y, z, three rotations
   std::uint8_t rotation_type = 0;
@@ -58,7 +58,7 @@ struct TimeBlock {
   bool operator==(const TimeBlock&) const = default;
 };
 
-/// What triggered the scan.
+/// Trigger of the scan.
 struct EventBlock {
   std::string kind = "FDIN";  ///< exactly 4 characters
   std::uint32_t encoder_position = 0;
@@ -91,7 +91,7 @@ struct ScanData {
   std::optional<std::string> comment;  ///< at most 255 bytes
   std::optional<TimeBlock> time;
   std::optional<EventBlock> event;
-  /// What a newer firmware appended behind the event and nobody here knows: bytes in CoLa-B, tokens in
+  /// Size of unknown data that a newer firmware appended behind the event: bytes in CoLa-B, tokens in
   /// CoLa-A.
   std::size_t appended = 0;
   bool operator==(const ScanData&) const = default;

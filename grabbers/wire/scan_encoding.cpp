@@ -21,12 +21,13 @@ constexpr double kMostRaw = std::numeric_limits<std::uint16_t>::max();
 float scale_for(const std::vector<float>& values, double factor, double most) {
   float largest = 0;
   for (const float value : values) {
-    if (!(value >= 0)) throw Error(fmt::format("a scan has a value of {}, which no telegram can say", value));
+    if (!(value >= 0))
+      throw Error(fmt::format("a scan has a value of {}, which a telegram cannot encode", value));
     largest = std::max(largest, value);
   }
   const double scale = std::max(1.0, std::ceil(largest * factor / most - 1e-6));
   if (!(scale <= kMostRaw)) {
-    throw Error(fmt::format("a scan has a value of {}, which no telegram can say", largest));
+    throw Error(fmt::format("a scan has a value of {}, which a telegram cannot encode", largest));
   }
   return static_cast<float>(scale);
 }
@@ -47,7 +48,7 @@ void check_angles(const Scan& scan) {
   constexpr double kMost = 720 * kDegree;
   const bool start = std::abs(scan.start_angle) <= kMost;
   const bool step = scan.angle_step >= 0 && scan.angle_step * kUnitsPerDegree / kDegree < kMostRaw;
-  if (!start || !step) throw Error("a scan has angles that no telegram can say");
+  if (!start || !step) throw Error("a scan has angles that a telegram cannot encode");
 }
 
 /// Whichever the dialect: CoLa-A takes up to five characters for a value.

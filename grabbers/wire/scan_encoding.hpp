@@ -6,10 +6,10 @@
 
 namespace crisp {
 
-/// The telegram that a scan was decoded from, as far as the scan tells: decoded again, it gives the same
-/// ranges [whole millimetres, or what is left of them beyond 65 m], angles, counters and times. A code that
+/// Encodes a scan as the telegram that it was decoded from, as far as the scan determines it: decoded again,
+/// it gives the same ranges [whole millimetres, rounded beyond 65 m], angles, counters and times. A code that
 /// the device sent for a range is 0 afterwards.
-/// @throws Error if a range or an angle is beyond what a telegram can say
+/// @throws Error if a range or an angle is beyond the telegram's limits
 ScanData to_scan_data(const Scan& scan);
 
 }  // namespace crisp

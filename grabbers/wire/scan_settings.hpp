@@ -9,7 +9,7 @@
 
 namespace crisp {
 
-/// How a laser scans, in the device's units: the parameters of `mLMPsetscancfg` and `LMPscancfg`.
+/// Scan settings of a laser, in the device's units: the parameters of `mLMPsetscancfg` and `LMPscancfg`.
 struct ScanSettings {
   std::uint32_t frequency = 5000;   ///< [1/100 Hz]
   std::uint16_t sectors = 1;        ///< of other scans than these nothing is known here
@@ -36,7 +36,7 @@ struct OutputRange {
 std::vector<ColaValue> to_values(const OutputRange& range);
 std::optional<OutputRange> output_range(const ColaTelegram& telegram);
 
-/// What of a scan is sent: the parameters of `LMDscandatacfg`.
+/// Sent content of a scan: the parameters of `LMDscandatacfg`.
 struct ScanContent {
   std::uint16_t channels = 1;  ///< a bit each
   bool remission = false;

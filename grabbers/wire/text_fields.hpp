@@ -51,7 +51,7 @@ class TextReader : public FieldReader {
   /// `count` numbers that must fit in `width` bytes (1 or 2).
   void values(std::vector<std::uint16_t>& out, std::size_t count, std::size_t width);
 
-  /// How many tokens are left.
+  /// Number of remaining tokens.
   std::size_t count_tokens();
 
  private:

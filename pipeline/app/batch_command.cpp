@@ -26,9 +26,9 @@ using Json = nlohmann::ordered_json;
 
 /// A job of a batch that was killed a moment ago may still be about to end.
 void wait_for_the_dying(const fs::path& output) {
-  constexpr std::chrono::milliseconds kAskEvery{20};
+  constexpr std::chrono::milliseconds kPollEvery{20};
   constexpr int kTurns = 100;
-  for (int i = 0; i < kTurns && FolderLock::holder_of(output); ++i) std::this_thread::sleep_for(kAskEvery);
+  for (int i = 0; i < kTurns && FolderLock::holder_of(output); ++i) std::this_thread::sleep_for(kPollEvery);
 }
 
 std::string host_name() {
@@ -111,17 +111,17 @@ ExitStatus run_prepared(const BatchRequest& request, const PreparedBatch& batch,
   }
   if (lock.is_lost()) {
     print_errors(
-        Error("another process has taken over this batch, as this one gave no sign of life for too long",
+        Error("another process has taken over this batch, since this one sent no heartbeat for too long",
               "see crisp batch status"));
     return ExitStatus::failed;
   }
   if (!outcome.full_disk.empty()) {
     print_errors(Error("the disk is full, so the batch stopped: " + outcome.full_disk,
-                       "run the batch again then: it goes on where it stopped"));
+                       "then run the batch again: it continues where it stopped"));
     return ExitStatus::failed;
   }
   if (*StopOnSignal::flag()) {
-    std::cerr << fmt::format("interrupted: {} of {} ended; run the batch again to go on\n",
+    std::cerr << fmt::format("interrupted: {} of {} ended; run the batch again to continue\n",
                              outcome.progress.ended(), counted(outcome.progress.total, "recording"));
     return status_of_stop();
   }

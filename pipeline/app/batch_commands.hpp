@@ -9,8 +9,8 @@
 
 namespace crisp {
 
-/// Runs a pipeline over many recordings, each in a process of its own. What is done and unchanged is not done
-/// again. Writes the table to the output folder, a summary to stdout, progress and failures to stderr.
+/// Runs a pipeline over many recordings, each in a process of its own. Recordings that are done and unchanged
+/// are skipped. Writes the table to the output folder, a summary to stdout, progress and failures to stderr.
 ExitStatus batch_command(const BatchRequest& request, const Registrar& registrar);
 
 /// `crisp batch status`.
@@ -19,7 +19,7 @@ struct BatchStatusRequest {
   bool watch = false;
   bool json = false;
 };
-/// What is done, running, failed and why.
+/// Prints how many recordings are done, running or failed, and why they failed.
 ExitStatus batch_status_command(const BatchStatusRequest& request);
 
 /// `crisp batch table`.
@@ -28,7 +28,7 @@ struct BatchTableRequest {
   bool json = false;
 };
 /// Writes table.csv, batch.json and trend.svg from the manifests, and prints the table. The exit status is
-/// that of a batch with these results.
+/// the one of a batch with these results.
 ExitStatus batch_table_command(const BatchTableRequest& request);
 
 /// `crisp batch retry`.
@@ -37,8 +37,8 @@ struct BatchRetryRequest {
   std::string match = "*";  ///< names of the recordings, a pattern as of a shell
   bool mark = false;        ///< leaves them to the next batch
 };
-/// Makes failed recordings due again, and runs the batch as it was run last.
-/// @param request  how many jobs and the like, which may differ from then
+/// Makes failed recordings due again, and reruns the batch.
+/// @param request  number of jobs and further limits, which may differ from the last run
 ExitStatus batch_retry_command(const BatchRetryRequest& retry, BatchRequest request,
                                const Registrar& registrar);
 

@@ -27,7 +27,7 @@ std::optional<double> timeout_of(const BatchRequest& request) {
   if (const auto* wrong = std::get_if<Complaint>(&read)) throw Error("--timeout: " + wrong->text);
   const double seconds = std::get<double>(read);
   if (seconds > 0) return seconds;
-  throw Error("--timeout: " + request.timeout + " is not above 0 s", "leave it away for no limit");
+  throw Error("--timeout: " + request.timeout + " is not above 0 s", "omit it for no limit");
 }
 
 /// The extensions of files that are recordings, and not results of one.
@@ -45,7 +45,8 @@ std::vector<BatchInput> recordings_of(const BatchRequest& request, const Registr
                                      .output = request.output,
                                      .extensions = recording_extensions(registrar)});
   if (recordings.empty())
-    throw Error("there is no recording in what -i names", "captures end in .pcap or .pcapng, clouds in .pcd");
+    throw Error("there is no recording in the inputs of -i",
+                "captures end in .pcap or .pcapng, clouds in .pcd");
   return recordings;
 }
 
@@ -86,7 +87,7 @@ Json settings_of(const BatchRequest& request, const std::vector<BatchInput>& rec
 void print_plan(const fs::path& output, const BatchPlan& plan, const Json& settings, std::ostream& out) {
   for (const auto& [reason, count] : plan.reasons) {
     if (reason == DueReason::fresh) continue;
-    out << fmt::format("due again, as {}: {} ({}{})\n", in_words(reason), counted(count, "recording"),
+    out << fmt::format("due again, since {}: {} ({}{})\n", in_words(reason), counted(count, "recording"),
                        plan.examples.at(reason), count > 1 ? ", …" : "");
     if (reason != DueReason::settings) continue;
     const Json before = last_batch(output);
@@ -95,10 +96,10 @@ void print_plan(const fs::path& output, const BatchPlan& plan, const Json& setti
   }
   std::size_t kept = 0;
   for (const auto& [status, count] : plan.kept) kept += count;
-  if (kept > 0) out << fmt::format("{} done before and unchanged\n", counted(kept, "recording"));
+  if (kept > 0) out << fmt::format("{} already done and unchanged\n", counted(kept, "recording"));
   const auto failed = plan.kept.find(JobStatus::failed);
   if (failed != plan.kept.end())
-    out << fmt::format("  {} of them failed; crisp batch retry tries them again\n", failed->second);
+    out << fmt::format("  {} of them failed; crisp batch retry repeats them\n", failed->second);
 }
 
 }  // namespace
@@ -148,7 +149,7 @@ void plan_due(const BatchRequest& request, PreparedBatch& batch) {
   if (request.run.quiet) return;
   print_plan(request.output, batch.plan, batch.settings, std::cerr);
   if (ledger.damaged_lines() > 0)
-    std::cerr << fmt::format("warning: {} of the manifests are damaged and were passed over\n",
+    std::cerr << fmt::format("warning: {} of the manifests are damaged and were skipped\n",
                              counted(ledger.damaged_lines(), "line"));
 }
 

@@ -15,7 +15,7 @@
 
 namespace crisp {
 
-/// What a batch needs once everything about it is known to be right.
+/// A validated batch that is ready to run.
 struct PreparedBatch {
   Shard shard;
   std::optional<double> timeout;
@@ -29,14 +29,14 @@ struct PreparedBatch {
   bool is_over(const std::filesystem::path& output) const;
 };
 
-/// How a recording is run by itself.
+/// The run of a single recording.
 RunRequest run_of(const BatchRequest& request, const Job& job);
 
-/// The shard that was asked for, or that of Slurm's array, or all.
+/// The requested shard, or the one of this task of a Slurm array, or all recordings.
 /// @throws Error
 Shard shard_of(const BatchRequest& request);
 
-/// All that can be found wrong before the output folder is touched.
+/// Validates the batch before the output folder is touched.
 /// @throws Error or Errors
 PreparedBatch check_batch(const BatchRequest& request, const Shard& shard, const Registrar& registrar);
 

@@ -44,7 +44,7 @@ BatchDisplay::BatchDisplay(bool quiet, std::optional<std::uint16_t> metrics)
 }
 
 void BatchDisplay::show(const BatchProgress& progress) {
-  if (metrics_) board_.tell("batch", as_gauges(progress));
+  if (metrics_) board_.set_status("batch", as_gauges(progress));
   if (quiet_) return;
   const std::string text = in_words(progress, seconds_now() - began_);
   printer_.show("batch", {.done = static_cast<double>(progress.ended()),

@@ -88,12 +88,11 @@ std::string trend_text(const BatchRows& rows) {
   std::size_t count = 0;
   for (const auto& row : rows.rows) {
     if (row.stands_out.empty() || ++count > kMost) continue;
-    text += fmt::format("  {} stands out from the others in {}\n", row.name, fmt::join(row.stands_out, ", "));
+    text += fmt::format("  {} is an outlier in {}\n", row.name, fmt::join(row.stands_out, ", "));
   }
   if (2 * count > rows.count("done"))
     return fmt::format(
-        "  {} calibrations differ by more than their errors: they are of several scanners, or the "
-        "errors are too small\n",
+        "  {} calibrations differ by more than their standard errors: they are of several scanners, or the standard errors are too small\n",
         count);
   if (count > kMost) text += fmt::format("  and {} more, see {}\n", count - kMost, kBatchTable);
   return text;

@@ -12,7 +12,7 @@
 
 namespace crisp {
 
-/// How many recordings ended in which way.
+/// Number of recordings by their status.
 struct BatchTally {
   std::size_t done = 0;
   std::size_t untrusted = 0;

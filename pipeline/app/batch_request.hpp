@@ -27,7 +27,7 @@ struct BatchRequest {
   std::string shard;         ///< "3/64"; empty: that of Slurm's array, or all
 };
 
-/// What of it has to be known to run the batch again, for the manifest, and back.
+/// The arguments that are needed to run the batch again, for the manifest, and back.
 nlohmann::ordered_json arguments_json(const BatchRequest& request);
 /// Sets what `arguments_json` gave, but not the output, nor what does not change the results.
 void set_arguments(const nlohmann::ordered_json& arguments, BatchRequest& request);
@@ -35,8 +35,8 @@ void set_arguments(const nlohmann::ordered_json& arguments, BatchRequest& reques
 /// The words behind `crisp batch` that give this request, without --jobs and --shard.
 std::vector<std::string> batch_words(const BatchRequest& request);
 
-/// The rig's file for a recording: its folder, its name without ending and the recording's name in the place
-/// of {folder}, {stem} and {name}.
+/// The rig file of a recording: {folder}, {stem} and {name} are replaced by the recording's folder, its name
+/// without extension, and its name.
 std::filesystem::path rig_path(const std::string& pattern, const BatchInput& input);
 
 /// Whether each recording has a rig of its own.

@@ -79,8 +79,8 @@ ExitStatus batch_retry_command(const BatchRetryRequest& retry, BatchRequest requ
                                const Registrar& registrar) {
   const auto last = last_batch(retry.folder);
   if (!last.is_object() || !last.contains("arguments")) {
-    print_errors(Error(retry.folder.string() + " is no output folder of a batch: there is no manifest in it",
-                       "give the folder that crisp batch -o named"));
+    print_errors(Error(retry.folder.string() + " is no output folder of a batch: it holds no manifest",
+                       "give the folder of crisp batch -o"));
     return ExitStatus::misused;
   }
   const auto& arguments = last["arguments"];

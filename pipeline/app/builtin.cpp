@@ -14,13 +14,13 @@
 #include "pipeline/model/catalogue.hpp"
 #include "plugins/assemble/register.hpp"
 #include "plugins/calibrate/register.hpp"
+#include "plugins/calibrate/watch/register.hpp"
 #include "plugins/clock/register.hpp"
 #include "plugins/diagnose/register.hpp"
+#include "plugins/diagnose/scans/register.hpp"
 #include "plugins/filter/register.hpp"
 #include "plugins/report/register.hpp"
-#include "plugins/scans/register.hpp"
 #include "plugins/study/register.hpp"
-#include "plugins/watch/register.hpp"
 #include "plugins/write/register.hpp"
 
 namespace crisp {

@@ -6,7 +6,7 @@
 
 namespace crisp {
 
-/// What another program wrote to its standard output, and its exit status.
+/// Another program's standard output and exit status.
 struct CapturedOutput {
   int status = 0;  ///< 128 and the signal's number if a signal ended it
   std::string text;

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using SlurmOptions = std::vector<std::pair<std::string, std::string>>;
 
-/// What is submitted: an array of tasks, and the job after them.
+/// The jobs to submit: an array of tasks, and the job after them.
 struct ClusterPlan {
   std::uint64_t tasks = 0;
   fs::path folder;  ///< of scripts and logs
@@ -36,7 +36,7 @@ struct ClusterPlan {
 };
 
 /// Nothing if Slurm does not answer.
-std::optional<std::uint64_t> ask_longest_array() {
+std::optional<std::uint64_t> query_longest_array() {
   try {
     const auto config = capture_output({"scontrol", "show", "config"});
     return config.status == 0 ? longest_slurm_array(config.text) : std::nullopt;
@@ -45,22 +45,22 @@ std::optional<std::uint64_t> ask_longest_array() {
   }
 }
 
-/// As many tasks as were asked for, or fewer where the site or the recordings allow no more.
-std::uint64_t number_of_tasks(std::uint64_t wanted, std::uint64_t recordings) {
-  std::uint64_t tasks = wanted;
+/// The requested number of tasks, or fewer if the site or the number of recordings limits it.
+std::uint64_t number_of_tasks(std::uint64_t requested, std::uint64_t recordings) {
+  std::uint64_t tasks = requested;
   if (tasks > recordings) {
     tasks = recordings;
     std::cerr << fmt::format("{} instead of {}: there are no more recordings\n", counted(tasks, "task"),
-                             wanted);
+                             requested);
   }
-  const auto most = ask_longest_array();
+  const auto most = query_longest_array();
   if (!most) {
     std::cerr << "warning: scontrol did not report Slurm's MaxArraySize; if it is not above " << tasks
               << ", sbatch will refuse the array\n";
   } else if (tasks > *most) {
     tasks = *most;
     std::cerr << fmt::format("{} instead of {}, each with more recordings: the site's MaxArraySize is {}\n",
-                             counted(tasks, "task"), wanted, *most + 1);
+                             counted(tasks, "task"), requested, *most + 1);
   }
   return tasks;
 }
@@ -149,7 +149,9 @@ std::string submit_array(const ClusterPlan& plan) {
     const auto sbatch = capture_output(batch_submission(plan));
     if (sbatch.status == 0) return job_of(sbatch.text);
   } catch (const Error& error) {
-    throw Error(error.what(), "run it where Slurm's programs are installed, or look at it with --dry-run");
+    throw Error(
+        error.what(),
+        "run the command where Slurm's programs are installed, or inspect the scripts with --dry-run");
   }
   throw Error("sbatch refused " + plan.batch_script().string(), "its message is above; see --sbatch");
 }
@@ -167,7 +169,7 @@ ExitStatus submit(const ClusterPlan& plan, const ClusterSubmitRequest& request) 
                 "run crisp batch table when the array has ended, or end the array: scancel " + job);
   std::cout << fmt::format("job {}: the table, after them\nlogs: {}\n", merge_job, plan.folder.string());
   if (request.wait) return static_cast<ExitStatus>(merge.status);
-  std::cout << fmt::format("crisp batch status {} reports how far they are\n",
+  std::cout << fmt::format("crisp batch status {} reports their progress\n",
                            bash_quoted(request.batch.output.string()));
   return ExitStatus::done;
 }

@@ -22,7 +22,7 @@ struct ClusterSubmitRequest {
 };
 
 /// Submits a batch to Slurm: an array of tasks, each with its part of the recordings, and a job after them
-/// that writes the table and has the exit status of the whole. The scripts, and later the logs, are in
+/// that writes the table and has the exit status of the whole batch. Scripts and logs are in
 /// OUTPUT/manifest/slurm.
 ExitStatus cluster_submit_command(const ClusterSubmitRequest& request, const Registrar& registrar);
 

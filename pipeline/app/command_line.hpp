@@ -21,7 +21,7 @@ namespace crisp {
 
 /// Everything that can stand on the command line, and where CLI11 puts it.
 struct CommandLine {
-  CLI::App app{"Turns what lasers on a spinning plate measured into one crisp cloud.", "crisp"};
+  CLI::App app{"Self-calibration and point clouds for 2D lasers on a spinning plate.", "crisp"};
   std::vector<std::string> plugins;
   RunRequest run;
   RunRequest calibrate;
@@ -56,6 +56,7 @@ struct CommandLine {
   CLI::App* batch_table_app = nullptr;
   CLI::App* batch_retry_app = nullptr;
   CLI::App* cluster_app = nullptr;
+  CLI::App* study_app = nullptr;
   CLI::App* basin_app = nullptr;
   CLI::App* bound_app = nullptr;
   CLI::App* figures_app = nullptr;
@@ -75,6 +76,7 @@ struct CommandLine {
 
  private:
   CLI::App* command(const std::string& name, const std::string& help);
+  CLI::App* command_of(CLI::App& parent, const std::string& name, const std::string& help);
   /// The options that decide what a pipeline's file means.
   static void add_arguments(CLI::App* to, PipelineArguments& arguments);
   static void add_rig(CLI::App* to, PipelineArguments& arguments);
@@ -82,19 +84,19 @@ struct CommandLine {
   /// A pipeline, by its file or by the name of an installed one.
   static CLI::Option* add_pipeline(
       CLI::App* to, std::filesystem::path& file,
-      const std::string& help = "The pipeline's YAML file, or the name of an installed one");
+      const std::string& help = "Pipeline file, or name of an installed pipeline");
   void add_run();
   /// A pipeline that comes with the program, for a recording.
   CLI::App* add_of_recording(const char* name, const std::string& help, std::string_view text,
                              RunRequest& request);
   void add_batch();
   static void add_batch_inputs(CLI::App* to, BatchRequest& request);
-  /// What a batch allows each job.
+  /// Options of the limits of a batch's jobs.
   static void add_batch_limits(CLI::App* to, BatchRequest& request);
   void add_batch_verbs();
   void add_cluster();
   static void add_threads_and_seed(CLI::App* to, const std::string& threads, RunRequest& request);
-  /// How a pipeline is run; the result does not depend on it, but for the seed.
+  /// Options of running a pipeline; the result does not depend on them, but for the seed.
   static void add_run_options(CLI::App* to, const std::string& threads, RunRequest& request);
   /// A pipeline that comes with the program.
   static void add_own_pipeline(CLI::App* to, const char* name, std::string_view text,
@@ -105,6 +107,7 @@ struct CommandLine {
                                 std::initializer_list<std::pair<std::string, std::string>> names_and_help);
   /// A study can be divided, and is merged then.
   static void add_parts(CLI::App* to, const std::string& stage, StudyRequest& request);
+  void add_studies();
   void add_bound();
   void add_basin();
   void add_record();

@@ -13,6 +13,7 @@
 #include "pipeline/files/folder_lock.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/nearest.hpp"
+#include "pipeline/files/renamed_names.hpp"
 #include "pipeline/files/rig_file.hpp"
 #include "pipeline/model/catalogue.hpp"
 #include "pipeline/stage/reference.hpp"
@@ -29,11 +30,11 @@ std::string_view family_of(const StageType& type) {
 
 /// @param wanted  the family to list; empty: all
 /// @return whether there was any
-bool print_stage_list(const StageRegistry& stages, std::string_view wanted) {
+bool print_stage_list(const StageRegistry& stages, std::string_view requested) {
   std::string_view before;
   for (const auto* type : stages.all()) {
     const std::string_view family = family_of(*type);
-    if (!wanted.empty() && family != wanted) continue;
+    if (!requested.empty() && family != requested) continue;
     if (!before.empty() && family != before) std::cout << "\n";
     before = family;
     std::cout << fmt::format("{:<26}{}\n", type->name, type->summary);
@@ -53,7 +54,7 @@ ExitStatus write_reference(const StageRegistry& stages, const fs::path& folder) 
 
 /// A stage, or a family of them.
 ExitStatus print_named(const StagesRequest& request, const StageRegistry& stages) {
-  const StageType* type = stages.find(request.name);
+  const StageType* type = stages.find(current_name(RenamedName::Kind::stage, "", request.name));
   if (!type && print_stage_list(stages, request.name)) return ExitStatus::done;
   if (!type) {
     print_errors(no_such_stage(request.name, stages));
@@ -67,7 +68,7 @@ void validate_rig(const YamlNode& root, const fs::path& file, const PipelineArgu
   if (arguments.rig || !arguments.set.empty())
     throw Error(file.string() + " is a rig", "--rig and --set are for pipelines");
   const Rig rig = parse_rig(root);
-  std::cout << fmt::format("{}: right, a rig of {}\n", file.string(), counted(rig.lasers.size(), "laser"));
+  std::cout << fmt::format("{}: valid, a rig of {}\n", file.string(), counted(rig.lasers.size(), "laser"));
 }
 
 }  // namespace
@@ -153,7 +154,7 @@ ExitStatus effects_command(const EffectsRequest& request, const Registrar& regis
 }
 
 void list_plugins(const PluginLoader& loader) {
-  if (loader.tried().empty()) std::cout << "no plugins: give them with --plugin, or in CRISP_PLUGINS\n";
+  if (loader.tried().empty()) std::cout << "no plugins: name them with --plugin, or in CRISP_PLUGINS\n";
   for (const auto& plugin : loader.tried()) {
     std::cout << plugin.file.string() << "\n";
     if (!plugin.refusal.empty()) {
@@ -161,7 +162,8 @@ void list_plugins(const PluginLoader& loader) {
       continue;
     }
     std::cout << fmt::format("  {} {}\n", plugin.name, plugin.version);
-    if (!plugin.skipped.empty()) std::cout << fmt::format("  skipped: it is used from {}\n", plugin.skipped);
+    if (!plugin.skipped.empty())
+      std::cout << fmt::format("  skipped: already loaded from {}\n", plugin.skipped);
     if (!plugin.warning.empty()) std::cout << fmt::format("  warning: {}\n", plugin.warning);
     for (const auto& what : plugin.brings) std::cout << fmt::format("  {}\n", what);
   }

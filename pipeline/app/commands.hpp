@@ -13,7 +13,7 @@
 
 namespace crisp {
 
-/// How the program ends: documented in `crisp --help` and docs/program.md.
+/// The program's exit statuses: documented in `crisp --help` and docs/reference/program.md.
 enum class ExitStatus {
   done = 0,
   failed = 1,         ///< the run stopped at an error
@@ -71,11 +71,11 @@ struct InfoRequest {
   bool json = false;
   bool urdf = false;  ///< calibrations as ROS has them, in place of all else
 };
-/// What each file holds, and each file of a known kind in a folder. Where there may be several, one that
-/// cannot be read does not hide the others: the listing says what is wrong with it.
+/// Describes each file, and each file of a known kind in a folder. If one of several files cannot be read,
+/// the listing reports its error and continues.
 ExitStatus info_command(const InfoRequest& request, const Registrar& registrar);
 
-/// What is wrong, all of it, as a person is told it: lines, without a line break at the end.
+/// An error's message and advice as lines for people, without a line break at the end.
 std::string error_text(const Error& error);
 
 /// Prints that to stderr.

@@ -6,7 +6,7 @@
 
 namespace crisp {
 
-/// What can be written behind one of the program's commands.
+/// Words that can follow one of the program's commands.
 struct CommandWords {
   std::string name;                     ///< "run", or with a verb "batch status"
   std::vector<std::string> options;     ///< "--seed", "-i", …

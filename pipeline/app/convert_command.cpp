@@ -19,8 +19,8 @@ std::string format_of(const fs::path& file) {
   for (const char* format : {"pcd", "ply", "las"}) {
     if (has_extension(file, {std::string(".") + format})) return format;
   }
-  throw Error(file.string() + " has no ending that says what to write",
-              "end it in .pcd, .ply or .las, or give --format");
+  throw Error(file.string() + " has no file extension, so the output format is unknown",
+              "end the name in .pcd, .ply or .las, or give --format");
 }
 
 /// The clouds of a folder, each by the name that grabber.cloud reads all of its parts by.
@@ -51,7 +51,7 @@ ExitStatus convert_one(const fs::path& from, const fs::path& to, const ConvertRe
 ExitStatus convert_command(const ConvertRequest& request, const Registrar& registrar) try {
   const bool is_folder = fs::is_directory(request.from);
   if (is_folder && request.format.empty())
-    throw Error(request.from.string() + " is a folder, and nothing says what to make of its clouds",
+    throw Error(request.from.string() + " is a folder, and no format for its clouds is given",
                 "give --format las");
   if (request.format.empty()) return convert_one(request.from, request.to, request, registrar);
   const auto clouds = is_folder ? clouds_in(request.from) : std::set{request.from};

@@ -8,21 +8,14 @@ namespace {
 
 constexpr const char* kIntroduction =
     "# Effects\n\n"
-    "How real scanners depart from equation (2) of Sheehan, Harrison and Newman, from steady clocks and from "
-    "plain "
-    "noise.\nThis page is written by `crisp effects --markdown` from what the effects declare; `crisp "
-    "effects NAME` "
-    "tells one,\na plugin's too.\n\n"
-    "The names are the same everywhere: in `effects` of grabber.simulate, in calibrations, in what the "
-    "diagnosis "
-    "says. A\nparameter is what must be added to a reading to get at the truth, so that a range.offset of +2 "
-    "mm means "
-    "a laser that\nreads 2 mm short. θ is the mirror's angle, φ the plate's, ω its rate, r the range, β the "
-    "incidence, I the remission,\nk the number of a beam in its scan. \"Form\" marks parameters that say "
-    "what form an "
-    "effect has, and do nothing\nwithout the others. Neutral is the value that changes nothing; bounds are "
-    "what a "
-    "calibration keeps to.\n\n"
+    "Deviations of real scanners from equation (2) of Sheehan, Harrison and Newman, from ideal clocks and\n"
+    "from plain noise. `crisp effects --markdown` writes this page from the effects' declarations; `crisp\n"
+    "effects NAME` describes one effect, a plugin's too.\n\n"
+    "The names are the same everywhere: in `effects` of grabber.simulate, in calibrations, in diagnoses. A\n"
+    "parameter is the correction to be added to a reading: a laser with a range.offset of +2 mm reads 2 mm\n"
+    "short. θ is the mirror's angle, φ the plate's, ω its rate, r the range, β the incidence, I the\n"
+    "remission, k the number of a beam in its scan. \"Form\" marks shape parameters, which have no effect\n"
+    "without the amplitudes. Neutral is the value without effect; a calibration keeps to the bounds.\n\n"
     "```yaml\n"
     "- stage: grabber.simulate\n"
     "  with:\n"
@@ -59,7 +52,7 @@ std::string bounds(const EffectParameter& p) {
 std::string effect_text(const EffectInfo& effect) {
   std::string text = fmt::format("{}: {}\n\n{}\n\n  of {}\n", effect.name, effect.summary, effect.details,
                                  owner_of(effect.scope));
-  if (!effect.told_by.empty()) text += fmt::format("  what tells it: {}\n", effect.told_by);
+  if (!effect.resolvable_by.empty()) text += fmt::format("  resolvable by: {}\n", effect.resolvable_by);
   if (!effect.parameters.empty()) text += "\nparameters:\n";
   for (const auto& p : effect.parameters) {
     text += fmt::format("  {:<12} {}\n{:15}{}; neutral: {}{}\n", p.name, p.summary, "", bounds(p),
@@ -77,7 +70,7 @@ std::string effects_markdown(const std::vector<EffectInfo>& catalogue) {
     family = of;
     text += fmt::format("\n### {}\n\nOf {}: {}.\n\n{}\n", effect.name, owner_of(effect.scope), effect.summary,
                         effect.details);
-    if (!effect.told_by.empty()) text += fmt::format("\nWhat tells it: {}.\n", effect.told_by);
+    if (!effect.resolvable_by.empty()) text += fmt::format("\nResolvable by: {}.\n", effect.resolvable_by);
     if (effect.parameters.empty()) continue;
     text += "\n| parameter | meaning | neutral | bounds | |\n|---|---|---|---|---|\n";
     for (const auto& p : effect.parameters) {

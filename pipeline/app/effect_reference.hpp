@@ -8,7 +8,7 @@
 
 namespace crisp {
 
-/// All that is to be said of an effect, for a terminal.
+/// Full description of an effect, for a terminal.
 std::string effect_text(const EffectInfo& effect);
 
 /// The catalogue as a page, in Markdown.

@@ -23,10 +23,10 @@ struct Entry {
   std::string name;
   const Inspector* inspector = nullptr;  ///< of its kind
   Inspection inspection;
-  std::string error;  ///< as a person is told it; empty: none
+  std::string error;  ///< message for people; empty: none
 };
 
-/// The first bytes of a file; of one that cannot be read none, since reading it says why.
+/// The first bytes of a file; empty if the file cannot be read, since reading it reports the error.
 std::string head_of(const fs::path& file) {
   constexpr std::size_t kEnough = 4096;
   std::string head(kEnough, '\0');
@@ -44,7 +44,7 @@ std::string head_of(const fs::path& file) {
   return head;
 }
 
-/// What a YAML file is that only other commands read, and what to do with it; nothing if it is none.
+/// The kind of a YAML file that only other commands read, with advice; nothing for other files.
 std::optional<Error> of_other_commands(const fs::path& file) {
   const std::string head = "\n" + head_of(file);
   if (head.find("\ncrisp:") == std::string::npos) return std::nullopt;
@@ -62,8 +62,8 @@ Error none_known(const fs::path& path, const Inspectors& inspectors) {
   }
   std::string kinds;
   for (const auto& inspector : inspectors) kinds += (kinds.empty() ? "" : ", ") + inspector.kind;
-  const char* what = fs::is_directory(path) ? " holds no file of a kind that is known"
-                                            : " is none of the kinds of files that are known";
+  const char* what =
+      fs::is_directory(path) ? " holds no file of a known kind" : " is of no known kind of file";
   return Error(path.string() + what, "known are " + kinds);
 }
 
@@ -90,11 +90,12 @@ Entry entry_of(const Inspectors& inspectors, const fs::path& file, const Rig& ri
   } catch (const Error& error) {
     return {.name = file.string(), .error = error_text(error)};
   } catch (const fs::filesystem_error& error) {
-    return {.name = file.string(), .error = error_text(Error(error.what(), "check its name and its rights"))};
+    return {.name = file.string(),
+            .error = error_text(Error(error.what(), "check its name and its permissions"))};
   }
 }
 
-/// Notes and results may lie beside what a folder was given for.
+/// A folder may also hold notes and results, which are not listed.
 bool is_of_interest(const Inspectors& inspectors, const fs::path& file) {
   const std::string head = head_of(file);
   return is_named_like_one(inspectors, file) ||
@@ -116,7 +117,7 @@ std::vector<Entry> entries_of(const Inspectors& inspectors, const fs::path& path
   return entries;
 }
 
-/// What each file holds under its name.
+/// The content of each file under its name.
 nlohmann::json json_of(const std::vector<Entry>& entries) {
   auto all = nlohmann::json::object();
   for (const auto& entry : entries) {
@@ -125,7 +126,7 @@ nlohmann::json json_of(const std::vector<Entry>& entries) {
   return all;
 }
 
-/// Whether these are two of one kind that are told side by side.
+/// Whether these are two files of one kind that are compared side by side.
 bool are_compared(const std::vector<Entry>& entries) {
   return entries.size() == 2 && entries[0].inspector && entries[0].inspector == entries[1].inspector &&
          entries[0].inspector->compare;

@@ -14,7 +14,7 @@ class InstalledPipelines {
   /// @param folders  where they may lie; those that do not exist are passed over
   explicit InstalledPipelines(std::vector<std::filesystem::path> folders) : folders_(std::move(folders)) {}
 
-  /// Those of a program or a library in this folder: where it was installed, and where it was built.
+  /// Pipelines of the program or library in this folder, installed or in its build tree.
   /// @param installed  the pipelines' folder of an installation, relative to this one
   static InstalledPipelines of_folder(const std::filesystem::path& folder,
                                       const std::filesystem::path& installed) {
@@ -33,7 +33,7 @@ class InstalledPipelines {
   std::vector<std::filesystem::path> folders_;
 };
 
-/// Those of this program, wherever it was put.
+/// Pipelines of this program, wherever it is installed.
 InstalledPipelines pipelines_of_program();
 
 }  // namespace crisp

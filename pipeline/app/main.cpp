@@ -71,11 +71,11 @@ std::vector<CommandWords> completion_words(const CommandLine& line) {
   return commands;
 }
 
-/// Where plugins are installed: beside the program's libraries, wherever the whole was put.
+/// The folder of installed plugins, relative to the program.
 fs::path plugin_folder() { return (own_file().parent_path() / CRISP_PLUGINS_FROM_BIN).lexically_normal(); }
 
-/// Why a plugin that was asked for is not in use; empty if it is. Of two files of one
-/// plugin that were both asked for, neither counts more.
+/// Why a requested plugin is not in use; empty if it is. Two requested files of the same plugin have equal
+/// priority.
 std::string trouble_with(const PluginRecord& plugin) {
   if (plugin.skipped.empty() || fs::equivalent(plugin.skipped, plugin.file)) return plugin.refusal;
   return "it is the plugin '" + plugin.name + "' once more, of which there is " + plugin.skipped +
@@ -88,7 +88,7 @@ void print_warnings(const PluginLoader& loader) {
     if (plugin.warning.empty()) continue;
     std::cerr
         << "warning: the plugin " << plugin.file.string() << ": " << plugin.warning
-        << ", and thereby have it do anything with your rights; take that right from others (chmod o-w)\n";
+        << ", and thereby run any code with your permissions; revoke the write permission of others (chmod o-w)\n";
   }
 }
 
@@ -103,7 +103,7 @@ bool load_plugins(const CommandLine& line, PluginLoader& loader) {
       if (!path.empty()) loader.load(path);
     }
   }
-  const std::size_t not_asked_for = loader.tried().size();
+  const std::size_t not_requested = loader.tried().size();
   bool all_loaded = true;
   for (const auto& path : line.plugins) {
     const std::size_t before = loader.tried().size();
@@ -112,7 +112,7 @@ bool load_plugins(const CommandLine& line, PluginLoader& loader) {
     all_loaded = false;
     print_errors(Error("the folder " + path + " holds no plugin", "plugins are files NAME.so"));
   }
-  for (std::size_t i = not_asked_for; i < loader.tried().size(); ++i) {
+  for (std::size_t i = not_requested; i < loader.tried().size(); ++i) {
     const PluginRecord& plugin = loader.tried()[i];
     const std::string trouble = trouble_with(plugin);
     if (trouble.empty()) continue;
@@ -122,7 +122,7 @@ bool load_plugins(const CommandLine& line, PluginLoader& loader) {
   return all_loaded;
 }
 
-/// What of a batch has no default, and was not given; empty if all was.
+/// Missing required arguments of a batch; empty if there are none.
 std::string missing_of(const BatchRequest& batch) {
   if (batch.run.file.empty()) return "pipeline";
   if (batch.inputs.empty()) return "-i";
@@ -182,27 +182,40 @@ bool is_known_command(const CommandLine& line, int count, char** words) {
   return false;
 }
 
-/// What was given as nothing, for the most part by a variable of the shell that is not set; empty if there is
-/// none.
-std::string given_empty(const CommandLine& line) {
-  for (const CLI::App* sub : line.app.get_subcommands()) {
+/// Empty arguments, mostly by an unset variable of the shell; empty if there are none.
+std::string given_empty(const CLI::App& app) {
+  for (const CLI::App* sub : app.get_subcommands()) {
     for (const CLI::Option* option : sub->get_options()) {
       const auto& given = option->results();
       if (std::ranges::find(given, "") != given.end()) return option->get_name();
     }
+    if (const auto empty = given_empty(*sub); !empty.empty()) return empty;
   }
   return {};
 }
 
-int guarded_main(int count, char** words) {
+/// The words with `study` in front of a study's name, which may stand alone as in earlier releases.
+std::vector<char*> with_study(const CommandLine& line, int count, char** words) {
+  static char study[] = "study";
+  std::vector<char*> all(words, words + count);
+  const auto studies = line.study_app->get_subcommands({});
+  const auto is_first = [&](const CLI::App* one) { return count > 1 && one->get_name() == words[1]; };
+  if (std::ranges::any_of(studies, is_first)) all.insert(all.begin() + 1, study);
+  return all;
+}
+
+int guarded_main(int given, char** given_words) {
   CommandLine line;
+  std::vector<char*> all = with_study(line, given, given_words);
+  const int count = static_cast<int>(all.size());
+  char** words = all.data();
   if (!is_known_command(line, count, words)) return static_cast<int>(ExitStatus::misused);
   try {
     line.app.parse(count, words);
   } catch (const CLI::ParseError& stop) {
     return line.app.exit(stop) == 0 ? 0 : static_cast<int>(ExitStatus::misused);
   }
-  if (const auto option = given_empty(line); !option.empty()) {
+  if (const auto option = given_empty(line.app); !option.empty()) {
     print_errors(Error(option + " is empty", "is a variable of the shell not set?"));
     return static_cast<int>(ExitStatus::misused);
   }
@@ -220,7 +233,7 @@ bool nobody_reads() {
   return poll(&output, 1, 0) == 1 && (output.revents & (POLLERR | POLLHUP)) != 0;
 }
 
-/// The program's status, unless what it said did not arrive though somebody waits for it.
+/// The program's exit status, or an error if its output could not be written.
 int after_output(int status) {
   std::cout.flush();
   if (std::cout || nobody_reads()) return status;
@@ -244,7 +257,7 @@ int main(int count, char** words) {
   } catch (const std::exception& error) {
     crisp::print_errors(crisp::want_of_resources(error).value_or(crisp::Error(error.what())));
   } catch (...) {
-    std::cerr << "error: a plugin threw what is no std::exception\n";
+    std::cerr << "error: a plugin threw something that is no std::exception\n";
   }
   return static_cast<int>(crisp::ExitStatus::failed);
 }

@@ -45,7 +45,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response_ = {known ? http::status::ok : http::status::not_found, request_.version()};
     response_.set(http::field::content_type, "text/plain; version=0.0.4; charset=utf-8");
     response_.keep_alive(request_.keep_alive());
-    response_.body() = known ? text_() : "what there is is at /metrics\n";
+    response_.body() = known ? text_() : "the metrics are at /metrics\n";
     response_.prepare_payload();
     http::async_write(stream_, response_,
                       [self = shared_from_this()](const beast::error_code& failure, std::size_t) {

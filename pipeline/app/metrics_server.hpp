@@ -14,7 +14,7 @@ class MetricsServer {
   using Text = std::function<std::string()>;
 
   /// @param port  0: any that is free
-  /// @param text  is asked for it in the server's thread
+  /// @param text  called in the server's thread for the metrics' text
   /// @throws Error if the port cannot be listened at
   MetricsServer(std::uint16_t port, Text text);
   ~MetricsServer();

@@ -8,7 +8,7 @@ namespace crisp {
 /// The file of this program; empty where the system does not name it.
 std::filesystem::path own_file();
 
-/// How many cores this process may use: those that Slurm allocated to it, or those of the machine.
+/// Number of cores for this process: those that Slurm allocated to it, or those of the machine.
 unsigned own_cores();
 
 }  // namespace crisp

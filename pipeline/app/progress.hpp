@@ -25,7 +25,7 @@ class ProgressPrinter {
   /// The status of a run without end: on a terminal the line is refreshed, elsewhere it is a plain line every
   /// ten seconds.
   void show_status(const std::string& line);
-  /// What happened: a line that stays, on a terminal as well.
+  /// Logs a line that stays, on a terminal as well.
   void log(const std::string& line);
   /// Removes the line from the terminal, so that something else can be printed.
   void clear();

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What was cut into several files is called by the name that they come of.
+/// Parts of a split file are named by their base name.
 void check_input(const std::optional<fs::path>& input) {
   if (!input) return;
   std::error_code failure;
@@ -45,11 +45,11 @@ LoadedPipeline load(const RunRequest& request, RunSettings& settings) {
 RecordedRun::RecordedRun(const RunRequest& request, const Registrar& registrar)
     : settings_(run_settings_of(request, registrar)), loaded_(load(request, settings_)) {
   check_input(request.arguments.input);
-  // Finds out before the work, and not after it, that nothing can be written there.
+  // Checks before the work, and not after it, that the folder is writable.
   if (!settings_.output.empty()) {
     lock_ = std::make_unique<FolderLock>(settings_.output);
     remove_left_over_parts(settings_.output);
-    // It speaks of what an earlier run wrote, and must not stay beside what this one writes.
+    // The file describes an earlier run and must not remain next to this run's files.
     std::error_code not_there;
     fs::remove(settings_.output / kSummary, not_there);
   }
@@ -77,8 +77,8 @@ void RecordedRun::run(RunHooks hooks) {
 bool RecordedRun::has_lost_folder(const std::function<void(const Error&)>& report) const {
   if (!lock_ || !lock_->is_lost()) return false;
   report(Error("another process has taken over the folder " + settings_.output.string() +
-                   ", as this one gave no sign of life for too long: the files there may be of either",
-               "run it anew, with another folder"));
+                   ", since this one sent no heartbeat for too long: its files may be of either process",
+               "run again with another folder"));
   return true;
 }
 

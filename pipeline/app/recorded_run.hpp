@@ -11,8 +11,8 @@
 
 namespace crisp {
 
-/// One run of a pipeline, and the records that it leaves: summary.json in the output folder, and beside each
-/// file that a stage writes how it came to be. The output folder is locked while this object lives.
+/// One run of a pipeline, and its records: summary.json in the output folder, and a provenance record next to
+/// each file that a stage writes. The output folder is locked while this object lives.
 class RecordedRun {
  public:
   /// Loads the pipeline and locks the output folder.
@@ -29,8 +29,8 @@ class RecordedRun {
   /// @throws Error, Interrupted  as run_pipeline does
   void run(RunHooks hooks);
 
-  /// Writes the records. Each part is tried though another failed: a summary without the rest still says what
-  /// happened.
+  /// Writes the records. Each part is tried even if another one failed: a summary without the rest is still
+  /// useful.
   /// @param report  called with what could not be written
   /// @return whether all of it was written
   bool keep(const std::function<void(const Error&)>& report);

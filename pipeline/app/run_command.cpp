@@ -37,7 +37,7 @@ void run_with_progress(RecordedRun& run, const RunRequest& request) {
   RunHooks hooks{.stop = StopOnSignal::flag()};
   if (!request.quiet || metrics) {
     hooks.status = [&](const std::string& tag, const StageStatus& status) {
-      board.tell(tag, status);
+      board.set_status(tag, status);
       if (request.quiet) return;
       for (const auto& event : status.events) printer.log(fmt::format("{} {}: {}", utc_now(), tag, event));
       printer.show_status(board.line());
@@ -66,7 +66,7 @@ ExitStatus run_loaded(RecordedRun& run, const RunRequest& request) {
   try {
     run_with_progress(run, request);
   } catch (const Interrupted&) {
-    std::cerr << "interrupted: files that were not complete were not written\n";
+    std::cerr << "interrupted: incomplete files were not written\n";
     return end_early("interrupted", status_of(StopOnSignal::signal()));
   } catch (const Error& error) {
     std::cerr << failure_text(record);

@@ -27,7 +27,7 @@ Json inputs_json(const RunRecord& record) {
   return list;
 }
 
-/// What summary and provenance begin with.
+/// The head of summaries and provenance records.
 Json head_json(const RunRecord& record) {
   return {{"crisp", CRISP_VERSION},
           {"command", record.command},
@@ -40,7 +40,7 @@ Json head_json(const RunRecord& record) {
           {"inputs", inputs_json(record)}};
 }
 
-/// What summary and provenance say of a stage.
+/// A stage's entry in the summary and in the provenance records.
 Json stage_json(const RunRecord& record, std::size_t i) {
   const NodeResult& node = record.nodes[i];
   return {
@@ -71,7 +71,7 @@ const NodeResult* writer_of(const fs::path& file, const RunRecord& record) {
 void write_record(const fs::path& file, const Json& json, const RunRecord& record) {
   if (const NodeResult* writer = writer_of(file, record)) {
     throw Error(
-        fmt::format("{}: it wrote {}, where the run's own record belongs", writer->tag, file.string()),
+        fmt::format("{}: it wrote {}, which is the name of the run's own record", writer->tag, file.string()),
         "let it write another file");
   }
   write_file(file, dump(json));
@@ -80,8 +80,8 @@ void write_record(const fs::path& file, const Json& json, const RunRecord& recor
 }  // namespace
 
 bool RunRecord::is_trusted() const {
-  return failure.empty() &&
-         std::all_of(nodes.begin(), nodes.end(), [](const auto& node) { return node.report.doubts.empty(); });
+  return failure.empty() && std::all_of(nodes.begin(), nodes.end(),
+                                        [](const auto& node) { return node.report.caveats.empty(); });
 }
 
 bool RunRecord::wrote_any() const {
@@ -119,7 +119,7 @@ Json summary_json(const RunRecord& record) {
                   {"given", node.given},
                   {"counts", node.report.counts},
                   {"warnings", node.report.warnings},
-                  {"doubts", node.report.doubts},
+                  {"caveats", node.report.caveats},
                   {"outputs", outputs_json(node.report)},
                   {"report", node.report.section}});
     json["stages"].push_back(std::move(stage));

@@ -18,7 +18,7 @@ struct InputRecord {
   FileDigest digest;
 };
 
-/// All that is to be told of a run once it is over.
+/// The complete record of a finished run.
 struct RunRecord {
   std::string command;  ///< that started the program
   std::filesystem::path pipeline_file;
@@ -33,7 +33,7 @@ struct RunRecord {
   std::vector<NodeResult> nodes;
   std::vector<InputRecord> inputs;  ///< the pipeline's file, the rig's, and what the stages read; each once
 
-  bool is_trusted() const;  ///< whether it came to its end and no stage had a doubt
+  bool is_trusted() const;  ///< whether it came to its end and no stage had a caveat
   bool wrote_any() const;   ///< whether a stage wrote a file
 };
 
@@ -43,7 +43,7 @@ std::vector<InputRecord> hash_inputs(const RunRecord& record);
 /// summary.json: everything that is known of the run, each stage with its own section.
 nlohmann::ordered_json summary_json(const RunRecord& record);
 
-/// What is put beside each file that a run wrote: how it came to be.
+/// The provenance record of a written file.
 nlohmann::ordered_json provenance_json(const RunRecord& record, const std::filesystem::path& file);
 
 /// Has the stages write what shows the whole run: see Context::when_recorded(). What could not be written no
@@ -51,12 +51,12 @@ nlohmann::ordered_json provenance_json(const RunRecord& record, const std::files
 /// @throws Errors  why some could not be written
 void write_when_recorded(RunRecord& record);
 
-/// Writes FILE.provenance.json beside every file that the stages wrote. Each is tried.
+/// Writes FILE.provenance.json next to every file that the stages wrote. Each is tried.
 /// @throws Errors  why some could not be written
 void write_provenance(const RunRecord& record);
 
-/// Writes summary.json into the folder (if it is not empty). A run that failed says so in it; that of an
-/// earlier run is gone in any case.
+/// Writes summary.json into the folder (if it is not empty). The summary of a failed run states the failure;
+/// an earlier run's summary is removed in any case.
 /// @throws Error  if it cannot be written
 void write_summary(const RunRecord& record, const std::filesystem::path& folder);
 

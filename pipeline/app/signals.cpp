@@ -56,12 +56,12 @@ int StopOnSignal::signal() { return last_signal; }
 
 StopNotice::StopNotice(std::ostream& out)
     : watch_([&out](const std::stop_token& over) {
-        constexpr auto kLookEvery = std::chrono::milliseconds(50);
+        constexpr auto kPollEvery = std::chrono::milliseconds(50);
         std::mutex mutex;
         std::condition_variable_any pause;
         std::unique_lock lock(mutex);
         while (!stop_requested && !over.stop_requested()) {
-          pause.wait_for(lock, over, kLookEvery, [] { return stop_requested.load(); });
+          pause.wait_for(lock, over, kPollEvery, [] { return stop_requested.load(); });
         }
         if (stop_requested) out << "\nstopping; a second signal ends the program at once" << std::endl;
       }) {}

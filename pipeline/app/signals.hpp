@@ -7,8 +7,8 @@
 
 namespace crisp {
 
-/// From its making on, the first SIGINT, SIGTERM or SIGHUP asks the run to stop; a second one ends the
-/// program at once.
+/// Once constructed, stops the run at the first SIGINT, SIGTERM or SIGHUP; a second one ends the program at
+/// once.
 class StopOnSignal {
  public:
   StopOnSignal();
@@ -20,7 +20,7 @@ class StopOnSignal {
   static int signal();  ///< the signal that came, or 0
 };
 
-/// While it lives, says at once that the run is about to stop: a stage may be long at work before it asks.
+/// While it lives, announces a stop at once: a stage may work for long before it tests for interruption.
 class StopNotice {
  public:
   explicit StopNotice(std::ostream& out);

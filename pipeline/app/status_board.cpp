@@ -22,18 +22,18 @@ std::string label(const std::string& text) {
 
 }  // namespace
 
-void StatusBoard::tell(const std::string& tag, const StageStatus& status) {
+void StatusBoard::set_status(const std::string& tag, const StageStatus& status) {
   const std::lock_guard lock(mutex_);
-  told_[tag] = status;
+  reported_[tag] = status;
 }
 
 std::string StatusBoard::line() const {
   const std::lock_guard lock(mutex_);
   std::string line;
   for (const auto& tag : tags_) {
-    const auto told = told_.find(tag);
-    if (told == told_.end() || told->second.line.empty()) continue;
-    line += (line.empty() ? "" : " | ") + told->second.line;
+    const auto reported = reported_.find(tag);
+    if (reported == reported_.end() || reported->second.line.empty()) continue;
+    line += (line.empty() ? "" : " | ") + reported->second.line;
   }
   return line;
 }
@@ -41,7 +41,7 @@ std::string StatusBoard::line() const {
 std::string StatusBoard::prometheus() const {
   const std::lock_guard lock(mutex_);
   std::map<std::string, std::string> metrics;  // the samples of a metric stand together
-  for (const auto& [tag, status] : told_) {
+  for (const auto& [tag, status] : reported_) {
     for (const Gauge& gauge : status.gauges) {
       const std::string device =
           gauge.device.empty() ? "" : fmt::format(",device=\"{}\"", label(gauge.device));

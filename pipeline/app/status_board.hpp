@@ -11,13 +11,13 @@
 
 namespace crisp {
 
-/// What the stages of a run last told of themselves. May be used from several threads.
+/// The latest status of each stage of a run. Thread-safe.
 class StatusBoard {
  public:
   /// @param tags  of the stages, in the pipeline's order
   explicit StatusBoard(std::vector<std::string> tags) : tags_(std::move(tags)) {}
 
-  void tell(const std::string& tag, const StageStatus& status);
+  void set_status(const std::string& tag, const StageStatus& status);
 
   /// All in one line, in the pipeline's order.
   std::string line() const;
@@ -27,7 +27,7 @@ class StatusBoard {
  private:
   const std::vector<std::string> tags_;
   mutable std::mutex mutex_;
-  std::map<std::string, StageStatus> told_;  ///< by tag
+  std::map<std::string, StageStatus> reported_;  ///< by tag
 };
 
 }  // namespace crisp

@@ -38,7 +38,7 @@ std::string stage_summary(const NodeResult& node, const nlohmann::ordered_json& 
     if (count > 0 || verbose) text += fmt::format("  {:>10}  {}\n", format_count(count), name);
   }
   for (const auto& warning : node.report.warnings) text += indented("warning: " + warning, "  ");
-  for (const auto& doubt : node.report.doubts) text += indented("NOT TO BE TRUSTED: " + doubt, "  ");
+  for (const auto& caveat : node.report.caveats) text += indented("UNTRUSTED: " + caveat, "  ");
   for (const auto& file : node.report.written) text += fmt::format("  wrote {}\n", file.string());
   return fmt::format("{:<40}{:>12}\n{}", node.tag, format_duration(node.seconds), text);
 }
@@ -51,7 +51,7 @@ std::string summary_text(const RunRecord& record, bool verbose) {
     text += stage_summary(record.nodes[i], record.options[i], verbose);
   }
   text += fmt::format("{:<40}{:>12}\n", "in all", format_duration(record.seconds));
-  if (!record.is_trusted()) text += "The result is NOT TO BE TRUSTED: see above why.\n";
+  if (!record.is_trusted()) text += "The result is UNTRUSTED: see the caveats above.\n";
   return text;
 }
 
@@ -70,8 +70,8 @@ std::string warnings_text(const RunRecord& record) {
   for (const auto& node : record.nodes) {
     for (const auto& warning : node.report.warnings)
       text += fmt::format("warning: {}: {}\n", node.tag, warning);
-    for (const auto& doubt : node.report.doubts)
-      text += fmt::format("not to be trusted: {}: {}\n", node.tag, doubt);
+    for (const auto& caveat : node.report.caveats)
+      text += fmt::format("untrusted: {}: {}\n", node.tag, caveat);
   }
   return text;
 }

@@ -17,7 +17,7 @@ std::vector<std::string> options_of(const CLI::App& command) {
   return names;
 }
 
-/// CLI11 itself tells these in reverse order.
+/// CLI11 lists unexpected arguments in reverse order.
 std::string not_expected(const CLI::App& command) {
   const std::vector<std::string> words = command.remaining();
   std::string text = "not expected:";
@@ -32,12 +32,12 @@ std::string not_expected(const CLI::App& command) {
 }  // namespace
 
 std::string usage_error(const CLI::App& app, const CLI::Error& error) {
-  const auto asked = app.get_subcommands();
-  const CLI::App& command = asked.empty() ? app : *asked.front();
+  const auto requested = app.get_subcommands();
+  const CLI::App& command = requested.empty() ? app : *requested.front();
   const bool extras = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   const std::string what = extras ? not_expected(command) : error.what();
-  const std::string name = app.get_name() + (asked.empty() ? "" : " " + command.get_name());
-  return "error: " + what + "; " + name + " --help tells more\n";
+  const std::string name = app.get_name() + (requested.empty() ? "" : " " + command.get_name());
+  return "error: " + what + "; see " + name + " --help\n";
 }
 
 }  // namespace crisp

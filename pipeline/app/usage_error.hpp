@@ -6,8 +6,8 @@
 
 namespace crisp {
 
-/// What people are told of a command line that cannot be understood: all that was not expected, in their
-/// order, what it may have been meant to be, and whose help tells more. With a line break at the end.
+/// Message for an invalid command line: all unexpected arguments in their order, the nearest valid one, and
+/// the help to consult. Ends with a line break.
 std::string usage_error(const CLI::App& app, const CLI::Error& error);
 
 }  // namespace crisp

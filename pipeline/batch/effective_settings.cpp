@@ -125,13 +125,13 @@ void check_depends_on_recording(const LoadedPipeline& one, const LoadedPipeline&
       if (differs && !writes) depends = true;
       const bool is_path = value.is_string() && !value.get<std::string>().empty() && value != "auto";
       if (differs || !writes || !is_path) continue;
-      errors.add(Error(fmt::format("{}: each recording would write {} over that of the one before", node.tag,
-                                   json_text(value)),
-                       "begin the path with ${output}, or let it hold ${name}", node.place_of(option.name)));
+      errors.add(Error(
+          fmt::format("{}: each recording would overwrite {} of the one before", node.tag, json_text(value)),
+          "begin the path with ${output}, or include ${name}", node.place_of(option.name)));
     }
   }
   if (!depends) {
-    errors.add(Error("the pipeline does the same with every recording: nothing that it reads depends on it",
+    errors.add(Error("no input of the pipeline depends on the recording: every job would be the same",
                      "let it read ${input}", {.file = one.file.string()}));
   }
   errors.throw_any();

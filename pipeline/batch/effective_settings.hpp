@@ -10,14 +10,14 @@
 
 namespace crisp {
 
-/// All that the results of a batch depend on besides its recordings: crisp's version, the seed, the rig,
+/// The inputs of a batch's results besides its recordings: crisp's version, the seed, the rig,
 /// every stage with its effective options and what feeds it, and the content of the files that options name.
 nlohmann::ordered_json effective_settings(const LoadedPipeline& loaded, std::uint64_t seed);
 
 /// The first 16 of the 64 hexadecimal digits of their SHA-256.
 std::string digest_of_settings(const nlohmann::ordered_json& settings);
 
-/// What differs, each as "calibrate.rqe.sigma: 0.02 → 0.05"; the first few of many.
+/// The differences, each as "calibrate.rqe.sigma: 0.02 → 0.05"; the first few of many.
 std::vector<std::string> changes_of_settings(const nlohmann::ordered_json& before,
                                              const nlohmann::ordered_json& now);
 

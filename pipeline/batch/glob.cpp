@@ -23,7 +23,7 @@ Parts parts_of(const fs::path& path) {
 
 bool is_hidden(const fs::path& path) { return path.filename().string().starts_with("."); }
 
-/// What lies in a folder that can be read; nothing in another, as in a shell.
+/// Entries of a readable folder; none for another, as in a shell.
 std::vector<fs::path> entries_of(const fs::path& folder) {
   std::error_code failure;
   std::vector<fs::path> entries;

@@ -32,7 +32,7 @@ InputFile state_of(const fs::path& path) {
   struct stat now {};
   if (stat(path.c_str(), &now) != 0)
     throw Error("cannot read " + path.string() + ": " + std::strerror(errno),
-                "check its name and its rights");
+                "check its name and its permissions");
   constexpr std::int64_t kNanoseconds = 1'000'000'000;
   return {.file = output_name(path.filename().string()),
           .bytes = static_cast<std::uint64_t>(now.st_size),

@@ -28,7 +28,7 @@ std::vector<InputFile> input_files(const BatchInput& input, const std::filesyste
 /// Whether the names, sizes and times are equal.
 bool is_untouched(const std::vector<InputFile>& before, const std::vector<InputFile>& now);
 
-/// Where names and sizes are equal and only times are not: whether the content is that of `before`. Reads the
+/// For equal names and sizes but different times: whether the content equals that of `before`. Reads the
 /// files.
 /// @throws Error if one cannot be read
 bool has_same_content(const std::vector<InputFile>& before, const std::vector<InputFile>& now,

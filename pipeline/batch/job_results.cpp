@@ -8,6 +8,7 @@
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/findings_file.hpp"
+#include "pipeline/files/renamed_names.hpp"
 #include "pipeline/stage/files_written.hpp"
 
 namespace crisp {
@@ -57,11 +58,12 @@ void add_stage(const Json& stage, Json& results) {
   if (report.contains("points") && report["points"].is_number()) results["points"] = report["points"];
   if (!results.contains("begin") && report.contains("first") && report["first"].is_number())
     results["begin"] = report["first"];
-  for (const auto& doubt : stage.at("doubts"))
-    results["reasons"].push_back(stage.at("tag").get<std::string>() + ": " + doubt.get<std::string>());
+  for (const auto& caveat : stage.at("caveats"))
+    results["reasons"].push_back(stage.at("tag").get<std::string>() + ": " + caveat.get<std::string>());
 }
 
-void read_summary(const Json& summary, JobResults& results) {
+void read_summary(Json summary, JobResults& results) {
+  rename_old_keys(summary, "summary");
   if (summary.contains("error")) results.json["error"] = summary["error"];
   for (const auto& input : summary.at("inputs")) results.sha256[input.at("file")] = input.at("sha256");
   for (const auto& stage : summary.at("stages")) {
@@ -81,7 +83,7 @@ JobResults read_results(const fs::path& output) {
   if (!stream) return results;
   try {
     read_summary(Json::parse(stream), results);
-  } catch (const std::exception& error) {  // what it says, or reading it
+  } catch (const std::exception& error) {  // stated by the summary, or thrown while reading it
     results.json["reasons"].push_back((output / kSummary).string() + " cannot be read: " + error.what());
   }
   return results;

@@ -8,11 +8,11 @@
 
 namespace crisp {
 
-/// What a job left in its output folder, as a table needs it.
+/// Results in a job's output folder, for the table.
 struct JobResults {
-  /// What is known of: `error`, `reasons` (why it cannot be trusted), `begin` (of the recording, [s since the
+  /// Known results: `error`, `reasons` (why the result is untrusted), `begin` (of the recording, [s since the
   /// Unix epoch]), `points`, `quality` by name, `parameters` by name, each with `value`, `std_error` and
-  /// `unit`, and `causes`, those that were accepted.
+  /// `unit`, and `causes`, the accepted ones.
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   std::map<std::string, std::string> sha256;  ///< of the content of the files that it read, by path
 };

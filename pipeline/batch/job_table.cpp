@@ -68,7 +68,7 @@ void JobTable::become(const Job& job, int error) const {
     const Error error = want_of_resources(failure).value_or(Error(failure.what()));
     std::cerr << "error: " << error.what() << "\n";
   } catch (...) {
-    std::cerr << "error: a plugin threw what is no std::exception\n";
+    std::cerr << "error: a plugin threw something that is no std::exception\n";
   }
   std::cout.flush();
   std::cerr.flush();

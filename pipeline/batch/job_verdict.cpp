@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Statuses by which `crisp run` says that it was told to stop, by SIGHUP, SIGINT or SIGTERM.
+/// Exit statuses of `crisp run` that was stopped by SIGHUP, SIGINT or SIGTERM.
 bool is_interrupted(int exit_status) {
   constexpr std::array kInterrupted = {129, 130, 143};
   return std::ranges::find(kInterrupted, exit_status) != kInterrupted.end();
@@ -34,11 +34,11 @@ std::string trimmed(std::string text) {
 }
 
 std::string failure_by_signal(const JobEnd& end) {
-  std::string text = fmt::format("signal {} ({}) ended it", end.signal, strsignal(end.signal));
+  std::string text = fmt::format("it was killed by signal {} ({})", end.signal, strsignal(end.signal));
   if (end.signal == SIGKILL)
-    text += "; if the machine was short of memory, bound it with --memory or run fewer --jobs";
+    text += "; if the machine lacked memory, limit it with --memory or run fewer --jobs";
   else if (!comes_from_outside(end.signal))
-    text += "; run it by itself with crisp run to see where";
+    text += "; run it alone with crisp run to locate the cause";
   const std::string printed = trimmed(end.error);
   return printed.empty() ? text : text + "; before it printed: " + printed;
 }
@@ -49,8 +49,8 @@ void judge(const JobEnd& end, const JobCircumstances& circumstances, const Json&
   const bool was_ended = comes_from_outside(end.signal) || is_interrupted(end.exit_status);
   if (circumstances.timeout && was_ended) {
     verdict.status = JobStatus::failed;
-    verdict.failure = fmt::format("it took longer than {:g} s, and was ended; raise --timeout or drop it",
-                                  *circumstances.timeout);
+    verdict.failure =
+        fmt::format("it exceeded {:g} s and was killed; raise --timeout or omit it", *circumstances.timeout);
   } else if (circumstances.stopping && was_ended) {
     verdict.status = JobStatus::interrupted;
     verdict.failure = "the batch was stopped";
@@ -59,7 +59,7 @@ void judge(const JobEnd& end, const JobCircumstances& circumstances, const Json&
     verdict.failure = failure_by_signal(end);
   } else if (is_interrupted(end.exit_status)) {
     verdict.status = JobStatus::interrupted;
-    verdict.failure = fmt::format("signal {} from outside ended it", end.exit_status - 128);
+    verdict.failure = fmt::format("it was killed from outside by signal {}", end.exit_status - 128);
   } else if (end.exit_status == kRefused && FolderLock::is_refusal(end.error)) {
     verdict.status = JobStatus::interrupted;
     verdict.failure = trimmed(end.error);
@@ -69,12 +69,11 @@ void judge(const JobEnd& end, const JobCircumstances& circumstances, const Json&
     verdict.status = JobStatus::failed;
     verdict.failure = results.contains("error") ? results["error"].get<std::string>() : trimmed(end.error);
     if (verdict.failure.empty())
-      verdict.failure =
-          fmt::format("it ended with the exit status {} and without a message", end.exit_status);
+      verdict.failure = fmt::format("it exited with status {} and without a message", end.exit_status);
   }
 }
 
-/// A run may fail on a full disk, or come to its end without what did not fit, and say so.
+/// On a full disk a run may fail, or it may end and report that some files were not written.
 void judge_disk(const Json& results, JobVerdict& verdict) {
   std::vector<std::string> messages = {verdict.failure};
   for (const auto& reason : results.value("reasons", Json::array())) messages.push_back(reason);
@@ -85,7 +84,7 @@ void judge_disk(const Json& results, JobVerdict& verdict) {
   verdict.status = JobStatus::interrupted;
 }
 
-/// What was read is not what is there now, or is of both.
+/// The read input differs from the present one, or changed meanwhile.
 void judge_input(const DueRecording& recording, const std::vector<InputFile>& files, JobVerdict& verdict) {
   std::string change;
   try {
@@ -95,7 +94,7 @@ void judge_input(const DueRecording& recording, const std::vector<InputFile>& fi
   }
   if (change.empty()) return;
   verdict.status = JobStatus::interrupted;
-  verdict.failure = "the input was not the same to the end: " + change + "; run the batch again";
+  verdict.failure = "the input changed during the job: " + change + "; run the batch again";
 }
 
 /// The files with the content that the job saw.

@@ -16,7 +16,7 @@
 
 namespace crisp {
 
-/// What is to be kept of a job that ended.
+/// The outcome of an ended job, as the manifest records it.
 // NOLINTNEXTLINE(bugprone-exception-escape): moving JSON checks what it holds
 struct JobVerdict {
   JobStatus status = JobStatus::done;
@@ -28,7 +28,7 @@ struct JobVerdict {
 /// Why a job may have ended, besides its own reasons.
 struct JobCircumstances {
   std::optional<double> timeout = {};  ///< [s] that it exceeded, for which it was ended
-  bool stopping = false;               ///< whether all jobs were told to end
+  bool stopping = false;               ///< whether all jobs are being stopped
 };
 
 /// @param files   of the input, as they were when the job began
@@ -36,10 +36,10 @@ struct JobCircumstances {
 JobVerdict judge_job(const JobEnd& end, const JobCircumstances& circumstances, const DueRecording& recording,
                      const std::vector<InputFile>& files, const std::filesystem::path& output);
 
-/// Of a recording whose input is not there or cannot be read.
+/// Verdict for a recording whose input is missing or unreadable.
 JobVerdict refused_input(const Error& error);
 
-/// Whether a message says that a file could not be written for want of room.
+/// Whether a message reports that a file could not be written for lack of disk space.
 bool speaks_of_full_disk(std::string_view message);
 
 }  // namespace crisp

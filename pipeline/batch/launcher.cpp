@@ -37,7 +37,7 @@ void send_end(int socket, const JobEnd& end) {
   ::send(socket, message.data(), message.size(), MSG_NOSIGNAL);
 }
 
-/// Does what a message asks for; false where the batch is gone.
+/// Executes a message's command; false if the batch process is gone.
 bool obey(int socket, JobTable& jobs) {
   const auto message = receive(socket, 0);
   if (!message) return false;
@@ -50,7 +50,7 @@ bool obey(int socket, JobTable& jobs) {
   return true;
 }
 
-/// What the launcher's process does until the batch closes its end of the socket.
+/// Main loop of the launcher's process, until the batch closes its end of the socket.
 [[noreturn]] void serve(int socket, const JobLauncher::Run& run) {
   setpgid(0, 0);  // Ctrl-C at the terminal is for the batch to hear
   sigset_t child_ended;
@@ -110,7 +110,7 @@ void JobLauncher::send(const std::string& message) const {
   if (message.size() > kLongestJobMessage) throw Error("the paths of a job are longer than 64 KiB");
   if (::send(socket_, message.data(), message.size(), MSG_NOSIGNAL) >= 0) return;
   throw Error(std::string("the process that starts the jobs is gone: ") + std::strerror(errno),
-              "run the batch again: it goes on where it stopped");
+              "run the batch again: it continues where it stopped");
 }
 
 void JobLauncher::start(const Job& job) const { send(to_message(job)); }
@@ -124,7 +124,7 @@ std::optional<JobEnd> JobLauncher::wait(std::chrono::milliseconds limit) const {
   if (poll(&polled, 1, static_cast<int>(limit.count())) <= 0) return std::nullopt;
   if (const auto message = receive(socket_, MSG_DONTWAIT)) return job_end_of(split_fields(*message));
   throw Error("the process that starts the jobs was killed",
-              "run the batch again: it goes on where it stopped");
+              "run the batch again: it continues where it stopped");
 }
 
 }  // namespace crisp

@@ -21,7 +21,7 @@ struct Job {
   std::filesystem::path rig;     ///< empty: the one that the pipeline names
 };
 
-/// How the process of a job ended.
+/// Result of a job's process.
 struct JobEnd {
   std::uint64_t id = 0;
   int exit_status = 0;       ///< of the process, where no signal ended it

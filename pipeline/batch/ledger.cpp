@@ -7,12 +7,12 @@
 namespace crisp {
 
 BatchLedger BatchLedger::read(const std::filesystem::path& output,
-                              const std::function<bool(std::string_view name)>& wanted) {
+                              const std::function<bool(std::string_view name)>& requested) {
   BatchLedger ledger;
   for (const auto& file : manifests_of(output)) {
     const std::string task = file.parent_path().string();
     ledger.damaged_lines_ += read_manifest(file, [&](BatchEvent&& event, std::string_view) {
-      if (!event.name.empty() && (!wanted || wanted(event.name))) ledger.add(std::move(event), task);
+      if (!event.name.empty() && (!requested || requested(event.name))) ledger.add(std::move(event), task);
     });
   }
   return ledger;
@@ -34,7 +34,7 @@ void BatchLedger::add(BatchEvent event, std::string_view task) {
       state.started_by = shared(task);
       break;
     case BatchEventKind::retry:
-      state.retry_asked = std::max(state.retry_asked, event.time);
+      state.retry_requested = std::max(state.retry_requested, event.time);
       break;
     case BatchEventKind::same:
       if (event.time >= state.ended) state.input = std::move(event.input);
@@ -58,7 +58,7 @@ DueReason due_reason(const RecordingState* state, const std::string& settings) {
   if (!state) return DueReason::fresh;
   if (state->is_half_done()) return DueReason::half_done;
   if (!state->has_ended()) return DueReason::fresh;
-  if (state->is_retry_asked()) return DueReason::retry;
+  if (state->is_retry_requested()) return DueReason::retry;
   if (state->settings != settings) return DueReason::settings;
   if (state->status == JobStatus::interrupted) return DueReason::interrupted;
   return DueReason::none;

@@ -15,12 +15,12 @@
 
 namespace crisp {
 
-/// What the manifests say of one recording. There may be a million of them: texts that many share are views
+/// A recording's state by the manifests. There may be a million of them: texts that many share are views
 /// of the ledger's.
 struct RecordingState {
-  std::int64_t started = 0;      ///< [ms since the Unix epoch] time of the last `start`; 0: none
-  std::int64_t ended = 0;        ///< of the last `end`
-  std::int64_t retry_asked = 0;  ///< of the last `retry`
+  std::int64_t started = 0;          ///< [ms since the Unix epoch] time of the last `start`; 0: none
+  std::int64_t ended = 0;            ///< of the last `end`
+  std::int64_t retry_requested = 0;  ///< of the last `retry`
   JobStatus status = JobStatus::interrupted;
   std::string_view settings = {};
   std::string_view started_by = {};  ///< folder of the task of the last `start`
@@ -28,7 +28,7 @@ struct RecordingState {
 
   bool has_ended() const { return ended > 0; }
   bool is_half_done() const { return started > ended; }
-  bool is_retry_asked() const { return retry_asked > ended; }
+  bool is_retry_requested() const { return retry_requested > ended; }
 };
 
 /// Why a recording is to be processed.
@@ -41,7 +41,7 @@ class BatchLedger {
   /// @param wanted  the recordings to keep; empty: all
   /// @throws Error if one cannot be read
   static BatchLedger read(const std::filesystem::path& output,
-                          const std::function<bool(std::string_view name)>& wanted = {});
+                          const std::function<bool(std::string_view name)>& requested = {});
 
   /// @param task  folder of the task whose event it is
   void add(BatchEvent event, std::string_view task);

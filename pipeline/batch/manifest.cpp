@@ -29,8 +29,8 @@ using Json = nlohmann::ordered_json;
 
 [[noreturn]] void fail(const fs::path& file, int code) {
   const char* advice = is_for_want_of_room(code)
-                           ? "make room on the disk and run the batch again: it goes on where it stopped"
-                           : "check the folder's rights";
+                           ? "make room on the disk and run the batch again: it continues where it stopped"
+                           : "check the folder's permissions";
   throw Error("cannot write " + file.string() + ": " + std::strerror(code), advice);
 }
 
@@ -125,7 +125,7 @@ std::vector<fs::path> manifests_of(const fs::path& output) {
   }
   if (failure && failure != std::errc::no_such_file_or_directory)
     throw Error("cannot read " + (output / kBatchManifest).string() + ": " + failure.message(),
-                "check the folder's rights");
+                "check the folder's permissions");
   std::ranges::sort(files);
   return files;
 }

@@ -13,7 +13,7 @@
 
 namespace crisp {
 
-/// What happens in a batch. docs/batch.md has the schema of the lines.
+/// Kinds of events in a batch. docs/how-to/batch.md has the schema of the lines.
 enum class BatchEventKind {
   batch,  ///< a batch begins
   start,  ///< a job begins
@@ -22,7 +22,7 @@ enum class BatchEventKind {
   retry   ///< a recording is to be processed again
 };
 
-/// How a recording's last job ended.
+/// Status of a recording's last job.
 enum class JobStatus {
   done,        ///< and its result can be trusted
   untrusted,   ///< it came to its end, but its result cannot be trusted
@@ -82,7 +82,7 @@ std::filesystem::path task_folder(const std::filesystem::path& output, const std
 /// @throws Error if the folder cannot be read
 std::vector<std::filesystem::path> manifests_of(const std::filesystem::path& output);
 
-/// What an event says of an input.
+/// An event's record of its input files.
 nlohmann::ordered_json to_json(const std::vector<InputFile>& files);
 
 }  // namespace crisp

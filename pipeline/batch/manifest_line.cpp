@@ -32,7 +32,7 @@ std::int64_t milliseconds_of(std::string_view text) {
   return chrono::duration_cast<chrono::milliseconds>(time.time_since_epoch()).count();
 }
 
-/// What nlohmann's parser calls: fills an event, and stops at what only a table needs.
+/// SAX handler of nlohmann's parser: fills an event, and stops at keys that only a table needs.
 class EventReader : public nlohmann::json_sax<nlohmann::json> {
  public:
   BatchEvent event;

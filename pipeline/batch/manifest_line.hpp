@@ -11,8 +11,8 @@ namespace crisp {
 std::string_view name_of(BatchEventKind kind);
 
 /// Reads a line of a manifest up to the keys that only a table needs, `exit` or `results` and what follows:
-/// of a million lines most of the text is never parsed. Keys that are not known are passed over.
-/// @return nothing if it is no event
+/// most of the text of a million lines is never parsed. Unknown keys are skipped.
+/// @return nothing if the line is no event
 std::optional<BatchEvent> parse_manifest_line(std::string_view line);
 
 }  // namespace crisp

@@ -53,7 +53,7 @@ std::string in_words(DueReason reason) {
     case DueReason::interrupted:
       return "they were stopped or killed from outside";
     case DueReason::retry:
-      return "a retry was asked for";
+      return "a retry was requested";
     case DueReason::settings:
       return "the settings changed";
     case DueReason::input:

@@ -19,7 +19,7 @@ struct TouchedInput {
   std::vector<InputFile> files;
 };
 
-/// What of the recordings is to be processed, and why.
+/// The recordings to process, with reasons.
 struct BatchPlan {
   std::vector<DueRecording> due;              ///< by name
   std::map<DueReason, std::size_t> reasons;   ///< how many are due for which reason
@@ -31,9 +31,9 @@ struct BatchPlan {
 /// The rig of a recording alone; empty where it has none.
 using RigOfRecording = std::function<std::filesystem::path(const BatchInput& input)>;
 
-/// Compares the recordings with what the manifests say was done. Looks at each input's size and time, and
-/// reads those of which only the time changed.
-/// @param settings  digest of what they would be processed with
+/// Compares the recordings with the manifests' records. Compares each input's size and time, and reads inputs
+/// of which only the time changed.
+/// @param settings  digest of the settings of this batch
 BatchPlan plan_batch(std::vector<BatchInput> inputs, const BatchLedger& ledger, const std::string& settings,
                      const RigOfRecording& rig_of);
 

@@ -37,7 +37,7 @@ class Finder {
     AllErrors errors;
     for (const auto& given : inputs_.given) errors.keep_of([&] { add_given(given); });
     errors.throw_any();
-    // What is given twice is one, and has the name that it was found by first.
+    // An input given twice is one recording, named as it was found first.
     std::ranges::stable_sort(found_, {}, &BatchInput::path);
     const auto same_path = [](const BatchInput& a, const BatchInput& b) { return a.path == b.path; };
     found_.erase(std::unique(found_.begin(), found_.end(), same_path), found_.end());
@@ -133,7 +133,7 @@ class Finder {
     found_.push_back({output_name(name), path.string(), is_folder, unreadable});
   }
 
-  /// Where names of what lies in a folder begin: found once for all of them.
+  /// Sets the offset of the relative names in a folder: found once for all of them.
   void set_folder(const std::string& folder, const fs::path& base) {
     folder_ = folder;
     base_ = base;
@@ -166,8 +166,7 @@ const BatchInput* recording_above(const std::vector<BatchInput>& sorted, std::st
 Error shared_output(const BatchInput& one, const BatchInput& other) {
   return Error(
       fmt::format("{} and {} would share the output {}", one.path, other.path, one.name),
-      "give the folder above both as --base, give one of them another name, or, if they are captures of "
-      "one scanner, use --each folder");
+      "give the folder above both as --base, give one of them another name, or, if they are captures of one scanner, use --each folder");
 }
 
 /// @param sorted  by name

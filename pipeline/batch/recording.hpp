@@ -7,7 +7,7 @@
 
 namespace crisp {
 
-/// What a batch processes by one job: a file, or a folder of captures of one scanner.
+/// Input of one job: a file, or a folder of captures of one scanner.
 struct BatchInput {
   std::string name;             ///< the relative path without its ending: where its results lie
   std::string path;             ///< absolute
@@ -15,17 +15,17 @@ struct BatchInput {
   std::string unreadable = {};  ///< why it cannot be read; empty where nothing is known against it
 };
 
-/// What of a folder is one recording.
+/// The unit of recordings in a folder.
 enum class BatchUnit { file, folder };
 
-/// Where a batch looks for recordings.
+/// Files and folders in which a batch finds recordings.
 struct BatchInputs {
   /// Each a file, a folder, a pattern ("captures/**/*.pcap"), a list of them (NAME.txt), or "-" for a list on
   /// the standard input.
   std::vector<std::string> given;
   BatchUnit unit = BatchUnit::file;
-  /// What names are relative to; empty: the given folder, what of a pattern has no wildcard, a list's folder,
-  /// a file's own.
+  /// Base of relative names; empty: the given folder, the part of a pattern before its wildcard, a list's
+  /// folder, a file's own.
   std::filesystem::path base = {};
   std::filesystem::path output;         ///< the results, which are no inputs
   std::vector<std::string> extensions;  ///< of recordings in a folder: ".pcap"

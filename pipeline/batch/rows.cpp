@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// What is not finite is null in JSON.
+/// Numbers that are not finite are null in JSON.
 double number_of(const Json& json) {
   return json.is_number() ? json.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
@@ -74,7 +74,7 @@ class RowReader {
       if (reason == DueReason::half_done) {
         row.status = is_running(state.started_by) ? "running" : "due";
         row.reasons.clear();
-        if (row.status == "due") row.reasons.emplace_back("it was half done when its batch ended");
+        if (row.status == "due") row.reasons.emplace_back("it was incomplete when its batch ended");
       }
       if (reason == DueReason::retry || reason == DueReason::settings || reason == DueReason::fresh)
         row.status = "due";
@@ -128,8 +128,8 @@ std::size_t BatchRows::count(std::string_view status) const {
 BatchRows read_rows(const fs::path& output) {
   const auto manifests = manifests_of(output);
   if (manifests.empty())
-    throw Error(output.string() + " is no output folder of a batch: there is no manifest in it",
-                "give the folder that crisp batch -o named");
+    throw Error(output.string() + " is no output folder of a batch: it holds no manifest",
+                "give the folder of crisp batch -o");
   RowReader reader;
   for (const auto& manifest : manifests) reader.read(manifest);
   return reader.finish();

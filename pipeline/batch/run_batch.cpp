@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
-constexpr std::chrono::seconds kGrace{5};  // in which a job that was told to end may clear up
+constexpr std::chrono::seconds kGrace{5};  // for a stopped job to clean up
 
 class Batch {
  public:
@@ -38,7 +38,7 @@ class Batch {
       while (may_start()) start(due_[next_++]);
       wait();
       end_overdue();
-      tell_progress();
+      report_progress();
     }
     manifest_.sync();
     return std::move(outcome_);
@@ -49,7 +49,7 @@ class Batch {
     const DueRecording* recording = nullptr;
     std::vector<InputFile> files;
     Clock::time_point began;
-    std::optional<Clock::time_point> told_to_end;
+    std::optional<Clock::time_point> end_requested;
     bool timed_out = false;
   };
 
@@ -87,8 +87,8 @@ class Batch {
   }
 
   void wait() {
-    constexpr std::chrono::milliseconds kLookEvery{100};
-    auto end = launcher_.wait(running_.empty() ? std::chrono::milliseconds(0) : kLookEvery);
+    constexpr std::chrono::milliseconds kPollEvery{100};
+    auto end = launcher_.wait(running_.empty() ? std::chrono::milliseconds(0) : kPollEvery);
     for (; end; end = launcher_.wait(std::chrono::milliseconds(0))) take(*end);
     sync();
   }
@@ -144,17 +144,17 @@ class Batch {
     for (auto& [id, running] : running_) {
       const bool overdue =
           limits_.timeout && std::chrono::duration<double>(now - running.began).count() > *limits_.timeout;
-      if (!running.told_to_end && (overdue || is_stopping())) {
-        running.told_to_end = now;
+      if (!running.end_requested && (overdue || is_stopping())) {
+        running.end_requested = now;
         running.timed_out = overdue;
         launcher_.signal(id, SIGTERM);
-      } else if (running.told_to_end && now - *running.told_to_end > kGrace) {
+      } else if (running.end_requested && now - *running.end_requested > kGrace) {
         launcher_.signal(id, SIGKILL);
       }
     }
   }
 
-  void tell_progress() {
+  void report_progress() {
     outcome_.progress.running = running_.size();
     if (hooks_.progress) hooks_.progress(outcome_.progress);
   }

@@ -21,14 +21,14 @@ struct DueRecording {
   std::filesystem::path rig;  ///< of this recording alone; empty: there is none
 };
 
-/// How a batch processes what is due.
+/// Limits of a batch's jobs.
 struct BatchLimits {
   unsigned jobs = 1;                         ///< at once
   std::optional<double> timeout = {};        ///< [s] after which a job is ended
   std::optional<std::uint64_t> memory = {};  ///< [bytes] for all jobs together
 };
 
-/// How far a batch is.
+/// Progress of a batch.
 struct BatchProgress {
   std::size_t total = 0;      ///< recordings that were due
   std::size_t done = 0;       ///< of them, trusted …
@@ -39,7 +39,7 @@ struct BatchProgress {
   std::size_t ended() const { return done + untrusted + failed; }
 };
 
-/// How a batch can be stopped and watched.
+/// Hooks to stop and watch a batch.
 struct BatchHooks {
   const std::atomic<bool>* stop = nullptr;
   std::function<bool()> is_lost = {};  ///< whether another process has taken over what this one writes
@@ -48,7 +48,7 @@ struct BatchHooks {
   std::function<void(const std::string& line)> log = {};  ///< what a person should know at once
 };
 
-/// How a batch ended.
+/// Result of a batch.
 struct BatchOutcome {
   BatchProgress progress;
   std::string full_disk;  ///< the message that the disk is full, which ended the batch; empty: it is not

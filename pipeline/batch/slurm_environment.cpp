@@ -33,10 +33,11 @@ std::optional<Shard> shard_of_slurm(EnvironmentVariable variable) {
   const std::uint64_t count = number("SLURM_ARRAY_TASK_COUNT").value_or(1);
   const Shard shard{.number = (*id - least) / std::max<std::uint64_t>(step, 1) + 1, .count = count};
   if (*id >= least && shard.number <= count) return shard;
-  throw Error(fmt::format("task {} of the Slurm array cannot be told which part of the batch is its own: the "
-                          "array begins at {} and has {} tasks",
-                          *id, least, count),
-              "use an array without gaps, or give --shard i/n");
+  throw Error(
+      fmt::format(
+          "the share of task {} of the Slurm array is undetermined: the array begins at {} and has {} tasks",
+          *id, least, count),
+      "use an array without gaps, or give --shard i/n");
 }
 
 std::optional<unsigned> cores_of_slurm(EnvironmentVariable variable) {

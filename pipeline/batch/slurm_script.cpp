@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view kDirective = "#SBATCH --";
 constexpr std::string_view kArgumentsLine = "# crisp cluster submit writes the program";
 
-/// Where the first line that begins with a text begins; npos: there is none.
+/// Position of the first line that begins with a text; npos: there is none.
 std::size_t find_line(std::string_view script, std::string_view beginning) {
   if (script.starts_with(beginning)) return 0;
   const std::size_t found = script.find("\n" + std::string(beginning));

@@ -21,7 +21,7 @@ struct RowParameter {
   std::string unit = {};
 };
 
-/// What a table says of one recording.
+/// A recording's row in the table.
 struct BatchRow {
   std::string name;
   std::string status;                ///< "done", "untrusted", "failed", "interrupted", "running" or "due"
@@ -54,14 +54,14 @@ struct BatchRows {
 /// @throws Error if there is none, or one cannot be read
 BatchRows read_rows(const std::filesystem::path& output);
 
-/// Takes a text piece by piece: that of a million rows is never in memory as a whole.
+/// Receives a text piece by piece: the text of a million rows is never in memory as a whole.
 using TextSink = std::function<void(std::string_view piece)>;
 
-/// As CSV: a line of names, then a line a recording; parameters in SI, each with its standard error in a
-/// column of its own. What is not known is empty.
+/// Prints CSV: a line of names, then a line a recording; parameters in SI, each with its standard error in a
+/// column of its own. Unknown values are empty.
 void print_csv(const BatchRows& rows, const TextSink& sink);
 
-/// What was run, and how many recordings ended in which way.
+/// The head of the table's JSON: the batch, and the number of recordings by status.
 nlohmann::ordered_json head_json(const BatchRows& rows);
 
 /// As JSON: this head, with the rows as its last key, a line a recording.

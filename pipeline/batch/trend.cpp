@@ -8,7 +8,7 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "pipeline/data/least_chance.hpp"
+#include "pipeline/statistics/multiple_testing.hpp"
 
 namespace crisp {
 namespace {
@@ -54,7 +54,7 @@ void judge(ParameterTrend& trend, std::size_t tests) {
     const double distance = difference(point.value, trend.centre, trend.unit);
     trend.chi2 += distance * distance * weight_of(point);
     const double z = distance / std::hypot(point.std_error, trend.centre_error);
-    point.p_value = least_of(static_cast<double>(tests), std::erfc(std::abs(z) / std::numbers::sqrt2));
+    point.p_value = sidak_p_value(static_cast<double>(tests), std::erfc(std::abs(z) / std::numbers::sqrt2));
   }
   trend.chi2 /= static_cast<double>(trend.points.size() - 1);
 }

@@ -38,27 +38,4 @@ ClockLine line_by_convex_hull(std::span<const Stamp> stamps, double center) {
   return line_through(vertices[support(vertices, bound)], bound, center);
 }
 
-ClockLine line_by_linear_program(std::span<const Stamp> stamps, double center) {
-  if (stamps.front().device == stamps.back().device) {
-    return line_through(stamps[support(stamps, 0)], 0, center);
-  }
-  // height(slope) = min over i of lead_i + slope · (center − device_i) is concave; a stamp that supports the
-  // line left of the center says that a steeper line stands higher, one right of it the contrary.
-  std::size_t left = support(stamps, -kMostSkew);
-  if (stamps[left].device > center) return line_through(stamps[left], -kMostSkew, center);
-  std::size_t right = support(stamps, kMostSkew);
-  if (stamps[right].device <= center) return line_through(stamps[right], kMostSkew, center);
-  while (true) {
-    const double slope = slope_between(stamps[left], stamps[right]);
-    const auto between = stamps.subspan(left, right - left + 1);
-    const std::size_t touched = left + support(between, slope);
-    const double below =
-        stamps[left].lead - stamps[touched].lead - slope * (stamps[left].device - stamps[touched].device);
-    if (touched == left || touched == right || below <= 0) {
-      return line_through(stamps[left], slope, center);
-    }
-    (stamps[touched].device <= center ? left : right) = touched;
-  }
-}
-
 }  // namespace crisp

@@ -5,8 +5,8 @@
 
 namespace crisp {
 
-/// One pair of times: when a device says that it sent something, and by how much later than that, on the
-/// hub's clock, it came in. Both relative to the first stamp of a run, so that no digits are lost.
+/// A pair of times: a device's time stamp of sending, and its delay until receipt by the hub's clock. Both
+/// are relative to the first stamp of a run, which keeps all digits.
 struct Stamp {
   double device = 0;  ///< [s] device time
   double lead = 0;    ///< [s] hub's receipt time − device time
@@ -35,12 +35,6 @@ inline constexpr double kMostSkew = 1e-3;
 /// @return |slope| ≤ kMostSkew
 ClockLine line_by_convex_hull(std::span<const Stamp> stamps, double center);
 
-/// The same line as the solution of the linear programme: maximise the line's height at `center` such that
-/// it passes below all stamps (Moon, Skelly, Towsley: Estimation and removal of clock skew from network
-/// delay measurements, INFOCOM 1999). Solved in its dual, a concave function of the slope alone, by cutting
-/// planes: no hull is built. O(n log n) on usual stamps.
-ClockLine line_by_linear_program(std::span<const Stamp> stamps, double center);
-
 /// The errors of a line below stamps.
 struct LineErrors {
   double bias = 0;       ///< [s] how far above the clock it lies on the average: no stamp has the least delay
@@ -48,7 +42,7 @@ struct LineErrors {
   double slope = 0;      ///< standard error
 };
 
-/// How far the line may be from the clock, estimated from how the stamps thin out towards it: see
+/// Uncertainty of the line against the clock, estimated from the density of stamps near it: see
 /// estimate_line_bias().
 ///
 /// @param stamps  those that the line was fitted to

@@ -25,8 +25,8 @@ std::vector<double> paired_minima(const std::vector<double>& fine) {
   return coarse;
 }
 
-/// A block's typical least delay. The two blocks that the line rests on say nothing, and a quarter may have
-/// had a bad time.
+/// A block's typical least delay. The two blocks that support the line carry no information, and a quarter of
+/// the blocks may be disturbed.
 double typical(std::vector<double> minima) {
   std::sort(minima.begin(), minima.end());
   const std::size_t end = minima.size() - (minima.size() - 2) / 4;
@@ -38,15 +38,15 @@ double typical(std::vector<double> minima) {
 
 constexpr std::size_t kBlocks = 32;
 
-/// Whether there are enough stamps for the least delays of blocks to tell how far a line is from the clock.
-bool tells_blocks(std::span<const Stamp> stamps) { return stamps.size() >= 2 * kBlocks; }
+/// Whether there are enough stamps to estimate the line's error from the least delays of blocks.
+bool has_blocks(std::span<const Stamp> stamps) { return stamps.size() >= 2 * kBlocks; }
 
-/// How far above a line of known slope the lowest of all stamps is expected. From blocks to halves as many,
-/// the least delay falls by a power that depends on the law of the delays; followed down to one block.
+/// Expected height of the lowest of all stamps above a line of known slope. From blocks to half as many,
+/// the least delay falls by a power that depends on the delays' distribution; extrapolated to one block.
 double lowest_delay(std::span<const Stamp> stamps, const ClockLine& line) {
-  constexpr double kUsualDelay = 1e-3;  // [s] where there are too few stamps to tell
+  constexpr double kUsualDelay = 1e-3;  // [s] assumed where there are too few stamps
   if (stamps.size() < 4) return kUsualDelay;
-  if (!tells_blocks(stamps)) return typical(block_minima(stamps, line, stamps.size()));
+  if (!has_blocks(stamps)) return typical(block_minima(stamps, line, stamps.size()));
   const auto fine = block_minima(stamps, line, kBlocks);
   const auto middle = paired_minima(fine);
   const double of_fine = typical(fine);
@@ -126,7 +126,7 @@ LineErrors errors_of_line(std::span<const Stamp> stamps, const ClockLine& line, 
   for (const auto& stamp : stamps) hull.add(stamp);
   const LineBias bias = estimate_line_bias(stamps, line, quantum);
   return {.bias = bias.mean,
-          .at_center = tells_blocks(stamps) ? std::max(bias.std_error, scale) : bias.std_error,
+          .at_center = has_blocks(stamps) ? std::max(bias.std_error, scale) : bias.std_error,
           .slope = slope_spread(hull.vertices(), line, scale)};
 }
 

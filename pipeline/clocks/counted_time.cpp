@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/data/robust.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr std::size_t kKept = 16;   // intervals that foretell the next one
-constexpr std::size_t kEnough = 8;  // of them to say how much they differ
-constexpr std::size_t kMany = 128;  // intervals that say so together: sixteen may be even by chance
+constexpr std::size_t kKept = 16;   // intervals that predict the next one
+constexpr std::size_t kEnough = 8;  // of them for an estimate of their scatter
+constexpr std::size_t kMany = 128;  // intervals for a sure estimate: sixteen may be even by chance
 constexpr std::size_t kSure = 4;    // even intervals after a jump
-constexpr double kLeast = 0.25e-3;  // [s] real mirrors' stamps are up to 0.17 ms off what foretells them
+constexpr double kLeast = 0.25e-3;  // [s] real mirrors' stamps are up to 0.17 ms off their prediction
 constexpr double kManyTimes = 12;   // what intervals differ by (median)
 
 }  // namespace
@@ -54,11 +54,11 @@ std::optional<double> CountedTime::excess(double seconds, std::int64_t steps, do
   const auto n = static_cast<double>(steps);
   if (std::abs(seconds - n * usual_) < n * kLeast / 2) return std::nullopt;  // as nearly all
   std::vector<double> values = latest_;
-  const double usual = middle_of(values);
+  const double usual = median_in_place(values);
   const double excess = seconds - n * usual;
   if (std::abs(excess) < n * std::max(kLeast, kManyTimes * usual_deviation(usual))) return std::nullopt;
-  // Where receipts go with the device's clock the interval was such: nothing was sent for a while, and not
-  // counted either, or what is counted does not come evenly.
+  // Where receipts confirm the device's clock, the interval was real: nothing was sent for a while, and not
+  // counted either, or the counted events are uneven.
   constexpr double kAgree = 0.25;
   constexpr double kNearlyAStep = 0.75;
   const double off_clock = std::abs(hub - seconds);
@@ -73,7 +73,7 @@ double CountedTime::usual_deviation(double usual) const {
   std::vector<double> latest = latest_;
   for (double& value : latest) value = std::abs(value - usual);
   std::vector<double> many = spread_;
-  return std::max(middle_of(latest), many.empty() ? 0 : middle_of(many));
+  return std::max(median_in_place(latest), many.empty() ? 0 : median_in_place(many));
 }
 
 void CountedTime::remember(double step) {
@@ -91,7 +91,7 @@ void CountedTime::remember(double step) {
   }
   if (latest_.size() == kEnough || next_ % kEnough == 0) {
     std::vector<double> values = latest_;
-    usual_ = middle_of(values);
+    usual_ = median_in_place(values);
   }
 }
 

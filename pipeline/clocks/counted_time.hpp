@@ -8,25 +8,25 @@
 
 namespace crisp {
 
-/// What a device's counter says of its clock. What it counts comes at even intervals (turns of a mirror,
-/// readings of an encoder), so that a jump of its clock too small to be seen in the receipts shows in one of
-/// them.
+/// Detects jumps of a device's clock by the device's counter. The counted events come at even intervals
+/// (turns of a mirror, readings of an encoder), so that a jump of the clock too small to be seen in the
+/// receipts shows in one of the intervals.
 ///
-/// A jump counts from the interval on in which it is seen, but is sure only after some even ones: a single
-/// stamp may be off, which the next interval tells, or the intervals themselves become others.
+/// A jump counts from the interval on in which it is detected, but is sure only after some even ones: a
+/// single stamp may be off, which the next interval shows, or the intervals themselves may change.
 class CountedTime {
  public:
-  /// Takes in the next interval.
+  /// Adds the next interval.
   /// @param seconds [s] by the device's clock
   /// @param steps   of its counter, at least one
   /// @param hub     [s] by the receipts: they decide whether whole steps were left uncounted
   void add(double seconds, std::int64_t steps, double hub);
-  /// What comes next has nothing in common with what came so far, but for the jumps.
+  /// Starts a new sequence, but keeps the jumps so far.
   void begin_anew();
 
   /// [s] All jumps of the clock so far, forwards: the device's time less this goes on as the count does.
   double jumped() const { return jumped_; }
-  /// Whether the last interval's jump is one of the clock beyond doubt, or there was none.
+  /// Whether the last interval's jump is surely one of the clock, or there was none.
   bool is_sure() const { return !trial_; }
   /// [s] The jump that has just become sure.
   std::optional<double> confirmed() const { return confirmed_; }

@@ -31,7 +31,7 @@ class Side {
     return *std::ranges::min_element(hull_.vertices(), {},
                                      [&](const Stamp& s) { return s.lead - slope * s.device; });
   }
-  /// By how much the sum of the line's heights at the stamps grows with its slope.
+  /// Derivative of the sum of the line's heights at the stamps by its slope.
   double pull(double slope) const {
     return static_cast<double>(stamps_.size()) * (mean_ - lowest(slope).device);
   }
@@ -83,7 +83,7 @@ std::optional<DelayStep> step_of_delay(std::span<const Stamp> stamps) {
   const double slope = common_slope(before, after);
   step.by = after.line(slope).lead(0) - before.line(slope).lead(0);
   step.std_error = std::hypot(before.std_error(slope), after.std_error(slope));
-  // Where some stamps on either side lie on one line, it was but a burst of late ones.
+  // Where some stamps on either side lie on one line, it was a burst of late ones only.
   if (std::abs(step.by) < std::max(kSmallest, 0.5 * std::abs(size))) return std::nullopt;
   return step;
 }

@@ -9,7 +9,7 @@
 
 namespace crisp {
 
-/// Where the shortest delay of a link becomes another.
+/// A step of a link's minimum delay.
 struct DelayStep {
   double by = 0;          ///< [s] longer
   double std_error = 0;   ///< [s] of it
@@ -18,11 +18,11 @@ struct DelayStep {
   std::size_t to = 0;
 };
 
-/// Looks for a step in the lower envelope of one clock's stamps: one that stands out of how the envelope
-/// scatters about a straight line with it, and that no steady change of the clock's rate explains better.
+/// Detects a step in the lower envelope of one clock's stamps that is significant against the envelope's
+/// scatter about a straight line with a step, and that no steady change of the clock's rate explains better.
 ///
-/// Its size is that between the highest two parallel lines of which one lies below the stamps before it and
-/// the other below those after it: what line_by_convex_hull() finds, with a step.
+/// Its size is the distance between the highest two parallel lines of which one lies below the stamps before
+/// it and the other below those after it: line_by_convex_hull() with a step.
 ///
 /// @param stamps ascending in device time
 std::optional<DelayStep> step_of_delay(std::span<const Stamp> stamps);

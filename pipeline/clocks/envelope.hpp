@@ -30,7 +30,7 @@ inline double receipt_of(const Stamp& stamp) { return stamp.device + stamp.lead;
 ///               more if there are so many.
 Envelope envelope_of(std::span<const Stamp> stamps);
 
-/// What is tried beside a straight line: a parabola first, then a step before each stretch but the outermost.
+/// Regressors tested next to a straight line: a parabola first, then a step before each inner stretch.
 /// @param time    [s] the envelope's, n of them
 /// @param margin  stretches at either end that no step divides
 /// @return n × (1 + n − 2 margin + 1)
@@ -45,7 +45,7 @@ bool is_early(const Stamp& stamp, double step, const Level& level) {
   return stamp.lead - level(receipt_of(stamp)) < step / 2;
 }
 
-/// The first stamp after a step of the envelope, as far as early ones tell.
+/// The first stamp after a step of the envelope, as far as early stamps resolve it.
 template <class Level>
 std::size_t first_after(std::span<const Stamp> stamps, double step, const Level& level) {
   const auto early = [&](const Stamp& s) { return is_early(s, step, level); };
@@ -55,7 +55,7 @@ std::size_t first_after(std::span<const Stamp> stamps, double step, const Level&
   return i;
 }
 
-/// Of stamps on the lower side of a step the share that is early; at least one of them.
+/// The fraction of the stamps on the lower side of a step that are early; at least one of them.
 template <class Level>
 double early_share(std::span<const Stamp> stamps, double step, const Level& level) {
   const auto early = std::ranges::count_if(stamps, [&](const Stamp& s) { return is_early(s, step, level); });

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/data/robust.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
 namespace {
@@ -68,13 +68,13 @@ Series without_line(const Series& series) {
   return left;
 }
 
-/// By how much a series mostly changes from one value to the next.
+/// Typical change of a series from one value to the next.
 double usual_change(const Series& series) {
   std::vector<double> changes;
   for (std::size_t i = 1; i < series.size(); ++i) {
     if (std::isfinite(series[i] - series[i - 1])) changes.push_back(series[i] - series[i - 1]);
   }
-  return changes.empty() ? 0 : middle_of(changes);
+  return changes.empty() ? 0 : median_in_place(changes);
 }
 
 /// How uneven a series is from one value to the next [s]: its noise, where it changes slowly.
@@ -84,7 +84,7 @@ double noise_of(const Series& series) {
     const double bend = series[i] - 2 * series[i - 1] + series[i - 2];
     if (std::isfinite(bend)) bends.push_back(std::abs(bend) / std::sqrt(6.0));
   }
-  return bends.empty() ? HUGE_VAL : std::max(1e-6, kSigmaByMedian * middle_of(bends));
+  return bends.empty() ? HUGE_VAL : std::max(1e-6, kSigmaByMedian * median_in_place(bends));
 }
 
 Series medians(const std::vector<Series>& all, std::size_t without) {
@@ -94,14 +94,14 @@ Series medians(const std::vector<Series>& all, std::size_t without) {
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (k != without && std::isfinite(all[k][i])) values.push_back(all[k][i]);
     }
-    if (!values.empty()) result[i] = middle_of(values);
+    if (!values.empty()) result[i] = median_in_place(values);
   }
   return result;
 }
 
 /// Whether the series deviate alike.
 bool agree(const std::vector<Series>& all) {
-  std::size_t telling = 0;
+  std::size_t informative = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Series others = medians(all, k);
     const double common = rms(others);
@@ -109,9 +109,9 @@ bool agree(const std::vector<Series>& all) {
     const double noise = noise_of(all[k]);
     const double left = rms(difference(all[k], others), 0.95);
     if (left > kAgree * common + kNoises * noise) return false;
-    if (left <= kAgree * common) ++telling;
+    if (left <= kAgree * common) ++informative;
   }
-  return telling >= 2;
+  return informative >= 2;
 }
 
 /// The series' mean, each weighted by its noise.
@@ -167,7 +167,7 @@ class DeviationSeries {
     std::vector<double> skews;
     for (const auto* stamps : devices_)
       skews.push_back(line_of(least_leads(*stamps, known, 0)).slope / width_);
-    return middle_of(skews);
+    return median_in_place(skews);
   }
 
   /// Adds what is left of it.
@@ -184,7 +184,7 @@ class DeviationSeries {
     if (!sum.times_.empty()) known = std::move(sum);
   }
 
-  /// Where a series changes at once, by far more than before and after.
+  /// Sudden changes of a series, by far more than before and after.
   std::vector<HubDeviation::Step> steps_of(const Series& series) const {
     std::vector<HubDeviation::Step> steps;
     const double least = std::max(2 * kSmallestDeviation, 8 * noise_of(series));
@@ -198,7 +198,7 @@ class DeviationSeries {
     for (std::size_t i = kAround; i + kAround + 1 < known.size(); ++i) {
       std::vector<double> rates;
       for (std::size_t j = i - kAround; j <= i + kAround; ++j) rates.push_back(change(j) / stretches(j));
-      const double by = change(i) - middle_of(rates) * stretches(i);
+      const double by = change(i) - median_in_place(rates) * stretches(i);
       if (std::abs(by) < least) continue;
       steps.push_back(
           {.at = begin_ + 0.5 * static_cast<double>(known[i] + known[i + 1] + 1) * width_, .by = by});

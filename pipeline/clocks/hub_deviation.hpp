@@ -7,13 +7,13 @@
 
 namespace crisp {
 
-/// When the hub received a telegram, and by how much later than the device's clock says that it was sent.
+/// The hub's time of receipt of a telegram, and its delay against the device's time stamp of sending.
 struct ReceivedStamp {
   double hub = 0;   ///< [s]
   double lead = 0;  ///< [s] but for a constant
 };
 
-/// By how much the hub's clock deviates from a steady one: it was set, or made to run faster or slower (NTP).
+/// Deviation of the hub's clock from a uniform one: it was set, or slewed (NTP).
 class HubDeviation {
  public:
   struct Step {
@@ -37,11 +37,11 @@ class HubDeviation {
   double width_ = 0;  // [s] of what is unsure on either side of a step
 };
 
-/// The deviation that the clocks of several devices show alike: the least delays in short stretches of time
-/// move together, by more than 50 µs, and no device whose delays are even enough to show it does otherwise.
+/// Estimates the hub clock's deviation, which the clocks of several devices share: their least delays in
+/// short stretches of time move together by more than 50 µs, and no device with steady delays contradicts.
 ///
-/// Nothing where there is none, or where fewer than two devices show it: a deviation of one device is its
-/// own. What is common to all as a steady rate belongs to their skews.
+/// Empty if there is none, or if fewer than two devices show it: a deviation of one device is its own. A
+/// steady rate common to all devices belongs to their skews.
 ///
 /// @param devices the stamps of each, ascending in `hub` but for what its steps did
 std::optional<HubDeviation> find_hub_deviation(std::span<const std::vector<ReceivedStamp>> devices);

@@ -8,8 +8,8 @@
 namespace crisp {
 namespace {
 
-/// Of n stamps (x / lowest)^shape have delays below x, about.
-struct DelayLaw {
+/// About n · (x / lowest)^shape of the stamps have delays below x.
+struct DelayDistribution {
   double lowest = 0;  ///< [s] below which one stamp is expected
   double shape = 1;   ///< 1 where delays are as likely down to the least one, more where they thin out
 
@@ -33,7 +33,7 @@ std::vector<double> delays_above(std::span<const Stamp> stamps, const ClockLine&
 }  // namespace
 
 LineBias estimate_line_bias(std::span<const Stamp> stamps, const ClockLine& line, double quantum) {
-  constexpr double kUsualDelay = 1e-3;  // [s] where there are too few stamps to tell
+  constexpr double kUsualDelay = 1e-3;  // [s] assumed where there are too few stamps
   constexpr double kRoots = 2.5;        // of the stamps: few enough to be near the least one
   constexpr double kBeforehand = 2;     // stamps that speak for a shape of 1
   constexpr double kMostOfFourth = 3;   // a few stamps may be faster than all others: the law is theirs then
@@ -45,7 +45,7 @@ LineBias estimate_line_bias(std::span<const Stamp> stamps, const ClockLine& line
   const auto m = static_cast<double>(used);
   const double end = above[used];
   if (end <= quantum) return {.mean = 0, .std_error = quantum};
-  DelayLaw law;
+  DelayDistribution law;
   double late = end / m;  // shape and line are found in turn, as delays are known from the line on only
   for (int turn = 0; turn < kTurns; ++turn) {
     double sum = 0;

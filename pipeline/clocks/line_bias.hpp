@@ -7,15 +7,15 @@
 
 namespace crisp {
 
-/// How far a line below stamps lies above their clock, as no stamp has the least delay.
+/// Bias of a line below stamps against their clock, as no stamp has the least delay.
 struct LineBias {
   double mean = 0;       ///< [s]
   double std_error = 0;  ///< [s] of it
 };
 
 /// From the smallest delays x above the line: the share of delays below x is taken to grow as a power of x,
-/// whose exponent they tell (Hill: A simple general approach to inference about the tail of a distribution,
-/// Annals of Statistics 1975).
+/// whose exponent is estimated from them (Hill: A simple general approach to inference about the tail of a
+/// distribution, Annals of Statistics 1975).
 ///
 /// @param stamps  those that the line was fitted to
 /// @param quantum [s] the resolution of the stamps

@@ -84,7 +84,7 @@ void TimeUnwrapper::refuse_seconds_clock(std::uint32_t raw_us) {
   if (raw_us < last_->raw_us) ++falls_;
   if (falls_ < 2 || largest_raw_us_ >= kSecond_us) return;
   throw Error("the clock of " + device_ + " wraps every second: it never reached 1 s and fell back twice",
-              "update the firmware of " + device_ + ": which second a stamp belongs to cannot be told");
+              "update the firmware of " + device_ + ": the second of a stamp is ambiguous");
 }
 
 }  // namespace crisp

@@ -14,7 +14,7 @@ std::int64_t epoch_of_run(std::int64_t first_receipt_ns);
 /// The number nearest to `expected` that leaves `residue` when divided by `modulus`.
 std::int64_t nearest_congruent(std::int64_t residue, std::int64_t modulus, double expected);
 
-/// Makes a counter of 16 bits count on past 65535, also across a gap of several wraps.
+/// Unwraps a 16-bit counter, also across a gap of several wraps.
 class CounterUnwrapper {
  public:
   /// @param raw       the counter as sent
@@ -28,7 +28,7 @@ class CounterUnwrapper {
   std::uint16_t last_ = 0;
 };
 
-/// How a device's stamp follows the stamps before it.
+/// Relation of a device's stamp to the stamps before it.
 enum class StampKind {
   next,      ///< later than all before it
   repeated,  ///< the same once more, or out of order: of no use
@@ -36,12 +36,12 @@ enum class StampKind {
   returned,  ///< connects to the stamps before the last one, whose reset was none: that one was damaged
 };
 
-/// What the unwrapped time skips at a reset, so that no two times of a device that are before and after it
-/// can be mistaken for one another, nor a scan's stamp for one before the reset of its transmission.
+/// Gap of the unwrapped time at a reset, so that times before and after it are never mistaken for one
+/// another, nor a scan's stamp for one before the reset of its transmission.
 inline constexpr std::int64_t kResetGap_us = 2'000'000;
 
-/// Makes the 32-bit microsecond clock of a device count on past its wraps (every 71.6 minutes), with the
-/// hub's time at hand: a wrap, several wraps in a gap, and a power cycle look alike in the counter alone.
+/// Unwraps the 32-bit microsecond clock of a device (a wrap every 71.6 minutes) with the help of the hub's
+/// time: a wrap, several wraps in a gap, and a power cycle are indistinguishable in the counter alone.
 ///
 /// Three clocks vote: the device's, the hub's (late by up to half a minute when the network stalls), and the
 /// count of telegrams. A stamp is a reset when the device's clock goes back, or when it agrees with neither
@@ -60,7 +60,7 @@ class TimeUnwrapper {
   /// @param raw_us      [µs] the device's clock, modulo 2³²
   /// @param receipt_ns  [ns] the hub's clock
   /// @param counted_s   [s] time since the stamp before it by the count of telegrams and their rate, if known
-  /// @throws Error if the clock wraps every second: which second is meant cannot be told
+  /// @throws Error if the clock wraps every second: the second of a stamp is then ambiguous
   Unwrapped add(std::uint32_t raw_us, std::int64_t receipt_ns,
                 std::optional<double> counted_s = std::nullopt);
 

@@ -8,19 +8,19 @@
 
 namespace crisp {
 
-/// Does something, and hands each Error that it throws to `tell`.
-template <class Action, class Tell>
-void for_each_error(Action&& action, Tell&& tell) {
+/// Runs an action and hands each Error that it throws to `report`.
+template <class Action, class Report>
+void for_each_error(Action&& action, Report&& report) {
   try {
     action();
   } catch (const Errors& several) {
-    for (const auto& error : several.all()) tell(error);
+    for (const auto& error : several.all()) report(error);
   } catch (const Error& error) {
-    tell(error);
+    report(error);
   }
 }
 
-/// Errors that are told together.
+/// Errors that are reported together.
 class AllErrors {
  public:
   /// Does something, and keeps each Error that it throws.
@@ -38,7 +38,7 @@ class AllErrors {
   std::vector<Error> errors_;
 };
 
-/// Makes checks that do not build on each other, so that people are told of all mistakes at once.
+/// Runs independent checks and throws all their errors together, so that people see all mistakes at once.
 /// @throws Errors  all that any of them threw
 template <class... Checks>
 void check_all(Checks&&... checks) {

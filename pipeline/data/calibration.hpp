@@ -26,19 +26,19 @@ struct TermParameters {
   std::vector<Parameter> parameters;
 };
 
-/// What is wrong with the parameters of a term, or with one of them.
+/// A fault of a term's parameters, or of one of them.
 struct TermFault {
   std::string parameter;  ///< "kappa"; empty: it is the term as a whole
   std::string what;
   std::string advice;
 };
 
-/// Whose a term is.
+/// Owner of a term.
 enum class TermOwner { laser, plate };
-/// What is wrong with the parameters of a term: asked by who reads a calibration of who knows the terms.
+/// Validates a term's parameters; the readers of calibrations get it from the catalogue of terms.
 using JudgeTerm = std::function<std::vector<TermFault>(const TermParameters&, TermOwner)>;
 
-/// Where one laser sits on the plate: equation (2), and its lag of equation (3).
+/// Pose of one laser on the plate: equation (2), and its lag of equation (3).
 struct LaserCalibration {
   std::string name;
   Parameter lambda{"lambda", "rad"};  ///< λ, azimuth of the laser on the plate
@@ -64,7 +64,7 @@ struct Calibration {
   std::vector<double> covariance;         ///< m × m, row by row, products of their units
   std::map<std::string, double> quality;  ///< "rqe_before", "rqe_after", …
   std::vector<Unobservable> unobservable;
-  std::vector<std::string> doubts;  ///< why it cannot be trusted, in words; empty if it can
+  std::vector<std::string> caveats;  ///< why it cannot be trusted, in words; empty if it can
   std::map<std::string, std::string> provenance;
 
   const LaserCalibration* find(const std::string& laser) const;  ///< nullptr if there is none

@@ -26,7 +26,7 @@ class ClockPieces {
   /// @throws Error unless it begins after the last one
   void append(const ClockPiece& piece);
   void replace_last(const ClockPiece& piece);
-  /// Takes back the last piece. @return whether there was another one before it; the first stays
+  /// Removes the last piece. @return whether there was another one before it; the first stays
   bool drop_last();
 
   const ClockPiece& front() const { return pieces_.front(); }

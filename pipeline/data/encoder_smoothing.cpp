@@ -13,7 +13,7 @@ namespace crisp {
 namespace {
 
 constexpr int kTerms = 5;             // of a polynomial of the fourth degree
-constexpr Eigen::Index kFewest = 15;  // readings: fewer say little more than the one in their middle
+constexpr Eigen::Index kFewest = 15;  // readings: fewer add little to the middle one
 constexpr double kMostOff = 0.55;     // steps: half a step of rounding, and a little for the stamps
 constexpr double kMostChange = 0.6;   // steps, likewise
 constexpr double kMomentsAWidth = 4;  // that polynomials are found for

@@ -7,7 +7,7 @@ namespace crisp {
 namespace {
 
 std::string full_text(const std::string& what, const std::string& advice, const Place& place) {
-  // Who catches it without a place says itself that it is an error: "error: " + what().
+  // The catcher of an error without a place prefixes "error: " to what().
   std::string text = to_string(place);
   text += (text.empty() ? "" : ": error: ") + what;
   if (!advice.empty()) text += "; " + advice;

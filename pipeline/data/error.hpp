@@ -17,8 +17,8 @@ struct Place {
 /// "file:line:column", as much of it as is known.
 std::string to_string(const Place& place);
 
-/// The one exception of crisp: what is wrong, where, and what to do about it. Damaged input is not an
-/// Error but a counted loss; an Error means that the job cannot be done as it was asked for.
+/// The one exception of crisp: what is wrong, where, and what to do about it. Damaged input is no Error but a
+/// counted loss; an Error means that the requested job cannot be done.
 class Error : public std::runtime_error {
  public:
   explicit Error(std::string what, std::string advice = {}, Place place = {});

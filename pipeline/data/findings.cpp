@@ -3,22 +3,22 @@
 
 #include <cmath>
 
-#include "pipeline/data/least_chance.hpp"
+#include "pipeline/statistics/multiple_testing.hpp"
 
 namespace crisp {
 namespace {
 
-/// That the less of two independent p-values is as small as this one; what was not asked does not count.
+/// Šidák-corrected p-value of the smaller of two independent p-values; a missing one does not count.
 double less_sure(double one, double other) {
   const double least = std::fmin(one, other);
-  return std::isnan(one) || std::isnan(other) ? least : least_of(2, least);
+  return std::isnan(one) || std::isnan(other) ? least : sidak_p_value(2, least);
 }
 
 }  // namespace
 
 std::string Finding::refusal() const {
   if (accepted) return {};
-  return refused.empty() ? "it does not pay on data that it was not fitted to" : refused;
+  return refused.empty() ? "it does not improve the fit on held-out data (cross-validation)" : refused;
 }
 
 void Findings::append(const Findings& other) {
@@ -27,7 +27,7 @@ void Findings::append(const Findings& other) {
   add(unnamed, other.unnamed);
   add(departures, other.departures);
   add(unobservable, other.unobservable);
-  add(artefacts, other.artefacts);
+  add(artifacts, other.artifacts);
   add(devices, other.devices);
   add(noise, other.noise);
   add(gain, other.gain);

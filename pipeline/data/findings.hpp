@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// What an extension of the model brought on data that it was not fitted to.
+/// Change of a metric on held-out data by an extension of the model.
 struct Gain {
   std::string metric;  ///< "cloud thickness"
   std::string unit;    ///< "m", "nat"
@@ -18,14 +18,14 @@ struct Gain {
   double after = 0;
   std::array<double, 2> ci95{};  ///< of after − before
 
-  bool surely_falls() const { return ci95[1] < 0; }
+  bool significant_decrease() const { return ci95[1] < 0; }
   bool surely_rises() const { return ci95[0] > 0; }
-  /// Of an RMS: the share of its squares that is gone; 0 where there was nothing.
+  /// For an RMS: the fraction of the mean square that is explained; 0 where there was nothing.
   double explained() const { return before > 0 ? 1 - after * after / (before * before) : 0; }
 };
 
-/// Stands for a number that a diagnosis did not look for; null in diagnosis.json.
-inline constexpr double kUnasked = std::numeric_limits<double>::quiet_NaN();
+/// Value of an untested quantity; null in diagnosis.json.
+inline constexpr double kNotTested = std::numeric_limits<double>::quiet_NaN();
 
 /// Another cause that could stand in the place of one that was found.
 struct OtherCause {
@@ -36,18 +36,19 @@ struct OtherCause {
 
 /// A departure of the measured data from the model, with its physical cause.
 struct Finding {
-  std::string cause;                  ///< "mirror.cone": see docs/effects.md
-  std::string scope;                  ///< "plate", "laser3"
-  std::vector<Parameter> parameters;  ///< in SI, with standard errors
-  double explained_fraction = 0;      ///< share of the whole departure (in squared residuals)
-  double log10_odds = kUnasked;       ///< against the likeliest other cause
-  double p_value = 1;                 ///< that noise alone makes as much, corrected for the number of looks
-  std::vector<std::string> confounded_with;     ///< causes that these data cannot tell from it
-  std::vector<std::string> told_apart_by = {};  ///< what a recording needs to tell them from it
+  std::string cause;                            ///< "mirror.cone": see docs/effects.md
+  std::string scope;                            ///< "plate", "laser3"
+  std::vector<Parameter> parameters;            ///< in SI, with standard errors
+  double explained_fraction = 0;                ///< share of the whole departure (in squared residuals)
+  double log10_odds = kNotTested;               ///< against the likeliest other cause
+  double p_value = 1;                           ///< under noise alone, corrected for the number of tests
+  std::vector<std::string> confounded_with;     ///< causes that these data do not distinguish from it
+  std::vector<std::string> resolvable_by = {};  ///< what a recording needs to distinguish them
   std::vector<OtherCause> alternatives = {};    ///< a few, the likeliest first; empty: none were compared
   std::vector<Gain> gain;
-  bool accepted = false;     ///< whether it is part of the model from now on
-  std::string refused = {};  ///< why it is not; empty: it does not pay on data that it was not fitted to
+  bool accepted = false;  ///< whether it is part of the model from now on
+  std::string refused =
+      {};  ///< why it is not; empty: it does not improve the fit on held-out data (cross-validation)
 
   /// Why it is no part of the model; empty: it is.
   std::string refusal() const;
@@ -65,60 +66,62 @@ struct UnnamedFinding {
   bool accepted = false;
 };
 
-/// Where measured residuals are not those of the simulation, whatever the cause.
+/// A departure of measured residuals from the simulation, whatever the cause.
 struct ResidualDeparture {
   std::string covariate;  ///< over which it shows: "mirror angle", "laser"
   std::string quantity;   ///< what is off: "range"
   std::string scope;      ///< "laser3"; "scanner": of all lasers together
   double amplitude = 0;   ///< RMS of the means over the covariate, less what noise makes
   std::string unit;
-  double p_value = 1;                 ///< corrected for the number of looks
-  double amplitude_after = kUnasked;  ///< with the extended model …
-  double p_value_after = kUnasked;
+  double p_value = 1;                   ///< corrected for the number of tests
+  double amplitude_after = kNotTested;  ///< with the extended model …
+  double p_value_after = kNotTested;
 };
 
-/// What the stamps of one device say of its clock, its link and its mirror.
+/// Estimates from one device's stamps: its clock, its link and its mirror.
 struct DeviceFacts {
-  std::string device;         ///< "laser1", "plate"
-  std::size_t stamps = 0;     ///< that were looked at
-  double skew = 0;            ///< hub seconds a device second − 1
-  double skew_std_error = 0;  ///< of it
-  double delay_median = 0;    ///< [s] of receipts beyond the shortest delay
-  double delay_95 = 0;        ///< [s] 95 of 100 are not later
-  double period = kUnasked;   ///< [s] mean, of a laser's mirror
-  double period_std_error = kUnasked;
-  double nominal_period = kUnasked;  ///< [s]
-  double wander = kUnasked;          ///< RMS of slow changes of the mirror's period, as a share of it
+  std::string device;          ///< "laser1", "plate"
+  std::size_t stamps = 0;      ///< that were used
+  double skew = 0;             ///< hub seconds a device second − 1
+  double skew_std_error = 0;   ///< of it
+  double delay_median = 0;     ///< [s] of receipts beyond the shortest delay
+  double delay_95 = 0;         ///< [s] 95 of 100 are not later
+  double period = kNotTested;  ///< [s] mean, of a laser's mirror
+  double period_std_error = kNotTested;
+  double nominal_period = kNotTested;  ///< [s]
+  double wander = kNotTested;          ///< RMS of slow changes of the mirror's period, as a share of it
 };
 
-/// How the ranges of one laser scatter, apart from what its findings `noise.*` say.
+/// The noise of one laser's ranges, apart from its findings `noise.*`.
 struct NoiseFacts {
   std::string laser;
-  std::size_t ranges = 0;  ///< that were looked at
+  std::size_t ranges = 0;  ///< that were used
   double sigma = 0;        ///< [m] of the normal law that is left
 };
 
 /// A departure that the estimator made by itself: no cause in the scanner.
-struct Artefact {
+struct EstimatorArtifact {
   std::string name;                   ///< "density", "aliasing"
   std::vector<Parameter> parameters;  ///< in SI: what shifted by how much, or what describes it
   std::string reason;
 };
 
-/// What a diagnosis says.
+/// The result of a diagnosis.
 struct Findings {
   std::vector<Finding> findings;  ///< in the order in which they were taken into the model
   std::vector<UnnamedFinding> unnamed;
   std::vector<ResidualDeparture> departures = {};  ///< that the model as it came, or the extended one, shows
   std::vector<Unobservable> unobservable;          ///< causes that these data could not show
-  std::vector<Artefact> artefacts;
+  std::vector<EstimatorArtifact> artifacts;
   std::vector<DeviceFacts> devices;
   std::vector<NoiseFacts> noise;
   std::vector<Gain> gain = {};  ///< of all that became part of the model, together
-  double before_p = kUnasked;  ///< that the residuals are those of the simulation: with the model that came …
-  double after_p = kUnasked;  ///< … and with what was found
+  double before_p =
+      kNotTested;  ///< that the residuals are those of the simulation: with the model that came …
+  double after_p = kNotTested;  ///< … and with what was found
 
-  /// Adds what another diagnosis says of the same recording. Of both p-values the less counts, as one of two.
+  /// Adds another diagnosis of the same recording. The smaller of both p-values counts, Šidák-corrected for
+  /// two.
   void append(const Findings& other);
 };
 

@@ -5,7 +5,7 @@
 
 namespace crisp {
 
-/// Thrown by work that was told to stop before its end.
+/// Thrown by work that was stopped before its end.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}

@@ -22,7 +22,7 @@ struct Measurements {
 
   std::size_t size() const { return range.size(); }
   void reserve(std::size_t n);
-  /// Where only one of the two knows the incidences, they are forgotten. @throws Error if the epochs differ
+  /// Appends; incidences are dropped if only one of the two has them. @throws Error if the epochs differ
   void append(const Measurements& other);
 
   /// One beam of another set, which must have the same epoch, and know the incidences if this one does.

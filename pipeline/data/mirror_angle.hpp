@@ -6,8 +6,8 @@
 
 namespace crisp {
 
-/// [rad] A mirror angle within half a turn of 0, so that its sign says which half of the sweep a beam is of,
-/// whatever the mount. One that is half a turn but for rounding stays.
+/// [rad] A mirror angle within half a turn of 0, so that its sign gives the half of the sweep, whatever the
+/// mount. An angle of half a turn but for rounding stays.
 inline double wrapped_mirror_angle(double angle) {
   constexpr double kRounding = 1e-3;  // [rad] less than any laser's step
   if (std::abs(angle) <= std::numbers::pi + kRounding) return angle;

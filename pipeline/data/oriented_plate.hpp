@@ -11,7 +11,7 @@ namespace crisp {
 /// The same readings of an encoder that counts the other way: φ → −φ.
 PlateTrajectory reversed(const PlateTrajectory& plate);
 
-/// Gives a trajectory the encoder's direction of a calibration. Where the rig leaves the direction to the
+/// Applies a calibration's encoder direction to a trajectory. Where the rig leaves the direction to the
 /// calibration (`direction: auto`), clock stages read counts as counter-clockwise; a calibration for
 /// clockwise counts gets the trajectory reversed. In all other cases the trajectory passes unchanged.
 class OrientedPlate {

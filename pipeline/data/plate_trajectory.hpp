@@ -11,7 +11,7 @@
 
 namespace crisp {
 
-/// Where the plate is at an instant.
+/// State of the plate at an instant.
 struct PlateState {
   double angle = 0;         ///< [rad] φ, unwrapped
   double rate = 0;          ///< [rad/s] dφ/dt
@@ -48,7 +48,7 @@ class PlateTrajectory {
   /// The plate at time t [s since epoch], or nothing where the readings do not cover t.
   std::optional<PlateState> at(double t) const;
 
-  /// What at() takes its answer from; it holds for all times from `begin` to `end`, ends included.
+  /// The arc that at() interpolates on; valid for all times from `begin` to `end`, ends included.
   std::optional<PlateArc> arc(double t) const;
 
   /// The reading with which the arc of t begins, or nothing where the readings do not cover t.
@@ -77,14 +77,14 @@ class PlateTrajectory {
   std::vector<double> rates_;
   std::vector<double> new_zeros_;
   double max_gap_ = 0;
-  // As many parts of equal length as there are intervals: where readings are about even, one to a few of
-  // them begin in each, so that a time's interval is found at once.
+  // Number of parts of equal length per second: as many parts as intervals. For about even readings, one to a
+  // few of them begin in each, so that a time's interval is found at once.
   double parts_a_second_ = 0;
   std::vector<std::uint32_t>
       first_;  // part → the last interval that begins in a part before it, or the first
 };
 
-// Here, as it is asked for each of many beams.
+// Inline, since it is called for each of many beams.
 inline std::size_t PlateTrajectory::part_of(double t) const {
   const std::size_t last = first_.size() - 2;
   const double parts = (t - times_.front()) * parts_a_second_;
@@ -97,7 +97,7 @@ inline std::optional<std::size_t> PlateTrajectory::interval(double t) const {
   const std::size_t part = part_of(t);
   std::size_t found = first_[part];
   const std::size_t last = first_[part + 1];
-  // One step or two mostly do, which of them nobody can foretell: without a branch.
+  // Mostly one step or two, unpredictably: without a branch.
   for (int step = 0; step < 2; ++step) {
     found += static_cast<std::size_t>(static_cast<unsigned>(found < last) &
                                       static_cast<unsigned>(t >= times[found + 1]));

@@ -9,9 +9,9 @@
 
 namespace crisp {
 
-/// Things to be filled. One that nobody holds any more comes back, from whatever thread, and is filled anew:
-/// what flows takes its memory once, and not for every scan. As many are kept as were ever held at a time;
-/// what is held may outlive the pool.
+/// A pool of reusable objects. An object that nobody holds any more returns to the pool, from whatever
+/// thread, and is filled anew, so that a stream allocates its memory once and not for every scan. The pool
+/// keeps as many objects as were ever held at a time; held objects may outlive the pool.
 template <class T>
 class Pool {
  public:

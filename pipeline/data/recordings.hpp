@@ -14,12 +14,12 @@ inline constexpr double kPause = 5;
 
 /// A stretch of time in which the scanner stood in one place.
 struct Recording {
-  double begin = 0;      ///< [s since epoch] first reading of the plate
+  double begin = 0;      ///< [s since epoch] first encoder reading
   double end = 0;        ///< [s since epoch] last one
   std::size_t zero = 0;  ///< of the encoder: recordings with the same one have angles in common
 };
 
-/// What pauses of the plate's readings divide a trajectory into, in the order of time.
+/// Splits a trajectory at pauses of the encoder readings, in the order of time.
 std::vector<Recording> recordings_of(const PlateTrajectory& plate);
 
 /// Which recording a time belongs to.

@@ -11,7 +11,7 @@
 
 namespace crisp {
 
-/// Where a device is reached, or where its packets come from.
+/// Network address of a device, or of its packets' sender.
 struct Address {
   std::string ip;          ///< "192.168.0.1"
   std::uint16_t port = 0;  ///< 0: any
@@ -29,7 +29,7 @@ struct RigLaser {
   LaserCalibration nominal;  ///< the values to start from; a std_error of 0: the rig gives none
 };
 
-/// What a number in a bag's message says of the plate's angle.
+/// The unit in which a bag's message gives the plate's angle.
 enum class AngleUnit { rad, deg, counts };
 
 /// The plate and its encoder.

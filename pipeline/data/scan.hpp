@@ -6,7 +6,7 @@
 
 namespace crisp {
 
-/// What came back from one direction of a scan's beams: the first echo is element 0 of `Scan::echoes`.
+/// One echo of a beam: the first echoes are element 0 of `Scan::echoes`.
 struct Echo {
   std::vector<float> ranges;      ///< [m], one a beam; 0 where the device sent a code (no echo, dazzled …)
   std::vector<float> remissions;  ///< device's units, one a beam, or empty when the device sends none
@@ -43,12 +43,12 @@ struct Scan {
   double beam_interval = 0;  ///< [s] from beam to beam, where that is stated
   std::vector<Echo> echoes;  ///< DIST1/RSSI1, DIST2/RSSI2, …
   std::vector<ScanEncoder> encoders;
-  bool numbered = true;  ///< by the device, and each asked for: else a gap of its numbers is no loss
+  bool numbered = true;  ///< by the device, and all requested: else a gap of its numbers is no loss
   bool timed = true;  ///< by the device's clock: else its times are its number times the nominal period, or
                       ///< its receipt
 };
 
-/// One reading of the plate's encoder.
+/// One encoder reading's encoder.
 struct PlateReading {
   std::uint16_t sequence = 0;   ///< wraps at 65536; a gap means lost readings
   std::uint32_t device_us = 0;  ///< [µs] the plate's clock; wraps at 2^32

@@ -8,7 +8,7 @@
 
 namespace crisp {
 
-/// In which unit people read a number.
+/// Unit in which people read a number.
 struct ShownUnit {
   double factor = 1;  ///< from SI
   std::string name;   ///< empty for a plain number
@@ -21,7 +21,7 @@ inline ShownUnit shown_unit(const std::string& unit) {
   return {.factor = 1, .name = unit == "1" ? "" : unit};
 }
 
-/// How many digits behind the point show two of an error that count; fewer than none of a large one.
+/// Number of decimals that show two significant digits of an error; negative for a large one.
 ///
 /// @param error  > 0
 inline int decimals_that_show(double error) { return 1 - static_cast<int>(std::floor(std::log10(error))); }

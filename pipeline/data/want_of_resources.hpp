@@ -8,7 +8,7 @@
 
 namespace crisp {
 
-/// What an exception of the standard library means where the system refused memory or a thread; nothing of
+/// Error for an exception of the standard library about exhausted memory or threads; nothing for
 /// any other exception.
 std::optional<Error> want_of_resources(const std::exception& thrown);
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/estimate/encoder_error_blocks.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
-#include "pipeline/estimate/plate_moments.hpp"
 #include "pipeline/estimate/surfel_rows.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
@@ -64,7 +64,7 @@ Eigen::MatrixXd calibration_information(const SensorModel& truth, const Sample& 
   if (noise.encoder_step <= 0) {
     return normal_equations(surfels, placed.view(), free.size(), rows, exact).matrix;
   }
-  const PlateMoments moments = plate_moments(truth, beams, noise.encoder_step);
+  const EncoderErrorBlocks moments = encoder_error_blocks(truth, beams, noise.encoder_step);
   return information_with_turns(surfels, placed.view(), free.size(), rows, exact, moments.turns());
 }
 

@@ -7,7 +7,7 @@
 
 namespace crisp {
 
-/// How far the clouds of two calibrations are apart that were fitted to either half of a recording.
+/// Distance of the clouds of two calibrations that are fitted to either half of a recording.
 struct CrossValidation {
   double difference = 0;  ///< [m] between the clouds (RMS), rigid motions apart
   double expected = 0;    ///< [m] by the two calibrations' covariances

@@ -8,8 +8,8 @@
 
 namespace crisp {
 
-/// Mean square displacement [m²] of a sample's points by each pair of the free parameters (m × m), rigid
-/// motions of the whole cloud, which no measure of crispness sees, projected out.
+/// Mean square displacement [m²] of a sample's points by each pair of the free parameters (m × m), with rigid
+/// motions of the whole cloud, which do not change RQE, projected out.
 Eigen::MatrixXd displacement(const SensorModel& model, const Sample& sample,
                              const std::vector<std::size_t>& free);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/estimate/flat_surfaces.hpp"
 
-#include "pipeline/estimate/claims.hpp"
+#include "pipeline/estimate/surface_association.hpp"
 #include "pipeline/quality/blocks.hpp"
-#include "pipeline/quality/surfel_ends.hpp"
+#include "pipeline/quality/end_residuals.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
-#include "pipeline/quality/wall_lines.hpp"
+#include "pipeline/quality/wall_segments.hpp"
 
 namespace crisp {
 namespace {
@@ -21,9 +21,9 @@ class Patches final : public FlatSurfaces {
     if (!is_searching_) return surfels_;
     is_searching_ = last_step > kSmallStep && round_++ < kSearches;
     if (is_searching_) {
-      // Cells along edges are no surfaces' own, but what was met there tells much.
+      // Cells along edges belong to no surface of their own, but their beams carry much information.
       surfels_ = find_surfels(beams, settings_);
-      surfels_ = claimed(surfels_, beams, settings_, {.margin = settings_.smallest});
+      surfels_ = associate_with_surfaces(surfels_, beams, settings_, {.margin = settings_.smallest});
       refine_all(surfels_, beams, settings_);
     } else {
       complete(beams);
@@ -39,7 +39,8 @@ class Patches final : public FlatSurfaces {
   void complete(const BeamsView& beams) {
     constexpr double kSpacings = 4;
     constexpr double kMore = 1.3;
-    surfels_ = grown(surfels_, beams, settings_, {.margin = settings_.smallest, .spacings = kSpacings});
+    surfels_ =
+        grow_surfaces(surfels_, beams, settings_, {.margin = settings_.smallest, .spacings = kSpacings});
     refine_all(surfels_, beams, settings_);
     for_each_index(surfels_.surfels.size(),
                    [&](std::size_t s) { cut_strange_ends(surfels_.surfels[s], surfels_, beams, settings_); });

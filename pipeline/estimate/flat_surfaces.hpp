@@ -11,8 +11,8 @@ namespace crisp {
 /// leave surfaces at their rims would keep steps from getting any smaller.
 inline constexpr double kSmallStep = 0.5;
 
-/// The flat surfaces against which a refinement measures its beams: looked for while the parameters still
-/// move, and kept in the end, so that the refinement's steps come to one.
+/// The flat surfaces against which a refinement measures its beams: segmented anew while the parameters still
+/// move, and kept in the end, so that the refinement's steps converge.
 class FlatSurfaces {
  public:
   virtual ~FlatSurfaces() = default;

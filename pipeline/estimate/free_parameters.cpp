@@ -5,13 +5,13 @@
 #include <array>
 
 #include "pipeline/data/error.hpp"
-#include "pipeline/estimate/wanted_terms.hpp"
+#include "pipeline/estimate/requested_terms.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr const char* kNoBeams =
-    "no beams of this laser came: it measured nothing, or a stage before left them out";
+    "there are no beams of this laser: it measured nothing, or a stage above removed them";
 constexpr std::array kKinds = {"lambda", "tau", "alpha", "eta"};  // in the order of a chain's slots
 
 bool is_fixed(const std::string& name, const std::vector<std::string>& fixed) {
@@ -77,9 +77,9 @@ void check_fixed(const std::vector<std::string>& fixed, const Calibration& calib
                          [&](const LaserCalibration& laser) { return name == laser.name + "." + kind; });
     });
     if (!known) {
-      throw Error("\"" + name + "\" is no parameter that could be fixed",
-                  "name one as laser1.eta, or as eta for that of all lasers; the parameters are lambda, tau, "
-                  "alpha and eta");
+      throw Error(
+          "\"" + name + "\" is no parameter that can be held",
+          "name one as laser1.eta, or as eta for all lasers; the parameters are lambda, tau, alpha and eta");
     }
   }
 }

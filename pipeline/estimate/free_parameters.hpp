@@ -14,13 +14,12 @@ struct FreeParameters {
   std::vector<Unobservable> unobservable;
 };
 
-/// λ, τ, α and η of every laser that measured something, but for the λ of the first of them: turning the
-/// whole scanner changes nothing. Terms beyond equation (2) are left as they are, but for those that are
-/// wanted.
+/// λ, τ, α and η of every laser with measurements, but for the λ of the first of them: a rotation of the
+/// whole scanner changes nothing. Terms beyond equation (2) are held, but for the requested ones.
 ///
-/// @param fixed  those to be left alone: "laser1.eta", or "eta" for that of all lasers
-/// @param terms  to be found as well: "encoder.eccentricity", "laser2.mirror.cone"
-/// @param forms  whether what says their form is, too: see parameters_of()
+/// @param fixed  parameters to be held: "laser1.eta", or "eta" for that of all lasers
+/// @param terms  requested terms: "encoder.eccentricity", "laser2.mirror.cone"
+/// @param forms  whether shape parameters are free, too: see parameters_of()
 FreeParameters free_parameters(const SensorModel& model, const Measurements& beams,
                                const std::vector<std::string>& fixed,
                                const std::vector<std::string>& terms = {}, bool forms = false);

@@ -21,7 +21,7 @@ int reluctance(const std::string& name) {
   return 0;  // terms beyond equation (2) go before all of it
 }
 
-/// Those who take part in a direction, by their share of its largest component.
+/// Parameters that take part in a direction, by their share of its largest component.
 constexpr double kTakesPart = 0.05;
 
 /// Which of the `active` parameters is held at its prior, so that this direction is no longer free.
@@ -80,7 +80,7 @@ Observability observability(const Eigen::MatrixXd& information, const std::vecto
   for (const std::size_t i : active) result.known.push_back(free[i]);
   for (const std::size_t i : held) {
     result.unobservable.push_back({.parameter = free_names[i],
-                                   .reason = "these data do not determine it better than was known before",
+                                   .reason = "these data do not determine it better than the prior",
                                    .combination = known_with(i, active, scaled, free_names, prior)});
   }
   return result;

@@ -21,7 +21,7 @@ std::string remark(const Parameter& parameter, const std::string& name, const Ca
   return parameter.free ? "" : "kept";
 }
 
-/// As many as show two digits of the error; four where there is none, or it is large.
+/// Number of decimals that show two digits of the error; four without an error, or for a large one.
 int decimals_for(double error) {
   constexpr int kLeast = 4;
   constexpr int kMost = 12;

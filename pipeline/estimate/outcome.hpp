@@ -10,15 +10,15 @@
 
 namespace crisp {
 
-/// What a calibration found: values, and how well they are known.
+/// Result of a calibration: values with their covariance.
 struct Outcome {
   SensorModel model;              ///< at the values that were found
   std::vector<std::size_t> free;  ///< indices into model.values(): m parameters that were turned
   Eigen::MatrixXd covariance;     ///< m × m, of these, in their order
   std::vector<Unobservable> unobservable;
-  std::vector<std::string> doubts = {};  ///< why this may not be the truth, in words
+  std::vector<std::string> caveats = {};  ///< why this may not be the truth, in words
   std::vector<std::string> other_minima =
-      {};  ///< other values that this method cannot tell from these, in words
+      {};  ///< competing values that this method does not distinguish from these, in words
   std::vector<std::size_t> not_estimated =
       {};  ///< parameters that this method cannot find, though another may
 };

@@ -34,7 +34,7 @@ Vectors place_all(const SensorModel& model, const Measurements& beams, const Pla
   });
   if (placed != beams.size()) {
     throw Error(
-        "an eta moved some beams out of the time that the encoder readings cover",
+        "an eta moved some beams out of the time span of the encoder readings",
         "check the rig's eta, the clock stages, and whether the encoder was recorded from begin to end");
   }
   return points;

@@ -10,16 +10,16 @@
 
 namespace crisp {
 
-/// Where a model puts n beams, all of which the plate's readings cover.
-/// @throws Error  if they do not
+/// Places n beams by a model.
+/// @throws Error  if encoder readings do not cover all of them
 Vectors place_all(const SensorModel& model, const Measurements& beams, const PlateTrajectory& plate);
 
-/// Where a model puts beams, and from which side they came: what surfels are found from. Each recording
-/// (recordings_of()) has a place of its own, a kilometre from the next one's, so that none sees the surfaces
-/// of another.
+/// Beams placed by a model, with their directions: the input of the surfel segmentation. Each recording
+/// (recordings_of()) has a place of its own, a kilometre from the next one's, so that none shares surfaces
+/// with another.
 class PlacedBeams {
  public:
-  /// @param sample  n beams, all of which the plate's readings cover
+  /// @param sample  n beams, all of which encoder readings cover
   PlacedBeams(const SensorModel& model, const Sample& sample);
 
   /// Valid while this and the noise live.

@@ -8,12 +8,12 @@
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/data/recordings.hpp"
-#include "pipeline/estimate/base_slots.hpp"
+#include "pipeline/estimate/base_parameters.hpp"
 
 namespace crisp {
 namespace {
 
-/// Nothing where no surface is flat, or nothing tells η.
+/// Nothing where no surface is flat, or η is not identifiable.
 std::optional<Outcome> lags_alone(const SensorModel& model, const Sample& recording,
                                   RefinementSettings settings) {
   settings.fixed = {"lambda", "tau", "alpha"};

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <cstdint>
 
-#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr std::size_t kMostPairs = 120'000;
-constexpr std::size_t kLeastPairs = 1000;  // of a bin: they tell its factor to 4 %
+constexpr std::size_t kLeastPairs = 1000;  // of a bin: they determine its factor to 4 %
 constexpr std::size_t kMostBins = 12;
 
 /// Two neighbours, the second and the one before it.
@@ -23,7 +23,7 @@ struct Pair {
   double size = 0;  // [m] of the difference of their residuals along the beam, by √2
 };
 
-/// What noise may go by, of each beam.
+/// Covariates of each beam's noise.
 struct Quantities {
   const std::vector<float>& incidence;
   const std::vector<float>& remission;
@@ -52,7 +52,7 @@ std::vector<Pair> pairs_on(const Surfel& surfel, const Surfels& surfels, const B
   return pairs;
 }
 
-/// Of all surfaces, evenly thinned, by laser.
+/// Pairs from all surfaces, evenly thinned, by laser.
 ///
 /// @param range  is corrected
 std::vector<std::vector<Pair>> pairs_by_laser(const Surfels& surfels, const BeamsView& placed,
@@ -86,7 +86,7 @@ struct Steps {
     return static_cast<std::size_t>(std::ranges::upper_bound(ends, value) - ends.begin());
   }
   double at(std::uint32_t beam) const { return factor[step((*of)[beam])]; }
-  /// Of two that may lie on either side of a border.
+  /// For two beams that may lie on either side of a border.
   double at(const Pair& pair) const { return std::sqrt((square(pair.before) + square(pair.beam)) / 2); }
 
  private:
@@ -109,7 +109,7 @@ Steps even_steps(const std::vector<float>& of, const std::vector<Pair>& pairs) {
   return steps;
 }
 
-/// What the noise of one laser goes by.
+/// Noise factors of one laser.
 class OfLaser {
  public:
   OfLaser(const std::vector<Pair>& pairs, const Quantities& by) {
@@ -121,7 +121,7 @@ class OfLaser {
     }
     std::vector<double> sizes;
     for (const Pair& pair : pairs) sizes.push_back(pair.size / by_steps(pair));
-    size_ = kSigmaByMedian * middle_of(sizes);
+    size_ = kSigmaByMedian * median_in_place(sizes);
   }
 
   /// [m] 0 where there are too few neighbours.
@@ -135,7 +135,7 @@ class OfLaser {
     return product;
   }
 
-  /// By the median in each step, beside what the other quantities make.
+  /// Fits the median in each step, conditional on the other quantities' factors.
   void fit(Steps& steps, const std::vector<Pair>& pairs) {
     std::vector<std::vector<double>> sizes(steps.factor.size());
     for (const Pair& pair : pairs) {
@@ -143,7 +143,7 @@ class OfLaser {
       sizes[step].push_back(pair.size / by_steps(pair) * steps.at(pair));
     }
     for (std::size_t s = 0; s < sizes.size(); ++s) {
-      const double middle = sizes[s].empty() ? 0 : middle_of(sizes[s]);
+      const double middle = sizes[s].empty() ? 0 : median_in_place(sizes[s]);
       if (middle > 0) steps.factor[s] = kSigmaByMedian * middle;
     }
     double mean = 0;

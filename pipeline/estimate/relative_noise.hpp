@@ -15,21 +15,21 @@ inline bool are_neighbours(const Measurements& beams, std::uint32_t before, std:
   return beams.laser[before] == beams.laser[beam] && beams.time[beam] - beams.time[before] <= kOneScan;
 }
 
-/// [m] By how much ranges scatter from neighbour to neighbour on flat surfaces: the root of the harmonic mean
-/// of the beams' variances, as relative_noise() determines them. However wrong a calibration is, neighbours
-/// share its error. 0 where too few are there.
+/// [m] Noise of ranges from neighbour to neighbour on flat surfaces: the root of the harmonic mean of the
+/// beams' variances, as relative_noise() determines them. Neighbours share a calibration's error, so it does
+/// not matter. 0 where there are too few.
 double neighbour_noise(const Surfels& surfels, const BeamsView& placed, const Measurements& beams,
                        const SurfelSettings& settings);
 
-/// How much each beam's range scatters beside the others', as the data show it: a factor of its laser's, and
-/// one each of the range, of the incidence and of the remission (in steps of equally many beams). They are
-/// told from neighbours, beams of one scan on one surface: how the median of their differences goes with each
-/// of these. So nothing of it is how far lasers disagree, or a model is off.
+/// Relative noise of each beam's range, estimated from the data: a factor of its laser's, and one each of the
+/// range, of the incidence and of the remission (in steps of equally many beams). They are estimated from
+/// neighbours, beams of one scan on one surface, by the median of their differences. So disagreement between
+/// lasers, or a model error, does not enter.
 ///
-/// @param beams  n of them, with the incidences found
+/// @param beams  n of them, with their incidences
 /// @return  n: scaled so that the inverse squares of those on surfaces are 1 on average, which leaves the sum
-///          of their weights what it is if all are alike. None where weights would make variances less by
-///          under a twentieth: that is near what chance makes of equal ones.
+///          of their weights what it is if all are alike. Empty where weights would reduce variances by less
+///          than a twentieth, which is near chance for equal ones.
 std::vector<float> relative_noise(const Surfels& surfels, const BeamsView& placed, const Measurements& beams,
                                   const SurfelSettings& settings);
 

@@ -9,7 +9,7 @@
 
 namespace crisp {
 
-/// The measurements that a calibration looks at, with the plate's motion beneath them.
+/// The measurements that a calibration uses, with the plate's motion during them.
 struct Sample {
   Measurements beams;
   const PlateTrajectory* plate = nullptr;
@@ -24,15 +24,15 @@ Sample longest_recording(const Sample& sample);
 /// The beams of one laser.
 Sample of_laser(const Sample& sample, std::size_t laser);
 
-/// Those whose plate angle is known for every η between `earliest` and `latest` [s]: calibration may then
-/// turn η without points coming and going.
+/// The beams whose plate angle is known for every η between `earliest` and `latest` [s]: calibration may then
+/// vary η while the set of points stays the same.
 Sample covered(const Sample& sample, double earliest, double latest);
 
 /// [rad] Between the least and the greatest angle that the plate had while beams were fired.
 double turned(const Sample& sample);
 
 /// The two beams of each scan that lie in the plate's plane (θ = ±90°), or as near to it as the angular step
-/// allows. `half` says which.
+/// allows. `half` selects.
 enum class Half { kFront, kBack, kBoth };  ///< θ < 0 (reported −45° with the usual mount), θ > 0 (135°), both
 Sample in_plane(const Sample& sample, double half_width, Half half);
 
@@ -49,17 +49,16 @@ Sample thin_by_area(const Sample& sample, const SensorModel& model, std::size_t 
 /// Thins to about `count` beams, each as likely to be kept as any other.
 Sample thin_evenly(const Sample& sample, std::size_t count, std::uint64_t seed);
 
-/// How many of `most` beams a kernel of width σ [m] is told enough by: wide ones are smooth.
+/// The number of beams, up to `most`, that a kernel of width σ [m] needs: wide kernels are smooth.
 std::size_t beams_for(double sigma, std::size_t most);
 
-/// Thins a sample from the plate's plane to as many, evenly along the time of each laser's front and back
-/// beams: a random choice would leave a wide kernel with valleys of its own.
+/// Thins an in-plane sample to as many beams, evenly along the time of each laser's front and back beams:
+/// random thinning would give a wide kernel spurious local minima.
 Sample thin_for(double sigma, const Sample& sample);
 
-/// Joins pieces of a trajectory that overlap or follow one another. The same reading has times in two pieces
-/// that differ by microseconds, since a clock's line is another in each: the earlier piece's counts, and the
-/// later one goes on at the first reading behind it. (Both, a nanosecond apart, would be a plate of 10⁷
-/// rad/s.)
+/// Joins pieces of a trajectory that overlap or follow one another. A reading's times in two pieces differ by
+/// microseconds, since each piece has its own clock line: the earlier piece's reading is kept, and the later
+/// piece continues at the first reading behind it. (Both, a nanosecond apart, would be a plate of 10⁷ rad/s.)
 PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>& pieces);
 
 }  // namespace crisp

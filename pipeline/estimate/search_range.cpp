@@ -6,12 +6,12 @@
 #include <numbers>
 
 #include "pipeline/data/each_parameter.hpp"
-#include "pipeline/estimate/wanted_terms.hpp"
+#include "pipeline/estimate/requested_terms.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr double kOfBounds = 0.05;  // share of a term's bounds that its parameters are looked for within
+constexpr double kOfBounds = 0.05;  // fraction of a term's bounds within which its parameters are searched
 
 }  // namespace
 

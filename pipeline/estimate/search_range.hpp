@@ -12,7 +12,7 @@
 
 namespace crisp {
 
-/// What a rig says of a parameter beforehand.
+/// A rig's prior knowledge of a parameter.
 struct NominalValue {
   double value = 0;
   double std_error = 0;  ///< > 0
@@ -22,17 +22,17 @@ struct NominalValue {
 /// ("laser1.tau").
 std::map<std::string, NominalValue> nominal_values(const Rig& rig);
 
-/// How far from its start each kind of parameter is looked for: also what counts as known beforehand.
+/// The search range of each kind of parameter around its start: also its prior standard deviation.
 struct SearchRange {
   double lambda = 0.26;  ///< [rad]
   double tau = 0.10;     ///< [m]
   double alpha = 0.35;   ///< [rad]
   double eta = 0.10;     ///< [s]
   double other = 0.05;   ///< parameters of terms beyond equation (2) that have no bounds, in their units
-  /// [s] The η to which the plate's readings cover the beams at hand: nowhere is one looked for beyond.
+  /// [s] The η to which encoder readings cover the beams at hand: the search stays within.
   double earliest_eta = -std::numeric_limits<double>::infinity();
   double latest_eta = std::numeric_limits<double>::infinity();
-  /// What the rig knows better than these ranges, around its nominal values instead of around the start.
+  /// Narrower priors of the rig, around its nominal values instead of around the start.
   std::map<std::string, NominalValue> nominal = {};
   double reach = 1;  ///< [standard deviations] of a nominal value that its range has
 };
@@ -40,7 +40,7 @@ struct SearchRange {
 /// The range that belongs to a parameter by its name.
 double range_of(const SearchRange& range, const std::string& name);
 
-/// Whether a parameter is an η at the end of what is looked at.
+/// Whether a parameter is an η at the end of its search range.
 bool is_at_the_end(const SearchRange& range, const std::string& name, double value);
 
 /// The model with other values of the free parameters.
@@ -51,13 +51,12 @@ SensorModel with_one(const SensorModel& model, std::size_t parameter, double val
 Eigen::VectorXd within_bounds(const SensorModel& model, const std::vector<std::size_t>& free,
                               Eigen::VectorXd x);
 
-/// The values of the parameters in `free`, or the ranges in which they are looked for: those of terms are a
-/// share of their bounds.
+/// The values of the parameters in `free`, or their search ranges: a fraction of the bounds for parameters of
+/// terms.
 Eigen::VectorXd picked(const SensorModel& model, const std::vector<std::size_t>& free);
 Eigen::VectorXd ranges_of(const SearchRange& range, const SensorModel& model,
                           const std::vector<std::size_t>& free);
-/// And what they are looked for around: the rig's nominal value where it says how well that is known, else
-/// the model's.
+/// The centres of the search: the rig's nominal value where it has a standard deviation, else the model's.
 Eigen::VectorXd centres_of(const SearchRange& range, const SensorModel& model,
                            const std::vector<std::size_t>& free);
 

@@ -10,9 +10,9 @@
 namespace crisp {
 namespace {
 
-constexpr std::uint32_t kFewest = 100;  // blocks, to see by how much their pulls scatter
+constexpr std::uint32_t kFewest = 100;  // blocks, to see by how much their block_scores scatter
 
-/// Of each laser how many beams a scan has, as far as any was met.
+/// The number of beams in a scan of each laser, from the beams at hand.
 std::vector<std::uint32_t> beams_of_scans(const Measurements& beams) {
   std::vector<std::uint32_t> most;
   for (std::size_t i = 0; i < beams.size(); ++i) {
@@ -25,8 +25,8 @@ std::vector<std::uint32_t> beams_of_scans(const Measurements& beams) {
 constexpr std::uint32_t kPlaces = 4;  // along each side of a surface
 static_assert(kPlaces * kPlaces == kPlacesOfEach);
 
-/// Where a beam meets a surface's plane, not where noise has put its point: else beams would be sorted by
-/// their noise.
+/// Intersection of a beam with a surface's plane, independent of the point's noise: otherwise beams would be
+/// sorted by their noise.
 Eigen::Vector2d foot_on(const Surfel& surfel, const BeamsView& beams, std::uint32_t i) {
   const Eigen::Vector3d point(beams.points.x[i], beams.points.y[i], beams.points.z[i]);
   const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
@@ -102,8 +102,8 @@ Eigen::VectorXd widening(const NormalEquations& equations) {
       solve_positive_definite(equations.matrix, Eigen::MatrixXd(Eigen::MatrixXd::Identity(m, m)));
   const Eigen::ArrayXd alone = inverse.diagonal() * equations.covariance_factor();
   Eigen::ArrayXd wider = Eigen::ArrayXd::Ones(m);
-  for (std::size_t division = 0; division < equations.pulls.size(); ++division) {
-    const Eigen::ArrayXXd squares = equations.pulls_along(division, all, inverse).array().square();
+  for (std::size_t division = 0; division < equations.block_scores.size(); ++division) {
+    const Eigen::ArrayXXd squares = equations.scores_along(division, all, inverse).array().square();
     const auto count = static_cast<double>(squares.cols());
     const auto spent = static_cast<double>(m);
     if (count <= 2 * spent) continue;

@@ -12,7 +12,7 @@ namespace crisp {
 
 /// For each beam the piece of the recording that it is of. Pieces share no error: what is left of the
 /// encoder's steps is gone after a tenth of a second; and they are many enough (a hundred, at least) to see
-/// by how much their pulls scatter. Nothing is a piece in which no beam was fired.
+/// by how much their block_scores scatter. Nothing is a piece in which no beam was fired.
 Division recording_blocks(const Measurements& beams);
 
 /// For each beam the hundredth of its laser's scan that it is of: what each direction of a mirror is off by

@@ -30,8 +30,7 @@ void check_errors(const Outcome& outcome, const Measurements& beams, double floo
     if (kind == most.end() || outcome.covariance(i, i) >= std::pow(across / kind->second, 2)) continue;
     throw Error(
         fmt::format(
-            "{} came out with a standard error of {:.2g}, less than the beams' noise allows: a fault of "
-            "this program",
+            "{} has a standard error of {:.2g}, less than the beams' noise allows: an error of this program",
             name, std::sqrt(outcome.covariance(i, i))),
         "please report it with the capture");
   }

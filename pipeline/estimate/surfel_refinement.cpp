@@ -13,8 +13,8 @@
 #include "pipeline/data/each_parameter.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/data/shown_unit.hpp"
-#include "pipeline/estimate/can_be_told.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/identifiability.hpp"
 #include "pipeline/estimate/standard_errors.hpp"
 #include "pipeline/estimate/surfel_refiner.hpp"
 
@@ -23,17 +23,15 @@ namespace {
 
 /// One laser that has not come round to see surfaces from its other side, too, has only their flatness to go
 /// by, and takes what is not flat for an error of its own.
-std::optional<std::string> doubt_of_half_a_turn(const SensorModel& model, const Sample& sample) {
+std::optional<std::string> caveat_of_half_a_turn(const SensorModel& model, const Sample& sample) {
   const double way = turned(sample);
   if (model.lasers() > 1 || way > 0.98 * std::numbers::pi) return std::nullopt;
   return fmt::format(
-      "the plate turned by {:.0f} degrees only: one laser then sees no surface twice, and how flat surfaces "
-      "are "
-      "is all that tells where it sits",
+      "the plate turned by {:.0f} degrees only: one laser then sees no surface twice, and only the flatness of surfaces determines its pose",
       way * 180 / std::numbers::pi);
 }
 
-/// The model with what is held where the rig has it, if the rig says how well it is known.
+/// The model with held parameters at the rig's values, if the rig gives their standard deviations.
 SensorModel with_nominal(const SensorModel& model, const std::vector<Unobservable>& held,
                          const SearchRange& prior) {
   SensorModel result = model;
@@ -49,10 +47,10 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
                        const RoundReporter& report) {
   const LagRange lag = refined_lags(start, settings.prior);
   Sample inside = covered(sample, lag.earliest, lag.latest);
-  const auto doubt = doubt_of_half_a_turn(start, inside);
-  FreeParameters parameters =
-      can_be_told(free_parameters(start, inside.beams, settings.fixed, settings.terms, settings.forms), start,
-                  inside, SearchRange{});
+  const auto caveat = caveat_of_half_a_turn(start, inside);
+  FreeParameters parameters = identifiable_parameters(
+      free_parameters(start, inside.beams, settings.fixed, settings.terms, settings.forms), start, inside,
+      SearchRange{});
   SurfelRefiner refiner(with_nominal(start, parameters.unobservable, settings.prior), std::move(inside),
                         parameters.free, settings);
   int round = 0;
@@ -72,14 +70,13 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
   Refinement result = refiner.result();
   if (round > 0) check_errors(result.outcome, sample.beams, settings.surfels.floor, settings.prior);
   result.outcome.unobservable = std::move(parameters.unobservable);
-  if (doubt) result.outcome.doubts.push_back(*doubt);
+  if (caveat) result.outcome.caveats.push_back(*caveat);
   result.rounds = round;
   result.converged = converged;
   if (!converged && round == settings.max_rounds) {
-    result.outcome.doubts.push_back(
-        fmt::format("the refinement did not converge in {} rounds: its last step was {:.2g} standard errors. "
-                    "Look for what moved in the scene, or record for longer",
-                    round, refiner.last_step()));
+    result.outcome.caveats.push_back(fmt::format(
+        "the refinement did not converge in {} rounds: its last step was {:.2g} standard errors. Check for objects that moved in the scene, or record for longer",
+        round, refiner.last_step()));
   }
   return result;
 }
@@ -145,9 +142,8 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
     result.restarts = restart + 1;
   }
   if (const auto moves = far_moves(from, result.outcome, settings.prior); !moves.empty()) {
-    result.outcome.doubts.push_back(fmt::format(
-        "the refinement did not settle: in the last of {} restarts {}. Check the rig's mount and nominal "
-        "values, or start from a better calibration (calibrate.load)",
+    result.outcome.caveats.push_back(fmt::format(
+        "the refinement did not converge: in the last of {} restarts {}. Check the rig's mount and nominal values, or start from a better calibration (calibrate.load)",
         kRestarts, fmt::join(moves, "; ")));
   }
   return result;

@@ -15,7 +15,7 @@ namespace crisp {
 
 struct RefinementSettings {
   std::vector<std::string> fixed;  ///< parameters to be left alone: see free_parameters()
-  std::vector<std::string> terms;  ///< of the model, to be found as well: see wanted_terms.hpp
+  std::vector<std::string> terms;  ///< of the model, to be found as well: see requested_terms.hpp
   bool forms = false;  ///< whether the terms' forms are to be found as well, from about the right ones
   SurfelSettings surfels;
   SearchRange prior{.lambda = 0.05, .tau = 0.03, .alpha = 0.05, .eta = 0.01, .other = 0.05};  ///< see below
@@ -29,7 +29,7 @@ struct Refinement {
   Outcome outcome;
   std::size_t surfels = 0;  ///< flat surfaces found at last
   std::size_t beams = 0;    ///< beams on them that count
-  double chi2 = 0;          ///< weighted squares of the distances to them, in units of the noise, per freedom
+  double chi2 = 0;  ///< weighted squared distances to them, in units of the noise, per degree of freedom
   double scatter =
       0;  ///< [m] of ranges from neighbour to neighbour on a surface, see neighbour_noise(); 0: unknown
   std::vector<ViewConsistency> views;  ///< how consistent the beams' views of the surfaces are
@@ -41,21 +41,20 @@ struct Refinement {
 /// One step of the work: its number, and whether the work is to go on.
 using RoundReporter = std::function<bool(int round)>;
 
-/// Estimates λ, τ, α, η and the terms that are wanted by weighted least squares in the distances of all beams
-/// to the flat surfaces that they meet, whose planes are estimated with them (projected out). Against RQE it
-/// has no bias by a kernel's width and uses all beams; but it needs a start that is right to some
-/// centimetres, which RQE gives.
+/// Estimates λ, τ, α, η and the requested terms by weighted least squares in the distances of all beams to
+/// their flat surfaces, whose planes are estimated jointly (projected out). Unlike RQE it has no bias by a
+/// kernel's width and uses all beams; but it needs a start within some centimetres, which RQE gives.
 ///
-/// Each round places the beams, finds the surfaces (anew until steps are small) and takes one Gauss-Newton
-/// step. The start counts as an observation with the standard deviations `prior`; what the data do not tell
-/// better is named and kept.
+/// Each round places the beams, segments the surfaces (anew until steps are small) and takes one Gauss-Newton
+/// step. The start counts as an observation with the standard deviations `prior`; unobservable parameters are
+/// named and held.
 ///
-/// Beams in the plate's plane alone, as in the paper's experiments, see walls as lines, which are taken to be
-/// upright: see wall_lines().
+/// Beams in the plate's plane alone, as in the paper's experiments, see walls as lines, which are assumed to
+/// be upright: see wall_lines().
 ///
-/// @param start   right to some centimetres and degrees
+/// @param start   accurate to some centimetres and degrees
 /// @param sample  all beams; need not be covered
-/// @throws Error  if no flat surface is seen, or if nothing is left to be turned
+/// @throws Error  if no flat surface is seen, or if no parameter is free
 Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
                              const RefinementSettings& settings, const RoundReporter& report = {});
 

@@ -8,14 +8,14 @@
 #include <utility>
 
 #include "pipeline/data/error.hpp"
-#include "pipeline/estimate/base_slots.hpp"
-#include "pipeline/estimate/considered.hpp"
+#include "pipeline/estimate/base_parameters.hpp"
+#include "pipeline/estimate/consider_covariance.hpp"
 #include "pipeline/estimate/encoder_quantization.hpp"
 #include "pipeline/estimate/incidence.hpp"
 #include "pipeline/estimate/observability.hpp"
 #include "pipeline/estimate/relative_noise.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
-#include "pipeline/estimate/steady.hpp"
+#include "pipeline/estimate/static_surfaces.hpp"
 #include "pipeline/estimate/surfel_rows.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
 
@@ -39,11 +39,10 @@ SurfelRefiner::SurfelRefiner(const SensorModel& start, Sample sample, std::vecto
 bool SurfelRefiner::step() {
   const PlacedBeams placed(model_, sample_);
   all_ = surfaces_->update(placed.view(noise_), last_step_);
-  found_ = static_surfaces(all_, placed.view(noise_));
+  found_ = select_static(all_, placed.view(noise_));
   if (found_.surfels.empty()) {
-    throw Error(
-        "no flat surface is seen by these data",
-        "leave calibrate.refine out where nothing is flat, or search finer with a smaller `smallest`");
+    throw Error("these data contain no flat surface",
+                "omit calibrate.refine in scenes without flat surfaces, or reduce `min_cell`");
   }
   // For terms that depend on it.
   sample_.beams.cos_incidence = incidences(found_, placed.view(noise_));
@@ -91,7 +90,7 @@ void SurfelRefiner::update_damping(const Eigen::VectorXd& step) {
 
 std::vector<Unobservable> SurfelRefiner::hold_unobservable() {
   if (!surfaces_->is_settled()) return {};
-  // What the rig knows is no more than one observation, and never has to be held.
+  // The rig's knowledge is one more observation, and never has to be held.
   constexpr double kNeverHeld = 10;
   Eigen::MatrixXd information = information_;
   Eigen::VectorXd ranges = ranges_of(settings_.prior, model_, free_);
@@ -134,9 +133,9 @@ void SurfelRefiner::consider_held(std::vector<Unobservable>& unobservable) {
   const PlacedBeams placed(model_, sample_);
   const auto equations = normal_equations(found_, placed.view(noise_), all.size(),
                                           surfel_rows(model_, sample_, all), settings_.surfels);
-  Considered considered = consider(covariance_, equations.matrix, names, prior);
+  ConsiderCovariance considered = consider(covariance_, equations.matrix, names, prior);
   covariance_ = std::move(considered.covariance);
-  if (is_from_rig) return;  // then the standard errors say how well everything is known
+  if (is_from_rig) return;  // then the standard errors state the uncertainty of all parameters
   for (Unobservable& lost : considered.dependent) {
     const std::size_t at =
         static_cast<std::size_t>(std::ranges::find(free_, model_.index(lost.parameter)) - free_.begin());
@@ -150,17 +149,17 @@ Refinement SurfelRefiner::result() const {
                                 .free = free_,
                                 .covariance = covariance_,
                                 .unobservable = {},
-                                .doubts = {}},
+                                .caveats = {}},
                     .surfels = found_.surfels.size(),
                     .beams = equations_.beams,
-                    .chi2 = equations_.chi2 / std::max(1.0, equations_.freedom)};
+                    .chi2 = equations_.chi2 / std::max(1.0, equations_.degrees_of_freedom)};
   if (found_.surfels.empty()) return result;
   const PlacedBeams placed(model_, sample_);
   result.scatter = neighbour_noise(found_, placed.view(noise_), sample_.beams, settings_.surfels);
   for (const ViewPartition& partition : view_partitions(sample_, lasers())) {
     const auto pairs = view_consistency(all_, placed.view(noise_), partition,
                                         {.range = settings_.surfels.noise, .angle = settings_.angle_error});
-    if (const auto caveat = inconsistency(partition, pairs)) result.outcome.doubts.push_back(*caveat);
+    if (const auto caveat = inconsistency(partition, pairs)) result.outcome.caveats.push_back(*caveat);
     result.views.insert(result.views.end(), pairs.begin(), pairs.end());
   }
   return result;
@@ -183,7 +182,7 @@ Eigen::VectorXd SurfelRefiner::widening_by_quantization(const NormalEquations& w
   return variances(with).cwiseQuotient(variances(without)).cwiseSqrt().cwiseMax(1);
 }
 
-/// Clamps each η to where the plate's readings cover the beams.
+/// Clamps each η to where encoder readings cover the beams.
 Eigen::VectorXd SurfelRefiner::keep_covered(Eigen::VectorXd values) const {
   const LagRange lag = refined_lags(start_, settings_.prior);
   for (std::size_t k = 0; k < free_.size(); ++k) {
@@ -223,11 +222,11 @@ bool SurfelRefiner::update_noise(const BeamsView& placed) {
 /// Selects the static surfaces anew while the parameters move, for a few rounds on the final surfaces, and
 /// then keeps the selection: two selections may each have the other's surfaces for moving at their optimum,
 /// and the steps would alternate between them for ever.
-Surfels SurfelRefiner::static_surfaces(const Surfels& found, const BeamsView& beams) {
+Surfels SurfelRefiner::select_static(const Surfels& found, const BeamsView& beams) {
   constexpr int kTimes = 5;
   const bool is_moving = last_step_ > kSmallStep && selections_ < kTimes;
   if (is_moving || is_static_.size() != found.surfels.size()) {
-    is_static_ = steady(found, beams, settings_.surfels.noise);
+    is_static_ = static_surfaces(found, beams, settings_.surfels.noise);
     if (surfaces_->is_settled()) ++selections_;
   }
   return kept(found, is_static_);

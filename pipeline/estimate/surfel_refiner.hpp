@@ -19,7 +19,7 @@ namespace crisp {
 /// observation (a Gaussian prior).
 class SurfelRefiner {
  public:
-  /// @param sample  beams that the plate's readings cover at every η of refined_lags()
+  /// @param sample  beams that encoder readings cover at every η of refined_lags()
   /// @param free    indices of the parameters to be estimated
   SurfelRefiner(const SensorModel& start, Sample sample, std::vector<std::size_t> free,
                 const RefinementSettings& settings);
@@ -56,7 +56,7 @@ class SurfelRefiner {
   double prior_of_held(const std::string& name) const;
   void remove(std::size_t at);
   bool update_noise(const BeamsView& placed);
-  Surfels static_surfaces(const Surfels& found, const BeamsView& beams);
+  Surfels select_static(const Surfels& found, const BeamsView& beams);
   std::vector<std::string> lasers() const;
 
   SensorModel start_;
@@ -79,7 +79,7 @@ class SurfelRefiner {
   double last_step_ = std::numeric_limits<double>::infinity();
 };
 
-/// The η at which the plate's readings have to cover a refinement's beams.
+/// The η at which the encoder readings have to cover a refinement's beams.
 LagRange refined_lags(const SensorModel& start, const SearchRange& prior);
 
 }  // namespace crisp

@@ -8,8 +8,8 @@
 
 namespace crisp {
 
-/// How the model's free parameters move a sample's points across surfels: normal · ∂x/∂θ, there where each
-/// beam meets the surfel's plane. Refers to all that it is given, which must outlive it.
+/// Derivatives of a sample's points across surfels by the model's free parameters: normal · ∂x/∂θ, at each
+/// beam's intersection with the surfel's plane. Refers to its arguments, which must outlive it.
 ///
 /// @param free  m indices into model.values()
 DerivativeRows surfel_rows(const SensorModel& model, const Sample& sample,

@@ -16,15 +16,15 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kMost = 0.5;  // [m] by which ranges count as different
 
-struct Look {
+struct Comparison {
   double angle = 0;  ///< [rad] of the plate
   double range = 0;  ///< [m]
 };
 
-/// What each of some beams of each laser saw, by the plate's angle.
-using Looks = std::vector<std::vector<Look>>;
+/// Ranges of some beams of each laser by the plate's angle, for comparison.
+using Comparisons = std::vector<std::vector<Comparison>>;
 
-Looks looks_of(const Sample& sample) {
+Comparisons comparisons_of(const Sample& sample) {
   constexpr std::size_t kBeams = 16;  // of each laser, spread over its field of view
   const Measurements& beams = sample.beams;
   std::map<std::uint16_t, std::uint16_t> last;
@@ -32,19 +32,19 @@ Looks looks_of(const Sample& sample) {
     auto& most = last[beams.laser[i]];
     most = std::max(most, beams.beam[i]);
   }
-  std::map<std::pair<std::uint16_t, std::uint16_t>, std::vector<Look>> by_beam;
+  std::map<std::pair<std::uint16_t, std::uint16_t>, std::vector<Comparison>> by_beam;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const std::size_t step = std::max<std::size_t>(1, (last[beams.laser[i]] + 1U) / kBeams);
     if (beams.beam[i] % step != step / 2) continue;
     const auto plate = sample.plate->at(beams.time[i]);
     if (plate) by_beam[{beams.laser[i], beams.beam[i]}].push_back({plate->angle, beams.range[i]});
   }
-  Looks looks;
+  Comparisons comparisons;
   for (auto& [beam, own] : by_beam) {
-    std::ranges::sort(own, {}, &Look::angle);
-    looks.push_back(std::move(own));
+    std::ranges::sort(own, {}, &Comparison::angle);
+    comparisons.push_back(std::move(own));
   }
-  return looks;
+  return comparisons;
 }
 
 struct Miss {
@@ -53,26 +53,26 @@ struct Miss {
 };
 
 /// Compares what was seen with what is seen a period later, at the nearest angle.
-void add_misses(const std::vector<Look>& looks, double period, Miss& miss) {
+void add_misses(const std::vector<Comparison>& comparisons, double period, Miss& miss) {
   constexpr double kNear = 0.04;  // [rad]
   std::size_t next = 0;
-  for (const Look& look : looks) {
-    const double then = look.angle + period;
-    while (next + 1 < looks.size() &&
-           std::abs(looks[next + 1].angle - then) <= std::abs(looks[next].angle - then)) {
+  for (const Comparison& comparison : comparisons) {
+    const double then = comparison.angle + period;
+    while (next + 1 < comparisons.size() &&
+           std::abs(comparisons[next + 1].angle - then) <= std::abs(comparisons[next].angle - then)) {
       ++next;
     }
-    if (std::abs(looks[next].angle - then) > kNear) continue;
-    miss.sum += std::min(kMost, std::abs(looks[next].range - look.range));
+    if (std::abs(comparisons[next].angle - then) > kNear) continue;
+    miss.sum += std::min(kMost, std::abs(comparisons[next].range - comparison.range));
     ++miss.pairs;
   }
 }
 
-/// [m] Mean difference after a period; infinite where too few looks have another one then.
-double miss_of(const Looks& looks, double period) {
+/// [m] Mean difference after a period; infinite where too few scans have a counterpart.
+double miss_of(const Comparisons& comparisons, double period) {
   constexpr std::size_t kFew = 200;
   Miss miss;
-  for (const auto& own : looks) add_misses(own, period, miss);
+  for (const auto& own : comparisons) add_misses(own, period, miss);
   return miss.pairs < kFew ? HUGE_VAL : miss.sum / static_cast<double>(miss.pairs);
 }
 
@@ -85,14 +85,14 @@ std::optional<TurnPeriod> turn_period(const Sample& sample) {
   constexpr std::array kFactors = {0.25, 1.0 / 3, 0.5, 1.0, 2.0, 3.0, 4.0};  // ascending
   constexpr double kAsGood = 1.15, kBesides = 0.01;                          // [m]
   if (sample.beams.size() == 0 || turned(sample) < kLeastTurns * kTurn) return std::nullopt;
-  const Looks looks = looks_of(sample);
-  const double at_2pi = miss_of(looks, kTurn);
+  const Comparisons comparisons = comparisons_of(sample);
+  const double at_2pi = miss_of(comparisons, kTurn);
   if (!std::isfinite(at_2pi)) return std::nullopt;
   std::vector<TurnPeriod> nearest;  // one for each factor
   for (const double factor : kFactors) {
-    TurnPeriod best{.angle = factor * kTurn, .miss = miss_of(looks, factor * kTurn), .at_2pi = at_2pi};
+    TurnPeriod best{.angle = factor * kTurn, .miss = miss_of(comparisons, factor * kTurn), .at_2pi = at_2pi};
     for (double share = 1 - kAround; share < 1 + kAround + kStep / 2; share += kStep) {
-      const double miss = miss_of(looks, factor * share * kTurn);
+      const double miss = miss_of(comparisons, factor * share * kTurn);
       if (miss < best.miss) best = {.angle = factor * share * kTurn, .miss = miss, .at_2pi = at_2pi};
     }
     nearest.push_back(best);
@@ -115,10 +115,7 @@ bool contradicts_counts(const TurnPeriod& period) {
 std::string counts_caveat(const TurnPeriod& period) {
   const double turns = period.angle / kTurn;
   return fmt::format(
-      "the scene repeats after {:.3f} turns of the plate, as the rig counts them: ranges there differ by "
-      "{:.0f} "
-      "mm, and by {:.0f} mm after one turn. The rig's plate.counts_per_revolution is wrong: multiply it by "
-      "{:.3f}",
+      "the scene repeats after {:.3f} turns of the plate, as the rig counts them: ranges there differ by {:.0f} mm, and by {:.0f} mm after one turn. The rig's plate.counts_per_revolution is wrong: multiply it by {:.3f}",
       turns, period.miss * 1e3, period.at_2pi * 1e3, turns);
 }
 

@@ -24,7 +24,7 @@ std::optional<TurnPeriod> turn_period(const Sample& sample);
 /// Whether that shows that the counts a revolution are wrong.
 bool contradicts_counts(const TurnPeriod& period);
 
-/// What is wrong then, and what to do.
+/// The caveat then, with advice.
 std::string counts_caveat(const TurnPeriod& period);
 
 }  // namespace crisp

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "pipeline/data/recordings.hpp"
-#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
 namespace {
@@ -84,7 +84,7 @@ struct Piece {
     const double apart = kDeviationsApart * std::hypot(errors.range, farthest * errors.angle);
     std::vector<double> middles;
     for (auto& own : distances) {
-      middles.push_back(own.empty() ? 0 : middle_of(own));
+      middles.push_back(own.empty() ? 0 : median_in_place(own));
     }
     for (std::size_t view = 0; view < distances.size(); ++view) {
       const auto beams = static_cast<double>(distances[view].size());
@@ -92,8 +92,8 @@ struct Piece {
         const std::size_t pair = view * distances.size() + other;
         if (other == view || through[other] < kFew) continue;
         sums.beams[pair] += beams;
-        const auto met = static_cast<double>(distances[other].size());
-        const bool meets = met >= std::max(kFew, kLeastPart * through[other]);
+        const auto hit = static_cast<double>(distances[other].size());
+        const bool meets = hit >= std::max(kFew, kLeastPart * through[other]);
         if (meets && std::abs(middles[other] - middles[view]) < apart) sums.agreed[pair] += beams;
       }
     }
@@ -101,8 +101,8 @@ struct Piece {
 
   double farthest = 0;   ///< [m] from the spin axis
   std::set<Cell> cells;  ///< that hold a point
-  /// [m] From the surface's plane, for each view. Of beams that were rejected as well: a whole view may have
-  /// been.
+  /// [m] From the surface's plane, for each view, rejected beams included: a whole view may have been
+  /// rejected.
   std::vector<std::vector<double>> distances;
   std::vector<double> through;  ///< for each view, beams that meet the surface or should have met it
 };
@@ -115,8 +115,8 @@ class Pieces {
     for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) add(surfels.members[k]);
   }
 
-  /// Finds which beams go through the pieces: a beam that was measured from elsewhere may pass beside them,
-  /// or end at something in front.
+  /// Finds the beams that go through the pieces: a beam that was measured from elsewhere may pass next to
+  /// them, or end at something in front.
   void find_beams_through(std::span<const std::uint32_t> members, const Directions& directions) {
     std::set<std::size_t> bins;
     for (const std::uint32_t beam : members) bins.insert(directions.bin(beam));
@@ -177,32 +177,30 @@ Orientation orientation_of(const Surfel& surfel) {
 }
 
 ViewPartition by_laser(const Sample& sample, const std::vector<std::string>& names) {
-  return {.views = names,
-          .of_beam = {sample.beams.laser.begin(), sample.beams.laser.end()},
-          .advice =
-              "the calibration is probably in a wrong local minimum. Check the rig's mount and lambda of "
-              "both, or "
-              "start from calibrate.load"};
+  return {
+      .views = names,
+      .of_beam = {sample.beams.laser.begin(), sample.beams.laser.end()},
+      .advice =
+          "the calibration is probably in a wrong local minimum. Check the rig's mount and lambda of both, or start from calibrate.load"};
 }
 
 ViewPartition by_half(const Sample& sample) {
-  ViewPartition partition{.views = {"the front halves of the sweeps", "the back halves"},
-                          .of_beam = {},
-                          .advice =
-                              "the rig's mount or counts_per_revolution is probably wrong, or the encoder is "
-                              "eccentric. Check both; configs/diagnose.yaml looks for the cause"};
+  ViewPartition partition{
+      .views = {"the front halves of the sweeps", "the back halves"},
+      .of_beam = {},
+      .advice =
+          "the rig's mount or counts_per_revolution is probably wrong, or the encoder is eccentric. Check both; configs/diagnose.yaml searches for the cause"};
   for (const float angle : sample.beams.mirror_angle) partition.of_beam.push_back(angle > 0 ? 1 : 0);
   return partition;
 }
 
 ViewPartition by_quarter(const Sample& sample) {
-  ViewPartition partition{.views = {"the recording's first quarter", "its second quarter",
-                                    "its third quarter", "its last quarter"},
-                          .of_beam = {},
-                          .advice =
-                              "the encoder slipped or lost counts, the rig's counts_per_revolution is wrong, "
-                              "or the scanner was moved. "
-                              "Check the encoder; configs/diagnose.yaml looks for the cause"};
+  ViewPartition partition{
+      .views = {"the recording's first quarter", "its second quarter", "its third quarter",
+                "its last quarter"},
+      .of_beam = {},
+      .advice =
+          "the encoder slipped or lost counts, the rig's counts_per_revolution is wrong, or the scanner was moved. Check the encoder; configs/diagnose.yaml searches for the cause"};
   const auto recordings = recordings_of(*sample.plate);
   const RecordingNumbers numbers(*sample.plate);
   for (const double time : sample.beams.time) {

@@ -28,13 +28,13 @@ std::vector<ViewPartition> view_partitions(const Sample& sample, const std::vect
 /// Errors about the spin axis show on upright surfaces alone.
 enum class Orientation : std::uint8_t { upright, level };
 
-/// What a right calibration leaves between views, as standard deviations.
+/// Expected differences between views under a right calibration, as standard deviations.
 struct ViewErrors {
   double range = 0;  ///< [m] of a range
   double angle = 0;  ///< [rad] of the plate at a beam's time: steps of its encoder, errors of the clocks
 };
 
-/// How far one view sees flat surfaces where another one does.
+/// Fraction of flat surfaces on which two views agree.
 struct ViewConsistency {
   std::string view;
   std::string other;

@@ -41,7 +41,7 @@ void refuse_no_file(const fs::path& file) {
     throw Error("cannot write " + file.string() + ": it is there and is not a file");
 }
 
-/// A file of a new name beside `file`, which tells a person what it was to become.
+/// A file of a new name next to `file`, whose name shows its purpose.
 std::FILE* create_aside(const fs::path& file, fs::path& aside) {
   aside = file.parent_path() / fmt::format(".{}.{}{}", file.filename().string(), unique_name(), kPart);
   const int descriptor = open(aside.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -62,7 +62,7 @@ bool is_left_over(const fs::path& file) {
   return liveness_of_maker(stem.substr(stem.rfind('.') + 1)) == Liveness::dead;
 }
 
-/// Makes the renaming itself last. Some file systems cannot; that is no reason to fail.
+/// Makes the renaming durable. Some file systems cannot; that is no reason to fail.
 void sync_folder(const fs::path& folder) {
   const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;

@@ -11,7 +11,7 @@
 
 namespace crisp {
 
-/// What stands behind the name of a file that a run wrote in the name of the record of its origin.
+/// Suffix of a written file's provenance record.
 inline constexpr const char* kProvenance = ".provenance.json";
 
 /// Removes that record, before its file changes: afterwards it would be another file's.
@@ -29,7 +29,7 @@ bool is_for_want_of_room(int code);
 /// Write through write(), or let a library write to aside() and then commit().
 class AtomicFile {
  public:
-  /// Makes the folder if need be, and the file aside.
+  /// Creates the folder if necessary, and the file aside.
   /// @throws Error that names the file: no permission, not a regular file, a full disk
   explicit AtomicFile(std::filesystem::path file);
   AtomicFile(const AtomicFile&) = delete;

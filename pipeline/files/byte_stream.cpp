@@ -28,8 +28,7 @@ Error cannot_read_bytes(const std::filesystem::path& path, int error) {
 ByteStream::ByteStream(std::filesystem::path path, std::function<bool()> interrupted)
     : path_(std::move(path)),
       interrupted_(std::move(interrupted)),
-      // Opening a pipe without O_NONBLOCK waits for somebody who writes into it, and cannot be told to give
-      // up.
+      // Opening a pipe without O_NONBLOCK waits for a writer, and cannot be interrupted.
       descriptor_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   struct stat status {};
   const bool opened = descriptor_ >= 0 && ::fstat(descriptor_, &status) == 0;
@@ -56,13 +55,13 @@ void ByteStream::begin_decompression() {
 
 ByteStream::~ByteStream() { ::close(descriptor_); }
 
-/// Of a pipe, until there is something to read or all that wrote into it have closed it.
+/// Waits on a pipe until there is something to read or all its writers have closed it.
 void ByteStream::wait_for_bytes() const {
-  constexpr int kAskEvery = 50;  // [ms]
+  constexpr int kPollEvery = 50;  // [ms]
   pollfd source{.fd = descriptor_, .events = POLLIN, .revents = 0};
   do {
     if (interrupted_ && interrupted_()) throw Interrupted();
-  } while (!is_file_ && ::poll(&source, 1, kAskEvery) <= 0);
+  } while (!is_file_ && ::poll(&source, 1, kPollEvery) <= 0);
 }
 
 std::size_t ByteStream::read(void* to, std::size_t most) {
@@ -84,7 +83,7 @@ std::size_t ByteStream::read_decompressed(char* to, std::size_t most) {
   } catch (const CompressionFault& fault) {
     throw Error(
         fmt::format("{} cannot be decompressed from byte {} on: {}", path_.string(), position_, fault.what()),
-        "is there a good copy? gunzip and unzstd save what stands before");
+        "use an intact copy; gunzip and unzstd recover the data before");
   }
 }
 

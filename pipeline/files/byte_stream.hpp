@@ -14,11 +14,11 @@
 
 namespace crisp {
 
-/// The bytes of a file or a pipe from front to back; of a file that is compressed by gzip or zstd, what it
-/// was. A pipe into which nobody writes (yet) is waited for, but not longer than `interrupted` says.
+/// The bytes of a file or a pipe in order, decompressed if the file is compressed by gzip or zstd. A pipe
+/// without a writer is waited for, until `interrupted` returns true.
 class ByteStream {
  public:
-  /// @param interrupted  asked now and then, from the thread that reads: whether to give up; may be empty
+  /// @param interrupted  polled from the reading thread: whether to give up; may be empty
   /// @throws Error if the file cannot be opened, or is a folder
   explicit ByteStream(std::filesystem::path path, std::function<bool()> interrupted = {});
   ~ByteStream();

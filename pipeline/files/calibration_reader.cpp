@@ -10,7 +10,7 @@
 namespace crisp {
 namespace {
 
-/// Sizes beyond which a value cannot be meant, in SI.
+/// Sizes beyond which a value is implausible, in SI.
 constexpr double kLargestAngle = 100, kLargestOffset = 10, kLargestLag = 10;
 
 class CalibrationReader {
@@ -20,7 +20,7 @@ class CalibrationReader {
   Calibration read(const YamlNode& root) {
     YamlMap map(root, "calibration", errors_);
     check_schema(map, 1);
-    if (map.find("doubts")) calibration_.doubts = texts(map, "doubts");
+    if (map.find("caveats")) calibration_.caveats = texts(map, "caveats");
     if (const YamlNode* lasers = map.require("lasers")) read_lasers(*lasers);
     if (const YamlNode* plate = map.find("plate")) read_plate(*plate);
     if (const YamlNode* covariance = map.find("covariance")) read_covariance(*covariance);
@@ -58,8 +58,8 @@ class CalibrationReader {
     parameter = read_parameter(*found, parameter.name, laser.what(), parameter.unit);
     if (std::abs(parameter.value) <= largest) return;
     laser.fail(found->place,
-               fmt::format("'{}': {:g} {} cannot be meant", parameter.name, parameter.value, parameter.unit),
-               fmt::format("its size is at most {:g} {}", largest, parameter.unit));
+               fmt::format("'{}': {:g} {} is implausible", parameter.name, parameter.value, parameter.unit),
+               fmt::format("its magnitude is at most {:g} {}", largest, parameter.unit));
   }
 
   void read_plate(const YamlNode& node) {
@@ -98,7 +98,7 @@ class CalibrationReader {
     return terms;
   }
 
-  /// @param unit  the only unit that is right, or empty where the file says which it is
+  /// @param unit  the only valid unit, or empty where the file states it
   Parameter read_parameter(const YamlNode& node, const std::string& name, const std::string& what,
                            const std::string& unit) {
     YamlMap map(node, what + ", " + name, errors_);
@@ -217,9 +217,11 @@ Calibration parse_calibration(const YamlNode& root, const JudgeTerm& judge) {
   return CalibrationReader(judge).read(root);
 }
 
-Calibration read_calibration(const std::filesystem::path& file, const JudgeTerm& judge) {
-  const YamlNode root = read_yaml(file);
+Calibration read_calibration(const std::filesystem::path& file, const JudgeTerm& judge,
+                             const OldNameSink& warn) {
+  YamlNode root = read_yaml(file);
   refuse_other_kinds(root, file, FileKind::calibration);
+  rename_old_keys(root, "calibration", warn);
   return parse_calibration(root, judge);
 }
 

@@ -113,10 +113,10 @@ std::string quality(const Calibration& c) {
   return out;
 }
 
-std::string doubts(const Calibration& c) {
+std::string caveats(const Calibration& c) {
   std::string out;
-  for (const auto& doubt : c.doubts) out += fmt::format("  - {}\n", text(doubt));
-  return out.empty() ? out : "doubts:\n" + out;
+  for (const auto& caveat : c.caveats) out += fmt::format("  - {}\n", text(caveat));
+  return out.empty() ? out : "caveats:\n" + out;
 }
 
 std::string plate(const Calibration& c) {
@@ -136,7 +136,7 @@ std::string provenance(const Calibration& c) {
 }  // namespace
 
 std::string to_yaml(const Calibration& c) {
-  std::string out = "crisp: 1\n" + doubts(c) + "lasers:\n";
+  std::string out = "crisp: 1\n" + caveats(c) + "lasers:\n";
   for (const auto& l : c.lasers) out += laser(l);
   return out + plate(c) + covariance(c) + quality(c) + provenance(c);
 }

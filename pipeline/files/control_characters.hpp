@@ -6,11 +6,11 @@
 
 namespace crisp {
 
-/// Where the first character stands that no person writes into a text file, and that could do anything to a
-/// terminal: control characters but tabs and line breaks. npos if there is none.
+/// Position of the first control character, except tabs and line breaks: nobody writes one into a text file,
+/// and it could do anything to a terminal. npos if there is none.
 std::size_t find_control_character(std::string_view text);
 
-/// What is wrong there, in words: "there is a control character (0x1b)".
+/// The fault in words: "there is a control character (0x1b)".
 std::string control_character_in_words(char character);
 
 /// The beginning of a text from a file for a message about it: what is not plain ASCII as \xNN, and … where

@@ -49,7 +49,7 @@ class ZstdDecompressor final : public Decompressor {
  public:
   std::size_t run(std::string_view& from, char* to, std::size_t most) override {
     ZSTD_outBuffer out{to, most, 0};
-    if (from.empty() && left_ == 0) return 0;  // it would ask for the next frame
+    if (from.empty() && left_ == 0) return 0;  // it would request the next frame
     do {
       ZSTD_inBuffer in{from.data(), from.size(), 0};
       left_ = ZSTD_decompressStream(context_.get(), &out, &in);

@@ -12,7 +12,7 @@ struct CompressionFault : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Makes of a compressed file's bytes, piece by piece, what they were.
+/// Decompresses a file's bytes piece by piece.
 class Decompressor {
  public:
   Decompressor() = default;

@@ -28,9 +28,9 @@ const char* in_words(FileKind kind) {
 }
 
 /// How to come by a file of the kind that is wanted, or where the one that is there belongs.
-const char* advice_on(FileKind is, FileKind wanted) {
-  if (wanted == FileKind::calibration) return "configs/calibrate.yaml makes a calibration";
-  if (wanted == FileKind::rig) return "configs/rig.yaml is a rig";
+const char* advice_on(FileKind is, FileKind requested) {
+  if (requested == FileKind::calibration) return "configs/calibrate.yaml makes a calibration";
+  if (requested == FileKind::rig) return "configs/rig.yaml is a rig";
   return is == FileKind::rig ? "give it with --rig; configs/calibrate.yaml is a pipeline"
                              : "calibrate.load reads it; configs/calibrate.yaml is a pipeline";
 }
@@ -46,11 +46,11 @@ FileKind kind_of(const YamlNode& root) {
   return calibration ? FileKind::calibration : FileKind::rig;
 }
 
-void refuse_other_kinds(const YamlNode& root, const std::filesystem::path& file, FileKind wanted) {
+void refuse_other_kinds(const YamlNode& root, const std::filesystem::path& file, FileKind requested) {
   const FileKind is = kind_of(root);
-  if (is == wanted || is == FileKind::unknown) return;
-  throw Error(fmt::format("{} is {}, not {}", file.string(), in_words(is), in_words(wanted)),
-              advice_on(is, wanted));
+  if (is == requested || is == FileKind::unknown) return;
+  throw Error(fmt::format("{} is {}, not {}", file.string(), in_words(is), in_words(requested)),
+              advice_on(is, requested));
 }
 
 }  // namespace crisp

@@ -22,7 +22,7 @@ class FindingsMap {
     map_.require(key);
     return map_.text(key, {});
   }
-  /// Of files that an earlier program wrote without it: nothing.
+  /// Empty for files of earlier versions without the key.
   std::string text_if_there(const std::string& key) { return map_.text(key, {}); }
   bool boolean(const std::string& key) {
     map_.require(key);
@@ -127,8 +127,9 @@ std::vector<OtherCause> read_alternatives(FindingsMap& parent, const std::string
   std::vector<OtherCause> all;
   parent.each_if_there("alternatives", [&](const YamlNode& node, const std::string& where) {
     FindingsMap map(node, what + ", " + where, parent.errors());
-    all.push_back(
-        {.cause = map.text("cause"), .scope = map.text("scope"), .log10_odds = map.number("log10_odds")});
+    all.push_back({.cause = map.text("cause"),
+                   .scope = map.text("scope"),
+                   .log10_odds = map.number("log10_bayes_factor")});
     map.map().refuse_others();
   });
   return all;
@@ -139,10 +140,10 @@ Finding finding_in(FindingsMap& map, const std::string& what) {
           .scope = map.text("scope"),
           .parameters = read_parameters(map, what),
           .explained_fraction = map.number("explained_fraction"),
-          .log10_odds = map.number("log10_odds"),
+          .log10_odds = map.number("log10_bayes_factor"),
           .p_value = map.number("p_value"),
           .confounded_with = map.texts("confounded_with"),
-          .told_apart_by = map.texts("told_apart_by"),
+          .resolvable_by = map.texts("resolvable_by"),
           .alternatives = read_alternatives(map, what),
           .gain = read_gains(map, what),
           .accepted = map.boolean("accepted"),
@@ -175,7 +176,7 @@ Unobservable unobservable_in(FindingsMap& map, const std::string&) {
   return {map.text("cause"), map.text("reason"), map.text("combination")};
 }
 
-Artefact artefact_in(FindingsMap& map, const std::string& what) {
+EstimatorArtifact artifact_in(FindingsMap& map, const std::string& what) {
   return {
       .name = map.text("artefact"), .parameters = read_parameters(map, what), .reason = map.text("reason")};
 }
@@ -223,12 +224,12 @@ Findings parse_findings(const YamlNode& root) {
   read_list(map, "unnamed", unnamed_in, all.unnamed);
   read_list(map, "departures", departure_in, all.departures, false);
   read_list(map, "unobservable", unobservable_in, all.unobservable);
-  read_list(map, "artefacts", artefact_in, all.artefacts);
+  read_list(map, "artefacts", artifact_in, all.artifacts);
   read_list(map, "devices", device_in, all.devices);
   read_list(map, "noise", noise_in, all.noise);
   read_list(map, "gain", gain_in, all.gain, false);
-  if (const YamlNode* node = map.map().require("indistinguishable")) {
-    FindingsMap alike(*node, "indistinguishable", errors);
+  if (const YamlNode* node = map.map().require("goodness_of_fit")) {
+    FindingsMap alike(*node, "goodness_of_fit", errors);
     all.before_p = alike.number("before_p");
     all.after_p = alike.number("after_p");
     alike.map().refuse_others();
@@ -238,11 +239,13 @@ Findings parse_findings(const YamlNode& root) {
   return all;
 }
 
-Findings read_findings(const std::filesystem::path& file) {
-  std::ifstream stream(file);  // whether it can be read, reading it says
+Findings read_findings(const std::filesystem::path& file, const OldNameSink& warn) {
+  std::ifstream stream(file);  // reading reports whether it can be read
   if (stream && !nlohmann::json::accept(stream))
-    throw Error("this is not JSON", "it was cut short, or changed by hand", {.file = file.string()});
-  return parse_findings(read_yaml(file));
+    throw Error("this is not JSON", "it was truncated, or edited", {.file = file.string()});
+  YamlNode root = read_yaml(file);
+  rename_old_keys(root, "diagnosis", warn);
+  return parse_findings(root);
 }
 
 }  // namespace crisp

@@ -22,7 +22,7 @@ Json json_of(const std::vector<Gain>& gains) {
 Json json_of(const std::vector<Parameter>& parameters) {
   Json all = Json::array();
   for (const Parameter& p : parameters) {
-    const double error = p.std_error > 0 ? p.std_error : kUnasked;  // nothing is known without an error
+    const double error = p.std_error > 0 ? p.std_error : kNotTested;  // nothing is known without an error
     all.push_back({{"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"std_error", error}});
   }
   return all;
@@ -31,7 +31,7 @@ Json json_of(const std::vector<Parameter>& parameters) {
 Json json_of(const std::vector<OtherCause>& causes) {
   Json all = Json::array();
   for (const OtherCause& other : causes) {
-    all.push_back({{"cause", other.cause}, {"scope", other.scope}, {"log10_odds", other.log10_odds}});
+    all.push_back({{"cause", other.cause}, {"scope", other.scope}, {"log10_bayes_factor", other.log10_odds}});
   }
   return all;
 }
@@ -41,10 +41,10 @@ Json json_of(const Finding& finding) {
           {"scope", finding.scope},
           {"parameters", json_of(finding.parameters)},
           {"explained_fraction", finding.explained_fraction},
-          {"log10_odds", finding.log10_odds},
+          {"log10_bayes_factor", finding.log10_odds},
           {"p_value", finding.p_value},
           {"confounded_with", finding.confounded_with},
-          {"told_apart_by", finding.told_apart_by},
+          {"resolvable_by", finding.resolvable_by},
           {"alternatives", json_of(finding.alternatives)},
           {"gain", json_of(finding.gain)},
           {"accepted", finding.accepted},
@@ -74,9 +74,9 @@ Json json_of(const Unobservable& unobservable) {
           {"combination", unobservable.combination}};
 }
 
-Json json_of(const Artefact& artefact) {
+Json json_of(const EstimatorArtifact& artifact) {
   return {
-      {"artefact", artefact.name}, {"parameters", json_of(artefact.parameters)}, {"reason", artefact.reason}};
+      {"artefact", artifact.name}, {"parameters", json_of(artifact.parameters)}, {"reason", artifact.reason}};
 }
 
 Json json_of(const DeviceFacts& facts) {
@@ -111,11 +111,11 @@ std::string findings_json(const Findings& findings) {
                     {"unnamed", list_of(findings.unnamed)},
                     {"departures", list_of(findings.departures)},
                     {"unobservable", list_of(findings.unobservable)},
-                    {"artefacts", list_of(findings.artefacts)},
+                    {"artefacts", list_of(findings.artifacts)},
                     {"devices", list_of(findings.devices)},
                     {"noise", list_of(findings.noise)},
                     {"gain", json_of(findings.gain)},
-                    {"indistinguishable", {{"before_p", findings.before_p}, {"after_p", findings.after_p}}}};
+                    {"goodness_of_fit", {{"before_p", findings.before_p}, {"after_p", findings.after_p}}}};
   return json_text(all, 2) + "\n";
 }
 

@@ -18,7 +18,8 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
     if (entry->is_regular_file(unknown)) files.push_back(entry->path());
   }
   if (failure) {
-    throw Error(folder.string() + " cannot be read: " + failure.message(), "check its name and its rights");
+    throw Error(folder.string() + " cannot be read: " + failure.message(),
+                "check its name and its permissions");
   }
   std::ranges::sort(files);
   return files;

@@ -23,17 +23,18 @@ constexpr const char* kLockPrefix = ".crisp-lock";
 constexpr auto kListAgain = std::chrono::milliseconds(10);
 
 Error refusal_by(const fs::path& folder, const FoundLock& lock, std::chrono::milliseconds lease) {
-  const std::string who =
-      lock.owner ? fmt::format("process {} on {} writes into it since {} ({})", lock.owner->process.number,
-                               lock.owner->process.host, lock.owner->since, lock.owner->command)
-                 : "another process is about to lock it";
+  const std::string who = lock.owner ? fmt::format("process {} on {} has been writing into it since {} ({})",
+                                                   lock.owner->process.number, lock.owner->process.host,
+                                                   lock.owner->since, lock.owner->command)
+                                     : "another process is about to lock it";
   const bool is_elsewhere = !lock.owner || liveness_of(lock.owner->process) == Liveness::unknown;
-  return Error("the folder " + folder.string() + kInUse + who,
-               is_elsewhere
-                   ? fmt::format("wait for its end, or give another folder; if it was killed, its lock {} "
-                                 "counts no more {} s after its last sign of life",
-                                 lock.path.filename().string(), lease.count() / 1000)
-                   : "wait for its end, or give another folder");
+  return Error(
+      "the folder " + folder.string() + kInUse + who,
+      is_elsewhere
+          ? fmt::format(
+                "wait for its end, or give another folder; if it was killed, its lock {} expires {} s after its last heartbeat",
+                lock.path.filename().string(), lease.count() / 1000)
+          : "wait for its end, or give another folder");
 }
 
 const fs::path& made(const fs::path& folder) {
@@ -50,7 +51,7 @@ class Claimant {
       : folder_(folder), settings_(settings) {}
 
   std::unique_ptr<LockFile> take() {
-    const auto give_up = std::chrono::steady_clock::now() + settings_.patience;
+    const auto give_up = std::chrono::steady_clock::now() + settings_.plate_timeout;
     for (;; std::this_thread::sleep_for(kListAgain)) {
       const auto others = others_after_claim();
       if (others.empty()) {
@@ -63,7 +64,7 @@ class Claimant {
       if (holder != others.end()) throw refusal_by(folder_, *holder, settings_.lease);
       if (std::chrono::steady_clock::now() > give_up)
         throw refusal_by(folder_, others.front(), settings_.lease);
-      // Of those that only claim, the first by name stays: without it none would see no other.
+      // Among those that only claim, the first by name stays: without it none would see no other.
       if (others.front().path < file_->path()) wait_without_claim(others.front().path);
     }
   }

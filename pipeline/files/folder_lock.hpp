@@ -16,7 +16,8 @@ class LockFile;
 
 struct FolderLockSettings {
   std::chrono::milliseconds heartbeat{5'000};  ///< how often the owner renews its lock
-  std::chrono::milliseconds patience{20'000};  ///< with claimants that neither take the lock nor give way
+  std::chrono::milliseconds plate_timeout{
+      20'000};  ///< with claimants that neither take the lock nor give way
   /// Without renewal for so long, the lock of a process on another machine is taken over.
   std::chrono::milliseconds lease{60'000};
 };
@@ -31,7 +32,7 @@ struct FolderLockSettings {
 /// no name comes twice, so that what one of them removes is never the file of one that lives.
 class FolderLock {
  public:
-  /// Makes the folder if need be.
+  /// Creates the folder if necessary.
   /// @throws Error  if another process has the lock, which is then named, or if no lock can be made there
   explicit FolderLock(const std::filesystem::path& folder, const FolderLockSettings& settings = {});
   ~FolderLock();

@@ -12,7 +12,7 @@
 
 namespace crisp {
 
-/// What a lock file holds, for people and for processes.
+/// Content of a lock file, for people and for processes.
 struct LockOwner {
   ProcessIdentity process;
   std::string since;    ///< ISO 8601, UTC
@@ -30,7 +30,7 @@ std::optional<LockOwner> parse_lock_owner(const std::string& text);
 /// this object is.
 class LockFile {
  public:
-  /// Makes the file PREFIX.UNIQUE in this folder, which claims the lock.
+  /// Creates the file PREFIX.UNIQUE in this folder, which claims the lock.
   /// @throws Error  if that is not possible
   LockFile(const std::filesystem::path& folder, const std::string& prefix);
   ~LockFile();
@@ -49,9 +49,9 @@ class LockFile {
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  /// Makes the file with its content at once: a process that is killed meanwhile leaves no file without an
-  /// owner, which would count until its lease is over. False where the file system has no files without
-  /// names.
+  /// Creates the file with its content at once: a process that is killed meanwhile leaves no file without an
+  /// owner, which would count until its lease is over. False where the file system does not support unnamed
+  /// files.
   bool make_with_content(const std::filesystem::path& folder);
   int write() const;  ///< returns the system's error number, or 0
   void remove() const;

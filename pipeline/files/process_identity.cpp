@@ -39,9 +39,9 @@ std::string machine_of_this_process() {
   return first_line("/proc/sys/kernel/random/boot_id") + " " + numbers;
 }
 
-/// What the kernel reports of a process in /proc/N/stat.
+/// The kernel's state of a process, by /proc/N/stat.
 struct ProcessState {
-  char state = '?';  ///< 'Z' of one that has ended and whose parent has not asked for its status yet
+  char state = '?';  ///< 'Z': ended, and its parent has not collected its status yet
   std::uint64_t start = 0;
 };
 

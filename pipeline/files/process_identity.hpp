@@ -11,10 +11,11 @@ namespace crisp {
 
 /// A process, described so that other processes can find out later whether it still runs.
 struct ProcessIdentity {
-  std::string host;         ///< name of its machine, for people
-  std::string machine;      ///< within which a process number means one process: boot and PID namespace
-  pid_t number = 0;         ///< its process number
-  std::uint64_t start = 0;  ///< [clock ticks since boot] tells it from a later process of the same number
+  std::string host;     ///< name of its machine, for people
+  std::string machine;  ///< within which a process number means one process: boot and PID namespace
+  pid_t number = 0;     ///< its process number
+  std::uint64_t start =
+      0;  ///< [clock ticks since boot] distinguishes it from a later process of the same number
 
   bool operator==(const ProcessIdentity&) const = default;
 };
@@ -22,7 +23,8 @@ struct ProcessIdentity {
 /// The calling process.
 ProcessIdentity this_process();
 
-/// The command line that started it, its words parted by spaces; empty where the system does not tell.
+/// The command line that started it, its words separated by spaces; empty where the system does not provide
+/// it.
 std::string command_of_this_process();
 
 enum class Liveness {
@@ -37,8 +39,8 @@ Liveness liveness_of(const ProcessIdentity& process);
 /// "MACHINE-NUMBER-START-COUNT".
 std::string unique_name();
 
-/// Of the process on this machine that made such a name, whether it lives; unknown of one on another machine,
-/// and of a name that is none.
+/// Whether the process that made such a name on this machine lives; unknown for another machine, and for an
+/// invalid name.
 Liveness liveness_of_maker(std::string_view unique_name);
 
 }  // namespace crisp

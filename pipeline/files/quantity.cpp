@@ -77,7 +77,7 @@ bool has_leading_zero(std::string_view number) {
   return number.size() > 1 && number[0] == '0' && is_digit(number[1]);
 }
 
-/// The unit with the sign µ of the table where it has the Greek letter μ, which looks the same.
+/// The unit with the micro sign µ of the table in place of the Greek letter μ, which has the same glyph.
 std::string with_micro_sign(std::string_view unit) {
   constexpr std::string_view kLetter = "\u03bc";
   return unit.starts_with(kLetter) ? "\u00b5" + std::string(unit.substr(kLetter.size())) : std::string(unit);
@@ -112,16 +112,17 @@ std::optional<NumberAndRest> leading_number(std::string_view text) {
   return NumberAndRest{numerator->number / denominator->number, denominator->rest};
 }
 
-Complaint wrong_unit(std::string_view text, std::string_view given, std::string_view wanted) {
-  if (wanted.empty()) return complain(text, "has a unit, but a plain number is wanted");
+Complaint wrong_unit(std::string_view text, std::string_view given, std::string_view requested) {
+  if (requested.empty()) return complain(text, "has a unit, but a plain number is expected");
   const auto known =
       std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& u) { return u.name == given; });
-  const std::string units = fmt::format("{}", fmt::join(units_of(wanted), ", "));
+  const std::string units = fmt::format("{}", fmt::join(units_of(requested), ", "));
   if (known == kUnits.end()) {
     return complain(text, fmt::format("has the unknown unit '{}'{}{}", given.substr(0, 20),
                                       units.empty() ? "" : "; understood are ", units));
   }
-  const std::string dimension = wanted == "1" ? "a number without dimension" : fmt::format("{}", wanted);
+  const std::string dimension =
+      requested == "1" ? "a number without dimension" : fmt::format("{}", requested);
   return complain(text, fmt::format("cannot be converted to {}", dimension));
 }
 
@@ -131,7 +132,7 @@ std::variant<double, Complaint> parse_quantity(std::string_view text, std::strin
   const std::string_view whole = trimmed(text);
   const auto parts = leading_number(whole);
   if (!parts) return complain(text, "is not a number");
-  if (has_leading_zero(whole)) return complain(text, "begins with 0, which readers understand differently");
+  if (has_leading_zero(whole)) return complain(text, "begins with 0, which is ambiguous");
   if (!std::isfinite(parts->number)) return complain(text, "is not a finite number");
   const std::string_view given = trimmed(parts->rest);
   if (given.empty() || (given == unit && unit != "1")) return parts->number;
@@ -147,7 +148,7 @@ std::variant<double, Complaint> parse_quantity(std::string_view text, std::strin
 
 std::variant<std::int64_t, Complaint> parse_integer(std::string_view text) {
   const std::string_view whole = trimmed(text);
-  if (has_leading_zero(whole)) return complain(text, "begins with 0, which readers understand differently");
+  if (has_leading_zero(whole)) return complain(text, "begins with 0, which is ambiguous");
   std::int64_t integer = 0;
   const auto [end, failure] = std::from_chars(whole.data(), whole.data() + whole.size(), integer);
   if (failure == std::errc() && end == whole.data() + whole.size()) return integer;

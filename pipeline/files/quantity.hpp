@@ -9,7 +9,7 @@
 
 namespace crisp {
 
-/// What is wrong with a text that should have been a value.
+/// The fault of a text that is no valid value.
 struct Complaint {
   std::string text;
 };

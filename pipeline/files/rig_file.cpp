@@ -29,7 +29,7 @@ bool is_device_name(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), allowed);
 }
 
-/// What effects and findings call the plate.
+/// Name of the plate in effects and findings.
 const std::string kPlate = "plate";
 
 class RigReader {
@@ -57,7 +57,7 @@ class RigReader {
         map.fail(entry.place, "'" + entry.key + "' is not a name of letters, digits, _ and -");
       }
       if (entry.key == kPlate) {
-        map.fail(entry.place, "no laser can be called 'plate'", "effects and findings mean the plate by it");
+        map.fail(entry.place, "no laser can be named 'plate'", "effects and findings name the plate by it");
       }
       read_laser(entry);
     }
@@ -111,7 +111,7 @@ class RigReader {
       const std::size_t mistakes = errors_.size();
       parameter.std_error = read(inner, "sd");
       if (errors_.size() == mistakes && !(parameter.std_error > 0)) {
-        inner.fail(sd->place, "'sd': a standard deviation is above 0", "leave it out where it is not known");
+        inner.fail(sd->place, "'sd': a standard deviation is above 0", "omit it where it is unknown");
         parameter.std_error = 0;
       }
     }
@@ -128,7 +128,7 @@ class RigReader {
     }
     rig_.plate.address = read_address(map, kDefaultPort);
     read_joint(map);
-    // Its counter has 32 bits; of one step a turn it could not be said which way it turned.
+    // Its counter has 32 bits; with one step a turn the direction of the turn would be ambiguous.
     constexpr std::int64_t kMostSteps = std::int64_t{1} << 31;
     rig_.plate.counts_per_revolution =
         static_cast<double>(map.integer("counts_per_revolution", 16384, 2, kMostSteps));
@@ -137,7 +137,7 @@ class RigReader {
     devices_.push_back({rig_.plate.name, rig_.plate.address, node.place});
   }
 
-  /// Where a bag has the plate's angle.
+  /// Reads the place of the plate's angle in a bag.
   void read_joint(YamlMap& map) {
     rig_.plate.topic = map.text("topic", "");
     rig_.plate.joint = map.text("joint", "");
@@ -152,7 +152,7 @@ class RigReader {
                "write rad, deg or counts");
     if (!rig_.plate.joint.empty() && !rig_.plate.field.empty()) {
       map.fail(map.find("field")->place, "'field' and 'joint' are both given",
-               "a joint is of a JointState, a field of a message of another type; leave one of them out");
+               "a joint belongs to a JointState, a field to a message of another type; remove one of them");
     }
   }
 
@@ -163,8 +163,7 @@ class RigReader {
     if (name != "counter_clockwise") {
       map.fail(
           map.find("direction")->place, "'direction': '" + name + "' is no sense of rotation",
-          "write how the plate turns, seen from +z, while the count grows: counter_clockwise, clockwise, or "
-          "auto where that is not known");
+          "write the plate's sense of rotation, seen from +z, while the count grows: counter_clockwise, clockwise, or auto if it is unknown");
     }
     return CountDirection::counter_clockwise;
   }
@@ -200,12 +199,12 @@ class RigReader {
                         double limit) {
     const double value = map.number(key, unit, fallback);
     if (std::abs(value) <= limit) return value;
-    map.fail(map.find(key)->place, fmt::format("'{}': {:g} {} cannot be meant", key, value, unit),
-             fmt::format("its size is at most {:g} {}; is a unit missing?", limit, unit));
+    map.fail(map.find(key)->place, fmt::format("'{}': {:g} {} is implausible", key, value, unit),
+             fmt::format("its magnitude is at most {:g} {}; check the unit", limit, unit));
     return fallback;
   }
 
-  /// Two devices at one address could not be told apart.
+  /// Two devices at one address would be indistinguishable.
   void check_addresses() {
     for (std::size_t i = 0; i < devices_.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {

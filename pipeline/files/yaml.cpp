@@ -58,10 +58,10 @@ void check_characters(std::string_view text, const std::string& file) {
   throw Error(control_character_in_words(text[at]), "is this a text file?", {file, line, column});
 }
 
-/// What to look for where the parser came upon a mistake, mostly lines after it was made.
+/// Advice for a syntax error, which the parser mostly finds lines after the mistake.
 std::string advice_on_syntax(int line) {
   return std::string(line > 1 ? "the mistake may be on a line before it: " : "") +
-         "look for a bracket or a quotation mark that is not closed, or a missing colon";
+         "check for a bracket or a quotation mark that is not closed, or a missing colon";
 }
 
 /// The first line up to `last` that has a tab before its text.
@@ -94,7 +94,7 @@ class TreeBuilder final : public YAML::EventHandler {
     add(node(mark, YamlNode::Kind::null));
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    fail("aliases (*name) are not understood", "write the value out, or use vars:", place(mark));
+    fail("aliases (*name) are not supported", "write the value out, or use vars:", place(mark));
     add(node(mark, YamlNode::Kind::null));
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -142,7 +142,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void check_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) {
     if (anchor == YAML::NullAnchor) return;
-    fail("anchors (&name) are not understood", "use vars:", place(mark));
+    fail("anchors (&name) are not supported", "use vars:", place(mark));
   }
   void check_tag(const YAML::Mark& mark, const std::string& tag) {
     if (tag.empty() || tag == "?" || tag == "!") return;
@@ -195,7 +195,7 @@ class TreeBuilder final : public YAML::EventHandler {
   std::vector<Level> levels_;
 };
 
-/// Second and further documents are only looked at to find that they are there.
+/// Second and further documents are only parsed to detect them.
 struct IgnoreAll final : YAML::EventHandler {
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
@@ -268,7 +268,7 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t limit)
   const auto fail = [&](const std::string& why) -> Error {
     return Error("cannot read " + file.string() + ": " + why);
   };
-  std::error_code missing;  // is said by reading
+  std::error_code missing;  // reported by reading
   if (std::filesystem::is_directory(file, missing)) throw fail("it is a folder");
   constexpr auto kPatience = std::chrono::seconds(10);
   auto give_up = std::chrono::steady_clock::now() + kPatience;
@@ -283,7 +283,7 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t limit)
       give_up = std::chrono::steady_clock::now() + kPatience;
     }
   } catch (const Interrupted&) {
-    throw fail("it is a pipe into which nothing was written for 10 s");
+    throw fail("it is a pipe without data for 10 s");
   }
   text.resize(end);
   if (text.size() > limit) throw fail(fmt::format("it is longer than {} bytes", limit));

@@ -15,8 +15,8 @@ namespace crisp {
 struct YamlEntry;
 
 /// A YAML document as crisp understands it: null, scalars, sequences and maps, each with its place. Anchors,
-/// aliases, tags and keys that are not plain texts are refused; so nothing refers to anything else, and a
-/// document is never larger than its file. Scalars are texts: what they mean is for the reader to say.
+/// aliases, tags and keys that are not plain texts are rejected; so nothing refers to anything else, and a
+/// document is never larger than its file. Scalars are texts: the reader interprets them.
 struct YamlNode {
   enum class Kind { null, scalar, sequence, map };
 
@@ -37,7 +37,7 @@ struct YamlEntry {
   YamlNode value;
 };
 
-/// What a node is, for messages: "a list", "a map", "nothing", "'5 cm'".
+/// Description of a node, for messages: "a list", "a map", "nothing", "'5 cm'".
 std::string describe(const YamlNode& node);
 
 /// The path that a scalar names, made absolute.

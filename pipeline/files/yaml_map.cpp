@@ -19,9 +19,9 @@ std::optional<T> unpack(const std::variant<T, Complaint>& result, std::string& w
   return std::nullopt;
 }
 
-bool is_scalar(const YamlNode& node, std::string_view wanted, std::string& wrong) {
+bool is_scalar(const YamlNode& node, std::string_view requested, std::string& wrong) {
   if (node.kind == YamlNode::Kind::scalar) return true;
-  wrong = fmt::format("{} is not {}", describe(node), wanted);
+  wrong = fmt::format("{} is not {}", describe(node), requested);
   return false;
 }
 
@@ -129,7 +129,7 @@ void check_schema(YamlMap& map, int version) {
   } else if (*given > version) {
     map.fail(
         node->place,
-        fmt::format("it is of schema version {}, and this program reads up to version {}", *given, version),
+        fmt::format("it has schema version {}, and this program reads up to version {}", *given, version),
         "use a newer crisp");
   }
 }

@@ -12,8 +12,8 @@
 
 namespace crisp {
 
-/// Reads a map key by key and collects what is wrong: keys that are missing, values that do not fit, and, at
-/// the end, the keys that nobody asked for, with the nearest one that somebody did.
+/// Reads a map key by key and collects errors: missing keys, invalid values, and, at the end, unknown keys,
+/// with the nearest known one.
 class YamlMap {
  public:
   /// @param what  what the map describes, the subject of messages: "laser 'laser1'"
@@ -30,7 +30,7 @@ class YamlMap {
   bool boolean(const std::string& key, bool fallback);
   std::string text(const std::string& key, std::string fallback);
 
-  /// Adds an error for each key that was not asked for.
+  /// Adds an error for each key that was not read.
   void refuse_others();
 
   void fail(const Place& place, const std::string& what, std::string advice = {});

@@ -14,22 +14,22 @@ using Jet = ceres::Jet<double, 8>;
 template <class T>
 using Vector3 = Eigen::Matrix<T, 3, 1>;
 
-/// One beam on its way through the chain of the sensor model. T is double or Jet; what the device and the
-/// encoder measured is plain double, what the model makes of it is T. Each phase of the chain may read all
-/// that earlier phases have set:
+/// One beam on its way through the chain of the sensor model. T is double or Jet; measurements of the device
+/// and the encoder are plain double, quantities of the model are T. Each phase of the chain may read all that
+/// earlier phases have set:
 ///
 /// | phase  | sets                | frame                                                            |
 /// |--------|---------------------|------------------------------------------------------------------|
 /// | time   | time                | the plate's clock                                                |
-/// | plate  | plate_angle         | what the encoder read is kept in encoder_angle                   |
+/// | plate  | plate_angle         | the encoder reading is kept in encoder_angle                     |
 /// | mirror | mirror_angle        |                                                                  |
 /// | beam   | origin, direction   | the laser's: the scan plane is z = 0, θ = 0 along +x             |
 /// | mount  | origin, direction   | the plate's, before the turn by φ + λ: x outwards, z = spin axis |
 /// | base   | origin, direction   | the base's: z = spin axis                                        |
 /// | range  | range               |                                                                  |
 ///
-/// The point is origin + range * direction. A term that corrects a reading adds to it what it makes of the
-/// reading itself (hub_time, encoder_angle, measured_mirror, measured_range), not of what other terms have
+/// The point is origin + range * direction. A term that corrects a reading computes the correction from the
+/// reading itself (hub_time, encoder_angle, measured_mirror, measured_range), not from what other terms have
 /// made of it, so that their order does not matter.
 template <class T>
 struct Beam {

@@ -36,7 +36,7 @@ std::vector<EffectInfo> effect_catalogue(const TermRegistry& terms) {
                    .scope = info.scope,
                    .parameters = info.parameters,
                    .details = info.details,
-                   .told_by = info.told_by});
+                   .resolvable_by = info.resolvable_by});
   }
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return all;

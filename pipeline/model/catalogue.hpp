@@ -14,8 +14,8 @@ void register_built_in(TermRegistry& terms);
 /// A term's parameters as a calibration has them, all at the values that change nothing.
 TermParameters neutral_parameters(const TermInfo& term);
 
-/// What befalls clocks, links, noise or the scene, and so is no term of the chain: what the simulator can do,
-/// and whatever a diagnosis may find.
+/// Effects of clocks, links, noise or the scene, which are no terms of the chain: the simulator applies them,
+/// and a diagnosis may identify them.
 const std::vector<EffectInfo>& effects_beyond_the_chain();
 
 /// All effects that have a name: the terms, a plugin's among them, and those beyond the chain; by name.

@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// Where the plate is, as the chain asks for it: by a trajectory, or by the simulator's true motion.
+/// The plate's angle as the chain queries it: a trajectory, or the simulator's true motion.
 template <class Plate>
 concept PlateMotion = requires(Plate plate, double t) {
   { plate.at(t) } -> std::convertible_to<std::optional<PlateState>>;
@@ -28,12 +28,12 @@ void apply_phase(const LaserChain& chain, Phase phase, std::span<const T> parame
   }
 }
 
-/// Takes beams of one laser through the whole chain. Those at whose time the plate is unknown are marked
-/// false in `known` and hold no point.
+/// Applies the whole chain to beams of one laser. Beams at whose time the plate's angle is unknown are marked
+/// false in `known` and have no point.
 ///
 /// @param chain       the laser's
 /// @param parameters  in the order of chain.slots
-/// @param beams       with what was measured filled in; the rest is set here
+/// @param beams       with the measurements filled in; the rest is set here
 /// @param plate       φ(t) [rad] on the hub's clock
 template <class T, PlateMotion Plate>
 [[gnu::flatten]] void trace(const LaserChain& chain, std::span<const T> parameters, std::span<Beam<T>> beams,

@@ -6,8 +6,8 @@
 
 namespace crisp {
 
-/// What has an effect: each laser with parameters of its own, the plate, each device (lasers and plate: what
-/// has a clock and a link), or the scene.
+/// Owner of an effect: each laser with parameters of its own, the plate, each device (lasers and plate: with
+/// a clock and a link), or the scene.
 enum class Scope { kLaser, kPlate, kDevice, kScene };
 
 /// Between which values a search for the form of a departure steps, and how.
@@ -15,7 +15,8 @@ struct Tries {
   enum class Spacing {
     kLinear,
     kLogarithmic,
-    kRangePeriods,  ///< evenly in 1/x, none longer than the farthest range: less than one tells no period
+    kRangePeriods,  ///< evenly in 1/x, none longer than the farthest range: less than one period is
+                    ///< unresolvable
     kInstants,      ///< evenly over the recording, `from` and `to` being shares of it
   };
   Spacing spacing = Spacing::kLinear;
@@ -31,8 +32,8 @@ struct EffectParameter {
   double upper = 0;
   double neutral = 0;  ///< with all parameters at theirs, the effect changes nothing
   std::string summary;
-  /// It says what form the departure has, not how large it is: while the others are neutral it changes
-  /// nothing at all, so that a search has to step through it.
+  /// It is a shape parameter, no amplitude: while the amplitudes are neutral it has no effect, so that a
+  /// search has to step through it.
   bool shape = false;
   Tries tries = {};  ///< for a form; count 0: it is left at its neutral value
 };
@@ -43,8 +44,8 @@ struct EffectInfo {
   std::string summary;
   Scope scope = Scope::kLaser;
   std::vector<EffectParameter> parameters;
-  std::string details;       ///< its formula, typical sizes and their source, in Markdown
-  std::string told_by = {};  ///< what a recording needs to tell it from what resembles it
+  std::string details;             ///< its formula, typical sizes and their source, in Markdown
+  std::string resolvable_by = {};  ///< what a recording needs to distinguish it from similar effects
 };
 
 }  // namespace crisp

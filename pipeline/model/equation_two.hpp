@@ -8,7 +8,7 @@
 
 namespace crisp {
 
-/// Where one laser sits on the plate, for equation (2) of Sheehan, Harrison and Newman.
+/// Pose of one laser on the plate, for equation (2) of Sheehan, Harrison and Newman.
 template <class T>
 struct Mounting {
   T lambda{};  ///< [rad] λ

@@ -3,8 +3,8 @@
 // differentiation.
 #include <algorithm>
 
+#include "pipeline/model/mixed_batch.hpp"
 #include "pipeline/model/sensor_model.hpp"
-#include "pipeline/model/strewn_beams.hpp"
 #include "pipeline/model/traced_runs.hpp"
 
 namespace crisp {
@@ -53,20 +53,20 @@ Placed place_bare(const Measurements& beams, const PlateTrajectory& plate,
   Placed result;
   result.points.resize(3, static_cast<Eigen::Index>(beams.size()));
   result.index.reserve(beams.size());
-  StrewnBeams strewn(lasers, plate);
+  MixedBeams mixed(lasers, plate);
   for (std::size_t i = 0; i < beams.size();) {
-    strewn.clear();
-    const std::size_t end = std::min(beams.size(), i + strewn.room());
+    mixed.clear();
+    const std::size_t end = std::min(beams.size(), i + mixed.room());
     for (std::size_t k = i; k < end; ++k) chain_of(chains, beams, k);
-    strewn.add(beams, i, end);
+    mixed.add(beams, i, end);
     i = end;
-    strewn.place();
-    for (std::size_t k = 0; k < strewn.size(); ++k) {
+    mixed.place();
+    for (std::size_t k = 0; k < mixed.size(); ++k) {
       const std::size_t point = result.index.size();
-      const std::uint32_t measurement = strewn.index(k);
-      result.points.col(static_cast<Eigen::Index>(point)) << strewn.x(k), strewn.y(k), strewn.z(k);
+      const std::uint32_t measurement = mixed.index(k);
+      result.points.col(static_cast<Eigen::Index>(point)) << mixed.x(k), mixed.y(k), mixed.z(k);
       result.index.push_back(measurement);
-      const auto slopes = strewn.slopes(k);
+      const auto slopes = mixed.slopes(k);
       auto column = static_cast<Eigen::Index>(point * derivatives.stride);
       for (const std::size_t slot : free.slots[beams.laser[measurement]]) {
         derivatives.values.col(column++).head<2>() << slopes[slot][0], slopes[slot][1];

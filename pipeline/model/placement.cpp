@@ -3,9 +3,9 @@
 // blocks.
 #include <cmath>
 
-#include "pipeline/model/known_mirrors.hpp"
+#include "pipeline/model/mirror_angle_cache.hpp"
+#include "pipeline/model/mixed_batch.hpp"
 #include "pipeline/model/sensor_model.hpp"
-#include "pipeline/model/strewn_beams.hpp"
 #include "pipeline/model/traced_runs.hpp"
 
 namespace crisp {
@@ -24,16 +24,16 @@ class Gathering {
     if (++size_ == kCapacity) hand_on();
   }
 
-  /// Places strewn beams, and leaves none.
-  void add(StrewnBeams& strewn) {
+  /// Places the beams of a mixed batch, and empties it.
+  void add(MixedBeams& mixed) {
     hand_on();
-    strewn.place();
-    for (std::size_t k = 0; k < strewn.size();) {
-      const std::size_t end = strewn.consecutive_end(k);
-      take_({.first = strewn.index(k), .x = strewn.x(k, end), .y = strewn.y(k, end), .z = strewn.z(k, end)});
+    mixed.place();
+    for (std::size_t k = 0; k < mixed.size();) {
+      const std::size_t end = mixed.consecutive_end(k);
+      take_({.first = mixed.index(k), .x = mixed.x(k, end), .y = mixed.y(k, end), .z = mixed.z(k, end)});
       k = end;
     }
-    strewn.clear();
+    mixed.clear();
   }
 
   /// Places a run of one laser that starts at `begin` by equation (2) alone. Returns the end of the run.
@@ -65,7 +65,7 @@ class Gathering {
   }
 
  private:
-  /// What is added next is of this measurement.
+  /// Sets the measurement of the next beams.
   void go_on_at(std::size_t measurement) {
     if (measurement != first_ + size_) hand_on();
     if (size_ == 0) first_ = measurement;
@@ -114,32 +114,32 @@ void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
   }
   Tracer<double> tracer(beams, plate);
   Gathering points(take);
-  StrewnBeams strewn(bare_, plate);
+  MixedBeams mixed(bare_, plate);
   for (std::size_t i = 0; i < beams.size();) {
     const LaserChain& chain = chain_of(fixed_->chains, beams, i);
     const std::size_t laser = beams.laser[i];
     if (chain.bare) {
-      std::size_t end = run_end(beams, i, StrewnBeams::kCapacity);
+      std::size_t end = run_end(beams, i, MixedBeams::kCapacity);
       if (are_dense(beams, i, end, plate)) {
-        points.add(strewn);
+        points.add(mixed);
         i = points.add_bare(beams, i, bare_[laser], plate, known);
         continue;
       }
       // Where a run is shorter than a vector, those after it mostly are, too.
-      if (end - i < simd::kBeyond) end = bare_end(fixed_->chains, beams, end, i + StrewnBeams::kCapacity);
+      if (end - i < simd::kBeyond) end = bare_end(fixed_->chains, beams, end, i + MixedBeams::kCapacity);
       while (i < end) {
-        if (strewn.room() == 0) points.add(strewn);
-        const std::size_t last = std::min(end, i + strewn.room());
-        strewn.add(beams, i, last);
+        if (mixed.room() == 0) points.add(mixed);
+        const std::size_t last = std::min(end, i + mixed.room());
+        mixed.add(beams, i, last);
         i = last;
       }
     } else {
-      points.add(strewn);
+      points.add(mixed);
       i = tracer.trace_run(chain, parameters[laser], i,
                            [&](std::size_t k, const Beam<double>& beam) { points.add(k, beam.point()); });
     }
   }
-  points.add(strewn);
+  points.add(mixed);
   points.hand_on();
 }
 

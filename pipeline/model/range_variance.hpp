@@ -8,7 +8,7 @@
 
 namespace crisp {
 
-/// What the noise of a range may depend on.
+/// Covariates of a range's noise.
 struct EchoConditions {
   double range = 0;      ///< [m]
   double cosine = 1;     ///< |cos β| on the surface that was met; 1: head-on
@@ -26,7 +26,7 @@ struct EchoConditions {
 enum class VariancePart : std::size_t { kSigma, kRange, kIncidence, kRemission };
 inline constexpr std::size_t kVarianceParts = 4;
 
-/// Of each part its size (sigma, slope, spread, jitter), or what belongs to it.
+/// One value for each part: its amplitude (sigma, slope, spread, jitter), or another property.
 using ByPart = std::array<double, kVarianceParts>;
 
 /// The variance [m²] of each part of size 1. What would be infinite is not: beams that graze count as met at

@@ -20,7 +20,7 @@ void add_terms(LaserChain& chain, const std::vector<TermParameters>& terms, std:
     const auto faults = faults_of(given, term->info());
     if (!faults.empty()) throw Error(faults.front().what, faults.front().advice);
     if (term->info().scope != scope) {
-      throw Error("the term " + given.term + " stands under the wrong heading of the calibration",
+      throw Error("the term " + given.term + " is under the wrong heading of the calibration",
                   scope == Scope::kLaser ? "put it under plate" : "put it under each laser");
     }
     const auto phase = static_cast<std::size_t>(term->info().phase);

@@ -13,12 +13,12 @@
 #include "pipeline/data/calibration.hpp"
 #include "pipeline/data/measurements.hpp"
 #include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/model/bare_chain.hpp"
+#include "pipeline/model/base_kinematics.hpp"
 #include "pipeline/model/term.hpp"
 
 namespace crisp {
 
-/// The terms of a calibration, resolved once: `slots` says where their parameters lie in a laser's list.
+/// The terms of a calibration, resolved once: `slots` are their parameters' positions in a laser's list.
 struct ChainTerm {
   std::shared_ptr<const ModelTerm> term;
   std::size_t first_slot = 0;
@@ -36,7 +36,7 @@ class KnownMirrors;
 /// Points with their measurements.
 struct Placed {
   Eigen::Matrix3Xd points;           ///< [m] in the base's frame, one a column
-  std::vector<std::uint32_t> index;  ///< the measurement of each; those that the plate's readings do not
+  std::vector<std::uint32_t> index;  ///< the measurement of each; those that the encoder readings do not
                                      ///< cover are left out
 };
 
@@ -79,7 +79,7 @@ class SensorModel {
   /// The calibration with the present values.
   Calibration calibration() const;
 
-  /// Places every measurement that the plate's readings cover.
+  /// Places every measurement that encoder readings cover.
   /// @throws Error if `beams` names a laser that the model does not have, or the epochs differ
   Placed place(const Measurements& beams, const PlateTrajectory& plate) const;
 
@@ -98,7 +98,7 @@ class SensorModel {
   const LaserChain& chain(std::size_t laser) const { return fixed_->chains[laser]; }
 
  private:
-  /// What is the same whatever the values: an optimiser makes thousands of models that differ in these alone.
+  /// Data shared by all parameter values: an optimizer makes thousands of models that differ in values alone.
   struct Fixed {
     explicit Fixed(Calibration given) : calibration(std::move(given)) {}
 

@@ -48,7 +48,7 @@ std::shared_ptr<const ModelTerm> TermRegistry::get(const std::string& name) cons
   const auto found = find(terms_, name);
   if (found != terms_.end()) return *found;
   throw Error("there is no term " + name + " of the sensor model",
-              did_you_mean(name, names(), "`crisp effects` lists those that there are"));
+              did_you_mean(name, names(), "`crisp effects` lists the effects"));
 }
 
 bool TermRegistry::knows(const std::string& name) const { return find(terms_, name) != terms_.end(); }

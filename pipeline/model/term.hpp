@@ -11,10 +11,10 @@
 
 namespace crisp {
 
-/// Where in the chain a term acts: see the table at Beam.
+/// The phase of the chain in which a term acts: see the table at Beam.
 enum class Phase { kTime, kPlate, kMirror, kBeam, kMount, kBase, kRange };
 
-/// From where a term counts what it depends on. Recordings that do not share that share no parameters of it.
+/// Origin of a term's covariate. Recordings with different origins do not share its parameters.
 enum class CountsFrom { kNothing, kRunsEpoch, kEncodersZero };
 
 struct TermInfo {
@@ -23,14 +23,15 @@ struct TermInfo {
   Phase phase = Phase::kRange;
   Scope scope = Scope::kLaser;  ///< the laser's or the plate's
   std::vector<EffectParameter> parameters;
-  std::string details;       ///< see EffectInfo
-  std::string told_by = {};  ///< see EffectInfo
+  std::string details;             ///< see EffectInfo
+  std::string resolvable_by = {};  ///< see EffectInfo
   CountsFrom counts_from = CountsFrom::kNothing;
   bool needs_incidence = false;  ///< it does nothing where nobody has found how beams met their surfaces
-  /// Of a term that describes a departure by its shape instead of naming a cause: over what the shape is told
-  /// ("mirror angle"). Empty for the others.
+  /// For an empirical term, which describes a departure by its shape instead of naming a cause: the covariate
+  /// of the shape ("mirror angle"). Empty for the others.
   std::string covariate = {};
-  bool is_fine = false;  ///< of such: it has many parameters, and is looked for only over what others leave
+  bool is_fine =
+      false;  ///< for an empirical term: it has many parameters, and is fitted only to the others' residual
 };
 
 /// One departure of a real scanner from equation (2): parameters, and how they change a beam. Immutable.
@@ -66,7 +67,7 @@ class DifferentiableTerm : public ModelTerm {
 /// The terms that are known by name: the built-in ones and those of plugins.
 class TermRegistry {
  public:
-  /// @throws Error if the name is taken, or what the term says of itself cannot be
+  /// @throws Error if the name is taken, or the term's declaration is invalid
   void add(std::shared_ptr<const ModelTerm> term);
   /// @throws Error naming the nearest known term
   std::shared_ptr<const ModelTerm> get(const std::string& name) const;

@@ -23,7 +23,7 @@ TermFault unknown(const TermParameters& given, const TermRegistry& terms) {
   try {
     terms.get(given.term);
   } catch (const Error& error) {
-    return {"", error.message(), error.advice() + "; a plugin's are known with --plugin FILE"};
+    return {"", error.message(), error.advice() + "; load a plugin's with --plugin FILE"};
   }
   return {};
 }
@@ -34,7 +34,7 @@ std::vector<TermFault> out_of_bounds(const TermParameters& given, const TermInfo
     const auto& declared = info.parameters[i];
     const double value = given.parameters[i].value;
     if (within(value, declared)) continue;
-    faults.push_back({declared.name, fmt::format("{:g} {} cannot be meant", value, declared.unit),
+    faults.push_back({declared.name, fmt::format("{:g} {} is implausible", value, declared.unit),
                       fmt::format("{} of {} is from {:g} to {:g} {}", declared.name, given.term,
                                   declared.lower, declared.upper, declared.unit)});
   }
@@ -73,7 +73,7 @@ JudgeTerm judge_by(const TermRegistry& terms) {
     const auto term = terms.get(given.term);
     const Scope scope = owner == TermOwner::laser ? Scope::kLaser : Scope::kPlate;
     if (term->info().scope != scope) {
-      return {{"", "the term " + given.term + " stands under the wrong heading of the calibration",
+      return {{"", "the term " + given.term + " is under the wrong heading of the calibration",
                owner == TermOwner::laser ? "put it under plate" : "put it under each laser"}};
     }
     auto faults = faults_of(given, term->info());

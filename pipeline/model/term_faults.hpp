@@ -8,8 +8,8 @@
 
 namespace crisp {
 
-/// How a calibration's parameters differ from those that their term has, by name, order and unit: with any of
-/// these, the term would be given numbers that mean something else.
+/// Validates a calibration's parameters against the declarations of their term, by name, order and unit: with
+/// any fault, the term would misinterpret the numbers.
 std::vector<TermFault> faults_of(const TermParameters& given, const TermInfo& term);
 
 /// Judges the same in a calibration that somebody wrote, and whether there is such a term, whether it is the

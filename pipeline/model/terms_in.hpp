@@ -13,7 +13,7 @@ namespace crisp {
 /// The terms of a calibration that are of some kind, the plate's first: "encoder.eccentricity",
 /// "laser2.mirror.cone".
 ///
-/// @param is_such  asked of each; without it, all are
+/// @param is_such  predicate that selects terms; without it, all are
 /// @throws Error  if a term is not known
 std::vector<std::string> terms_in(const Calibration& calibration, const TermRegistry& terms,
                                   const std::function<bool(const TermInfo&)>& is_such = {});

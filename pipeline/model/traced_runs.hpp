@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pipeline/data/error.hpp"
-#include "pipeline/model/bare_chain.hpp"
+#include "pipeline/model/base_kinematics.hpp"
 #include "pipeline/model/chain.hpp"
 #include "pipeline/model/sensor_model.hpp"
 
@@ -29,9 +29,9 @@ inline void check_epochs(const Measurements& beams, const PlateTrajectory& plate
 inline const LaserChain& chain_of(const std::vector<LaserChain>& chains, const Measurements& beams,
                                   std::size_t i) {
   if (beams.laser[i] < chains.size()) return chains[beams.laser[i]];
-  throw Error("the measurements name laser " + std::to_string(beams.laser[i] + 1) +
+  throw Error("the measurements contain laser " + std::to_string(beams.laser[i] + 1) +
                   ", but the calibration has only " + std::to_string(chains.size()),
-              "use the calibration of the rig that was recorded");
+              "use the calibration of the recorded rig");
 }
 
 /// End of the run of measurements of one laser that starts at `begin`, at most `most` long.
@@ -68,7 +68,7 @@ void fill(const Measurements& beams, std::size_t begin, std::span<Beam<T>> block
   }
 }
 
-/// Takes beams through chains with whatever terms they have.
+/// Passes beams through chains with any terms.
 template <class T>
 class Tracer {
  public:

@@ -18,8 +18,8 @@ constexpr std::array<std::string_view, 7> kKept = {"x", "y", "z", "intensity", "
 
 bool is_same_letter(unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); }
 
-/// What the table calls a field of that name: other programs write X or Intensity. The name itself where
-/// there is none.
+/// The table's name of a field: other programs write X or Intensity. The name itself if there
+/// is none.
 std::string_view own_name(const PcdTable& table, std::string_view field) {
   if (table.has(field)) return field;
   for (const auto& own : table.header().fields) {

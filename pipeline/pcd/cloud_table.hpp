@@ -25,11 +25,11 @@ struct TableCloud {
 /// @throws Error if they are not, or a laser or beam is beyond 65535
 TableCloud cloud_of(const PcdTable& table, const std::array<double, 3>& shift = {});
 
-/// What the file holds that a cloud does not, and that is lost: "the fields rgb, normal_x", "the VIEWPOINT".
-/// Empty if nothing is.
+/// Content of the file that a cloud does not hold, and that is lost: "the fields rgb, normal_x", "the
+/// VIEWPOINT". Empty if there is none.
 std::vector<std::string> not_kept(const PcdTable& table);
 
-/// What to subtract so that the first point comes close to the origin, in whole 100 m [m].
+/// Suggested offset that moves the first point close to the origin, in whole 100 m [m].
 std::array<double, 3> suggested_shift(const PcdTable& table);
 
 }  // namespace crisp

@@ -99,7 +99,7 @@ PlateTrajectory trajectory_of(const PcdTable& table) {
   auto angles = table.column<double>("angle");
   const double max_gap = table.header().note<double>("max_gap").value_or(0);
   if (!all_finite(times) || !all_finite(angles) || !(max_gap > 0)) {
-    throw Error("the plate's readings are not all numbers, or their max_gap is missing");
+    throw Error("some encoder readings are no numbers, or their max_gap is missing");
   }
   std::vector<double> new_zeros;
   if (table.has("zero")) {
@@ -127,7 +127,7 @@ PlateTrajectory trajectory_between(const PcdTable& measurements, double max_gap)
     knots.push_back(times[i]);
     unwrapped.push_back(angles[i] - 2 * std::numbers::pi * std::round(step / (2 * std::numbers::pi)));
   }
-  if (knots.size() < 2) throw Error("the measurements do not say where the plate was");
+  if (knots.size() < 2) throw Error("the measurements hold no plate angles at two or more times");
   return {epoch_of(measurements), std::move(knots), std::move(unwrapped), max_gap};
 }
 

@@ -16,8 +16,7 @@ namespace crisp {
 PcdTable to_table(const Measurements& beams, const PlateTrajectory& plate);
 
 /// A trajectory as a PCD table: fields time and angle, one row a reading, and the notes epoch_ns and max_gap;
-/// if the encoder began to count anew, the field zero says how often it had.
-/// It comes back exactly.
+/// if the encoder's count restarted, the field zero numbers the restarts. The conversion is lossless.
 PcdTable to_table(const PlateTrajectory& plate);
 
 /// The file in which the trajectory stands that belongs to a file of measurements: x.pcd → x.plate.pcd.

@@ -26,14 +26,13 @@ std::string table_digest(const PcdTable& table) {
   return sha256_of(table.bytes()).substr(0, kDigits);
 }
 
-/// @throws Error  if the part says that it follows on another one; what no crisp of today wrote says nothing
+/// @throws Error  if the part's header names another predecessor; files of other programs are not checked
 void check_follows(const PcdTable& part, const std::string& before, const fs::path& file) {
-  const auto said = part.header().notes.find(kBefore);
-  if (before.empty() || said == part.header().notes.end() || said->second == before) return;
-  throw Error(file.string() +
-                  " does not follow on the part before it: it is of another run, which was ended "
-                  "before all of its parts had their names",
-              "run again what wrote them");
+  const auto printed = part.header().notes.find(kBefore);
+  if (before.empty() || printed == part.header().notes.end() || printed->second == before) return;
+  throw Error(
+      file.string() + " does not continue the part before it: it is of another run, which was interrupted",
+      "repeat the run that wrote them");
 }
 
 /// The file that a recording begins with.
@@ -42,10 +41,10 @@ fs::path first_file(const fs::path& file) {
     throw Error(file.string() + " is a folder, not a PCD file", "name one file, and run crisp once for each");
   }
   fs::path part = part_path(file, 1);
-  if (!fs::exists(part)) return file;  // if that is not there either, reading it says so
+  if (!fs::exists(part)) return file;  // if that is missing as well, reading it reports the error
   if (fs::exists(file)) {
     throw Error(fmt::format("both {} and {} are there", file.string(), part.filename().string()),
-                "name the latter to read the parts, or remove what is older");
+                "name the latter to read the parts, or remove the older file");
   }
   return part;
 }
@@ -56,7 +55,7 @@ fs::path following(const fs::path& part, std::size_t next) {
   const fs::path whole = part.parent_path() / (stem.substr(0, stem.rfind('_')) + part.extension().string());
   if (next == 0 || part_path(whole, next - 1) != part) {
     throw Error(fmt::format("{} is not named as part {} of a recording", part.string(), next - 1),
-                "give it the name that it was written under");
+                "restore its original name");
   }
   return part_path(whole, next);
 }
@@ -93,8 +92,8 @@ std::optional<PcdHeader> own_header(const fs::path& file) {
   }
 }
 
-/// Whether a PCD file says in its header that it is of this number.
-bool says_its_number(const fs::path& file, std::size_t number, const std::string& note) {
+/// Whether a PCD file's header has this part number.
+bool has_number(const fs::path& file, std::size_t number, const std::string& note) {
   const auto header = own_header(file);
   try {
     return header && header->note<std::size_t>(note) == number;
@@ -117,7 +116,7 @@ void remove_with_record(const fs::path& file) {
   remove_old(file);
 }
 
-/// A file that crisp wrote, and the plate's that lies beside it.
+/// Removes a file that crisp wrote, and the plate's file next to it.
 void remove_own(const fs::path& file) {
   if (own_header(plate_path(file))) remove_with_record(plate_path(file));
   remove_with_record(file);
@@ -131,7 +130,7 @@ std::vector<fs::path> remove_numbered_beyond(const fs::path& file, std::size_t l
   for (const auto& candidate : files_in(file.has_parent_path() ? file.parent_path() : ".")) {
     const fs::path named = file.parent_path() / candidate.filename();
     const auto number = number_of(named, file);
-    if (!number || *number <= last || !says_its_number(named, *number, note)) continue;
+    if (!number || *number <= last || !has_number(named, *number, note)) continue;
     remove_own(named);
     removed.push_back(named);
   }
@@ -147,7 +146,7 @@ std::optional<fs::path> whole_of_part(const fs::path& file) {
   const std::string stem = file.stem().string();
   const fs::path whole = file.parent_path() / (stem.substr(0, stem.rfind('_')) + file.extension().string());
   const auto number = number_of(file, whole);
-  return number && says_its_number(file, *number, kPart) ? std::optional(whole) : std::nullopt;
+  return number && has_number(file, *number, kPart) ? std::optional(whole) : std::nullopt;
 }
 
 fs::path PartsWriter::write(PcdTable table, bool more) {
@@ -160,11 +159,11 @@ fs::path PartsWriter::write(PcdTable table, bool more) {
     if (!last_.empty()) table.set_note(kBefore, last_);
     last_ = table_digest(table);
   }
-  write_beside(file, table);
+  write_next_to(file, table);
   return file;
 }
 
-void PartsWriter::write_beside(const fs::path& file, const PcdTable& table) {
+void PartsWriter::write_next_to(const fs::path& file, const PcdTable& table) {
   write_pcd(files_.emplace_back(file), table, format_);
 }
 

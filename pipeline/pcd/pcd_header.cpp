@@ -40,7 +40,7 @@ Words words_of(std::string_view line) {
   return words;
 }
 
-/// Takes a header apart, line by line; knows where it is, for errors.
+/// Parses a header line by line; keeps its position, for errors.
 class HeaderReader {
  public:
   HeaderReader(std::string_view file, const std::string& name) : file_(file), name_(name) {}
@@ -101,7 +101,7 @@ class HeaderReader {
     if (!header_.fields.empty()) fail("FIELDS is given twice");
     if (words.size() < 2 || words.size() > kMostFields + 1) fail("FIELDS must name 1 to 1000 fields");
     for (const auto name : Words(words.begin() + 1, words.end())) {
-      header_.fields.push_back({.name = std::string(name), .size = 0});  // until SIZE says it
+      header_.fields.push_back({.name = std::string(name), .size = 0});  // until SIZE sets it
     }
   }
 
@@ -127,10 +127,10 @@ class HeaderReader {
   void read_viewpoint(const Words& words) {
     constexpr std::array<double, 7> kOrigin = {0, 0, 0, 1, 0, 0, 0};  // a position and a quaternion
     header_.has_pose = !std::equal(words.begin() + 1, words.end(), kOrigin.begin(), kOrigin.end(),
-                                   [](std::string_view word, double wanted) {
+                                   [](std::string_view word, double requested) {
                                      double value = std::numeric_limits<double>::quiet_NaN();
                                      std::from_chars(word.data(), word.data() + word.size(), value);
-                                     return value == wanted;
+                                     return value == requested;
                                    });
   }
 

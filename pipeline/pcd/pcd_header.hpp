@@ -13,7 +13,7 @@
 
 namespace crisp {
 
-/// How the points of a PCD file follow its header.
+/// Encoding of the points after the header of a PCD file.
 enum class PcdFormat { ascii, binary, binary_compressed };
 
 /// One field of every point of a PCD file.
@@ -27,10 +27,10 @@ struct PcdField {
   bool operator==(const PcdField&) const = default;
 };
 
-/// What stands above the points of a PCD file (version 0.7, as PCL writes it).
+/// The header of a PCD file (version 0.7, as PCL writes it).
 ///
-/// PCD has no place for what else there is to say. crisp says it in comment lines, "# crisp epoch_ns 17…",
-/// which every reader of PCD files skips.
+/// PCD has no place for further data. crisp writes them in comment lines, "# crisp epoch_ns 17…", which every
+/// reader of PCD files skips.
 struct PcdHeader {
   std::vector<PcdField> fields;
   std::size_t points = 0;

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kMostExpansion = 264;  // LZF's longest match takes three bytes, at the least
 
-/// What follows a header, and the header's claims held against it.
+/// Reads the body after a header, and checks it against the header.
 class BodyReader {
  public:
   BodyReader(const PcdHeader& header, std::string_view file, const std::string& name)
@@ -51,7 +51,7 @@ class BodyReader {
   /// Sizes the columns, unless there cannot be as many points in `most` bytes.
   std::string room_for_points(std::size_t most) const {
     if (header_.points > most / record_) {
-      fail(fmt::format("says that it has {} points, but it is too short for them", header_.points));
+      fail(fmt::format("is too short for the {} points of its header", header_.points));
     }
     return std::string(header_.points * record_, '\0');
   }
@@ -91,9 +91,9 @@ class BodyReader {
     const auto compressed = body_.substr(sizeof sizes);
     if (sizes[0] > compressed.size()) fail("is cut off within its points");
     std::string columns = room_for_points(std::size_t{sizes[0]} * kMostExpansion);
-    if (sizes[1] != columns.size()) fail("does not hold as many bytes as its header says");
+    if (sizes[1] != columns.size()) fail("does not hold as many bytes as its header states");
     if (lzf_decompress(compressed.data(), sizes[0], columns.data(), sizes[1]) != sizes[1]) {
-      fail("has compressed points that cannot be expanded");
+      fail("has compressed points that cannot be decompressed");
     }
     return columns;
   }
@@ -101,7 +101,7 @@ class BodyReader {
   std::string read_ascii() {
     // A value takes a digit and a blank at least, and 8 bytes of ours at most.
     if (header_.points > 0 && values_ > (body_.size() + 1) / 2 / header_.points) {
-      fail(fmt::format("says that it has {} points, but it is too short for them", header_.points));
+      fail(fmt::format("is too short for the {} points of its header", header_.points));
     }
     std::string columns(header_.points * record_, '\0');
     for_each_value(columns, [&](const PcdField& field, char* to, std::size_t row) {
@@ -151,10 +151,10 @@ class BodyReader {
   [[noreturn]] void fail_in_line(const std::string& what) const {
     const auto before = file_.substr(0, file_.size() - body_.size());
     const auto line = std::ranges::count(before, '\n') + 1;
-    throw Error("the line has " + what,
-                "each point is a line of as many values as FIELDS and COUNT give; the file is damaged, or "
-                "FIELDS is wrong",
-                {.file = name_, .line = static_cast<int>(line), .column = 1});
+    throw Error(
+        "the line has " + what,
+        "each point is a line of as many values as FIELDS and COUNT give; the file is damaged, or FIELDS is wrong",
+        {.file = name_, .line = static_cast<int>(line), .column = 1});
   }
 
   /// The number that a word is as a whole; nothing if it is none. A plus may stand before it.
@@ -222,7 +222,7 @@ PcdTable parse_pcd(std::string_view bytes, const std::string& name) {
 }
 
 PcdTable read_pcd(const std::filesystem::path& file) {
-  std::error_code missing;  // is said by reading
+  std::error_code missing;  // reported by reading
   const auto size = std::filesystem::file_size(file, missing);
   return parse_pcd(read_text_file(file, missing ? 0 : size), file.string());
 }

@@ -22,8 +22,8 @@ concept PcdNumber =
 class PcdTable {
  public:
   explicit PcdTable(std::size_t rows) { header_.points = rows; }
-  /// @param columns all the fields' values, one field after the other, as the header says
-  /// @param surplus points that stood in the file behind those that the header counts, and were not read
+  /// @param columns all the fields' values, one field after the other, in the header's order
+  /// @param surplus number of points in the file beyond the header's count, which were not read
   PcdTable(PcdHeader header, std::string columns, std::size_t surplus = 0);
 
   std::size_t rows() const { return header_.points; }
@@ -32,7 +32,7 @@ class PcdTable {
   std::string_view bytes() const { return columns_; }
   bool has(std::string_view field) const { return header_.find(field) != nullptr; }
 
-  /// What crisp says in the header's comments; neither may hold blanks.
+  /// Sets a note of crisp in the header's comments; neither key nor value may hold blanks.
   void set_note(const std::string& key, std::string value) { header_.notes[key] = std::move(value); }
 
   /// Adds a column: `value_of(row)` gives each row's value.
@@ -59,16 +59,15 @@ class PcdTable {
   std::size_t surplus_ = 0;
 };
 
-/// Writes a PCD file in the format that is asked for; a binary_compressed one can hold 4 GB. The same table
+/// Writes a PCD file in the requested format; a binary_compressed one can hold 4 GB. The same table
 /// gives the same bytes.
-/// @param out to which nothing was written; it is not committed
+/// @param out nothing was written to it; it is not committed
 /// @throws Error if the points are too many for the format, or the disk is full
 void write_pcd(AtomicFile& out, const PcdTable& table, PcdFormat format);
 
 /// Reads a PCD file of any origin.
-/// @throws Error if it cannot be read, its header is wrong, or it does not hold what its header says, in
-/// ASCII a point
-///         a line
+/// @throws Error if it cannot be read, its header is invalid, or its content does not match the header, in
+///         ASCII a point a line
 PcdTable read_pcd(const std::filesystem::path& file);
 
 /// The same from memory. Needs no more memory than some 300 times the bytes, whatever the header claims.

@@ -85,7 +85,7 @@ void write_pcd(AtomicFile& out, const PcdTable& table, PcdFormat format) {
   if (header.format == PcdFormat::binary_compressed && table.bytes().size() > kMostCompressed) {
     throw Error(
         "cannot write " + out.path().string() + ": a binary_compressed PCD file cannot hold more than 4 GB",
-        "write several files, or format: binary");
+        "split the file, or use format: binary");
   }
   out.write(to_text(header));
   if (header.format == PcdFormat::ascii) write_rows(out, table, append_ascii, true);

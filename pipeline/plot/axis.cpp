@@ -82,8 +82,8 @@ std::vector<double> PlotAxis::decades() const {
   for (double power = std::floor(least_); power <= most_; ++power) {
     for (const double part : {1.0, 2.0, 5.0}) {
       const double lg = power + std::log10(part);
-      const bool is_asked = part == 1 || most_ - least_ < kFew;
-      if (is_asked && lg >= least_ && lg <= most_) all.push_back(part * std::pow(10.0, power));
+      const bool is_requested = part == 1 || most_ - least_ < kFew;
+      if (is_requested && lg >= least_ && lg <= most_) all.push_back(part * std::pow(10.0, power));
     }
   }
   return all;
@@ -117,7 +117,7 @@ PlotAxis vertical_axis(const Plot& plot, double first_pixel, double last_pixel) 
   for_each_shown(plot, [&](const PlotSeries& series, std::size_t i) {
     const double around = error_at(series, i);
     span.add(series.y[i] + around);
-    // Of a few counts the logarithm's bar would reach far below all points.
+    // For small counts the logarithm's bar would reach far below all points.
     span.add(plot.y_scale == PlotScale::logarithmic ? series.y[i] : series.y[i] - around);
   });
   if (span.is_empty()) span.add(1);

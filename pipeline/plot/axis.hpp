@@ -13,7 +13,7 @@ class PlotAxis {
   /// @param least, most  what is to be seen, above zero on a logarithmic axis
   PlotAxis(double least, double most, double first_pixel, double last_pixel,
            PlotScale scale = PlotScale::linear);
-  /// Where a value stands; at the axis's end what lies beyond.
+  /// Position of a value; values beyond are clipped to the axis's end.
   double pixel(double value) const;
   std::vector<double> marks() const;
 

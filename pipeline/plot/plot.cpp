@@ -48,7 +48,7 @@ std::string dot_at(double x, double y, const char* colour) {
   return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.2\" fill=\"{}\"/>\n", x, y, colour);
 }
 
-/// What a plot draws, and how.
+/// Content and style of a drawn plot.
 struct Drawn {
   std::string name;
   const char* colour;
@@ -100,7 +100,7 @@ class Legend {
   double bottom_ = kTitle + kRow;
 };
 
-/// Where in the picture the points of a plot stand.
+/// The frame of a plot in the picture.
 struct Frame {
   double top;
   PlotAxis x;
@@ -143,11 +143,11 @@ std::string drawn_frame(const Plot& plot, const Frame& frame) {
   return svg;
 }
 
-/// [pixels] By how much the points of a series stand beside their kind.
-double beside_kind(const Plot& plot, std::size_t series) {
-  constexpr double kBeside = 12;
+/// [pixels] Offset of a series' points from the other series of its kind.
+double next_to_kind(const Plot& plot, std::size_t series) {
+  constexpr double kNextTo = 12;
   if (plot.kinds.empty()) return 0;
-  return kBeside * (static_cast<double>(series) - 0.5 * static_cast<double>(plot.series.size() - 1));
+  return kNextTo * (static_cast<double>(series) - 0.5 * static_cast<double>(plot.series.size() - 1));
 }
 
 std::string curve(const Plot& plot, std::size_t number, const Drawn& how, const Frame& frame) {
@@ -159,7 +159,7 @@ std::string curve(const Plot& plot, std::size_t number, const Drawn& how, const 
   std::string bars;
   for (std::size_t i = 0; i < points; ++i) {
     if (!has(i)) continue;
-    const double px = frame.x.pixel(series.x[i]) + beside_kind(plot, number);
+    const double px = frame.x.pixel(series.x[i]) + next_to_kind(plot, number);
     const double py = frame.y.pixel(series.y[i]);
     const double around = error_at(series, i);
     if (around > 0) {
@@ -204,8 +204,7 @@ std::string as_svg(const std::vector<Plot>& plots) {
   const std::size_t columns = std::clamp<std::size_t>(plots.size(), 1, kInARow);
   const std::size_t rows = std::max<std::size_t>(1, (plots.size() + kInARow - 1) / kInARow);
   std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-      "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
       kWidth * static_cast<double>(columns), kHeight * static_cast<double>(rows));
   for (std::size_t i = 0; i < plots.size(); ++i) {
     const std::size_t row = i / kInARow;

@@ -36,14 +36,14 @@ struct Plot {
   std::string y_label;
   std::vector<PlotSeries> series = {};
   PlotScale y_scale = PlotScale::linear;  ///< logarithmic: what is not above zero is no number
-  /// What stands on the horizontal axis in place of a quantity, at distances of 1: no points are joined then,
+  /// Categories on the horizontal axis instead of a quantity, at distances of 1: no points are joined then,
   /// and those of several series stand side by side.
   std::vector<PlotKind> kinds = {};
   std::vector<PlotMark> marks = {};
 };
 
-/// The plots as one SVG picture, two in a row, with axes, a few kilobytes each. What is drawn is named above
-/// the frame, where it hides nothing.
+/// The plots as one SVG picture, two in a row, with axes, a few kilobytes each. The series' names are above
+/// the frame, where they hide nothing.
 std::string as_svg(const std::vector<Plot>& plots);
 
 }  // namespace crisp

@@ -9,7 +9,7 @@
 
 namespace crisp {
 
-/// Writes plots into one picture, SVG, and tells the run of the file.
+/// Writes plots into one SVG picture, and registers the file with the run.
 /// @throws Error that names the file, if it cannot be written
 void write_plots(const std::filesystem::path& file, const std::vector<Plot>& plots, Context& context);
 

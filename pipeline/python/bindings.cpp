@@ -45,7 +45,7 @@ void load_plugins(const std::vector<fs::path>& files, Registrar& registrar) {
   }
 }
 
-/// Those of this module, wherever it was put: installed, and where it was built.
+/// Pipelines of this module, wherever it is installed, or of its build tree.
 InstalledPipelines pipelines_of_module() {
   const fs::path module = py::module_::import("crisp._crisp").attr("__file__").cast<std::string>();
   return InstalledPipelines::of_folder(module.parent_path(), CRISP_CONFIGS_FROM_MODULE);
@@ -88,9 +88,10 @@ void run_and_keep(RecordedRun& run, Results& results, const std::atomic<bool>& s
 py::dict run(const Request& request) {
   Builtin builtin;
   load_plugins(request.plugins, builtin.registrar());
-  const RunRequest asked = run_request(request);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::max(1U, asked.threads));
-  RecordedRun recorded(asked, builtin.registrar());
+  const RunRequest requested = run_request(request);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  std::max(1U, requested.threads));
+  RecordedRun recorded(requested, builtin.registrar());
   Results results(recorded.pipeline());
   std::atomic<bool> stop = false;
   run_interruptibly([&] { run_and_keep(recorded, results, stop); }, stop);

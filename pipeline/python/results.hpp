@@ -24,7 +24,7 @@ struct MeasurementRow {
   std::uint16_t beam = 0;
 };
 
-/// What a run leaves in memory: of each kind what the last stage that gives it gave.
+/// A run's results in memory: of each kind the item of the last stage that gives it.
 class Results {
  public:
   explicit Results(const Pipeline& pipeline);

@@ -18,8 +18,8 @@ namespace crisp {
 namespace detail {
 
 /// The thread sanitizer does not see how TBB hands work over and back, as that library is built without it.
-/// It is told here: what gave before happened before what takes now. (One place for all, since even what a
-/// worker captured is handed over.)
+/// This annotates it: the release before happened before the acquire now. (One place for all, since even a
+/// worker's captures are handed over.)
 struct Handover {
   char place = 0;
 #ifdef __SANITIZE_THREAD__
@@ -53,7 +53,7 @@ void for_blocks(std::size_t n, std::size_t size, const Work& work) {
   tbb::task_group_context group;  // is cancelled with that of the block that this is called in
   tbb::parallel_for(std::size_t{0}, blocks_of(n, size), one, group);
   detail::from_workers.take();
-  // Then something else threw, which is told there, and blocks are missing here.
+  // Then another exception was thrown, which is reported there, and blocks are missing here.
   if (group.is_group_execution_cancelled()) throw Interrupted();
 }
 

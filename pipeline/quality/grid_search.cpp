@@ -53,15 +53,15 @@ std::unique_ptr<NeighbourIndex> GridSearch::index(const PointsView& points, doub
 }
 
 GaussianSums GridSearch::sums(const PointsView& points, std::span<const double> weights,
-                              const TruncatedGaussian& kernel, const SumsWanted& wanted) {
+                              const TruncatedGaussian& kernel, const RequestedSums& requested) {
   if (!(last_ && last_->points == points.size() && last_->radius == kernel.radius)) {
     last_ =
         Last{.points = points.size(), .radius = kernel.radius, .on_lattice = lattice_pays(points, kernel)};
     tiles_.reset();
   }
-  if (!last_->on_lattice) return over_tiles(points, weights, kernel, wanted);
-  GaussianSums result = sum_on_lattice(points, weights, kernel, wanted.gradient);
-  if (wanted.error) {
+  if (!last_->on_lattice) return over_tiles(points, weights, kernel, requested);
+  GaussianSums result = sum_on_lattice(points, weights, kernel, requested.gradient);
+  if (requested.error) {
     TruncatedGaussian whole = kernel;
     whole.floor = kLatticeError;
     result.error = truncation_bound(whole, spatial_order(points, kernel.radius), weights);
@@ -70,17 +70,17 @@ GaussianSums GridSearch::sums(const PointsView& points, std::span<const double> 
 }
 
 GaussianSums GridSearch::over_tiles(const PointsView& points, std::span<const double> weights,
-                                    const TruncatedGaussian& kernel, const SumsWanted& wanted) {
+                                    const TruncatedGaussian& kernel, const RequestedSums& requested) {
   constexpr double kMoreTests = 1.3;  // than with fresh tiles: about what sorting costs
   const bool serves =
       tiles_ && last_->tested <= kMoreTests * last_->tested_when_new && tiles_->refresh(points);
   SpatialOrder order;
-  if (!serves || wanted.error) order = spatial_order(points, kernel.radius);
+  if (!serves || requested.error) order = spatial_order(points, kernel.radius);
   if (!serves) tiles_.emplace(points, kernel.radius, order.index);
-  GaussianSums result = sum_over_tiles(*tiles_, points, weights, kernel, wanted.gradient);
+  GaussianSums result = sum_over_tiles(*tiles_, points, weights, kernel, requested.gradient);
   last_->tested = static_cast<double>(result.tested);
   if (!serves) last_->tested_when_new = last_->tested;
-  if (wanted.error) result.error = truncation_bound(kernel, order, weights);
+  if (requested.error) result.error = truncation_bound(kernel, order, weights);
   return result;
 }
 

@@ -18,8 +18,8 @@ TruncatedGaussian::TruncatedGaussian(double width, double cutoff) : sigma(width)
   constexpr double kWidest = 1e6;      // [m]
   if (!(sigma >= kNarrowest && sigma <= kWidest)) {
     throw Error(fmt::format("the kernel's width is {} m", sigma),
-                fmt::format("sigma must lie in {} to {} m; about the noise of a range shows the most",
-                            kNarrowest, kWidest));
+                fmt::format("sigma must lie in {} to {} m; the noise of a range is a good choice", kNarrowest,
+                            kWidest));
   }
   if (!(cutoff >= 1 && cutoff <= 12)) {
     throw Error(fmt::format("the kernel's cut-off is {} sigma", cutoff), "it must lie in 1 to 12");

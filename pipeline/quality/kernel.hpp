@@ -19,7 +19,7 @@ struct TruncatedGaussian {
   double floor = 0;     ///< G(R) / G(0)
 };
 
-/// What truncation leaves out, at most, of Σᵢ Σⱼ wᵢ wⱼ G(xᵢ − xⱼ) / G(0), the sum over all pairs.
+/// Bound of the truncated part of Σᵢ Σⱼ wᵢ wⱼ G(xᵢ − xⱼ) / G(0), the sum over all pairs.
 ///
 /// Points are sorted into cubic cells, of summed weight W each. For any two cells o apart,
 /// Σ W(A) W(A + o) ≤ Σ W(A)² (Cauchy and Schwarz), and a pair in them errs by no more than G at R or at the

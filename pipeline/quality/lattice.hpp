@@ -14,7 +14,7 @@ namespace crisp {
 /// A field on a cubic lattice about some points, between whose nodes quintic B-splines interpolate.
 class Lattice {
  public:
-  /// How many nodes a lattice about these points would have.
+  /// Number of nodes of a lattice about these points.
   static double nodes_about(const PointsView& points, double step);
 
   /// A field of zeros.

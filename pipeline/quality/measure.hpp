@@ -11,10 +11,10 @@
 
 namespace crisp {
 
-/// What a measure says of a cloud.
+/// A measure's value for a cloud.
 struct Quality {
-  double value = 0;  ///< the lower the crisper
-  Vectors gradient;  ///< its derivative by each coordinate [1/m]; empty if it was not asked for
+  double value = 0;  ///< lower is better
+  Vectors gradient;  ///< its derivative by each coordinate [1/m]; empty if not requested
 };
 
 /// How crisp a cloud is. A measure knows points and weights, and nothing of how they were taken.
@@ -33,7 +33,7 @@ class Measure {
                            bool gradient) = 0;
 };
 
-/// What a measure may be told when it is made; it uses what it has a use for.
+/// Settings of a measure; each measure uses those that apply to it.
 struct MeasureSettings {
   std::string search = "grid";  ///< how neighbours are found, by its name in `searches`
   double cutoff = 7;            ///< [scale] beyond which points do not see each other

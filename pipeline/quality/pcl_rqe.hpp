@@ -34,11 +34,11 @@ class PclRqe : public pcl::PCLBase<PointT> {
   void setCutoff(double cutoff) { settings_.cutoff = cutoff; }
   double getCutoff() const { return settings_.cutoff; }
 
-  /// How much each point of the input cloud counts; none: all the same.
+  /// Weights of the input cloud's points; none: all the same.
   void setWeights(std::vector<double> weights) { weights_ = std::move(weights); }
 
-  /// Whether to compute the gradient; off unless asked for.
-  void setGradient(bool wanted) { settings_.gradient = wanted; }
+  /// Whether to compute the gradient; off by default.
+  void setGradient(bool requested) { settings_.gradient = requested; }
 
   /// The points that the last compute() took, as indices of the input cloud: the rows of its gradient.
   const pcl::Indices& getUsedIndices() const { return used_; }

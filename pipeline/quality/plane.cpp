@@ -68,6 +68,6 @@ double ViewSums::squares_left(const Eigen::Vector3d& fit) const {
          fit.tail<2>().squaredNorm() / (kTilt * kTilt);
 }
 
-double ViewSums::freedom() const { return count_ - damped(matrix()).solve(matrix()).trace(); }
+double ViewSums::degrees_of_freedom() const { return count_ - damped(matrix()).solve(matrix()).trace(); }
 
 }  // namespace crisp

@@ -33,7 +33,7 @@ struct Plane {
 
 Plane plane_of(const Moments& moments);
 
-/// What one view sees of a surface, as a plane of its own: sums over its beams.
+/// Sums over one view's beams on a surface, for a plane of its own.
 class ViewSums {
  public:
   /// @param u, v, distance  [m] from a common plane
@@ -61,11 +61,11 @@ class ViewSums {
   Eigen::Matrix3d matrix() const;  ///< weighted, of the products of 1, u and v
   Eigen::Vector3d vector() const;  ///< and of theirs with the distance
 
-  /// Distance [m] at u = v = 0, and its slopes along u and v, of the plane that fits best. Where beams do not
-  /// tell a slope (a single line, a few points), it stays within some degrees of none.
+  /// Distance [m] at u = v = 0, and slopes along u and v, of the best-fitting plane. Where beams do not
+  /// determine a slope (a single line, a few points), it stays within some degrees of none.
   Eigen::Vector3d fit() const;
   double squares_left(const Eigen::Vector3d& fit) const;  ///< weighted, of residuals and of the tilt
-  double freedom() const;                                 ///< beams, less what the fit took
+  double degrees_of_freedom() const;                      ///< beams, less what the fit took
 
  private:
   // Numbers by themselves: of what is summed in a loop all stay in registers.

@@ -45,7 +45,7 @@ void check(const PointsView& points) {
     if (are_positions(axis)) continue;
     const auto bad = std::ranges::find_if_not(axis, is_a_position);
     throw Error(fmt::format("point {} has a coordinate of {} m", bad - axis.begin(), *bad),
-                "leave out points without a valid position");
+                "remove points without a valid position");
   }
 }
 

@@ -32,7 +32,7 @@ Rqe rqe(const PointsView& points, std::span<const double> weights, const RqeSett
   result.pairs = sums.pairs;
   result.tested = sums.tested;
   result.error_bound = std::log1p(sums.error / sums.kernel);
-  result.gradient = std::move(sums.pull);
+  result.gradient = std::move(sums.gradient);
   // H = −log E, and xᵢ is in both orders of each of its pairs: ∂H/∂xᵢ = 4 · exponent · pull / kernel.
   const double scale = 4 * kernel.exponent / sums.kernel;
   for (auto* axis : {&result.gradient.x, &result.gradient.y, &result.gradient.z}) {

@@ -16,12 +16,12 @@ struct RqeSettings {
   bool error_bound = true;  ///< whether to compute it
 };
 
-/// Rényi's quadratic entropy of a cloud; the lower the crisper.
+/// Rényi's quadratic entropy of a cloud; the lower, the sharper the cloud.
 struct Rqe {
   double value = 0;          ///< H = −log E [nat; E in 1/m³]
   double energy = 0;         ///< E [1/m³]: the chance density that two points drawn at random coincide
-  double error_bound = 0;    ///< |value − H with the whole kernel|, at most; 0 if not asked for
-  Vectors gradient;          ///< ∂H/∂x of each point [1/m]; empty if it was not asked for
+  double error_bound = 0;    ///< bound of |value − H with the whole kernel|; 0 if not requested
+  Vectors gradient;          ///< ∂H/∂x of each point [1/m]; empty if not requested
   std::uint64_t pairs = 0;   ///< pairs i < j nearer than the cut-off; 0 if none were formed
   std::uint64_t tested = 0;  ///< distances computed to find them, see Search::sums
 };
@@ -33,7 +33,7 @@ struct Rqe {
 ///
 /// The paper's kernel G(·, 2σ²I) is cut at R = cutoff · σ: K(d) = G(d) − G(R) for d < R, else 0. Lowering it
 /// by G(R) keeps E continuous where a pair crosses R, so that the gradient is exactly that of the value.
-/// E is then too small by at most G(R) a pair; `error_bound` says what that comes to in these data. A wide
+/// E is then too small by at most G(R) a pair; `error_bound` is the resulting bound for these data. A wide
 /// kernel, under which a point has thousands of neighbours, is not cut but summed on a lattice.
 ///
 /// @param points   n points [m], n ≥ 1

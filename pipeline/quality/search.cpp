@@ -18,33 +18,33 @@ struct BlockSums {
 /// Adds what the neighbours of point i do to it.
 void add_point(const PointsView& points, std::span<const double> weights, const TruncatedGaussian& kernel,
                std::size_t i, std::span<const std::uint32_t> near, std::span<const double> squared_distance,
-               BlockSums& sums, Vectors& pull) {
+               BlockSums& sums, Vectors& gradient) {
   double sum = 0;
-  std::array<double, 3> own_pull{};
+  std::array<double, 3> own_gradient{};
   for (std::size_t k = 0; k < near.size(); ++k) {
     const std::uint32_t j = near[k];
     const double g = std::exp(-kernel.exponent * squared_distance[k]);
     sum += weights[j] * (g - kernel.floor);
-    own_pull[0] += weights[j] * g * (points.x[i] - points.x[j]);
-    own_pull[1] += weights[j] * g * (points.y[i] - points.y[j]);
-    own_pull[2] += weights[j] * g * (points.z[i] - points.z[j]);
+    own_gradient[0] += weights[j] * g * (points.x[i] - points.x[j]);
+    own_gradient[1] += weights[j] * g * (points.y[i] - points.y[j]);
+    own_gradient[2] += weights[j] * g * (points.z[i] - points.z[j]);
   }
   sums.kernel += weights[i] * sum;
   sums.listed += near.size();
-  if (pull.size() == 0) return;
-  pull.x[i] = weights[i] * own_pull[0];
-  pull.y[i] = weights[i] * own_pull[1];
-  pull.z[i] = weights[i] * own_pull[2];
+  if (gradient.size() == 0) return;
+  gradient.x[i] = weights[i] * own_gradient[0];
+  gradient.y[i] = weights[i] * own_gradient[1];
+  gradient.z[i] = weights[i] * own_gradient[2];
 }
 
 }  // namespace
 
 GaussianSums Search::sums(const PointsView& points, std::span<const double> weights,
-                          const TruncatedGaussian& kernel, const SumsWanted& wanted) {
+                          const TruncatedGaussian& kernel, const RequestedSums& requested) {
   constexpr std::size_t kBlock = 256;  // points
   const auto neighbours = index(points, kernel.radius);
   GaussianSums result;
-  if (wanted.gradient) result.pull.assign(points.size(), 0);
+  if (requested.gradient) result.gradient.assign(points.size(), 0);
   std::vector<BlockSums> blocks(blocks_of(points.size(), kBlock));
   for_blocks(points.size(), kBlock, [&](std::size_t b, std::size_t first, std::size_t last) {
     Neighbours near;
@@ -53,23 +53,23 @@ GaussianSums Search::sums(const PointsView& points, std::span<const double> weig
       const std::size_t begin = near.begin[i - first];
       const std::size_t count = near.begin[i - first + 1] - begin;
       add_point(points, weights, kernel, i, std::span(near.index).subspan(begin, count),
-                std::span(near.squared_distance).subspan(begin, count), blocks[b], result.pull);
+                std::span(near.squared_distance).subspan(begin, count), blocks[b], result.gradient);
     }
   });
   for (const BlockSums& block : blocks) {
     result.kernel += block.kernel;
     result.tested += block.listed;
   }
-  if (wanted.error) result.error = truncation_bound(kernel, spatial_order(points, kernel.radius), weights);
+  if (requested.error) result.error = truncation_bound(kernel, spatial_order(points, kernel.radius), weights);
   result.pairs = (result.tested - points.size()) / 2;  // each from either end, and each point has itself
   return result;
 }
 
 void register_built_in(SearchRegistry& registry) {
   registry.add("flann", "a k-d tree (FLANN): the reference", [] { return std::make_unique<FlannSearch>(); });
-  registry.add("grid", "cells along a curve, and pairs in registers: the fast one",
+  registry.add("grid", "tiles of cells along a Morton curve, vectorized: the fast one",
                [] { return std::make_unique<GridSearch>(); });
-  registry.add("exact", "every pair: for tests, and for few points",
+  registry.add("exact", "every pair: for tests and few points",
                [] { return std::make_unique<ExactSearch>(); });
 }
 

@@ -21,7 +21,7 @@ struct Neighbours {
   std::vector<double> squared_distance;  ///< [m²] to each neighbour
 };
 
-/// Points that can be asked who is near whom, from several threads at once.
+/// A thread-safe index of points for neighbour queries.
 class NeighbourIndex {
  public:
   virtual ~NeighbourIndex() = default;
@@ -40,12 +40,12 @@ class Search {
   /// @param radius  [m] > 0
   virtual std::unique_ptr<NeighbourIndex> index(const PointsView& points, double radius) const = 0;
 
-  /// What RQE sums over all pairs nearer than the kernel's radius. Unless a search knows better, from the
+  /// RQE's sums over all pairs nearer than the kernel's radius. By default from the
   /// lists of index(), in double precision; `tested` then counts the neighbours listed.
   ///
   /// @param weights  one a point, about 1
   virtual GaussianSums sums(const PointsView& points, std::span<const double> weights,
-                            const TruncatedGaussian& kernel, const SumsWanted& wanted);
+                            const TruncatedGaussian& kernel, const RequestedSums& requested);
 };
 
 using SearchRegistry = Registry<Search>;

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "pipeline/data/error.hpp"
-#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
 namespace {
@@ -24,7 +24,7 @@ double median_of_a_sample(std::span<const double> values) {
   const std::size_t stride = values.size() / 1024 + 1;
   std::vector<double> sample;
   for (std::size_t i = 0; i < values.size(); i += stride) sample.push_back(values[i]);
-  return middle_of(sample);
+  return median_in_place(sample);
 }
 
 /// A coordinate's 21 bits, two zeros after each.
@@ -36,7 +36,7 @@ std::uint64_t spread(std::uint64_t bits) {
   return (bits | bits << 2) & 0x1249249249249249;
 }
 
-/// What spread() spread.
+/// Inverse of spread().
 std::uint64_t gather(std::uint64_t bits) {
   bits &= 0x1249249249249249;
   bits = (bits | bits >> 2) & 0x10c30c30c30c30c3;
@@ -141,7 +141,7 @@ CellLattice::Cell cell_of(std::uint64_t key) {
 SpatialOrder spatial_order(const PointsView& points, double side) {
   const std::size_t n = points.size();
   if (n >= std::numeric_limits<std::uint32_t>::max()) {
-    throw Error("a cloud of 2^32 points or more is too large", "thin it out, or cut it into parts");
+    throw Error("a cloud of 2^32 points or more is too large", "thin it, or split it");
   }
   SpatialOrder order;
   if (n == 0) return order;

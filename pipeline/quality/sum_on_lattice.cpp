@@ -26,9 +26,9 @@ double step_for(const PointsView& points, double sigma) {
   return std::clamp(longest / sigma / 24, 0.125, 0.4);
 }
 
-/// What to convolve with so that, between two quintic B-splines, exp(−(x/2σ)²) comes out, as nearly as can
-/// be on average over where on the lattice the two points lie: in Fourier space, of the aliases ω + 2πk,
-/// Σ ĝ B̂² / (Σ B̂²)² (Hockney and Eastwood).
+/// Influence function (Hockney and Eastwood): convolution with it approximates exp(−(x/2σ)²) between two
+/// quintic B-splines, optimal on average over the points' positions on the lattice. In Fourier space, over
+/// the aliases ω + 2πk: Σ ĝ B̂² / (Σ B̂²)².
 std::vector<double> influence_function(double step) {
   constexpr int kFrequencies = 512;
   constexpr int kAliases = 6;
@@ -36,17 +36,17 @@ std::vector<double> influence_function(double step) {
   for (int i = 0; i < kFrequencies; ++i) {
     const double omega = std::numbers::pi * (i + 0.5) / kFrequencies;
     const double sine2 = std::sin(omega / 2) * std::sin(omega / 2);
-    double wanted = 0;
+    double requested = 0;
     double there = 0;
     for (int k = -kAliases; k <= kAliases; ++k) {
       const double w = omega + 2 * std::numbers::pi * k;
       const double sinc2 = sine2 / (w * w / 4);
       const double spline2 = sinc2 * sinc2 * sinc2 * sinc2 * sinc2 * sinc2;
-      wanted += spline2 * std::exp(-w * w / (step * step)) * 2 * std::sqrt(std::numbers::pi) / step;
+      requested += spline2 * std::exp(-w * w / (step * step)) * 2 * std::sqrt(std::numbers::pi) / step;
       there += spline2;
     }
     for (std::size_t m = 0; m < half.size(); ++m) {
-      half[m] += wanted / (there * there) * std::cos(omega * static_cast<double>(m)) / kFrequencies;
+      half[m] += requested / (there * there) * std::cos(omega * static_cast<double>(m)) / kFrequencies;
     }
   }
   return half;
@@ -77,7 +77,7 @@ bool lattice_pays(const PointsView& points, const TruncatedGaussian& kernel) {
   constexpr double kNode = 25;
   const double nodes = Lattice::nodes_about(points, step_for(points, kernel.sigma) * kernel.sigma);
   const double cost = kPoint * static_cast<double>(points.size()) + kNode * nodes;
-  // All pairs there are cost less than that already: no need to look closer.
+  // All pairs there are cost less than that already: no need for a closer estimate.
   const double all_pairs = 0.5 * static_cast<double>(points.size()) * static_cast<double>(points.size());
   if (nodes > kMostNodes || kTest * all_pairs < cost) return false;
   return kTest * tests_by_pairs(points, kernel.radius) > cost;
@@ -91,18 +91,18 @@ GaussianSums sum_on_lattice(const PointsView& points, std::span<const double> we
   field.spread(points, weights);
   field.convolve(influence_function(step));
   GaussianSums result;
-  if (gradient) result.pull.assign(points.size(), 0);
+  if (gradient) result.gradient.assign(points.size(), 0);
   std::vector<double> blocks(blocks_of(points.size(), kBlock));
   for_blocks(points.size(), kBlock, [&](std::size_t b, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Lattice::Value at = field.at(points.x[i], points.y[i], points.z[i]);
       blocks[b] += weights[i] * at.value;
       if (!gradient) continue;
-      // ∂/∂xᵢ of Σⱼ wⱼ exp(−exponent · d²) is −2 · exponent times what pulls.
+      // ∂/∂xᵢ of Σⱼ wⱼ exp(−exponent · d²) is −2 · exponent times what block_scores.
       const double scale = -weights[i] / (2 * kernel.exponent);
-      result.pull.x[i] = scale * at.gradient[0];
-      result.pull.y[i] = scale * at.gradient[1];
-      result.pull.z[i] = scale * at.gradient[2];
+      result.gradient.x[i] = scale * at.gradient[0];
+      result.gradient.y[i] = scale * at.gradient[1];
+      result.gradient.z[i] = scale * at.gradient[2];
     }
   });
   for (const double block : blocks) result.kernel += block;

@@ -19,7 +19,7 @@ namespace crisp {
 GaussianSums sum_on_lattice(const PointsView& points, std::span<const double> weights,
                             const TruncatedGaussian& kernel, bool gradient);
 
-/// By how much a pair's G / G(0) is in error there, at most.
+/// Bound of the error of a pair's G / G(0).
 inline constexpr double kLatticeError = 2.5e-6;
 
 /// Whether the lattice would be faster than the pairs: an estimate from how the points lie, the same for the

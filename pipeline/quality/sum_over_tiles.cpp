@@ -54,29 +54,29 @@ simd::TileArrays arrays(const Tiles& tiles, const Slots& slots) {
 /// Groups of tiles to a task: depends on the data alone, so that the sums do not depend on the threads.
 std::size_t groups_a_task(const Tiles& tiles) { return std::clamp<std::size_t>(tiles.groups() / 64, 8, 128); }
 
-/// Sums one task; its pulls go to where its points are in the cloud.
+/// Sums one task; its block_scores go to where its points are in the cloud.
 simd::TaskSums sum_task(const Tiles& tiles, const simd::TileArrays& data, const simd::PairKernel& kernel,
-                        std::size_t first_group, std::size_t last_group, Vectors& pull) {
+                        std::size_t first_group, std::size_t last_group, Vectors& gradient) {
   simd::TaskSums sums{};
   sums.first_tile = first_group * Tiles::kFanOut;
   sums.last_tile = std::min(tiles.size(), last_group * Tiles::kFanOut);
   const std::uint32_t first_slot = tiles.begin()[sums.first_tile];
   const std::size_t slots = tiles.begin()[sums.last_tile] - first_slot;
-  std::array<std::vector<float>, 3> slot_pull;
-  for (std::size_t axis = 0; axis < 3 && pull.size() != 0; ++axis) {
-    slot_pull[axis].resize(slots);
-    sums.pull[axis] = slot_pull[axis].data();
+  std::array<std::vector<float>, 3> slot_gradient;
+  for (std::size_t axis = 0; axis < 3 && gradient.size() != 0; ++axis) {
+    slot_gradient[axis].resize(slots);
+    sums.gradient[axis] = slot_gradient[axis].data();
   }
   std::vector<std::uint32_t> near;
   for (std::size_t group = first_group; group < last_group; ++group) {
     tiles.near_groups(group, near);
     simd::add_group(data, kernel, group, near.data(), near.size(), sums);
   }
-  const std::array<std::vector<double>*, 3> out{&pull.x, &pull.y, &pull.z};
-  for (std::size_t axis = 0; axis < 3 && pull.size() != 0; ++axis) {
+  const std::array<std::vector<double>*, 3> out{&gradient.x, &gradient.y, &gradient.z};
+  for (std::size_t axis = 0; axis < 3 && gradient.size() != 0; ++axis) {
     for (std::size_t s = 0; s < slots; ++s) {
       const double weight = data.weight[first_slot + s];
-      (*out[axis])[tiles.order()[first_slot + s]] = weight * slot_pull[axis][s] / kernel.scale;
+      (*out[axis])[tiles.order()[first_slot + s]] = weight * slot_gradient[axis][s] / kernel.scale;
     }
   }
   return sums;
@@ -91,11 +91,11 @@ GaussianSums sum_over_tiles(const Tiles& tiles, const PointsView& points, std::s
   const Slots slots = fill_slots(tiles, weights, scale);
   const simd::TileArrays data = arrays(tiles, slots);
   GaussianSums result;
-  if (gradient) result.pull.assign(points.size(), 0);
+  if (gradient) result.gradient.assign(points.size(), 0);
   const std::size_t step = groups_a_task(tiles);
   std::vector<simd::TaskSums> tasks(blocks_of(tiles.groups(), step));
   for_blocks(tiles.groups(), step, [&](std::size_t t, std::size_t first, std::size_t last) {
-    tasks[t] = sum_task(tiles, data, pair, first, last, result.pull);
+    tasks[t] = sum_task(tiles, data, pair, first, last, result.gradient);
   });
   std::uint64_t ordered_pairs = 0;
   for (const simd::TaskSums& task : tasks) {

@@ -12,7 +12,7 @@ namespace crisp {
 
 /// The sums in single precision, vectorised and in parallel, each pair once for both of its points where
 /// that pays. An offset errs by some 1e-7 of the radius, a pair's kernel by some 1e-6 at the radius and less
-/// within; of sums of many, less remains.
+/// within; sums of many have smaller relative errors.
 ///
 /// @param tiles    with a reach of the kernel's radius, and refreshed for these points
 /// @param weights  one a point, about 1

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "pipeline/quality/surfel_sums.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
 namespace {
@@ -35,34 +35,42 @@ Eigen::MatrixXd solve_in_any_units(const Eigen::MatrixXd& a, const Eigen::Matrix
          solve_semidefinite(scale.asDiagonal() * a * scale.asDiagonal(), scale.asDiagonal() * b);
 }
 
-NormalEquations without_plane(const SurfelSums& sums, std::span<const SurfelResidual> residuals) {
+/// Adds the equations of one surfel's beams, after its plane has been projected out.
+void add_without_plane(const SurfelSums& sums, std::span<const SurfelResidual> residuals,
+                       NormalEquations& to) {
   const Eigen::Index rest = sums.gram.cols() - 3;
   const Eigen::Index m = rest - 1;
-  // What each parameter of the plane does in the others' stead. Of a wall that is met in one line alone the
-  // slope across that line is left open, not told by rounding.
+  // The plane parameters' response to each parameter. The slope across a wall that is met in one line alone
+  // is left open, not determined by rounding.
   const Eigen::MatrixXd share =
       solve_semidefinite(sums.gram.topLeftCorner(3, 3), sums.gram.topRightCorner(3, rest));
-  const Eigen::MatrixXd left =
-      sums.gram.bottomRightCorner(rest, rest) - sums.gram.bottomLeftCorner(rest, 3) * share;
-  NormalEquations result;
-  result.chi2 = left(0, 0);
-  result.vector = left.col(0).tail(m);
-  result.matrix = left.bottomRightCorner(m, m);
-  result.squares = sums.gram.diagonal().tail(m);
-  result.range_squares = sums.range_squares;
-  result.changed = sums.changed;
-  for (const Eigen::MatrixXd& pulls : sums.pulls) {
-    result.pulls.emplace_back(pulls.bottomRows(m) - share.rightCols(m).transpose() * pulls.topRows<3>());
+  const auto planes = sums.gram.bottomLeftCorner(rest, 3);
+  const Eigen::VectorXd vector = sums.gram.col(3).tail(rest) - planes * share.col(0);
+  to.chi2 += vector[0];
+  to.vector += vector.tail(m);
+  to.matrix += sums.gram.bottomRightCorner(m, m);
+  to.matrix.noalias() -= planes.bottomRows(m) * share.rightCols(m);
+  to.squares += sums.gram.diagonal().tail(m);
+  to.range_squares += sums.range_squares;
+  to.changed += sums.changed;
+  for (std::size_t d = 0; d < sums.block_scores.size(); ++d) {
+    const SumsByBlock& scores = sums.block_scores[d];
+    const Eigen::MatrixXd left =
+        scores.sums.bottomRows(m) - share.rightCols(m).transpose() * scores.sums.topRows<3>();
+    for (std::size_t k = 0; k < scores.blocks.size(); ++k) {
+      to.block_scores[d].col(scores.blocks[k]) += left.col(static_cast<Eigen::Index>(k));
+    }
   }
+  std::size_t beams = 0;
   for (const SurfelResidual& r : residuals) {
     if (r.weight == 0) continue;
-    ++result.beams;
-    result.weight += r.weight;
-    result.influence += std::pow(r.weight * r.distance / r.spread, 2);
-    result.stiffness += biweight_slope(r.weight);
+    ++beams;
+    to.weight += r.weight;
+    to.influence += std::pow(r.weight * r.distance / r.spread, 2);
+    to.stiffness += biweight_slope(r.weight);
   }
-  result.freedom = static_cast<double>(result.beams) - 3;
-  return result;
+  to.beams += beams;
+  to.degrees_of_freedom += static_cast<double>(beams) - 3;
 }
 
 std::vector<std::size_t> counts(std::span<const Division> divisions) {
@@ -95,7 +103,7 @@ NormalEquations::NormalEquations(std::size_t parameters, const std::vector<std::
   range_squares.setZero(m);
   changed.setZero(m);
   for (const std::size_t count : blocks) {
-    pulls.emplace_back(Eigen::MatrixXd::Zero(m, static_cast<Eigen::Index>(count)));
+    block_scores.emplace_back(Eigen::MatrixXd::Zero(m, static_cast<Eigen::Index>(count)));
   }
 }
 
@@ -103,7 +111,7 @@ NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   matrix += other.matrix;
   vector += other.vector;
   chi2 += other.chi2;
-  freedom += other.freedom;
+  degrees_of_freedom += other.degrees_of_freedom;
   beams += other.beams;
   weight += other.weight;
   influence += other.influence;
@@ -111,18 +119,19 @@ NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   squares += other.squares;
   range_squares += other.range_squares;
   changed += other.changed;
-  for (std::size_t d = 0; d < pulls.size(); ++d) pulls[d] += other.pulls[d];
+  for (std::size_t d = 0; d < block_scores.size(); ++d) block_scores[d] += other.block_scores[d];
   return *this;
 }
 
 double NormalEquations::covariance_factor() const {
-  const double spent = static_cast<double>(beams) / freedom;  // what the planes took of the residuals
+  const double spent =
+      static_cast<double>(beams) / degrees_of_freedom;  // what the planes took of the residuals
   return weight * influence * spent / (stiffness * stiffness);
 }
 
-Eigen::MatrixXd NormalEquations::pulls_along(std::size_t division, const std::vector<std::size_t>& of,
-                                             const Eigen::MatrixXd& directions) const {
-  return weight / stiffness * (directions.transpose() * pulls[division](of, Eigen::all));
+Eigen::MatrixXd NormalEquations::scores_along(std::size_t division, const std::vector<std::size_t>& of,
+                                              const Eigen::MatrixXd& directions) const {
+  return weight / stiffness * (directions.transpose() * block_scores[division](of, Eigen::all));
 }
 
 NormalEquations NormalEquations::reduced(const std::vector<std::size_t>& kept,
@@ -135,11 +144,11 @@ NormalEquations NormalEquations::reduced(const std::vector<std::size_t>& kept,
   result.matrix = matrix(kept, kept) - cross.transpose() * by_cross;
   result.vector = vector(kept) - by_cross.transpose() * gone;
   result.chi2 = chi2 - gone.dot(solve_in_any_units(inner, gone).col(0));
-  result.freedom = freedom - static_cast<double>(eliminated.size());
+  result.degrees_of_freedom = degrees_of_freedom - static_cast<double>(eliminated.size());
   result.squares = squares(kept);
   result.range_squares = range_squares(kept);
   result.changed = changed(kept);
-  for (Eigen::MatrixXd& of_division : result.pulls) {
+  for (Eigen::MatrixXd& of_division : result.block_scores) {
     of_division = Eigen::MatrixXd(of_division(kept, Eigen::all)) -
                   by_cross.transpose() * Eigen::MatrixXd(of_division(eliminated, Eigen::all));
   }
@@ -149,20 +158,19 @@ NormalEquations NormalEquations::reduced(const std::vector<std::size_t>& kept,
 NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
                                  const DerivativeRows& derivatives, const SurfelSettings& settings,
                                  std::span<const Division> divisions) {
-  const SurfelSummands summands{.parameters = parameters,
-                                .derivatives = derivatives,
-                                .divisions = divisions,
-                                .blocks = counts(divisions)};
+  const SurfelSummands summands{
+      .parameters = parameters, .derivatives = derivatives, .divisions = divisions, .views = beams.views};
+  const auto blocks = counts(divisions);
   const auto first = batches(surfels);
-  std::vector<NormalEquations> sums(first.size() - 1, NormalEquations(parameters, summands.blocks));
+  std::vector<NormalEquations> sums(first.size() - 1, NormalEquations(parameters, blocks));
   for_each_index(sums.size(), [&](std::size_t b) {
     for (std::size_t s = first[b]; s < first[b + 1]; ++s) {
       const Surfel& surfel = surfels.surfels[s];
       const auto residuals = residuals_of(surfel, surfels, beams, settings);
-      sums[b] += without_plane(sums_of(surfel, surfels.beams_of(surfel), residuals, summands), residuals);
+      add_without_plane(sums_of(surfel, surfels.beams_of(surfel), residuals, summands), residuals, sums[b]);
     }
   });
-  NormalEquations total(parameters, summands.blocks);
+  NormalEquations total(parameters, blocks);
   for (const NormalEquations& sum : sums) total += sum;
   return total;
 }

@@ -12,8 +12,8 @@
 
 namespace crisp {
 
-/// A way to divide n beams: the block of each, numbered from 0. Beams of one block may share an error, those
-/// of different blocks do not.
+/// A partition of n beams into blocks: the block of each, numbered from 0. Beams of one block may share an
+/// error, those of different blocks do not.
 using Division = std::vector<std::uint32_t>;
 
 /// Least squares in m parameters θ, after the planes of all surfels have been projected out (variable
@@ -21,20 +21,20 @@ using Division = std::vector<std::uint32_t>;
 ///
 ///     chi2 + 2 vectorᵀ δθ + δθᵀ matrix δθ
 struct NormalEquations {
-  Eigen::MatrixXd matrix;  ///< m × m
-  Eigen::VectorXd vector;  ///< m
-  double chi2 = 0;         ///< now
-  double freedom = 0;      ///< beams that count, less the three parameters of each surfel
-  std::size_t beams = 0;   ///< that count, by however little
-  double weight = 0;       ///< Σ of the beams' weights w = ψ(z)/z, of residuals z in units of their spread
-  double influence = 0;    ///< Σ ψ(z)²
-  double stiffness = 0;    ///< Σ ψ′(z)
+  Eigen::MatrixXd matrix;         ///< m × m
+  Eigen::VectorXd vector;         ///< m
+  double chi2 = 0;                ///< now
+  double degrees_of_freedom = 0;  ///< beams that count, less the three parameters of each surfel
+  std::size_t beams = 0;          ///< that count, by however little
+  double weight = 0;     ///< Σ of the beams' weights w = ψ(z)/z, of residuals z in units of their spread
+  double influence = 0;  ///< Σ ψ(z)²
+  double stiffness = 0;  ///< Σ ψ′(z)
   /// m: Σ of the squares of each parameter's derivatives, weighted as in `matrix`, but before the planes were
   /// projected out.
   Eigen::VectorXd squares;
-  /// Of each division m × blocks: what the beams of each block contribute to `vector`. So the blocks tell by
-  /// how much `vector` really scatters. None if no divisions were named.
-  std::vector<Eigen::MatrixXd> pulls;
+  /// For each division m × blocks: the score contributions of each block's beams to `vector`, for its
+  /// empirical covariance. Empty if no divisions were named.
+  std::vector<Eigen::MatrixXd> block_scores;
   /// [m²] m: Σ of the squares of what a unit of each parameter changes ranges by, each beam alike. Zero if no
   /// divisions were named, too.
   Eigen::VectorXd range_squares;
@@ -53,8 +53,8 @@ struct NormalEquations {
   ///
   /// @param of          p parameters
   /// @param directions  p × q
-  Eigen::MatrixXd pulls_along(std::size_t division, const std::vector<std::size_t>& of,
-                              const Eigen::MatrixXd& directions) const;
+  Eigen::MatrixXd scores_along(std::size_t division, const std::vector<std::size_t>& of,
+                               const Eigen::MatrixXd& directions) const;
 
   /// The equations of the parameters `kept`, in this order, after those in `eliminated` have been projected
   /// out in turn, so that what they could explain no longer counts. The others are held as they are. What
@@ -63,13 +63,13 @@ struct NormalEquations {
                           const std::vector<std::size_t>& eliminated) const;
 };
 
-/// Told by whoever knows the sensor model: how parameters move points across a surfel.
+/// Derivatives by the sensor model: how parameters move points across a surfel.
 ///
 /// @param surfel        whose normal counts
 /// @param beams         some of its beams
-/// @param range_change  [m] for each, by how much its range would have to grow to end on the plane. The
-///                      derivatives are wanted there and not where the range's noise has put the point: noise
-///                      in the regressors would look like parameters.
+/// @param range_change  [m] for each, the range change that puts its end on the plane. The
+///                      derivatives are taken there and not at the noisy point: noise
+///                      in the regressors would bias the parameters.
 /// @param rows          for each beam, m numbers: normal · ∂x/∂θₖ; to be filled, zero at first
 /// Called from several threads at once.
 using DerivativeRows = std::function<void(const Surfel& surfel, std::span<const std::uint32_t> beams,
@@ -77,7 +77,7 @@ using DerivativeRows = std::function<void(const Surfel& surfel, std::span<const 
 
 /// Adds up the equations of all surfels. Deterministic, on any number of threads.
 ///
-/// @param divisions  what errors beams may share; or none: see NormalEquations::pulls
+/// @param divisions  what errors beams may share; or none: see NormalEquations::block_scores
 NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams, std::size_t parameters,
                                  const DerivativeRows& derivatives, const SurfelSettings& settings,
                                  std::span<const Division> divisions = {});

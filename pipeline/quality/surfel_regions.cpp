@@ -7,7 +7,7 @@
 
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/once.hpp"
-#include "pipeline/quality/surfel_pieces.hpp"
+#include "pipeline/quality/surfel_patches.hpp"
 
 namespace crisp {
 namespace {
@@ -15,26 +15,26 @@ namespace {
 constexpr double kEdge = 0.95;  // cosine of the angle from which on two surfaces meet at an edge
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-std::vector<std::size_t> piece_of_cells(const std::vector<FlatPiece>& pieces, const SurfelCells& cells) {
+std::vector<std::size_t> patch_of_cells(const std::vector<FlatPatch>& patches, const SurfelCells& cells) {
   std::vector<std::size_t> result(cells.size(), kNone);
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    std::fill(result.begin() + static_cast<std::ptrdiff_t>(pieces[p].first_cell),
-              result.begin() + static_cast<std::ptrdiff_t>(pieces[p].last_cell), p);
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    std::fill(result.begin() + static_cast<std::ptrdiff_t>(patches[p].first_cell),
+              result.begin() + static_cast<std::ptrdiff_t>(patches[p].last_cell), p);
   }
   return result;
 }
 
 /// Which pieces touch which.
-std::vector<std::vector<std::size_t>> contacts(const std::vector<FlatPiece>& pieces,
+std::vector<std::vector<std::size_t>> contacts(const std::vector<FlatPatch>& patches,
                                                const SurfelCells& cells) {
-  const auto piece_of = piece_of_cells(pieces, cells);
+  const auto patch_of = patch_of_cells(patches, cells);
   const CellFinder finder(cells);
-  std::vector<std::vector<std::size_t>> result(pieces.size());
+  std::vector<std::vector<std::size_t>> result(patches.size());
   for (std::size_t c = 0; c < cells.size(); ++c) {
-    if (piece_of[c] == kNone) continue;
+    if (patch_of[c] == kNone) continue;
     for (const std::size_t other : finder.around(c)) {
-      if (piece_of[other] != kNone && piece_of[other] != piece_of[c])
-        result[piece_of[c]].push_back(piece_of[other]);
+      if (patch_of[other] != kNone && patch_of[other] != patch_of[c])
+        result[patch_of[c]].push_back(patch_of[other]);
     }
   }
   for (auto& list : result) {
@@ -44,32 +44,32 @@ std::vector<std::vector<std::size_t>> contacts(const std::vector<FlatPiece>& pie
 }
 
 /// How well a piece knows its own direction [rad].
-double tilt_error(const FlatPiece& piece, const SurfelSettings& settings) {
-  return settings.noise / (std::sqrt(piece.moments.count) * piece.plane.extent[1]);
+double tilt_error(const FlatPatch& patch, const SurfelSettings& settings) {
+  return settings.noise / (std::sqrt(patch.moments.count) * patch.plane.extent[1]);
 }
 
 /// Whether a piece lies in the plane of a region: its middle near it, its direction alike.
-bool keeps_to(const Plane& plane, const FlatPiece& piece, const SurfelSettings& settings) {
-  const double tilt = std::acos(std::min(1.0, std::abs(plane.normal.dot(piece.plane.normal))));
-  return tilt <= settings.max_tilt + 3 * tilt_error(piece, settings) &&
-         std::abs(plane.distance(piece.plane.middle)) <= settings.max_offset;
+bool keeps_to(const Plane& plane, const FlatPatch& patch, const SurfelSettings& settings) {
+  const double tilt = std::acos(std::min(1.0, std::abs(plane.normal.dot(patch.plane.normal))));
+  return tilt <= settings.max_tilt + 3 * tilt_error(patch, settings) &&
+         std::abs(plane.distance(patch.plane.middle)) <= settings.max_offset;
 }
 
-/// Says to which region a beam belongs.
+/// Assigns beams to regions.
 class BeamSorter {
  public:
-  BeamSorter(const SurfelCells& cells, const std::vector<FlatPiece>& pieces,
+  BeamSorter(const SurfelCells& cells, const std::vector<FlatPatch>& patches,
              const std::vector<FlatRegion>& regions, const SurfelSettings& settings)
       : cells_(cells), regions_(regions), finder_(cells), region_of_cell_(cells.size(), kNoRegion) {
     for (std::uint32_t r = 0; r < regions.size(); ++r) {
       gate_.push_back(5 * std::max(regions[r].plane.extent[0], settings.noise));
-      for (const std::size_t p : regions[r].pieces) {
-        for (std::size_t c = pieces[p].first_cell; c < pieces[p].last_cell; ++c) region_of_cell_[c] = r;
+      for (const std::size_t p : regions[r].patches) {
+        for (std::size_t c = patches[p].first_cell; c < patches[p].last_cell; ++c) region_of_cell_[c] = r;
       }
     }
   }
 
-  /// Those that have cells among the 27 about this one.
+  /// The regions that have cells among the 27 about this one.
   std::vector<std::uint32_t> regions_around(std::size_t cell) const {
     std::vector<std::uint32_t> near;
     for (const std::size_t other : finder_.around(cell)) {
@@ -87,8 +87,8 @@ class BeamSorter {
       const double distance = plane.distance(point);
       const double incidence = plane.normal.dot(direction);
       if (std::abs(distance) > gate_[r] || std::abs(incidence) < 0.05) continue;
-      // Where the beam meets the plane does not depend on the noise of its range, and nor may the choice:
-      // else beams that are too short would be chosen rather than those that are too long.
+      // A beam's intersection with the plane does not depend on the noise of its range, and nor may the
+      // choice: otherwise beams that are too short would be preferred to those that are too long.
       const Eigen::Vector3d foot = point - distance / incidence * direction;
       if (region_at(foot, cell) == r && !is_near_another(foot, r, near)) return r;
     }
@@ -104,7 +104,7 @@ class BeamSorter {
     return cell == cells_.size() ? kNoRegion : region_of_cell_[cell];
   }
 
-  /// Where two surfaces meet at an edge, each would get beams of the other, all on the same side.
+  /// At an edge between two surfaces, each would get beams of the other, all on the same side.
   bool is_near_another(const Eigen::Vector3d& foot, std::uint32_t own,
                        const std::vector<std::uint32_t>& near) const {
     return std::ranges::any_of(near, [&](std::uint32_t r) {
@@ -122,25 +122,25 @@ class BeamSorter {
 
 }  // namespace
 
-std::vector<FlatRegion> joined(const std::vector<FlatPiece>& pieces, const SurfelCells& cells,
+std::vector<FlatRegion> joined(const std::vector<FlatPatch>& patches, const SurfelCells& cells,
                                const SurfelSettings& settings) {
-  const auto touching = contacts(pieces, cells);
-  std::vector<std::size_t> by_count(pieces.size());
+  const auto touching = contacts(patches, cells);
+  std::vector<std::size_t> by_count(patches.size());
   std::iota(by_count.begin(), by_count.end(), std::size_t{0});
   std::ranges::stable_sort(by_count, std::ranges::greater{},
-                           [&](std::size_t p) { return pieces[p].moments.count; });
-  std::vector<bool> taken(pieces.size(), false);
+                           [&](std::size_t p) { return patches[p].moments.count; });
+  std::vector<bool> taken(patches.size(), false);
   std::vector<FlatRegion> regions;
   for (const std::size_t seed : by_count) {
     if (taken[seed]) continue;
-    FlatRegion region{{seed}, pieces[seed].moments, pieces[seed].plane};
+    FlatRegion region{{seed}, patches[seed].moments, patches[seed].plane};
     taken[seed] = true;
-    for (std::size_t k = 0; k < region.pieces.size(); ++k) {
-      for (const std::size_t other : touching[region.pieces[k]]) {
-        if (taken[other] || !keeps_to(region.plane, pieces[other], settings)) continue;
+    for (std::size_t k = 0; k < region.patches.size(); ++k) {
+      for (const std::size_t other : touching[region.patches[k]]) {
+        if (taken[other] || !keeps_to(region.plane, patches[other], settings)) continue;
         taken[other] = true;
-        region.pieces.push_back(other);
-        region.moments += pieces[other].moments;
+        region.patches.push_back(other);
+        region.moments += patches[other].moments;
         region.plane = plane_of(region.moments);
       }
     }
@@ -150,10 +150,10 @@ std::vector<FlatRegion> joined(const std::vector<FlatPiece>& pieces, const Surfe
 }
 
 std::vector<std::uint32_t> region_of_beams(const BeamsView& beams, const SurfelCells& cells,
-                                           const std::vector<FlatPiece>& pieces,
+                                           const std::vector<FlatPatch>& patches,
                                            const std::vector<FlatRegion>& regions,
                                            const SurfelSettings& settings) {
-  const BeamSorter sorter(cells, pieces, regions, settings);
+  const BeamSorter sorter(cells, patches, regions, settings);
   std::vector<std::uint32_t> result(beams.points.size(), kNoRegion);
   for_each_index(cells.size(), [&](std::size_t c) {
     const auto near = sorter.regions_around(c);

@@ -9,7 +9,7 @@
 
 namespace crisp {
 
-/// [beams] What is looked at in a row.
+/// [beams] Number of consecutive beams in a block.
 inline constexpr std::size_t kResidualBlock = 8192;
 
 /// How one beam of a surfel stands to the plane that fits the surfel's beams best.

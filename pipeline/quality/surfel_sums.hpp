@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What least squares against surfels adds up over the beams of each.
+// Sums of least squares against surfels over the beams of each.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -24,22 +24,28 @@ struct SumsByMoment {
   SumsByMoment& operator+=(const SumsByMoment& other);
 };
 
+/// Sums by block of a division, for the blocks that a surfel's beams are of.
+struct SumsByBlock {
+  std::vector<std::uint32_t> blocks;  ///< ascending
+  Eigen::MatrixXd sums;               ///< a column each block
+};
+
 /// Each beam has a row: the three parameters of the surfel's plane, the distance, and the derivatives by the
 /// m parameters, all by √weight / spread; and what a turn about the z axis moves it by, likewise.
 struct SurfelSums {
-  Eigen::MatrixXd gram;                ///< (m + 4)²: Σ rowᵀ row
-  Eigen::VectorXd range_squares;       ///< [m²] m: see NormalEquations
-  Eigen::VectorXd changed;             ///< m: likewise
-  std::vector<Eigen::MatrixXd> pulls;  ///< of each division (m + 4) × blocks: Σ rowᵀ distance
-  SumsByMoment turns;                  ///< m + 5 a moment: Σ rowᵀ turn, and Σ turn² at last
+  Eigen::MatrixXd gram;                   ///< (m + 4)²: Σ rowᵀ row
+  Eigen::VectorXd range_squares;          ///< [m²] m: see NormalEquations
+  Eigen::VectorXd changed;                ///< m: likewise
+  std::vector<SumsByBlock> block_scores;  ///< of each division m + 4 a block: Σ rowᵀ distance
+  SumsByMoment turns;                     ///< m + 5 a moment: Σ rowᵀ turn, and Σ turn² at last
 };
 
-/// What the beams of a surfel are summed by.
+/// The summands of a surfel's beams.
 struct SurfelSummands {
   std::size_t parameters = 0;
   const DerivativeRows& derivatives;
   std::span<const Division> divisions = {};
-  std::vector<std::size_t> blocks = {};           ///< of each division
+  std::span<const std::uint32_t> views = {};      ///< of each beam; or none: see BeamsView
   std::span<const std::uint32_t> moment_of = {};  ///< for each beam; or none
 };
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/data/robust.hpp"
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/plane.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
 namespace {
@@ -48,7 +48,7 @@ Views views_of(std::span<const std::uint32_t> members, std::span<const std::uint
   return result;
 }
 
-/// What of the residuals is gone through again and again, side by side.
+/// Columns of the residuals for repeated passes.
 struct Weighing {
   explicit Weighing(const std::vector<SurfelResidual>& residuals) {
     for (auto* column : {&u, &v, &distance, &per_spread, &most, &weight}) column->reserve(residuals.size());
@@ -96,7 +96,7 @@ std::vector<Eigen::Vector3d> planes_of(const Views& views, const Weighing& of) {
   return planes;
 }
 
-/// What is left of each distance [spreads] after the plane of its view's own.
+/// The residual of each distance [spreads] after the plane of its own view.
 std::vector<double> within_views(const Views& views, const Weighing& of) {
   const auto planes = planes_of(views, of);
   std::vector<double> left(of.size());
@@ -113,16 +113,16 @@ std::vector<double> within_views(const Views& views, const Weighing& of) {
   return left;
 }
 
-/// By how much more the residuals scatter than they should; 1 where it is no more.
+/// Ratio of the residuals' scatter to the expected one; 1 where it is no larger.
 double excess(const std::vector<double>& left) {
   const auto size = [](double value) { return kSigmaByMedian * std::abs(value); };
-  // Most are small enough, as a rule, and that is sooner told than where the median is.
+  // Most are small enough, as a rule, which is found sooner than the median.
   const auto small = std::ranges::count_if(
       left, [](double value) { return value <= 1; }, size);
   if (static_cast<std::size_t>(small) > left.size() / 2) return 1;
   std::vector<double> sizes(left.size());
   std::ranges::transform(left, sizes.begin(), size);
-  return std::max(1.0, middle_of(sizes));
+  return std::max(1.0, median_in_place(sizes));
 }
 
 /// Tukey's biweight; wider where the noise is.
@@ -164,7 +164,7 @@ class CellsOnPlane {
   Axis v_;
 };
 
-/// What beams in one cell miss the planes of their views by.
+/// Sums of the residuals of beams in one cell against the planes of their views.
 struct CellSum {
   double sum = 0;  // [spreads]
   double count = 0;

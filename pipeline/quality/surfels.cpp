@@ -10,7 +10,7 @@
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/quality/blocks.hpp"
-#include "pipeline/quality/surfel_pieces.hpp"
+#include "pipeline/quality/surfel_patches.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 
 namespace crisp {
@@ -89,7 +89,7 @@ double misfit(const Surfel& surfel, const Surfels& surfels, const BeamsView& bea
 Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
   check(beams, settings);
   const SurfelCells cells = cells_of(beams, settings);
-  const auto pieces = flat_pieces(beams, cells, settings);
+  const auto pieces = flat_patches(beams, cells, settings);
   const auto regions = joined(pieces, cells, settings);
   Surfels result;
   result.surfels.resize(regions.size());
@@ -101,7 +101,7 @@ Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
     set_plane(surfel, result.beams_of(surfel), beams, cells);
     refine(surfel, result, beams, settings);
   });
-  // Where each view is but a line, an edge looks like lines that disagree.
+  // Where each view is but a line, an edge resembles lines that disagree.
   constexpr double kFarMore = 3;
   leave_out_odd_ones(result, beams, settings, kFarMore);
   std::ranges::stable_sort(result.surfels, std::ranges::greater{},

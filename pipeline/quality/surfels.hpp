@@ -17,7 +17,7 @@ struct BeamsView {
   /// Which view each is of. Beams of one view disagree by little but noise, however wrong the calibration is:
   /// one laser, one half of its sweep. None: all are of one.
   std::span<const std::uint32_t> views;
-  /// By how much each range scatters, in units of SurfelSettings::noise. None: by that.
+  /// Relative noise of each range, in units of SurfelSettings::noise. None: all 1.
   std::span<const float> noise = {};
 
   double noise_of(std::size_t beam) const { return noise.empty() ? 1.0 : double{noise[beam]}; }

@@ -43,7 +43,7 @@ struct Partners {
 
   HWY_ALIGN float at[3][kCapacity + 2 * kPadding];
   HWY_ALIGN float weight[kCapacity + 2 * kPadding];
-  HWY_ALIGN float pull[3][kCapacity + 2 * kPadding];
+  HWY_ALIGN float gradient[3][kCapacity + 2 * kPadding];
   std::uint32_t tile[kCapacity];  // whence
   std::size_t tiles = 0;
   std::size_t size = 0;
@@ -67,7 +67,7 @@ struct Partners {
     size += from.begin[b + 1] - slot;
   }
 
-  /// What lies beyond the last partner is out of every kernel's reach, and a number: 0 · NaN is not 0.
+  /// Pads beyond the last partner with finite coordinates outside of every kernel: 0 · NaN is not 0.
   HWY_INLINE void close() {
     for (std::size_t k = 0; k < kPadding; k += hn::Lanes(kFloats)) {
       for (auto& axis : at) hn::StoreU(hn::Set(kFloats, 1e15F), kFloats, axis + size + k);
@@ -75,21 +75,21 @@ struct Partners {
     }
   }
 
-  HWY_INLINE void clear_pull() {
-    for (auto& axis : pull) {
+  HWY_INLINE void clear_gradient() {
+    for (auto& axis : gradient) {
       for (std::size_t k = 0; k < size; k += hn::Lanes(kFloats))
         hn::Store(hn::Zero(kFloats), kFloats, axis + k);
     }
   }
 
-  HWY_INLINE void give_pull(const TileArrays& from, TaskSums& sums) const {
+  HWY_INLINE void give_gradient(const TileArrays& from, TaskSums& sums) const {
     std::size_t k = 0;
     for (std::size_t t = 0; t < tiles; ++t) {
       const std::size_t begin = from.begin[tile[t]];
       const std::size_t count = from.begin[tile[t] + 1] - begin;
       const std::size_t slot = begin - from.begin[sums.first_tile];
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (std::size_t i = 0; i < count; ++i) sums.pull[axis][slot + i] += pull[axis][k + i];
+        for (std::size_t i = 0; i < count; ++i) sums.gradient[axis][slot + i] += gradient[axis][k + i];
       }
       k += count;
     }
@@ -102,7 +102,7 @@ HWY_INLINE void pair_up(const TileArrays& tiles, const PairKernel& kernel, std::
                         TaskSums& sums) {
   if (partners.size == 0) return;
   partners.close();
-  if (kSymmetric && kGradient) partners.clear_pull();
+  if (kSymmetric && kGradient) partners.clear_gradient();
   const double radius = kernel.scale * kernel.radius;
   const Vector radius2 = hn::Set(kFloats, static_cast<float>(radius * radius));
   const Vector floor = hn::Set(kFloats, kernel.floor);
@@ -113,9 +113,9 @@ HWY_INLINE void pair_up(const TileArrays& tiles, const PairKernel& kernel, std::
     const Vector z = hn::Set(kFloats, tiles.offset[2][i]);
     const Vector weight = hn::Set(kFloats, tiles.weight[i]);
     Vector sum = hn::Zero(kFloats);
-    Vector pull_x = hn::Zero(kFloats);
-    Vector pull_y = hn::Zero(kFloats);
-    Vector pull_z = hn::Zero(kFloats);
+    Vector gradient_x = hn::Zero(kFloats);
+    Vector gradient_y = hn::Zero(kFloats);
+    Vector gradient_z = hn::Zero(kFloats);
     for (std::size_t k = 0; k < partners.size; k += hn::Lanes(kFloats)) {
       const Vector dx = hn::Sub(x, hn::Load(kFloats, partners.at[0] + k));
       const Vector dy = hn::Sub(y, hn::Load(kFloats, partners.at[1] + k));
@@ -129,14 +129,14 @@ HWY_INLINE void pair_up(const TileArrays& tiles, const PairKernel& kernel, std::
       if (!kGradient) continue;
       const Vector inner = hn::IfThenElseZero(near, g);
       const Vector to_me = hn::Mul(partner, inner);
-      pull_x = hn::MulAdd(to_me, dx, pull_x);
-      pull_y = hn::MulAdd(to_me, dy, pull_y);
-      pull_z = hn::MulAdd(to_me, dz, pull_z);
+      gradient_x = hn::MulAdd(to_me, dx, gradient_x);
+      gradient_y = hn::MulAdd(to_me, dy, gradient_y);
+      gradient_z = hn::MulAdd(to_me, dz, gradient_z);
       if (!kSymmetric) continue;
       const Vector to_it = hn::Mul(weight, inner);
-      float* back_x = partners.pull[0] + k;
-      float* back_y = partners.pull[1] + k;
-      float* back_z = partners.pull[2] + k;
+      float* back_x = partners.gradient[0] + k;
+      float* back_y = partners.gradient[1] + k;
+      float* back_z = partners.gradient[2] + k;
       hn::Store(hn::NegMulAdd(to_it, dx, hn::Load(kFloats, back_x)), kFloats, back_x);
       hn::Store(hn::NegMulAdd(to_it, dy, hn::Load(kFloats, back_y)), kFloats, back_y);
       hn::Store(hn::NegMulAdd(to_it, dz, hn::Load(kFloats, back_z)), kFloats, back_z);
@@ -145,18 +145,18 @@ HWY_INLINE void pair_up(const TileArrays& tiles, const PairKernel& kernel, std::
                    static_cast<double>(hn::GetLane(hn::SumOfLanes(kFloats, sum)));
     if (!kGradient) continue;
     const std::size_t slot = i - tiles.begin[sums.first_tile];
-    sums.pull[0][slot] += hn::GetLane(hn::SumOfLanes(kFloats, pull_x));
-    sums.pull[1][slot] += hn::GetLane(hn::SumOfLanes(kFloats, pull_y));
-    sums.pull[2][slot] += hn::GetLane(hn::SumOfLanes(kFloats, pull_z));
+    sums.gradient[0][slot] += hn::GetLane(hn::SumOfLanes(kFloats, gradient_x));
+    sums.gradient[1][slot] += hn::GetLane(hn::SumOfLanes(kFloats, gradient_y));
+    sums.gradient[2][slot] += hn::GetLane(hn::SumOfLanes(kFloats, gradient_z));
   }
-  if (kSymmetric && kGradient) partners.give_pull(tiles, sums);
+  if (kSymmetric && kGradient) partners.give_gradient(tiles, sums);
   sums.pairs += (kSymmetric ? 2 : 1) * inside;
   sums.tested += (tiles.begin[a + 1] - tiles.begin[a]) * partners.size;
   partners.size = 0;
   partners.tiles = 0;
 }
 
-/// Bit k says whether tile 8 · group + k may have points within the radius of tile a.
+/// Bit k is set if tile 8 · group + k may have points within the radius of tile a.
 HWY_INLINE unsigned tiles_near(const TileArrays& tiles, double radius, std::size_t a, std::size_t group) {
   using Doubles = hn::CappedTag<double, 8>;
   constexpr Doubles kDoubles;
@@ -208,7 +208,7 @@ HWY_INLINE void add_group_as(const TileArrays& tiles, const PairKernel& kernel, 
 
 void add_group(const TileArrays& tiles, const PairKernel& kernel, std::size_t group,
                const std::uint32_t* near, std::size_t near_count, TaskSums& sums) {
-  if (sums.pull[0] == nullptr) {
+  if (sums.gradient[0] == nullptr) {
     add_group_as<false>(tiles, kernel, group, near, near_count, sums);
   } else {
     add_group_as<true>(tiles, kernel, group, near, near_count, sums);

@@ -7,7 +7,7 @@
 // Plain pointers only: what is behind is compiled once for each kind of processor.
 namespace crisp::simd {
 
-/// How far arrays must be readable, and accumulators writable, beyond their last element.
+/// Number of elements by which arrays must be readable, and accumulators writable, beyond their last element.
 inline constexpr std::size_t kPadding = 16;
 
 /// Points in tiles. In kernel units, the squared distance of two points is −log₂ of their kernel G / G(0).
@@ -31,8 +31,8 @@ struct PairKernel {
 struct TaskSums {
   std::size_t first_tile = 0;
   std::size_t last_tile = 0;  ///< one past
-  float* pull[3] = {};  ///< slot − first slot of the task → Σⱼ wⱼ G(xᵢ − xⱼ)/G(0) · (xᵢ − xⱼ) [kernel units];
-                        ///< null: unwanted
+  float* gradient[3] = {};  ///< slot − first slot of the task → Σⱼ wⱼ G(xᵢ − xⱼ)/G(0) · (xᵢ − xⱼ) [kernel
+                            ///< units]; null: unwanted
   double kernel = 0;  ///< Σᵢ Σⱼ wᵢ wⱼ (G/G(0) − floor) over the i of this task and all j in the radius
   std::uint64_t pairs = 0;   ///< such ordered pairs (i, j)
   std::uint64_t tested = 0;  ///< distances computed

@@ -127,7 +127,7 @@ bool Tiles::set_tile_boxes() {
   return std::ranges::all_of(compact, [](char all) { return all != 0; });
 }
 
-/// What near_below() looks for: boxes of one level near a box, and where to list them.
+/// A query of near_below(): boxes of one level near a box, and where to list them.
 struct Tiles::Query {
   const Boxes& boxes;
   std::size_t box;

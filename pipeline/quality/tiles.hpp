@@ -31,7 +31,7 @@ class Tiles {
   /// @param order  of the points, in which neighbours follow one another: that of spatial_order()
   Tiles(const PointsView& points, double reach, std::vector<std::uint32_t> order);
 
-  /// Takes the same points at other positions.
+  /// Updates the positions of the same points.
   /// @return whether all tiles are still compact; if not, sums over them lose precision, and time is lost
   bool refresh(const PointsView& points);
 
@@ -62,7 +62,7 @@ class Tiles {
 
   double reach_;
   std::vector<std::uint32_t> order_;
-  std::array<std::vector<double>, 3> at_;  // by slot: what is looked up all over the cloud is looked up once
+  std::array<std::vector<double>, 3> at_;  // by slot: coordinates needed all over the cloud are gathered once
   std::vector<std::uint32_t> begin_;
   std::vector<Boxes> levels_;  // tiles, groups, groups of groups …; each filled up to a multiple of kFanOut
 };

@@ -38,18 +38,18 @@ bool ViewShape::is_flat(std::span<const std::uint32_t> members, const Plane& pla
     sums.add(plane.u.dot(offset), plane.v.dot(offset), plane.normal.dot(offset), 1 / variance);
   }
   double left = 0;
-  double freedom = 0;
+  double degrees_of_freedom = 0;
   double tilt = 0;
   for (const std::uint32_t view : in_use_) {
     const Eigen::Vector3d fit = sums_[view].fit();
     tilt = std::max(tilt, fit.tail<2>().norm());
     left += sums_[view].squares_left(fit);
-    freedom += sums_[view].freedom();
+    degrees_of_freedom += sums_[view].degrees_of_freedom();
     sums_[view] = {};
   }
   in_use_.clear();
-  if (freedom < 3 || tilt > kMostTilt) return false;
-  return left / freedom <= 1 + settings_.max_excess + 3 * std::sqrt(2 / freedom);
+  if (degrees_of_freedom < 3 || tilt > kMostTilt) return false;
+  return left / degrees_of_freedom <= 1 + settings_.max_excess + 3 * std::sqrt(2 / degrees_of_freedom);
 }
 
 }  // namespace crisp

@@ -17,12 +17,12 @@ namespace crisp {
 
 class Registrar;
 
-/// How far a stage is with its own work.
+/// Progress of a stage's own work.
 struct Progress {
   double done = 0;        ///< of `total`
   double total = 1;       ///< in `unit`
-  std::string_view unit;  ///< "B", "points"; empty where there is no amount worth telling
-  std::string_view what;  ///< what is being done just now: "sigma 5 cm"
+  std::string_view unit;  ///< "B", "points"; empty where there is no meaningful amount
+  std::string_view what;  ///< current activity: "sigma 5 cm"
 };
 using ProgressSink = std::function<void(const Progress&)>;
 
@@ -33,15 +33,15 @@ struct Gauge {
   std::string device = {};  ///< which it is of, if any
 };
 
-/// How a stage of a run without end is doing just now.
+/// Status of a stage in a run without end.
 struct StageStatus {
   std::string line;  ///< for people: "laser1 50.0 Hz, laser2 50.1 Hz, plate 500 Hz"
   std::vector<Gauge> gauges = {};
-  std::vector<std::string> events = {};  ///< what happened since it was told last: each a line of the log
+  std::vector<std::string> events = {};  ///< since the last status: each a line of the log
 };
 using StatusSink = std::function<void(const StageStatus&)>;
 
-/// What a run was told, the same for all of its stages.
+/// Settings of a run, the same for all of its stages.
 struct RunSettings {
   Rig rig = default_rig();
   unsigned threads = 1;                  ///< how many threads a stage may use
@@ -50,12 +50,12 @@ struct RunSettings {
   const Registrar* registrar = nullptr;  ///< what is known by name: stages, and whatever else was registered
 };
 
-/// What one stage had to say during a run.
+/// A stage's report on a run.
 struct StageReport {
   std::map<std::string, std::uint64_t> counts;
   std::vector<std::string> warnings;
-  std::vector<std::string> doubts;
-  std::map<std::string, std::string> lifted;  ///< of which kind doubts no longer hold, and why
+  std::vector<std::string> caveats;
+  std::map<std::string, std::string> lifted;  ///< of which kind caveats no longer hold, and why
   nlohmann::json section = nlohmann::json::object();
   std::vector<std::string> lines;
   std::vector<std::filesystem::path> read;
@@ -63,8 +63,8 @@ struct StageReport {
   std::function<void(const nlohmann::ordered_json& summary)> when_recorded = {};
 };
 
-/// Through which a stage knows the run that it is part of, and tells what happened. To be used from the
-/// thread that the stage was called in; only interrupted() may be asked from any.
+/// A stage's access to its run: settings, reports and progress. To be used from the thread that calls the
+/// stage; only interrupted() is thread-safe.
 class Context {
  public:
   Context(const RunSettings& run, StageReport& report, const std::atomic<bool>* stop = nullptr,
@@ -80,25 +80,26 @@ class Context {
   void count(const std::string& name, std::uint64_t n = 1) { report_->counts[name] += n; }
   /// Something that a person should know but that does not stop the run.
   void warn(std::string text) { report_->warnings.push_back(std::move(text)); }
-  /// The run goes on, but its result cannot be trusted: the summary says why, and the exit status is not 0.
-  void distrust(std::string why) { report_->doubts.push_back(std::move(why)); }
-  /// The doubts of the stages above that gave the item of this kind which its own now replaces no longer
-  /// hold: they become warnings that say why. Not those of stages whose item goes elsewhere, too.
-  void lift_doubts(std::string_view kind, std::string why) {
+  /// Adds a caveat: the run goes on, but its result is untrusted, the summary states why, and the exit status
+  /// is not 0.
+  void mark_untrusted(std::string why) { report_->caveats.push_back(std::move(why)); }
+  /// Resolves the caveats of the stages above that gave the item of this kind which this stage replaces: they
+  /// become warnings that state why. Caveats of stages whose item also goes elsewhere remain.
+  void resolve_caveats(std::string_view kind, std::string why) {
     report_->lifted.insert_or_assign(std::string(kind), std::move(why));
   }
-  /// What the stages above doubted of what this one got of them, and none of them has answered; complete when
+  /// Unresolved caveats of the stages above on what this stage got from them; complete when
   /// the stage is to finish.
-  std::vector<std::string> doubts_above() const {
-    return doubts_above_ ? doubts_above_() : std::vector<std::string>();
+  std::vector<std::string> caveats_above() const {
+    return caveats_above_ ? caveats_above_() : std::vector<std::string>();
   }
   /// Adds the keys of this object to the stage's section of summary.json; keys given before are replaced.
   void report(const nlohmann::json& section) { report_->section.update(section); }
   /// Adds lines to what people read at the end of the run; may hold line breaks (a table).
-  void say(std::string text) { report_->lines.push_back(std::move(text)); }
+  void print(std::string text) { report_->lines.push_back(std::move(text)); }
   /// Names a file that the results depend on, so that its hash becomes part of the provenance.
   void reads(std::filesystem::path file) { report_->read.push_back(std::move(file)); }
-  /// Names a file that was written, once it is complete: a record of its origin is put beside it.
+  /// Names a file that was written, once it is complete: a provenance record is written next to it.
   void wrote(std::filesystem::path file) { report_->written.push_back(std::move(file)); }
   /// Has the last of the stage's files written when the run is over and came to its end: `write` gets what
   /// summary.json is going to hold. Name the file by wrote() all the same, in finish(). The stage itself may
@@ -107,7 +108,7 @@ class Context {
     report_->when_recorded = std::move(write);
   }
 
-  /// How much of the stage's own work is done, 0 to 1; `what` says what is being done: "sigma 5 cm".
+  /// The fraction of the stage's own work that is done, 0 to 1; `what` is the current activity: "sigma 5 cm".
   void progress(double fraction, std::string_view what = {}) const {
     progress(Progress{fraction, 1, {}, what});
   }
@@ -117,21 +118,23 @@ class Context {
   }
   /// Whether anybody wants to know the status.
   bool is_watched() const { return static_cast<bool>(status_); }
-  /// How the stage is doing; what it told before is replaced.
-  void tell(const StageStatus& status) const {
+  /// Sets the stage's status; replaces the one before.
+  void set_status(const StageStatus& status) const {
     if (status_) status_(status);
   }
   /// The run is to stop: return soon. The run then ends without calling finish(), so nothing is written.
   bool interrupted() const { return is_set(stop_) || is_set(abandoned_); }
 
-  /// Who is told the status, and what else the run may be ended by.
+  /// Sets the receiver of the status, and another flag that ends the run.
   void watch(StatusSink status, const std::atomic<bool>* abandoned) {
     status_ = std::move(status);
     abandoned_ = abandoned;
   }
 
-  /// Who knows what the stages above doubted.
-  void ask_for_doubts(std::function<std::vector<std::string>()> above) { doubts_above_ = std::move(above); }
+  /// Sets the source of caveats_above().
+  void set_caveats_above(std::function<std::vector<std::string>()> above) {
+    caveats_above_ = std::move(above);
+  }
 
  private:
   static bool is_set(const std::atomic<bool>* flag) {
@@ -143,7 +146,7 @@ class Context {
   const std::atomic<bool>* stop_;
   ProgressSink progress_;
   StatusSink status_;
-  std::function<std::vector<std::string>()> doubts_above_;
+  std::function<std::vector<std::string>()> caveats_above_;
   const std::atomic<bool>* abandoned_ = nullptr;
 };
 

@@ -22,7 +22,7 @@ struct StageInput {
   bool required = true;
 };
 
-/// A stage as the registry knows it: all that can be said of it without making one.
+/// A stage as the registry describes it, without an instance of it.
 struct StageType {
   std::string name;
   std::string summary;
@@ -31,7 +31,7 @@ struct StageType {
   std::vector<StageInput> inputs;
   std::vector<Kind> outputs;
   std::vector<Option> options;
-  bool endless = false;  ///< a source that only ends when it is told to
+  bool endless = false;  ///< a source that ends only when the run is stopped
   std::function<std::unique_ptr<Stage>()> make;
   std::function<void*(Stage&)> options_object;  ///< what Option::set and Option::get want of a stage
 
@@ -40,13 +40,14 @@ struct StageType {
   bool gives(const Kind& kind) const;
 };
 
-/// In which a stage S says what it takes, gives and can be told: see Stage and docs/writing-a-stage.md.
+/// Description of a stage S: what it takes and gives, and its options. See Stage and
+/// docs/how-to/write-a-stage.md.
 template <class S>
 class StageDescription {
  public:
   /// "family.name", lower case.
   StageDescription& name(std::string text) { return with(type_.name, std::move(text)); }
-  /// What it does, in half a sentence: "places each beam where the plate was when it was fired".
+  /// Summary in half a sentence: "places each beam at the plate's angle of its firing time".
   StageDescription& summary(std::string text) { return with(type_.summary, std::move(text)); }
   /// Paragraphs for the reference page, in Markdown.
   StageDescription& details(std::string text) { return with(type_.details, std::move(text)); }
@@ -70,8 +71,7 @@ class StageDescription {
     return *this;
   }
 
-  /// A source that has no end of its own: a run that is told to stop ends it as if it had one, and the other
-  /// stages finish with what came.
+  /// Marks a source without an end of its own: stopping the run ends the source, and the other stages finish.
   StageDescription& endless() {
     type_.endless = true;
     return *this;

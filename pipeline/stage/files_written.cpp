@@ -44,7 +44,7 @@ struct OwnFiles {
   std::vector<NamePattern> names;
 };
 
-/// All files that come of this path. What is named after it lies beside it.
+/// All files written for this path, with those named after it.
 std::vector<NamePattern> names_written(const Option& option, const fs::path& path) {
   std::vector<NamePattern> names;
   for (const auto& shape : option.writes) {
@@ -53,14 +53,14 @@ std::vector<NamePattern> names_written(const Option& option, const fs::path& pat
     else if (option.is_folder)
       names.push_back(NamePattern::within(one_name(path), shape));
     else
-      names.push_back(NamePattern::beside(name_in_folder(path), shape));
+      names.push_back(NamePattern::given(name_in_folder(path), shape));
   }
   const std::size_t files = names.size();
   for (std::size_t i = 0; i < files; ++i) names.push_back(names[i] + kProvenance);
   return names;
 }
 
-/// What the stages read and write, by their options.
+/// Files that the stages read and write, by their options.
 struct FilesOfStages {
   std::vector<OwnFiles> read;
   std::vector<OwnFiles> written;

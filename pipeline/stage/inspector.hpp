@@ -12,14 +12,14 @@
 
 namespace crisp {
 
-/// What a file holds: for people, and for programs.
+/// Description of a file: for people, and for programs.
 // NOLINTNEXTLINE(bugprone-exception-escape): moving JSON checks what it holds
 struct Inspection {
   std::string text;     ///< lines, without a line break at the end
   nlohmann::json data;  ///< the same as an object
 };
 
-/// One that can say what a file of some kind holds: `crisp info`.
+/// Describes the content of files of some kind: `crisp info`.
 struct Inspector {
   std::string kind;  ///< "a capture"
   /// Whether the file is of that kind, by its first bytes (up to 4096 of them).
@@ -29,11 +29,11 @@ struct Inspector {
   /// The extensions of such files, ".pcap": one that is named so (see has_extension()) and is none is an
   /// error.
   std::vector<std::string> extensions = {};
-  /// Two files of this kind side by side, as lines for people; none where each is told by itself.
+  /// Compares two files of this kind, as lines for people; empty where files are described one by one.
   /// @throws Error if one cannot be read
   std::function<std::string(const std::filesystem::path& first, const std::filesystem::path& second)>
       compare = {};
-  /// What a file of this kind says to ROS, as URDF; none where it says nothing.
+  /// The content of a file of this kind as URDF for ROS; empty where it has none.
   /// @throws Error if it cannot be read
   std::function<std::string(const std::filesystem::path& file, const Rig& rig)> urdf = {};
 };

@@ -42,7 +42,7 @@ void replace(std::string& text, std::string_view word, const std::string& by) {
 
 }  // namespace
 
-NamePattern NamePattern::beside(const std::filesystem::path& path, std::string_view shape) {
+NamePattern NamePattern::given(const std::filesystem::path& path, std::string_view shape) {
   NamePattern name = within(path.parent_path(), shape);
   replace(name.text_, "<stem>", path.stem().string());
   replace(name.text_, "<ext>", path.extension().string());

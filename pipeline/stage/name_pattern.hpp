@@ -16,7 +16,7 @@ class NamePattern {
   /// A file that comes of `path`: <stem> is its name without the ending, <ext> the ending, # any number, ####
   /// one of four digits or more, and * any text without a slash. "<stem>_####<ext>" of cloud.pcd are
   /// cloud_0001.pcd, cloud_0002.pcd and so on.
-  static NamePattern beside(const std::filesystem::path& path, std::string_view shape);
+  static NamePattern given(const std::filesystem::path& path, std::string_view shape);
   /// A file in this folder, * and # as above.
   static NamePattern within(const std::filesystem::path& folder, std::string_view shape);
 

@@ -47,7 +47,7 @@ std::string bounds(const Option& option) {
   return {};
 }
 
-/// How many elements a list has.
+/// Allowed number of a list's elements, in words.
 std::string counts(const Option& option) {
   const bool limited = option.max_count != std::numeric_limits<std::size_t>::max();
   if (option.min_count == option.max_count) return fmt::format(", {} of them", option.min_count);

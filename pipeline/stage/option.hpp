@@ -13,13 +13,13 @@
 
 namespace crisp {
 
-/// What one value of an option is.
+/// Type of one value of an option.
 enum class OptionType { boolean, integer, number, text, choice, path, groups };
 
 using OptionScalar = std::variant<bool, std::int64_t, double, std::string>;
 
-/// One entry of a map of maps: `mirror.cone: {kappa: 0.3deg}`. What names may stand there, and what the
-/// values' units are, is for the owner of the option to say, who also knows where each was written.
+/// One entry of a map of maps: `mirror.cone: {kappa: 0.3deg}`. The option's owner validates names and units,
+/// with the place of each.
 struct OptionGroup {
   struct Entry {
     std::string name;
@@ -61,7 +61,7 @@ struct Option {
   std::function<OptionValue(const void* object)> get;
 };
 
-/// What is wrong with `value` for this option, in words, or nothing if it is right.
+/// The error of `value` for this option, in words, or nothing if it is valid.
 std::optional<std::string> complaint(const Option& option, const OptionValue& value);
 
 /// Likewise with one value, of a list that the option is, or the option's own.

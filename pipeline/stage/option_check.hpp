@@ -8,8 +8,8 @@
 
 namespace crisp {
 
-/// A check for check_all() whose errors are of this option of the stage: people are told the place where they
-/// gave it, be that in the pipeline's file or on the command line.
+/// A check for check_all() whose errors are of this option of the stage: they name the place where it was
+/// set, in the pipeline's file or on the command line.
 /// @throws Errors  what the check threw
 template <class Check>
 auto of_option(std::string option, Check check) {

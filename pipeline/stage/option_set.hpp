@@ -104,7 +104,7 @@ V from_scalar(const OptionScalar& scalar, const ChoiceTable<V>& table) {
 
 }  // namespace detail
 
-/// What can be said of an option after its name and help. V is the type of its values.
+/// Properties of an option beyond its name and help. V is the type of its values.
 template <class V>
 class OptionDeclaration {
  public:
@@ -137,11 +137,10 @@ class OptionDeclaration {
     option_->required = true;
     return *this;
   }
-  /// The path is of a file that the stage writes, in place of reading it: a pipeline in which another stage
-  /// reads it, or writes it too, is wrong.
-  /// @param also  files beside it that the stage writes, named after it: "<stem>_####<ext>" are
-  /// cloud_0001.pcd,
-  ///              cloud_0002.pcd … of cloud.pcd; # is any number, * any text
+  /// Marks the path of a file that the stage writes instead of reading it: a pipeline in which another stage
+  /// reads or writes it is an error.
+  /// @param also  further files that the stage writes, named after it: "<stem>_####<ext>" are
+  ///              cloud_0001.pcd, cloud_0002.pcd … of cloud.pcd; # is any digit, * any text
   OptionDeclaration& writes(
       const std::vector<std::string_view>& also = {}) requires std::same_as<V, std::filesystem::path> {
     option_->writes = {kFileItself};
@@ -186,8 +185,8 @@ class OptionDeclaration {
 /// The options of a struct or class T, each declared once:
 ///
 ///     OptionSet<Rqe> options;
-///     options.add("sigma", &Rqe::sigma, "kernel width; start well above the noise").unit("m").range(1e-4,
-///     10);
+///     options.add("sigma", &Rqe::sigma, "kernel width; start well above the noise")
+///         .unit("m").range(1e-4, 10);
 ///
 /// Between name and help stands the way from T to the member: one pointer to a member or callable, or a chain
 /// of up to three. Members can be bool, integers, double, float, std::string, std::filesystem::path,

@@ -131,7 +131,7 @@ class Reader {
     return scalar;
   }
 
-  /// What was meant by values with commas between them and no brackets around them; empty if it is none.
+  /// Suggestion for values with commas between them and no brackets around them; empty for other nodes.
   static std::string as_list(const YamlNode& node) {
     if (node.kind != YamlNode::Kind::scalar || node.text.find(',') == std::string::npos) return {};
     std::string list;

@@ -33,17 +33,17 @@ class Builder {
     node.stage = node.type->make();
     const std::size_t before = errors_.size();
     set_options(node, spec);
-    node.is_told = errors_.size() == before && spec.refused.empty();
+    node.has_valid_options = errors_.size() == before && spec.refused.empty();
     return node;
   }
 
-  /// Asks a stage whether its options agree with each other and the rig.
+  /// Checks that a stage's options agree with each other and the rig.
   void check(const PipelineNode& node) {
-    const auto tell = [&](const Error& error) {
+    const auto report = [&](const Error& error) {
       fail(error.place().file.empty() ? node.place_of(error.option()) : error.place(),
            node.tag + ": " + error.message(), error.advice());
     };
-    for_each_error([&] { node.stage->check(run_); }, tell);
+    for_each_error([&] { node.stage->check(run_); }, report);
   }
 
  private:
@@ -105,7 +105,7 @@ Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run, st
   for (const auto& spec : specs) pipeline.nodes.push_back(builder.make(spec, pipeline.nodes));
   connect(pipeline, specs, run.registrar->stages(), errors);
   for (const auto& node : pipeline.nodes) {
-    if (node.type && node.is_told && rig_is_known) builder.check(node);
+    if (node.type && node.has_valid_options && rig_is_known) builder.check(node);
   }
   if (errors.empty()) pipeline.warnings = put_too_low(pipeline);
   return pipeline;

@@ -10,6 +10,7 @@
 #include "pipeline/data/all_errors.hpp"
 #include "pipeline/files/file_kind.hpp"
 #include "pipeline/files/nearest.hpp"
+#include "pipeline/files/renamed_names.hpp"
 #include "pipeline/files/rig_file.hpp"
 #include "pipeline/files/yaml_map.hpp"
 #include "pipeline/stage/files_written.hpp"
@@ -23,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What ${output} stands for where a pipeline is only validated.
+/// Value of ${output} where a pipeline is only validated.
 const fs::path kNoOutput = "/output";
 
 class PlanReader {
@@ -44,7 +45,7 @@ class PlanReader {
     read_rig_of(map.find("rig"));
     if (const YamlNode* list = map.require("pipeline")) read_stages(*list);
     map.refuse_others();
-    settings_.apply(plan_.stages, stages_, errors_);
+    settings_.apply(plan_.stages, stages_, errors_, plan_.warnings);
     return std::move(plan_);
   }
 
@@ -147,8 +148,8 @@ class PlanReader {
     StageSpec spec;
     spec.place = node.place;
     const YamlNode* name = map.require("stage");
-    spec.stage = map.text("stage", "");
     if (name) spec.place = name->place;
+    spec.stage = current(RenamedName::Kind::stage, "", map.text("stage", ""), spec.place);
     spec.tag = map.text("tag", "");
     if (const YamlNode* tag = map.find("tag"); tag && !is_tag(spec.tag)) {
       map.fail(tag->place, describe(*tag) + " is not a tag", "tags are of letters, digits, '_', '-' and '.'");
@@ -157,6 +158,14 @@ class PlanReader {
     if (const YamlNode* with = map.find("with")) read_options(*with, spec);
     map.refuse_others();
     if (!spec.stage.empty()) plan_.stages.push_back(std::move(spec));
+  }
+
+  /// Today's name of what an earlier release called otherwise, with a warning.
+  std::string current(RenamedName::Kind kind, std::string_view owner, const std::string& name,
+                      const Place& place) {
+    std::string today = current_name(kind, owner, name);
+    if (today != name) plan_.warnings.push_back({old_name_warning(name, today).what(), place});
+    return today;
   }
 
   /// The stage's name where the colon behind `stage` is missing, or the blank behind that.
@@ -172,16 +181,19 @@ class PlanReader {
     return !tag.empty() && std::all_of(tag.begin(), tag.end(), allowed);
   }
 
-  static std::vector<TagReference> read_inputs(const YamlNode& node, YamlMap& map) {
+  std::vector<TagReference> read_inputs(const YamlNode& node, YamlMap& map) {
     std::vector<TagReference> inputs;
+    const auto add = [&](const std::string& tag, const Place& place) {
+      inputs.push_back({current(RenamedName::Kind::stage, "", tag, place), place});
+    };
     if (node.kind == YamlNode::Kind::scalar)
-      inputs.push_back({node.text, node.place});
+      add(node.text, node.place);
     else if (node.kind != YamlNode::Kind::sequence)
       map.fail(node.place, describe(node) + " is not a list of tags");
     for (const auto& item : node.items) {
       std::string wrong;
       if (auto tag = read_text(item, wrong))
-        inputs.push_back({std::move(*tag), item.place});
+        add(*tag, item.place);
       else
         map.fail(item.place, "inputs: " + wrong);
     }
@@ -193,9 +205,10 @@ class PlanReader {
     const std::string who = spec.tag.empty() ? spec.stage : spec.tag;
     YamlMap map(node, who, errors_);
     const StageType* type = stages_.find(spec.stage);
-    if (!type) return;  // said when the pipeline is built
+    if (!type) return;  // reported when the pipeline is built
     for (const auto& entry : node.entries) {
-      const Option* option = type->find_option(entry.key);
+      const std::string name = current(RenamedName::Kind::option, type->name, entry.key, entry.place);
+      const Option* option = type->find_option(name);
       if (!option) {
         map.fail(entry.place, "there is no option '" + entry.key + "'", no_such_option(*type, entry.key));
         continue;
@@ -238,7 +251,7 @@ void sort_by_place(std::vector<Error>& errors) {
                    [&](const Error& a, const Error& b) { return key(a) < key(b); });
 }
 
-/// Of the kind of file that stages read in a folder.
+/// File name extensions of the kind that stages read in a folder.
 std::vector<std::string> endings_of_captures(const Registrar& registrar) {
   for (const auto& inspector : registrar.inspectors()) {
     if (inspector.kind == "a capture") return inspector.extensions;
@@ -267,6 +280,7 @@ LoadedPipeline load_pipeline(const YamlNode& root, const fs::path& file, const P
                        .summary = output.empty() ? fs::path() : output / kSummary,
                        .read_in_folders = endings_of_captures(*run.registrar)};
   check_files_written(pipeline, own, errors);
+  pipeline.warnings.insert(pipeline.warnings.begin(), plan.warnings.begin(), plan.warnings.end());
   sort_by_place(errors);
   if (!errors.empty()) throw Errors(std::move(errors));
   return {std::move(pipeline), file, std::move(plan.rig_file)};

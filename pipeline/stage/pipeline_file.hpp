@@ -12,7 +12,7 @@
 
 namespace crisp {
 
-/// What was said besides the file: it goes before what the file says.
+/// Arguments from outside of the file: they override the file.
 struct PipelineArguments {
   std::optional<std::filesystem::path> input = {};   ///< what ${input} stands for
   std::optional<std::filesystem::path> output = {};  ///< what ${output} stands for, a folder
@@ -25,12 +25,13 @@ struct PipelineArguments {
 /// A pipeline as its file describes it.
 struct PipelinePlan {
   Rig rig = default_rig();
-  bool rig_is_known = true;        ///< false: the one that was asked for has mistakes
+  bool rig_is_known = true;        ///< false: the requested rig has mistakes
   std::filesystem::path rig_file;  ///< empty: the default rig
   std::vector<StageSpec> stages;
+  std::vector<PipelineWarning> warnings;  ///< names of an earlier release
 };
 
-/// Reads a pipeline's YAML (docs/pipelines.md), the rig that it names included. Adds all mistakes to
+/// Reads a pipeline's YAML (docs/reference/pipelines.md), the rig that it names included. Adds all mistakes to
 /// `errors`; the plan is of use only to find further ones if there are any.
 PipelinePlan parse_plan(const YamlNode& root, const std::filesystem::path& folder,
                         const PipelineArguments& arguments, const StageRegistry& stages,

@@ -6,7 +6,7 @@
 
 #include "pipeline/stage/registry.hpp"
 
-// What a plugin must have in common with the program that loads it, as one text: types of the standard
+// ABI key: a plugin and the program that loads it must agree in it. Types of the standard
 // library and of Eigen cross the boundary, and their layout depends on these. Spelt by the preprocessor, so
 // that it is a constant in the plugin's file and can be read before anything of the plugin runs.
 #define CRISP_TEXT_OF(x) #x
@@ -24,7 +24,7 @@
 
 namespace crisp {
 
-/// What a plugin's one symbol, `crisp_plugin`, holds: a constant, not a function.
+/// Content of a plugin's one symbol, `crisp_plugin`: a constant, not a function.
 struct PluginDescriptor {
   std::uint32_t size;                ///< sizeof(PluginDescriptor) where the plugin was compiled
   const char* abi_key;               ///< CRISP_ABI_KEY where the plugin was compiled

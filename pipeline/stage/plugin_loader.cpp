@@ -21,9 +21,7 @@ namespace fs = std::filesystem;
 std::string refusal_of(const PluginDescriptor& descriptor) {
   if (descriptor.size != sizeof(PluginDescriptor)) {
     return fmt::format(
-        "its descriptor has {} bytes where this program's has {}: built for another version of crisp; "
-        "rebuild "
-        "it against this one",
+        "its descriptor has {} bytes where this program's has {}: built for another version of crisp; rebuild it against this one",
         descriptor.size, sizeof(PluginDescriptor));
   }
   if (!descriptor.abi_key || !descriptor.name || !descriptor.version || !descriptor.register_all) {
@@ -31,9 +29,7 @@ std::string refusal_of(const PluginDescriptor& descriptor) {
   }
   if (descriptor.abi_key != std::string(CRISP_ABI_KEY)) {
     return fmt::format(
-        "it was built for '{}', and this program is '{}'; rebuild it against this crisp with the same "
-        "compiler "
-        "flags",
+        "it was built for '{}', and this program is '{}'; rebuild it against this crisp with the same compiler flags",
         descriptor.abi_key, CRISP_ABI_KEY);
   }
   return {};
@@ -44,7 +40,7 @@ std::string last_error() {
   return text ? text : "it cannot be loaded";
 }
 
-/// What a plugin throws while it registers itself, in words; empty if nothing.
+/// The exception of a plugin's registration, in words; empty without one.
 template <class Register>
 std::string what_is_wrong_with(Register register_all) {
   try {
@@ -53,9 +49,9 @@ std::string what_is_wrong_with(Register register_all) {
   } catch (const Error& error) {
     return error.advice().empty() ? error.message() : error.message() + "; " + error.advice();
   } catch (const std::exception& error) {
-    return std::string("what it registers was refused: ") + error.what();
+    return std::string("its registration was rejected: ") + error.what();
   } catch (...) {
-    return "registering its stages it threw what is no std::exception";
+    return "its registration threw something that is no std::exception";
   }
 }
 
@@ -108,7 +104,7 @@ const PluginDescriptor* open_plugin(const fs::path& file, Registrar& registrar, 
     what_is_wrong_with([&] { descriptor->register_all(registrar); });
   });
   if (crash.empty()) return open_sound_plugin(file, refusal);
-  refusal = "it is damaged: a process that loads it ends " + crash + "; copy or build it anew";
+  refusal = "it is damaged: a process that loads it ends " + crash + "; copy or build it again";
   return nullptr;
 }
 

@@ -27,16 +27,15 @@ struct PluginRecord {
 
 /// Loads plugins for as long as the program runs: they are never unloaded.
 ///
-/// A file is refused, with the reason in its record, if it is no shared object or not all of one, crashes the
+/// A file is rejected, with the reason in its record, if it is no complete shared object, crashes the
 /// system's loader (it is tried in a process of its own first), has no `crisp_plugin`, was built with another
-/// compiler, C++ library, alignment or version of crisp (told by constants, before any function of it is
-/// called), or if what it registers is refused. A plugin whose name came before is the same once more, and
-/// skipped.
+/// compiler, C++ library, alignment or version of crisp (by constants that are read before any function of it
+/// is called), or if its registrations are rejected. A plugin whose name is already loaded is skipped.
 class PluginLoader {
  public:
   explicit PluginLoader(Registrar& registrar) : registrar_(registrar) {}
 
-  /// Of plugins of the same name, those of this file or folder count, wherever others are met first.
+  /// Prefers this file or folder among plugins of the same name, wherever others are found first.
   void prefer(const std::filesystem::path& file_or_folder);
 
   /// Loads a file, or the *.so of a folder in the order of their names.

@@ -81,9 +81,7 @@ std::string stage_markdown(const StageType& type) {
 
 std::string index_markdown(const StageRegistry& stages) {
   std::string text =
-      "# Stages\n\nThese pages are written by `crisp stages --markdown --output docs/reference` from what "
-      "the stages "
-      "declare.\n";
+      "# Stages\n\n`crisp stages --markdown --output docs/reference` writes these pages from the stages' declarations.\n";
   std::string family;
   for (const auto* type : stages.all()) {
     const std::string of = type->name.substr(0, type->name.find('.'));

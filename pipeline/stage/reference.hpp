@@ -9,7 +9,7 @@
 
 namespace crisp {
 
-/// All that is to be said of a stage, for a terminal.
+/// Full description of a stage, for a terminal.
 std::string stage_text(const StageType& type);
 
 /// The same as a page of the reference, in Markdown.

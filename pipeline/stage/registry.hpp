@@ -27,7 +27,7 @@ class StageRegistry {
   std::map<std::string, StageType> types_;
 };
 
-/// What a family's or plugin's `void register_xxx(Registrar&)` is handed. Stages have their registry here;
+/// Argument of a family's or plugin's `void register_xxx(Registrar&)`. Stages have their registry here;
 /// registries of other things (terms of the sensor model, measures …) are attached by the program, so that
 /// this library need not know them:
 ///
@@ -41,14 +41,14 @@ class Registrar {
     type.origin = origin_;
     stages_.add(std::move(type));
   }
-  /// For `crisp info`: says what files of one more kind hold. The first that recognises a file is asked.
+  /// For `crisp info`: describes files of one more kind. The first inspector that recognises a file is used.
   void inspector(Inspector inspector) { inspectors_.push_back(std::move(inspector)); }
   const Inspectors& inspectors() const { return inspectors_; }
 
   StageRegistry& stages() { return stages_; }
   const StageRegistry& stages() const { return stages_; }
 
-  /// Makes a registry known, which must outlive the registrar.
+  /// Adds a registry, which must outlive the registrar.
   /// @param kind  what one thing in it is called, if all are to be listed: "term"
   template <class R>
   void attach(R& registry, std::string kind = {}) {
@@ -66,12 +66,12 @@ class Registrar {
     return *static_cast<R*>(other(typeid(R)));
   }
 
-  /// All that is registered and has a name, in order: "stage write.pcd", "term mirror.cone".
+  /// All registered names, in order: "stage write.pcd", "term mirror.cone".
   std::vector<std::string> registered() const;
-  /// What takes back all that is registered from now on.
+  /// Returns a function that undoes all later registrations.
   std::function<void()> snapshot();
 
-  /// From where the next registrations come: "built in", or a plugin's file.
+  /// Sets the origin of the next registrations: "built in", or a plugin's file.
   void set_origin(std::string origin) { origin_ = std::move(origin); }
   const std::string& origin() const { return origin_; }
 

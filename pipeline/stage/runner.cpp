@@ -100,7 +100,7 @@ class Runner {
 
   std::vector<NodeResult> results() {
     for (std::size_t i = 0; i < workers_.size(); ++i) {
-      for (const auto& [kind, why] : workers_[i].result.report.lifted) lift_doubts(i, kind, why);
+      for (const auto& [kind, why] : workers_[i].result.report.lifted) resolve_caveats(i, kind, why);
     }
     std::vector<NodeResult> list;
     for (auto& worker : workers_) {
@@ -134,21 +134,21 @@ class Runner {
     return list;
   }
 
-  /// Turns the doubts that one stage answers into warnings.
-  void lift_doubts(std::size_t by, const std::string& kind, const std::string& why) {
+  /// Turns the caveats that one stage answers into warnings.
+  void resolve_caveats(std::size_t by, const std::string& kind, const std::string& why) {
     std::string answer = "; " + workers_[by].result.tag;
     answer += ": " + why;
     for (const std::size_t i : replaced_by(by, kind)) {
       StageReport& report = workers_[i].result.report;
-      for (std::string& doubt : std::exchange(report.doubts, {})) {
-        doubt += answer;
-        report.warnings.push_back(std::move(doubt));
+      for (std::string& caveat : std::exchange(report.caveats, {})) {
+        caveat += answer;
+        report.warnings.push_back(std::move(caveat));
       }
     }
   }
 
-  /// What the stages doubt, of which something ends in this one, and none answers.
-  std::vector<std::string> doubts_above(std::size_t index) const {
+  /// Unresolved caveats of the stages above, on items that reach this one.
+  std::vector<std::string> caveats_above(std::size_t index) const {
     std::vector<bool> answered(workers_.size(), false);
     for (std::size_t by = 0; by < workers_.size(); ++by) {
       for (const auto& [kind, why] : workers_[by].result.report.lifted) {
@@ -160,12 +160,12 @@ class Runner {
     for (std::size_t i = index; i-- > 0;) {
       feeds[i] = std::ranges::any_of(workers_[i].edges, [&](const auto& edge) { return feeds[edge.to]; });
     }
-    std::vector<std::string> doubts;
+    std::vector<std::string> caveats;
     for (std::size_t i = 0; i < index; ++i) {
       if (feeds[i] && !answered[i])
-        std::ranges::copy(workers_[i].result.report.doubts, std::back_inserter(doubts));
+        std::ranges::copy(workers_[i].result.report.caveats, std::back_inserter(caveats));
     }
-    return doubts;
+    return caveats;
   }
 
   static void add(std::map<std::string, std::uint64_t>& items, const Kind& kind, std::uint64_t n) {
@@ -184,7 +184,7 @@ class Runner {
     worker.context.emplace(run_, worker.result.report,
                            !ends_gently_ || node.type->endless ? hooks_.stop : nullptr, progress_of(worker));
     worker.context->watch(status_of(worker), &abandoned_);
-    worker.context->ask_for_doubts([this, index] { return doubts_above(index); });
+    worker.context->set_caveats_above([this, index] { return caveats_above(index); });
     for (std::size_t i = 0; i < node.type->inputs.size(); ++i) {
       const Kind kind = node.type->inputs[i].kind;
       worker.slots.push_back({kind, nullptr});
@@ -262,7 +262,7 @@ class Runner {
     }
   }
 
-  /// Stages say beforehand which files they write, and are refused there; this is for those that do not.
+  /// Stages declare the files that they write, and are checked before the run; this is for those that do not.
   void refuse_overwritten(std::size_t index) const {
     const auto& own = workers_[index].result.report.written;
     for (std::size_t i = 0; i < workers_.size(); ++i) {
@@ -302,7 +302,7 @@ class Runner {
     }
   }
 
-  /// Calls into a stage: its time is taken, and what it throws is told with its tag and place.
+  /// Calls into a stage: measures its time, and adds its tag and place to what it throws.
   template <class Call>
   void call(std::size_t index, Call&& body) {
     if (is_stopped()) throw Interrupted();
@@ -317,17 +317,17 @@ class Runner {
       }
     } catch (const Interrupted&) {
       throw;
-    } catch (const Told&) {
+    } catch (const Reported&) {
       throw;
     } catch (const Error& error) {
       const Place& place = error.place().file.empty() ? worker.node->place : error.place();
-      throw Told(worker.node->tag + ": " + error.message(), error.advice(), place);
+      throw Reported(worker.node->tag + ": " + error.message(), error.advice(), place);
     } catch (const std::exception& thrown) {
       const Error error = want_of_resources(thrown).value_or(Error(thrown.what()));
-      throw Told(worker.node->tag + ": " + error.message(), error.advice(), worker.node->place);
+      throw Reported(worker.node->tag + ": " + error.message(), error.advice(), worker.node->place);
     } catch (...) {
-      throw Told(worker.node->tag + ": it threw what is no std::exception", "let it throw crisp::Error",
-                 worker.node->place);
+      throw Reported(worker.node->tag + ": it threw something that is no std::exception",
+                     "let it throw crisp::Error", worker.node->place);
     }
     if (is_stopped()) throw Interrupted();
   }
@@ -335,7 +335,7 @@ class Runner {
   ProgressSink progress_of(const Worker& worker) const {
     if (!hooks_.progress) return {};
     return [this, &worker](const Progress& progress) {
-      const std::lock_guard lock(told_);
+      const std::lock_guard lock(reported_);
       hooks_.progress(worker.node->tag, progress);
     };
   }
@@ -343,18 +343,18 @@ class Runner {
   StatusSink status_of(const Worker& worker) const {
     if (!hooks_.status) return {};
     return [this, &worker](const StageStatus& status) {
-      const std::lock_guard lock(told_);
+      const std::lock_guard lock(reported_);
       hooks_.status(worker.node->tag, status);
     };
   }
 
-  /// Whether to leave all as it is. Where a source is endless, being told to stop is its end instead.
+  /// Whether to stop without finishing. Where a source is endless, a stop request is its end instead.
   bool is_stopped() const {
     return !ends_gently_ && hooks_.stop && hooks_.stop->load(std::memory_order_relaxed);
   }
 
   /// An error that names its stage already: it passes through the stages that feed that one.
-  class Told : public Error {
+  class Reported : public Error {
     using Error::Error;
   };
 
@@ -366,7 +366,7 @@ class Runner {
   std::atomic<bool> together_ = false;   ///< several sources are being pulled
   std::atomic<bool> abandoned_ = false;  ///< one of them failed
   std::mutex turn_;                      ///< of the source that gives
-  mutable std::mutex told_;              ///< of what the hooks are told
+  mutable std::mutex reported_;          ///< guards the hooks' calls
 };
 
 }  // namespace

@@ -14,7 +14,7 @@
 
 namespace crisp {
 
-/// What one stage of a run did.
+/// Result of one stage of a run.
 struct NodeResult {
   std::string tag;
   std::string stage;
@@ -24,15 +24,14 @@ struct NodeResult {
   StageReport report;
 };
 
-/// How a run can be stopped and watched from outside.
+/// Hooks to stop and watch a run from outside.
 struct RunHooks {
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string& tag, const Progress& progress)> progress = {};
   std::function<void(const std::string& tag, const StageStatus& status)> status = {};
   /// Called with each item before it runs through the stages below.
   std::function<void(const std::string& tag, const Item& item)> given = {};
-  /// What the stages had done and reported when one of them threw, or all were told to stop; called before
-  /// run_pipeline throws.
+  /// The stages' results up to a failure or a stop request; called before run_pipeline throws.
   std::function<void(std::vector<NodeResult> until_then)> failed = {};
 };
 
@@ -40,14 +39,14 @@ struct RunHooks {
 /// through all stages below before the next is given (depth first, in the pipeline's order, without queues),
 /// then each stage finishes, in the pipeline's order. The same pipeline always runs in the same order.
 ///
-/// A source of which all that it gives is held by others runs before the other sources, so that a known
-/// calibration is there before the data.
-/// Where a source is endless, being told to stop ends that source alone, and the run comes to its end.
+/// A source all of whose items are held by others runs before the other sources, so that a known calibration
+/// is there before the data.
+/// Where a source is endless, a stop request ends that source alone, and the run comes to its end.
 /// Several endless sources run at the same time, each in a thread of its own, after the others; what they
 /// give takes turns, so that no stage below is ever called twice at the same time. One that fails ends the
 /// others.
 /// @throws Error        what a stage threw, with the stage's tag, and its place in the pipeline's file
-/// @throws Interrupted  when told to stop; no stage has finished then that had not before
+/// @throws Interrupted  on a stop request; no stage has finished then that had not before
 std::vector<NodeResult> run_pipeline(Pipeline& pipeline, const RunSettings& run, const RunHooks& hooks = {});
 
 }  // namespace crisp

@@ -5,6 +5,7 @@
 
 #include "pipeline/files/control_characters.hpp"
 #include "pipeline/files/nearest.hpp"
+#include "pipeline/files/renamed_names.hpp"
 #include "pipeline/stage/option_yaml.hpp"
 #include "pipeline/stage/unknown_names.hpp"
 
@@ -36,8 +37,8 @@ YamlNode parse_value(const std::string& value, const std::string& text, std::vec
   return node;
 }
 
-/// What a name that is neither a variable nor a tag could have been meant to be: an option whose stage was
-/// left out, or a tag that is near.
+/// Suggestion for a name that is neither a variable nor a tag: an option without its stage,
+/// or the nearest tag.
 std::string meant(const std::string& name, const std::vector<StageSpec>& specs, const StageRegistry& stages) {
   std::vector<std::string> tags;
   for (const auto& spec : specs) {
@@ -77,18 +78,24 @@ std::optional<YamlNode> Settings::take_variable(const std::string& name, std::ve
   return value;
 }
 
-void Settings::apply(std::vector<StageSpec>& specs, const StageRegistry& stages, std::vector<Error>& errors) {
+void Settings::apply(std::vector<StageSpec>& specs, const StageRegistry& stages, std::vector<Error>& errors,
+                     std::vector<PipelineWarning>& warnings) {
   name_stages(specs);
   for (auto& setting : settings_) {
-    if (!setting.used) apply(setting, specs, stages, errors);
+    if (!setting.used) apply(setting, specs, stages, errors, warnings);
   }
 }
 
 void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const StageRegistry& stages,
-                     std::vector<Error>& errors) {
+                     std::vector<Error>& errors, std::vector<PipelineWarning>& warnings) {
   const Place place = place_of(setting.text);
+  const auto current = [&](RenamedName::Kind kind, std::string_view owner, const std::string& given) {
+    std::string today = current_name(kind, owner, given);
+    if (today != given) warnings.push_back({old_name_warning(given, today).what(), place});
+    return today;
+  };
   const auto dot = setting.target.rfind('.');
-  const std::string tag = setting.target.substr(0, dot);
+  const std::string tag = current(RenamedName::Kind::stage, "", setting.target.substr(0, dot));
   const auto spec = std::find_if(specs.begin(), specs.end(), [&](const auto& s) { return s.tag == tag; });
   if (dot == std::string::npos || spec == specs.end()) {
     const std::string what = dot == std::string::npos ? "variable" : "stage with the tag";
@@ -96,8 +103,8 @@ void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const Stag
     return;
   }
   const StageType* type = stages.find(spec->stage);
-  if (!type) return;  // said when the pipeline is built
-  const std::string name = setting.target.substr(dot + 1);
+  if (!type) return;  // reported when the pipeline is built
+  const std::string name = current(RenamedName::Kind::option, type->name, setting.target.substr(dot + 1));
   const Option* option = type->find_option(name);
   if (!option) {
     errors.emplace_back(tag + ": there is no option '" + name + "'", no_such_option(*type, name), place);

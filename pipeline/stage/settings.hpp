@@ -21,7 +21,8 @@ class Settings {
 
   /// Sets the options that are named, and adds an error for each setting that nothing has a use for. Paths
   /// are relative to the current folder.
-  void apply(std::vector<StageSpec>& specs, const StageRegistry& stages, std::vector<Error>& errors);
+  void apply(std::vector<StageSpec>& specs, const StageRegistry& stages, std::vector<Error>& errors,
+             std::vector<PipelineWarning>& warnings);
 
  private:
   struct Setting {
@@ -32,7 +33,7 @@ class Settings {
   };
 
   static void apply(Setting& setting, std::vector<StageSpec>& specs, const StageRegistry& stages,
-                    std::vector<Error>& errors);
+                    std::vector<Error>& errors, std::vector<PipelineWarning>& warnings);
 
   std::vector<Setting> settings_;
 };

@@ -75,13 +75,13 @@ std::string fault_of_headers(const fs::path& file, std::uint64_t size) {
   const auto header = read_headers<FileHeader>(file, 0, 1);
   if (!header || !is_of_this_machine(header->front())) return "it is no shared object for this machine";
   const auto missing = [size](const char* what) {
-    return fmt::format("it is cut short: {} reach beyond its {} bytes; copy or build it anew", what, size);
+    return fmt::format("it is truncated: {} reach beyond its {} bytes; copy or build it again", what, size);
   };
   const FileHeader& elf = header->front();
   if (elf.e_type != ET_DYN) return "it is no shared object, but a program or a part of one";
   if (elf.e_phentsize != sizeof(ProgramHeader) ||
       (elf.e_shnum > 0 && elf.e_shentsize != sizeof(SectionHeader)))
-    return "its headers are damaged: they have sizes that no loader knows; copy or build it anew";
+    return "its headers are damaged: their sizes are invalid; copy or build it again";
   const auto programs = read_headers<ProgramHeader>(file, elf.e_phoff, elf.e_phnum);
   if (!programs) return missing("its program headers");
   const auto is_segment_within = [size](const ProgramHeader& segment) {
@@ -89,7 +89,7 @@ std::string fault_of_headers(const fs::path& file, std::uint64_t size) {
   };
   if (!std::ranges::all_of(*programs, is_segment_within)) return missing("its segments");
   if (!std::ranges::all_of(*programs, is_sound) || !has_mapped_dynamic_section(*programs))
-    return "its program headers are damaged: what they describe does not fit together; copy or build it anew";
+    return "its program headers are damaged: they are inconsistent; copy or build it again";
   const auto sections = read_headers<SectionHeader>(file, elf.e_shoff, elf.e_shnum);
   if (!sections) return missing("its section headers");
   const auto is_section_within = [size](const SectionHeader& section) {
@@ -114,7 +114,7 @@ void silence_output() {
 std::string fault_of_object(const fs::path& file) {
   std::error_code failure;
   const auto status = fs::status(file, failure);
-  if (!fs::exists(status)) return {};  // the loader says why
+  if (!fs::exists(status)) return {};  // the loader reports why
   if (!fs::is_regular_file(status)) return "it is no file, but a pipe, a device or a folder";
   const std::uint64_t size = fs::file_size(file, failure);
   return failure ? failure.message() : fault_of_headers(file, size);

@@ -7,21 +7,21 @@
 
 namespace crisp {
 
-/// Why a file is no sound shared object of this machine, by its kind and its ELF headers: it is a pipe or a
-/// device, it is of another machine, it was cut short (by a copy that was broken off, say), what its headers
-/// describe does not fit together. Empty if nothing is found.
+/// Why a file is no valid shared object of this machine, by its kind and its ELF headers: it is a pipe or a
+/// device, it is of another machine, it is truncated (by an interrupted copy, for example), or its headers
+/// are inconsistent. Empty if it is valid.
 ///
-/// The system's loader does not look: it maps what the headers describe, and the first touch of a page that
+/// The system's loader does not check: it maps what the headers describe, and the first touch of a page that
 /// is not in the file ends the program.
 std::string fault_of_object(const std::filesystem::path& file);
 
-/// Does something in a process of its own, which nothing it says comes out of.
-/// @return how that ended if it crashed, or ended the process: "by signal 11 (Segmentation fault)"; empty if
-/// it did not
+/// Runs work in a child process whose output is discarded.
+/// @return how the process ended if it crashed or exited: "by signal 11 (Segmentation fault)"; empty if it
+/// did not
 std::string crash_of(const std::function<void()>& work);
 
-/// What makes a file one that others may have changed: that everyone may write to it, or to its folder. Empty
-/// if nothing does.
+/// Why others may have changed a file: everyone may write to it, or to its folder. Empty
+/// otherwise.
 std::string exposure_of(const std::filesystem::path& file);
 
 }  // namespace crisp

@@ -13,7 +13,7 @@ namespace crisp {
 class Context;
 struct RunSettings;
 
-/// What a stage is called with: the item that drives this call, and the latest of every kind that it holds.
+/// Inputs of a stage's call: the item that drives the call, and the latest of every held kind.
 class Inputs {
  public:
   explicit Inputs(std::span<const Item> items) : items_(items) {}
@@ -44,7 +44,7 @@ class Inputs {
   std::span<const Item> items_;
 };
 
-/// Where a stage puts what it makes. What is given runs through the stages below before give() returns.
+/// Receives a stage's items. A given item runs through the stages below before give() returns.
 class Outputs {
  public:
   explicit Outputs(std::function<void(Item)> sink) : sink_(std::move(sink)) {}
@@ -74,8 +74,8 @@ class Stage {
   Stage& operator=(const Stage&) = delete;
   virtual ~Stage() = default;
 
-  /// Called once all options are set, before any file is opened: refuses, by an Error, what the declarations
-  /// of single options cannot (a minimum above a maximum, a laser that the rig does not have).
+  /// Called once all options are set, before any file is opened: throws an Error for what the declarations of
+  /// single options cannot check (a minimum above a maximum, a laser that the rig does not have).
   virtual void check(const RunSettings&) const {}
 
   /// Called for each item of a driving kind, once everything that the stage holds is there. A stage that

@@ -23,12 +23,13 @@ std::string meant_by_last_part(const StageRegistry& stages, Fits fits) {
 
 /// The same for a name without a family: "crop" for filter.crop, "voxelgrid" for filter.voxel.
 std::string meant_without_family(std::string_view name, const StageRegistry& stages) {
-  constexpr std::size_t kTelling = 4;  // letters that two names do not share by chance
+  constexpr std::size_t kDistinctive = 4;  // letters that two names do not share by chance
   if (name.find('.') != std::string_view::npos) return {};
   auto meant = meant_by_last_part(stages, [name](std::string_view last) { return last == name; });
   if (!meant.empty()) return meant;
-  return meant_by_last_part(
-      stages, [name](std::string_view last) { return last.size() >= kTelling && name.starts_with(last); });
+  return meant_by_last_part(stages, [name](std::string_view last) {
+    return last.size() >= kDistinctive && name.starts_with(last);
+  });
 }
 
 }  // namespace
@@ -36,7 +37,7 @@ std::string meant_without_family(std::string_view name, const StageRegistry& sta
 Error no_such_stage(const std::string& name, const StageRegistry& stages) {
   auto meant = meant_without_family(name, stages);
   if (meant.empty()) meant = did_you_mean(name, stages.names(), "crisp stages lists them;");
-  return Error("there is no stage '" + name + "'", meant + " a plugin's are known with --plugin FILE");
+  return Error("there is no stage '" + name + "'", meant + " load a plugin's with --plugin FILE");
 }
 
 std::string no_such_option(const StageType& type, const std::string& name) {

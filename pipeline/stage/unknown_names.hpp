@@ -7,10 +7,10 @@
 
 namespace crisp {
 
-/// That there is no such stage, what could have been meant, and how a plugin's are known.
+/// The error for an unknown stage, with the nearest names, and how to load a plugin's stages.
 Error no_such_stage(const std::string& name, const StageRegistry& stages);
 
-/// What an unknown option could have been meant to be, and where the known ones are listed.
+/// Error for an unknown option, with the nearest name and the place of the list.
 std::string no_such_option(const StageType& type, const std::string& name);
 
 }  // namespace crisp

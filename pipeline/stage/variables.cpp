@@ -66,7 +66,7 @@ void Variables::substitute_scalar(YamlNode& node, std::vector<Error>& errors) {
 void Variables::count(const YamlNode& value, const Place& place) {
   constexpr std::size_t kMost = 1 << 20;
   put_in_ += 1 + value.text.size();
-  if (put_in_ > kMost) throw Error("the variables grow beyond all measure", "", place);
+  if (put_in_ > kMost) throw Error("the variables' expansion exceeds one mebibyte", "", place);
   for (const auto& item : value.items) count(item, place);
   for (const auto& entry : value.entries) count(entry.value, place);
 }
@@ -84,7 +84,7 @@ const YamlNode* Variables::find(const std::string& name, const Place& place,
   const std::vector<std::string> known(names.begin(), names.end());
   const bool is_of_environment = std::getenv(name.c_str()) != nullptr;
   errors.emplace_back(fmt::format("there is no variable '{}'{}", name,
-                                  is_of_environment ? "; those of the environment are not read" : ""),
+                                  is_of_environment ? "; environment variables are not read" : ""),
                       is_of_environment
                           ? fmt::format("declare it under vars, and give it with --set {}=VALUE", name)
                           : did_you_mean(name, known, fmt::format("known are {}", fmt::join(known, ", "))),

@@ -15,14 +15,14 @@ class Variables {
   /// A variable and its value, which may be a list or map where `${name}` stands alone.
   void set(const std::string& name, YamlNode value) { values_[name] = std::move(value); }
   void set(const std::string& name, const std::string& text);
-  /// A variable that is known but has no value in this run; `advice` says how to give it one.
+  /// A variable that is known but has no value in this run; `advice` states how to set it.
   void set_missing(const std::string& name, std::string advice) { missing_[name] = std::move(advice); }
   bool contains(const std::string& name) const { return values_.contains(name); }
 
-  /// Replaces each `${name}` in every scalar of the tree, once: what is put in is not looked at again.
+  /// Replaces each `${name}` in every scalar of the tree, once: substituted text is not searched again.
   /// `$${` stands for `${`. Adds an error for each name that is not known.
-  /// @throws Error  once more than a mebibyte has been put in: variables that double one another grow without
-  /// end
+  /// @throws Error  once more than a mebibyte has been substituted: variables that double one another grow
+  /// without end
   void substitute(YamlNode& node, std::vector<Error>& errors);
 
  private:

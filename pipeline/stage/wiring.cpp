@@ -21,7 +21,7 @@ class Connector {
     PipelineNode& node = nodes_[index];
     if (!node.type) return;
     const auto named = spec.inputs ? resolve(index, *spec.inputs) : std::nullopt;
-    if (spec.inputs && !named) return;  // the names themselves are wrong, which was said
+    if (spec.inputs && !named) return;  // the names themselves are wrong, as already reported
     for (const auto& input : node.type->inputs) {
       node.feeders.push_back(named ? those_that_give(input.kind, *named) : nearest_giver(input.kind, index));
       if (node.feeders.back().empty() && input.required && all_known_above(index)) {
@@ -80,7 +80,7 @@ class Connector {
       const auto fits = [&](const StageInput& input) { return giver->gives(input.kind); };
       if (std::any_of(node.type->inputs.begin(), node.type->inputs.end(), fits)) continue;
       errors_.emplace_back(
-          fmt::format("{}: '{}' gives nothing that {} takes", node.tag, references[i].tag, node.type->name),
+          fmt::format("{}: '{}' gives no item that {} takes", node.tag, references[i].tag, node.type->name),
           fmt::format("it gives {}, and {} takes {}", kinds(giver->outputs), node.type->name,
                       kinds(taken(*node.type))),
           references[i].place);
@@ -108,7 +108,7 @@ class Connector {
     } else if (const auto givers = registry_.givers(input.kind); !givers.empty()) {
       advice = fmt::format("put one of these above it: {}", fmt::join(givers, ", "));
     } else {
-      advice = "no stage that is known gives one";
+      advice = "no known stage gives one";
     }
     return Error(fmt::format("{}: nothing above it gives the {} that it takes", node.tag, kind), advice,
                  node.place);
@@ -190,7 +190,7 @@ std::vector<PipelineWarning> put_too_low(const Pipeline& pipeline) {
     const auto above = low.belongs_above(i);
     if (!above) continue;
     const std::string& tag = pipeline.nodes[i].tag;
-    warnings.push_back({fmt::format("{}: nothing below takes what {} gives; put it above {}, which could",
+    warnings.push_back({fmt::format("{}: no stage below takes the items of {}; move it above {}, which does",
                                     tag, tag, pipeline.nodes[*above].tag),
                         pipeline.nodes[i].place});
   }

@@ -8,13 +8,12 @@
 namespace crisp {
 
 /// Fills in `feeders` of every node, and adds an error for each input that nothing feeds and for each entry
-/// of `inputs` that feeds nothing. Nodes whose stage is not known are passed over: their error stands
-/// already.
+/// of `inputs` that feeds nothing. Nodes whose stage is unknown are skipped: their error is already reported.
 void connect(Pipeline& pipeline, const std::vector<StageSpec>& specs, const StageRegistry& registry,
              std::vector<Error>& errors);
 
-/// A warning for each stage below all that would take what it gives: a filter under the writer, say. To be
-/// asked of a pipeline that is connected.
+/// A warning for each stage below all stages that would take its items: a filter under the writer, for
+/// example. Requires a connected pipeline.
 std::vector<PipelineWarning> put_too_low(const Pipeline& pipeline);
 
 }  // namespace crisp

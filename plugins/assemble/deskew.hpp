@@ -7,14 +7,14 @@
 #include "pipeline/data/cloud.hpp"
 #include "pipeline/data/measurements.hpp"
 #include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/model/known_mirrors.hpp"
+#include "pipeline/model/mirror_angle_cache.hpp"
 #include "pipeline/model/sensor_model.hpp"
 
 namespace crisp {
 
 struct Deskewed {
   std::shared_ptr<Cloud> cloud;
-  std::size_t outside = 0;  ///< beams fired when the plate's readings do not say where it was: left out
+  std::size_t outside = 0;  ///< beams fired when the plate's angle is unknown: left out
 };
 
 /// Places every beam where the plate was when that beam was fired: equations (1) to (3) of Sheehan, Harrison

@@ -19,18 +19,12 @@ constexpr double kWorthAWarning = 0.01;  // share of the beams that are missing 
 }  // namespace
 
 void DeskewStage::describe(StageDescription<DeskewStage>& d) {
-  d.name("assemble.deskew").summary("places each beam where the plate was when it was fired");
+  d.name("assemble.deskew")
+      .summary("assembles the cloud: places each beam at the plate's angle of its firing time");
   d.details(
-      "Each beam has an instant of its own: the plate's angle is interpolated at that instant, shifted by "
-      "the "
-      "laser's lag, and the beam placed by the sensor's model with the parameters of its laser. The points "
-      "are in the plate's frame.\n\n"
-      "The calibration is that of the nearest stage above that gives one: `calibrate.load` for a known one, "
-      "or a stage that estimates it, for which the measurements are kept until it is done. Without such a "
-      "stage the rig's nominal values are taken.\n\n"
-      "Beams that were fired when the plate's readings do not say where it was (before the first, after the "
-      "last, in a silence longer than the clock stage's `max_gap`) are left out and counted; nothing is "
-      "extrapolated. To assemble only some lasers or ranges, put a `filter.range` above.");
+      "Each beam has a firing time of its own: the plate's angle is interpolated at that time, shifted by the laser's lag, and the sensor model places the beam with the parameters of its laser. The points are in the plate's frame.\n\n"
+      "The calibration is that of the nearest stage above that gives one: `calibrate.load` for a known one, or a stage that estimates it, for which the measurements are buffered until it is done. Without such a stage the rig's nominal values apply.\n\n"
+      "Beams without an encoder reading around their firing time (before the first, after the last, in a silence longer than the clock stage's `max_gap`) are dropped and counted; nothing is extrapolated. To assemble only some lasers or ranges, put a `filter.range` above.");
   d.takes<Measurements>().holds<PlateTrajectory>().holds<Calibration>(Need::optional).gives<Cloud>();
 }
 
@@ -42,7 +36,7 @@ void DeskewStage::process(const Inputs& in, Outputs& out, Context& context) {
   if (beams.cos_incidence.empty()) blind_ = with_incidence_;
   beams_ += beams.size();
   outside_ += deskewed.outside;
-  context.count("beams outside the plate's readings", deskewed.outside);
+  context.count("beams outside the encoder readings", deskewed.outside);
   out.give(std::move(deskewed.cloud));
 }
 
@@ -62,25 +56,23 @@ void DeskewStage::finish(Outputs&, Context& context) {
   const std::uint64_t points = beams_ - outside_;
   if (beams_ > 0 && points == 0) {
     throw Error(
-        fmt::format("none of {} beams could be placed: the plate's readings do not say where it was", beams_),
-        "see whether they were recorded all the time");
+        fmt::format("none of {} beams could be placed: no encoder readings cover their times", beams_),
+        "check that the encoder was recorded together with the lasers");
   }
   const bool nominal = calibration_ == nullptr;
   context.report({{"beams", beams_}, {"points", points}, {"calibration", nominal ? "nominal" : "given"}});
-  context.say(fmt::format("{} points of {} beams, placed by {}", points, beams_,
-                          nominal ? "the rig's nominal values" : "the calibration"));
+  context.print(fmt::format("{} points of {} beams, placed by {}", points, beams_,
+                            nominal ? "the rig's nominal values" : "the calibration"));
   if (!blind_.empty()) {
-    context.warn(
-        fmt::format("the cloud is placed without {}: nobody has found how its beams met their surfaces",
-                    fmt::join(blind_, ", ")));
+    context.warn(fmt::format("the cloud is placed without {}: the incidence angles of its beams are unknown",
+                             fmt::join(blind_, ", ")));
   }
   const double missing =
       static_cast<double>(outside_) / static_cast<double>(std::max<std::uint64_t>(beams_, 1));
   if (missing > kWorthAWarning) {
-    context.warn(
-        fmt::format("{:.1f} % of the beams are not in the cloud: the plate's readings do not say "
-                    "where it was when they were fired",
-                    100 * missing));
+    context.warn(fmt::format(
+        "{:.1f} % of the beams are not in the cloud: no encoder readings cover their firing times",
+        100 * missing));
   }
 }
 

@@ -11,7 +11,7 @@
 #include "pipeline/data/cloud.hpp"
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/data/pool.hpp"
-#include "pipeline/model/known_mirrors.hpp"
+#include "pipeline/model/mirror_angle_cache.hpp"
 #include "pipeline/model/sensor_model.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
@@ -31,8 +31,8 @@ class DeskewStage final : public Stage {
 
   std::shared_ptr<const Calibration> calibration_;  ///< from above, of `model_`; null: the nominal one
   std::optional<SensorModel> model_;
-  std::vector<std::string> with_incidence_;  ///< terms of it that ask how beams met their surfaces
-  std::vector<std::string> blind_;           ///< those that asked in vain
+  std::vector<std::string> with_incidence_;  ///< terms of it that depend on the beams' incidence
+  std::vector<std::string> blind_;           ///< those whose beams have no known incidence
   OrientedPlate oriented_;
   KnownMirrors mirrors_;
   Pool<Cloud> clouds_;

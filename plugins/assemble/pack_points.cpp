@@ -20,7 +20,7 @@ static_assert(std::endian::native == std::endian::little && sizeof(Point) == 4 *
 static_assert(offsetof(Point, data) == 0 && offsetof(Point, intensity) == 16 &&
               offsetof(Point, laser) == 20 && offsetof(Point, beam) == 22 && offsetof(Point, time) == 24);
 
-/// As many points as D has lanes, from the i-th on.
+/// Packs as many points as D has lanes, from the i-th on.
 template <class D>
 HWY_INLINE void pack(D doubles, const PointArrays& from, std::size_t i, std::uint64_t* words) {
   const hn::RebindToUnsigned<D> to_words;

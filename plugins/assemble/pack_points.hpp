@@ -9,7 +9,7 @@
 // Plain data only: what is behind is compiled once for each kind of processor.
 namespace crisp::simd {
 
-/// What points are made of, array by array.
+/// Components of points, array by array.
 struct PointArrays {
   const double* x;  ///< [m]
   const double* y;  ///< [m]

@@ -26,9 +26,9 @@ class Revolutions {
   Revolutions(const RevolutionSettings& settings, Give give) : settings_(settings), give_(std::move(give)) {}
 
   /// @param points  of a scan, times on the epoch of `plate`
-  /// @param plate   φ(t) over them; where it does not say, no cloud ends
+  /// @param plate   φ(t) over them; where it is unknown, no cloud ends
   void add(const Cloud& points, const PlateTrajectory& plate);
-  /// Gives what is left.
+  /// Gives the remaining points.
   void finish();
 
  private:

@@ -6,18 +6,15 @@
 namespace crisp {
 
 void RevolutionsStage::describe(StageDescription<RevolutionsStage>& d) {
-  d.name("assemble.revolutions").summary("gathers the points of single scans into one cloud a revolution");
+  d.name("assemble.revolutions").summary("merges the points of scans into one cloud per revolution");
   d.details(
-      "A cloud ends when the plate has turned so far from where the cloud began, forwards or back, or after "
-      "`longest`: the split is at the point, not at the scan. Each cloud is given as soon as all lasers have "
-      "gone "
-      "on to the next. What came at last, an unfinished revolution, is given at the end.");
+      "A cloud ends when the plate has turned by `turns` from the cloud's begin, forwards or back, or after `max_duration`: clouds are split between points, not between scans. Each cloud is given as soon as all lasers have reached the next. The last, unfinished revolution is given at the end.");
   d.takes<Cloud>().holds<PlateTrajectory>().gives<Cloud>();
   d.option("turns", &RevolutionsStage::settings_, &RevolutionSettings::turns,
-           "of the plate in one cloud: 0.5 is a half")
+           "turns of the plate in one cloud: 0.5 is a half")
       .range(0.01, 1000);
-  d.option("longest", &RevolutionsStage::settings_, &RevolutionSettings::longest,
-           "time in one cloud, where the plate does not turn so far")
+  d.option("max_duration", &RevolutionsStage::settings_, &RevolutionSettings::longest,
+           "maximum duration of one cloud, where the plate turns less")
       .unit("s")
       .range(0.01, 3600);
 }
@@ -37,7 +34,7 @@ void RevolutionsStage::finish(Outputs& out, Context& context) {
   out_ = &out;
   if (revolutions_) revolutions_->finish();
   context.report({{"clouds", clouds_}});
-  context.say(fmt::format("{} clouds of {:g} turns", clouds_, settings_.turns));
+  context.print(fmt::format("{} clouds of {:g} turns", clouds_, settings_.turns));
 }
 
 }  // namespace crisp

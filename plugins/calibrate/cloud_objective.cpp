@@ -10,7 +10,7 @@ namespace {
 Vectors as_arrays(const Placed& placed, const Sample& sample) {
   if (placed.index.size() != sample.beams.size()) {
     throw Error(
-        "an eta moved some beams out of the time that the encoder readings cover",
+        "an eta moved some beams out of the time span of the encoder readings",
         "check the rig's eta, the clock stages, and whether the encoder was recorded from begin to end");
   }
   Vectors arrays;
@@ -35,11 +35,11 @@ ModelQuality model_quality(const SensorModel& model, const Sample& sample,
   ModelQuality quality{.value = cloud.value,
                        .gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free.size()))};
   for (std::size_t i = 0; i < placed.index.size(); ++i) {
-    const Eigen::Vector3d pull(cloud.gradient.x[i], cloud.gradient.y[i], cloud.gradient.z[i]);
+    const Eigen::Vector3d gradient(cloud.gradient.x[i], cloud.gradient.y[i], cloud.gradient.z[i]);
     const auto& columns = derivatives.columns[sample.beams.laser[i]];
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(i * derivatives.stride + k);
-      quality.gradient[static_cast<Eigen::Index>(columns[k])] += pull.dot(derivatives.values.col(column));
+      quality.gradient[static_cast<Eigen::Index>(columns[k])] += gradient.dot(derivatives.values.col(column));
     }
   }
   return quality;

@@ -16,11 +16,11 @@ struct ModelQuality {
   Eigen::VectorXd gradient;  ///< one a free parameter
 };
 
-/// Where a measure and the sensor model meet: the quality's gradient with respect to every point times every
-/// point's derivative with respect to the free parameters.
+/// Quality of a sample's cloud and its gradient by the free parameters, by the chain rule: the quality's
+/// gradient by every point times the point's derivative by the parameters.
 ///
-/// @param model   at the parameters to be judged
-/// @param sample  n beams, all of which the plate's readings cover
+/// @param model   at the parameters to be evaluated
+/// @param sample  n beams, all of which encoder readings cover
 /// @param free    indices into model.values()
 /// @param scale   [m] the measure's
 ModelQuality model_quality(const SensorModel& model, const Sample& sample,

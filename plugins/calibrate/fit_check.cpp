@@ -12,8 +12,8 @@
 namespace crisp {
 namespace {
 
-/// How far beams may miss their surfaces, in units of the noise. The surfaces' own roughness makes up to 1.4:
-/// see SurfelSettings::max_excess.
+/// Limit of the beams' residuals against surfaces, in units of the noise. The surfaces' own roughness makes
+/// up to 1.4: see SurfelSettings::max_excess.
 constexpr double kPoorFit = 1.5;
 
 using Caveats = std::vector<std::string>;
@@ -25,13 +25,11 @@ Caveats of_misfit(const Refinement& refined, double noise) {
   const double scatter = refined.scatter > 0 ? refined.scatter : noise;
   if (misfit <= kPoorFit * scatter) return {};
   return {fmt::format(
-      "beams miss their surfaces by {:.1f} mm (RMS), {:.1f} times what ranges scatter from neighbour to "
-      "neighbour ({:.1f} mm): the rig is wrong by a little, or the sensor model lacks an effect. Check the "
-      "rig's mount and counts_per_revolution; configs/diagnose.yaml looks for the effect",
+      "the beams' residuals against their surfaces are {:.1f} mm (RMS), {:.1f} times the ranges' noise ({:.1f} mm): the rig is slightly wrong, or the sensor model lacks an effect. Check the rig's mount and counts_per_revolution; configs/diagnose.yaml searches for the effect",
       misfit * 1e3, misfit / scatter, scatter * 1e3)};
 }
 
-/// Contradictions of the rig. The stage that gave a start outside of a range has reported that already.
+/// Contradictions with the rig. The stage that gave a start outside of a range has already reported it.
 Caveats of_rig(const Calibration& calibration, const Calibration& start, const Rig& rig) {
   const SearchRange range;
   const RigCheck check = check_with_rig(calibration, rig, range);
@@ -39,13 +37,16 @@ Caveats of_rig(const Calibration& calibration, const Calibration& start, const R
   return is_new ? check.caveats : far_from_nominal(calibration, rig);
 }
 
-Caveats of_crispness(const std::map<std::string, double>& quality, bool is_near_start) {
+Caveats of_rqe(const std::map<std::string, double>& quality, bool is_near_start) {
   constexpr double kLess = 0.05;  // [nat] that chance and the bias of an optimum of RQE do not explain
   const double after = quality.at("rqe_after");
-  if (after > quality.at("rqe_before")) return {"the calibration made the cloud less crisp than it was"};
+  if (after > quality.at("rqe_before"))
+    return {"the calibration increased the cloud's Rényi quadratic entropy: it is worse than its start"};
   const double less = after - quality.at("rqe_unrefined");
   if (!is_near_start || less <= kLess) return {};
-  return {fmt::format("the refinement made the cloud less crisp, by {:.3f} nat, than it found it", less)};
+  return {fmt::format(
+      "the refinement increased the cloud's Rényi quadratic entropy by {:.3f} nat: it is worse than its start",
+      less)};
 }
 
 }  // namespace
@@ -59,10 +60,10 @@ double misfit_of(const Refinement& refined, double noise) { return std::sqrt(ref
 
 std::vector<std::string> check_fit(const Refinement& refined, const Calibration& calibration,
                                    const Calibration& start, const Rig& rig, double noise) {
-  Caveats caveats = refined.outcome.doubts;
+  Caveats caveats = refined.outcome.caveats;
   append(caveats, of_misfit(refined, noise));
   append(caveats, of_rig(calibration, start, rig));
-  if (!agrees_well(refined)) append(caveats, of_crispness(calibration.quality, refined.restarts == 0));
+  if (!agrees_well(refined)) append(caveats, of_rqe(calibration.quality, refined.restarts == 0));
   return caveats;
 }
 

@@ -10,11 +10,11 @@
 
 namespace crisp {
 
-/// Why the fit of a refined calibration is not to be trusted; empty if it is: whether it settled, whether
-/// views agree, how far beams miss their surfaces beside how they scatter, what the rig says, and RQE.
+/// Caveats of a refined calibration's fit; empty if it is trusted: convergence, agreement of views, misfit of
+/// the surfaces against the ranges' noise, consistency with the rig, and RQE.
 ///
-/// RQE counts only where the views are not known to agree, and that of the start only if the refinement ended
-/// near it: an entropy falls as well where a wrong calibration folds the scene into less room.
+/// RQE counts only where the views are not known to agree, and the start's RQE only if the refinement ended
+/// near it: an entropy decreases as well where a wrong calibration folds the scene into less room.
 ///
 /// @param refined      of `start`
 /// @param calibration  the refined one, with its quality: "rqe_before", "rqe_unrefined", "rqe_after" [nat]

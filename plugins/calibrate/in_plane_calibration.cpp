@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "pipeline/data/degree.hpp"
-#include "pipeline/estimate/base_slots.hpp"
+#include "pipeline/estimate/base_parameters.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
-#include "plugins/calibrate/deepest_valley.hpp"
-#include "plugins/calibrate/straightness.hpp"
+#include "plugins/calibrate/multistart_search.hpp"
+#include "plugins/calibrate/wall_straightness.hpp"
 
 namespace crisp {
 namespace {
@@ -55,7 +55,7 @@ class InPlaneCalibration {
     const double reach = range_of(settings_.range, model_.names()[free[0]]);
     constexpr int kSteps = 25;  // to either side
     const auto grid = around(centre, reach * kSteps / (kSteps + 1), kSteps);
-    keep(to_deepest_valley(model_, free[0], grid, false, own, measure_, settings_.range, narrowing()));
+    keep(multistart_search(model_, free[0], grid, false, own, measure_, settings_.range, narrowing()));
     if (bunches_) settle_eta(free[0], own);
   }
 
@@ -64,8 +64,8 @@ class InPlaneCalibration {
     const auto free = those_free({slot(model_, laser, kTau), slot(model_, laser, kAlpha)});
     if (!sees_both_sides(laser) || free.empty()) return;
     for (const double sigma : annealing(settings_.sigma_from, settings_.sigma_to)) {
-      crispest(model_, thin_for(sigma, own), free, measure_, sigma, settings_.range,
-               sigma > settings_.sigma_to ? rough(settings_.minimiser) : settings_.minimiser);
+      minimize_rqe(model_, thin_for(sigma, own), free, measure_, sigma, settings_.range,
+                   sigma > settings_.sigma_to ? rough(settings_.minimiser) : settings_.minimiser);
     }
   }
 
@@ -97,25 +97,25 @@ class InPlaneCalibration {
       if (!has_few(laser)) geometry.insert(geometry.end(), free.begin(), free.end());
     }
     if (geometry.empty()) return;
-    crispest(model_, both_, geometry, measure_, settings_.sigma_to, settings_.range, settings_.minimiser);
+    minimize_rqe(model_, both_, geometry, measure_, settings_.sigma_to, settings_.range, settings_.minimiser);
   }
 
-  const std::vector<Rival>& rivals() const { return rivals_; }
+  const std::vector<CompetingMinimum>& competitors() const { return competitors_; }
 
  private:
   bool has_few(std::size_t laser) const {
     return std::cmp_less(std::ranges::count(both_.beams.laser, laser), kFewBeams);
   }
 
-  /// Where a laser has one of the two beams only, the cloud becomes crisper as the room becomes smaller.
+  /// Where a laser has one of the two beams only, RQE decreases as the room shrinks.
   bool sees_both_sides(std::size_t laser) const {
     return std::ranges::all_of(std::array{&front_, &back_}, [&](const Sample* half) {
       return !std::cmp_less(std::ranges::count(half->beams.laser, laser), kFewBeams);
     });
   }
 
-  void keep(const std::optional<Rival>& rival) {
-    if (rival) rivals_.push_back(*rival);
+  void keep(const std::optional<CompetingMinimum>& competitor) {
+    if (competitor) competitors_.push_back(*competitor);
   }
 
   /// Half a scan to either side, which is as far as the next lag at which spots fall together.
@@ -123,16 +123,16 @@ class InPlaneCalibration {
     constexpr int kSteps = 16;  // to either side
     const double centre = model_.values()[static_cast<Eigen::Index>(eta)];
     const double reach = between_scans(own) / 2;
-    std::erase_if(rivals_, [&](const Rival& rival) {
-      return rival.parameter == eta && std::abs(rival.at - centre) < reach;
+    std::erase_if(competitors_, [&](const CompetingMinimum& competitor) {
+      return competitor.parameter == eta && std::abs(competitor.at - centre) < reach;
     });
-    keep(to_straightest(model_, eta, around(centre, reach, kSteps), false, own, settings_.sigma_to));
+    keep(minimize_wall_residual(model_, eta, around(centre, reach, kSteps), false, own, settings_.sigma_to));
   }
 
-  /// Where the rig gives no standard deviation, anywhere on the circle. Of valleys as deep the one near the
-  /// start counts.
+  /// Where the rig gives no standard deviation, anywhere on the circle. Among equally low local minima the
+  /// one near the start is chosen.
   void find_lambda(std::size_t lambda, const Sample& pair) {
-    constexpr int kSteps = 120;  // 3°: the valley at σ = 0.5 m is wider in any room
+    constexpr int kSteps = 120;  // 3°: the local minimum at σ = 0.5 m is wider in any room
     constexpr int kFine = 180;
     constexpr double kNear = 20 * kDegree;
     const int steps = bunches_ ? kFine : kSteps;
@@ -149,9 +149,9 @@ class InPlaneCalibration {
     const SensorModel start = model_;
     const double from = start.values()[static_cast<Eigen::Index>(lambda)];
     const auto is_near = [&](double value) { return between(value, from, true) < kNear; };
-    const auto rival = to_best_lambda(model_, lambda, circle(steps), true, pair);
+    const auto competitor = to_best_lambda(model_, lambda, circle(steps), true, pair);
     if (is_near(model_.values()[static_cast<Eigen::Index>(lambda)])) {
-      if (rival && is_near(rival->at)) keep(rival);
+      if (competitor && is_near(competitor->at)) keep(competitor);
       return;
     }
     SensorModel near = start;
@@ -159,14 +159,15 @@ class InPlaneCalibration {
     if (height_above(near, model_, pair) < kClearlyDeeper) {
       model_ = near;
     } else {
-      keep(rival);
+      keep(competitor);
     }
   }
 
-  std::optional<Rival> to_best_lambda(SensorModel& model, std::size_t lambda, const std::vector<double>& grid,
-                                      bool circular, const Sample& pair) const {
-    return bunches_ ? to_straightest(model, lambda, grid, circular, pair, settings_.sigma_to)
-                    : to_deepest_valley(model, lambda, grid, circular, pair, measure_, settings_.range,
+  std::optional<CompetingMinimum> to_best_lambda(SensorModel& model, std::size_t lambda,
+                                                 const std::vector<double>& grid, bool circular,
+                                                 const Sample& pair) const {
+    return bunches_ ? minimize_wall_residual(model, lambda, grid, circular, pair, settings_.sigma_to)
+                    : multistart_search(model, lambda, grid, circular, pair, measure_, settings_.range,
                                         narrowing());
   }
 
@@ -174,7 +175,7 @@ class InPlaneCalibration {
   double height_above(const SensorModel& model, const SensorModel& best, const Sample& pair) const {
     if (bunches_) {
       const double noise = settings_.sigma_to;
-      return std::log(straightness(model, pair, noise) / straightness(best, pair, noise)) / 2;
+      return std::log(wall_straightness(model, pair, noise) / wall_straightness(best, pair, noise)) / 2;
     }
     const Sample thin = thin_for(settings_.sigma_to, pair);
     return model_quality(model, thin, measure_, settings_.sigma_to) -
@@ -191,7 +192,7 @@ class InPlaneCalibration {
   }
 
   SensorModel& model_;
-  std::vector<Rival> rivals_;
+  std::vector<CompetingMinimum> competitors_;
   const std::vector<std::size_t>& free_;
   Sample front_;
   Sample back_;
@@ -213,15 +214,15 @@ std::vector<double> directions(const Sample& own) {
   return result;
 }
 
-/// [rad] Between neighbouring directions in which a laser looked.
+/// [rad] Between neighbouring directions of a laser's beams.
 double spacing(const Sample& own) {
   constexpr double kSame = 1 / 360.0;   // turns: nearer ones are one
   constexpr double kUnseen = 1 / 12.0;  // turns: where the plate did not turn to at all
-  const auto looked = directions(own);
+  const auto tested = directions(own);
   double seen = 0;
   double distinct = 0;
-  for (std::size_t i = 0; i + 1 < looked.size(); ++i) {
-    const double gap = looked[i + 1] - looked[i];
+  for (std::size_t i = 0; i + 1 < tested.size(); ++i) {
+    const double gap = tested[i + 1] - tested[i];
     if (gap > kUnseen) continue;
     seen += gap;
     distinct += std::min(gap, kSame);
@@ -238,15 +239,15 @@ bool sees_single_spots(const Sample& sample, const InPlaneSettings& settings) {
   return std::ranges::any_of(lasers, [&](auto laser) { return spacing(of_laser(both, laser)) > kFar; });
 }
 
-std::vector<Rival> calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free,
-                                      const Sample& sample, Measure& measure,
-                                      const InPlaneSettings& settings) {
+std::vector<CompetingMinimum> calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free,
+                                                 const Sample& sample, Measure& measure,
+                                                 const InPlaneSettings& settings) {
   InPlaneCalibration calibration(model, free, sample, measure, settings);
   for (std::size_t laser = 0; laser < model.lasers(); ++laser) calibration.find_eta(laser);
   for (std::size_t laser = 0; laser < model.lasers(); ++laser) calibration.find_tau_alpha(laser);
   calibration.find_lambdas();
   calibration.find_geometry();
-  return calibration.rivals();
+  return calibration.competitors();
 }
 
 }  // namespace crisp

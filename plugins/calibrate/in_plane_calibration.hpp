@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "plugins/calibrate/crispest.hpp"
-#include "plugins/calibrate/deepest_valley.hpp"
+#include "plugins/calibrate/multistart_search.hpp"
+#include "plugins/calibrate/rqe_minimizer.hpp"
 
 namespace crisp {
 
@@ -19,26 +19,27 @@ struct InPlaneSettings {
 /// With fewer beams of a laser there is nothing to align.
 inline constexpr std::size_t kFewBeams = 20;
 
-/// Whether the beams in the plate's plane see walls as spots far from one another: directions 5° apart and
-/// more. A plate and mirrors at commensurate rates, 2 and 50 Hz say, look into the same few directions for
-/// ever; what makes single spots crisp is no calibration (found at 25 a turn: τ off by 0.3 m; at 50: right).
+/// Whether the beams in the plate's plane see walls as isolated spots: in directions 5° apart and more. With
+/// commensurate rates of plate and mirrors, 2 and 50 Hz for example, the beams' directions repeat for ever;
+/// the RQE of single spots does not determine a calibration (found at 25 a turn: τ off by 0.3 m; at 50:
+/// right).
 ///
-/// @param sample  all of whose beams the plate's readings cover
+/// @param sample  all its beams are covered by encoder readings
 bool sees_single_spots(const Sample& sample, const InPlaneSettings& settings);
 
 /// A first calibration in the paper's order, from the two beams of each laser that lie in the plate's plane:
 ///   1. each η from the front beam alone, with τ and α as they are: the turns of the plate must agree;
 ///   2. each laser's τ and α from its front and back beams;
 ///   3. each λ against the first laser, from any start: a search over the whole circle, then downhill;
-///      (of a plate that turns both ways 1 and 3 go by to_straightest(), from where the kernel has η)
+///      (of a plate that turns both ways 1 and 3 go by minimize_wall_residual(), from where the kernel has η)
 ///   4. all 3n − 1 geometric parameters together.
 /// Leaves the model at what it found.
 ///
 /// @param free    indices into model.values(); others stay as they are
 /// @param sample  covered for every η in the range
-/// @return  valleys of η and λ that it left aside, the next deepest of each
-std::vector<Rival> calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free,
-                                      const Sample& sample, Measure& measure,
-                                      const InPlaneSettings& settings);
+/// @return  competing minima of η and λ, the next lowest of each
+std::vector<CompetingMinimum> calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free,
+                                                 const Sample& sample, Measure& measure,
+                                                 const InPlaneSettings& settings);
 
 }  // namespace crisp

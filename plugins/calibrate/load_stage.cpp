@@ -35,44 +35,42 @@ void check_direction(const Calibration& calibration, const Rig& rig, const std::
   const bool clockwise = calibration.direction == CountDirection::clockwise;
   throw Error(
       fmt::format(
-          "the calibration {} is for an encoder that counts {}, but the rig says {}: the cloud would be "
-          "the mirror image of the scene",
+          "the calibration {} is for an encoder that counts {}, but the rig's counts {}: the cloud would be the mirror image of the scene",
           file.string(), clockwise ? "clockwise" : "counter-clockwise",
           clockwise ? "counter-clockwise" : "clockwise"),
-      "correct plate.direction in the rig, or calibrate anew");
+      "correct plate.direction in the rig, or calibrate again");
 }
 
 }  // namespace
 
 void LoadCalibrationStage::describe(StageDescription<LoadCalibrationStage>& d) {
-  d.name("calibrate.load").summary("gives a calibration that was made before");
+  d.name("calibrate.load").summary("loads a calibration from a file");
   d.gives<Calibration>();
-  d.option("file", &LoadCalibrationStage::file_, "the calibration's YAML file").required();
+  d.option("file", &LoadCalibrationStage::file_, "calibration file in YAML").required();
 }
 
 void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context) {
   if (!std::filesystem::exists(file_)) {
-    throw Error(
-        "there is no calibration " + file_.string(),
-        "configs/calibrate.yaml makes one; name it by the option file, or --set calibrate.load.file=FILE");
+    throw Error("there is no calibration " + file_.string(),
+                "configs/calibrate.yaml makes one; set the option file, or --set calibrate.load.file=FILE");
   }
   const auto& terms = context.run().registrar->get<TermRegistry>();
-  const Calibration read = read_calibration(file_, judge_by(terms));
+  const Calibration read =
+      read_calibration(file_, judge_by(terms), [&](const Error& old) { context.warn(old.what()); });
   context.reads(file_);
   check_direction(read, context.rig(), file_);
   Calibration calibration = ordered_as(context.rig(), read);
   if (read.lasers.size() > calibration.lasers.size()) {
     context.warn("the calibration has lasers that the rig does not have; they are not used");
   }
-  for (const auto& doubt : read.doubts) {
-    context.distrust(
-        fmt::format("the calibration {} was doubted when it was made: {}", file_.string(), doubt));
+  for (const auto& caveat : read.caveats) {
+    context.mark_untrusted(
+        fmt::format("the calibration {} was already untrusted when it was made: {}", file_.string(), caveat));
   }
   for (const auto& lost : calibration.unobservable) {
     if (lost.combination.empty()) continue;
     context.warn(fmt::format(
-        "{} was not determined: {}; known is {}. Where the plate turns at another speed than when "
-        "this calibration was made, the cloud is wrong by what that leaves open",
+        "{} was not determined: {}; determined is {}. Where the plate turns at another speed than during the calibration, the cloud has the resulting error",
         lost.parameter, lost.reason, lost.combination));
   }
   const auto counts_from = [](CountsFrom from) {
@@ -81,13 +79,13 @@ void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context
   const auto from_begin = terms_in(calibration, terms, counts_from(CountsFrom::kRunsEpoch));
   if (!from_begin.empty()) {
     context.warn(fmt::format(
-        "{}: what goes by the time since a recording began holds for the one that it was found in",
+        "{}: a term of the time since a recording began is valid for the calibrated recording only",
         fmt::join(from_begin, ", ")));
   }
   const auto from_zero = terms_in(calibration, terms, counts_from(CountsFrom::kEncodersZero));
   if (!from_zero.empty()) {
-    context.say(fmt::format(
-        "{}: what goes by the plate's angle holds as long as the encoder counts from the same zero",
+    context.print(fmt::format(
+        "{}: a term of the plate's angle is valid as long as the encoder counts from the same zero",
         fmt::join(from_zero, ", ")));
   }
   out.give(std::move(calibration));

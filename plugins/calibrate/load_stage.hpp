@@ -14,7 +14,7 @@ namespace crisp {
 /// @throws Error  if a laser of the rig has no calibration
 Calibration ordered_as(const Rig& rig, Calibration calibration);
 
-/// Gives a calibration that was made before.
+/// Loads a calibration from a file.
 class LoadCalibrationStage final : public Stage {
  public:
   static void describe(StageDescription<LoadCalibrationStage>& d);

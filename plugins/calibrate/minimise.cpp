@@ -70,7 +70,7 @@ class SecantHessian {
 
 enum class Borders { kIgnored, kKept };
 
-/// What is asked in one search.
+/// The objective, box and settings of one search.
 struct Question {
   const Objective& objective;
   Eigen::VectorXd start;
@@ -79,20 +79,20 @@ struct Question {
   std::unique_lock<std::mutex>& lock;  ///< of the solvers, held while Ipopt works
 };
 
-/// The problem as Ipopt asks for it: variables y, and the box as linear constraints lower ≤ x(y) ≤ upper, or
-/// left out, as a minimum inside does without them. One serves many questions of the same size.
+/// The problem in Ipopt's interface: variables y, and the box as linear constraints lower ≤ x(y) ≤ upper, or
+/// without them, for a minimum inside of the box. One object serves many searches of the same size.
 class BoxProblem final : public Ipopt::TNLP {
  public:
   BoxProblem(Index size, Borders borders) : size_(size), borders_(borders) {}
 
-  /// @param question  must outlive what is asked of it
+  /// @param question  must outlive the search
   void take(const Question& question) {
     question_ = &question;
     hessian_ = {};
     x_.resize(0);
     best_ = {.x = question.start, .value = std::numeric_limits<double>::infinity()};
     evaluate(question.start);
-    if (!std::isfinite(best_.value)) throw Error("the cost to be minimised is not a number at the start");
+    if (!std::isfinite(best_.value)) throw Error("the cost function is not a number at the start");
     // As Ipopt's "gradient-based" does, which it would keep from the first question on.
     constexpr double kSteepest = 100;
     scale_ = std::min(1.0, kSteepest / slope().lpNorm<Eigen::Infinity>());
@@ -185,7 +185,7 @@ class BoxProblem final : public Ipopt::TNLP {
                          Ipopt::IpoptCalculatedQuantities*) override {}
 
  private:
-  /// The gradient by y, where the objective was last asked for.
+  /// The gradient by y, at the last evaluated point.
   Eigen::VectorXd slope() const { return question_->box.basis.transpose() * gradient_; }
 
   Eigen::VectorXd unclamped(Index n, const Number* y) const {
@@ -197,7 +197,7 @@ class BoxProblem final : public Ipopt::TNLP {
     return unclamped(n, y).cwiseMax(question_->box.lower).cwiseMin(question_->box.upper);
   }
 
-  /// Value and gradient come together; Ipopt asks for them one after the other at the same x.
+  /// Evaluates value and gradient together; Ipopt requests them one after the other at the same x.
   double evaluate(const Eigen::VectorXd& x) {
     if (x_.size() == x.size() && x_ == x) return value_;
     {
@@ -258,7 +258,7 @@ Application make_application() {
   options->SetIntegerValue("acceptable_iter", 10);
   options->SetStringValue("mu_strategy",
                           "monotone");        // what adaptive ones gain costs more solves than it saves
-  options->SetNumericValue("mu_init", 1e-8);  // the start is believed: the barrier must not push it away
+  options->SetNumericValue("mu_init", 1e-8);  // the start is good: the barrier must not push it away
   options->SetStringValue("nlp_scaling_method", "none");  // BoxProblem scales by itself
   application->Initialize();
   return application;
@@ -331,7 +331,7 @@ Minimum minimise(const Objective& objective, const Eigen::VectorXd& start, const
                  const MinimiserSettings& settings) {
   const auto n = start.size();
   if (box.lower.size() != n || box.upper.size() != n || box.basis.rows() != n || box.basis.cols() != n) {
-    throw Error("a minimisation was given a start and a box of different sizes");
+    throw Error("the start and the box of a minimization have different sizes");
   }
   if (n == 0) return {.x = start, .value = objective(start, nullptr)};
   std::unique_lock lock(solvers().mutex);

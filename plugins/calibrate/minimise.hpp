@@ -10,8 +10,8 @@ namespace crisp {
 /// A function to be minimised: returns its value at x and, where `gradient` is not null, sets it.
 using Objective = std::function<double(const Eigen::VectorXd& x, Eigen::VectorXd* gradient)>;
 
-/// The box in which a minimum is looked for, and a basis in which the cost is about equally curved in every
-/// direction: the optimiser works on y with x = start + basis * y. A unit of y should be a typical step.
+/// The box of the search, and a basis in which the cost is about equally curved in every direction: the
+/// optimizer works on y with x = start + basis * y. A unit of y should be a typical step.
 struct Box {
   Eigen::VectorXd lower;
   Eigen::VectorXd upper;
@@ -21,7 +21,7 @@ struct Box {
 struct MinimiserSettings {
   int max_iterations = 60;
   double tolerance = 1e-5;  ///< change of the cost, relative to 1 or its value, below which the search ends
-  std::function<bool()> interrupted = {};  ///< asked once an iteration; stops the search where it is
+  std::function<bool()> interrupted = {};  ///< polled once an iteration; stops the search where it is
 };
 
 struct Minimum {
@@ -32,7 +32,7 @@ struct Minimum {
   std::string status;  ///< Ipopt's verdict in words
 };
 
-/// Looks for the minimum of `objective` in `box` from `start`, with Ipopt's filter line search (Wächter and
+/// Minimizes `objective` in `box` from `start`, with Ipopt's filter line search (Wächter and
 /// Biegler 2006) and a secant approximation of the Hessian; where the way leads to the border of the box,
 /// once more with the interior-point method. Several threads may call it: the linear solver, which is not
 /// re-entrant, works for one at a time, while the others' objectives are evaluated.

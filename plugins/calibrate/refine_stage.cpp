@@ -10,7 +10,7 @@
 #include "pipeline/estimate/clock_errors.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
-#include "pipeline/estimate/wanted_terms.hpp"
+#include "pipeline/estimate/requested_terms.hpp"
 #include "pipeline/stage/option_check.hpp"
 #include "pipeline/stage/registry.hpp"
 #include "plugins/calibrate/fit_check.hpp"
@@ -21,53 +21,49 @@
 
 namespace crisp {
 void RefineStage::describe(StageDescription<RefineStage>& d) {
-  d.name("calibrate.refine").summary("refines a calibration by the flat surfaces that all beams show");
+  d.name("calibrate.refine").summary("refines a calibration by least squares against flat surfaces");
   d.details(
-      "Weighted least squares in the distances of all beams to the surfaces that they meet, with the "
-      "surfaces' planes as unknowns. It has none of the bias of an entropy's optimum and a tenth of its "
-      "scatter, but needs a start that is right to some centimetres: calibrate.rqe, or calibrate.load. What "
-      "the data do not determine stays as it came.\n\n"
-      "Where the clocks' own errors are known (clock.convex_hull), they are part of those of eta.\n\n"
-      "Several recordings (what pauses of 5 s divide) may have been made in several places: no surface is "
-      "looked for in more than one of them, and each has lags of its own, of which the mean is eta.\n\n"
-      "If all beams lie in the plate's plane (two of each laser), the walls that they meet are taken to be "
-      "upright.");
+      "Weighted least squares in the distances of all beams from their flat surfaces (surfels), with the surfaces' planes as unknowns. Unlike the optimum of an entropy it is unbiased, with a tenth of the scatter, but it needs a start within some centimetres: calibrate.rqe, or calibrate.load. Unobservable parameters stay at the start's values.\n\n"
+      "The clocks' standard errors, where they are known (clock.convex_hull), are part of those of eta.\n\n"
+      "Several recordings (separated by pauses of 5 s) may be of different places: surfaces are segmented in each by itself, and each has lags of its own, whose mean is eta.\n\n"
+      "If all beams lie in the plate's plane (two of each laser), the walls are assumed to be upright.");
   d.takes<Measurements>().takes<ClockMap>(Need::optional);
   d.holds<PlateTrajectory>().holds<Calibration>().gives<Calibration>();
   d.option("noise", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::noise,
-           "standard deviation of a range")
+           "standard deviation of a range's noise")
       .unit("m")
       .range(1e-6, 1);
-  d.option("smallest", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::smallest,
-           "side of the smallest flat patch that counts")
+  d.option("min_cell", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::smallest,
+           "side of the smallest flat patch; reduce it for small surfaces with many beams")
       .unit("m")
       .range(0.01, 10);
-  d.option("largest", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::largest,
-           "side of the patches that are tried first")
+  d.option("max_cell", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::largest,
+           "side of the first patches of the coarse-to-fine search for flat surfaces")
       .unit("m")
       .range(0.01, 100);
   d.option("fixed", &RefineStage::settings_, &RefinementSettings::fixed,
-           "parameters that are left as they are: laser1.eta, or eta for that of all lasers");
-  d.option("terms", &RefineStage::settings_, &RefinementSettings::terms,
-           "effects to be found as well, where they are terms of the sensor model: encoder.eccentricity, or "
-           "laser2.mirror.cone of one laser; `crisp effects` lists them");
-  d.option("rounds", &RefineStage::settings_, &RefinementSettings::max_rounds, "most steps that are taken")
+           "parameters that are held: laser1.eta, or eta for that of all lasers");
+  d.option(
+      "terms", &RefineStage::settings_, &RefinementSettings::terms,
+      "further terms of the sensor model to estimate: encoder.eccentricity, or laser2.mirror.cone of one laser; `crisp effects` lists them");
+  d.option("rounds", &RefineStage::settings_, &RefinementSettings::max_rounds,
+           "maximum number of Gauss-Newton steps")
       .range(1, 1000);
-  d.option("sigma", &RefineStage::sigma_, "kernel width of the RQE that judges the result")
+  d.option("sigma", &RefineStage::sigma_, "kernel width of the RQE that is reported before and after")
       .unit("m")
       .range(1e-3, 10);
 }
 
 void RefineStage::check(const RunSettings& run) const {
   Calibration nominal = nominal_calibration(run.rig);
-  check_all(of_option("largest",
+  check_all(of_option("max_cell",
                       [&] {
                         if (settings_.surfels.largest >= settings_.surfels.smallest) return;
                         throw Error("the largest patch is smaller than the smallest",
-                                    "give a `largest` above `smallest`");
+                                    "give a `max_cell` above `min_cell`");
                       }),
             of_option("fixed", [&] { check_fixed(settings_.fixed, nominal); }), of_option("terms", [&] {
-              add_wanted_terms(nominal, settings_.terms, run.registrar->get<TermRegistry>());
+              add_requested_terms(nominal, settings_.terms, run.registrar->get<TermRegistry>());
             }));
 }
 
@@ -88,18 +84,18 @@ void RefineStage::finish(Outputs& out, Context& context) {
   settings_.angle_error = plate_angle_error(*sample.plate, context.rig(), clocks_);
   refuse_single_beams(sample.beams, *start_, settings_.fixed);
   Calibration with_terms = *start_;
-  add_wanted_terms(with_terms, settings_.terms, terms);
+  add_requested_terms(with_terms, settings_.terms, terms);
   const SensorModel start(with_terms, terms);
-  const auto report = [&](int round) {
+  const auto on_round = [&](int round) {
     context.progress(static_cast<double>(round) / (round + 4), fmt::format("round {}", round + 1));
     return !context.interrupted();
   };
-  Refinement refined = refine_by_surfels(start, sample, settings_, report);
+  Refinement refined = refine_by_surfels(start, sample, settings_, on_round);
   if (RecordingNumbers(*sample.plate).count() > 1 && !context.interrupted()) {
     const RecordingLags lags = lags_of_recordings(refined.outcome.model, sample, settings_);
-    tell(lags, *sample.plate, context);
+    report(lags, *sample.plate, context);
     sample = with_common_lags(std::move(sample), lags);
-    refined = refine_by_surfels(start, sample, settings_, report);
+    refined = refine_by_surfels(start, sample, settings_, on_round);
   }
   if (context.interrupted()) return;
 
@@ -116,11 +112,11 @@ void RefineStage::finish(Outputs& out, Context& context) {
   }
   judge(sample, refined, calibration, context);
   if (context.interrupted()) return;
-  tell(halves, context);
+  report(halves, context);
   if (halves) calibration.quality["cross_validation"] = halves->ratio();
   calibration.provenance = start_->provenance;
   calibration.provenance["refinement"] = "calibrate.refine";
-  tell(calibration, *start_, context);
+  report(calibration, *start_, context);
   out.give(std::move(calibration));
 }
 
@@ -145,13 +141,12 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
   const auto& terms = registrar.get<TermRegistry>();
   const auto measure =
       registrar.get<MeasureRegistry>().make("rqe", MeasureSettings{}, registrar.get<SearchRegistry>());
-  const auto crispness =
-      crispness_of({refined.outcome.model, SensorModel(nominal_calibration(context.rig()), terms),
-                    SensorModel(*start_, terms)},
-                   longest_recording(sample), {.sigma = sigma_}, *measure);
-  calibration.quality = {{"rqe_before", crispness[1]},
-                         {"rqe_unrefined", crispness[2]},
-                         {"rqe_after", crispness[0]},
+  const auto rqe = rqe_of({refined.outcome.model, SensorModel(nominal_calibration(context.rig()), terms),
+                           SensorModel(*start_, terms)},
+                          longest_recording(sample), {.sigma = sigma_}, *measure);
+  calibration.quality = {{"rqe_before", rqe[1]},
+                         {"rqe_unrefined", rqe[2]},
+                         {"rqe_after", rqe[0]},
                          {"rqe_sigma", sigma_},
                          {"chi2", refined.chi2}};
   context.report({{"surfels", refined.surfels},
@@ -159,27 +154,28 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
                   {"chi2", refined.chi2},
                   {"rounds", refined.rounds},
                   {"converged", refined.converged}});
-  context.say(fmt::format("{} flat surfaces with {} beams; chi2 {:.3f} per degree of freedom after {} rounds",
-                          refined.surfels, refined.beams, refined.chi2, refined.rounds));
-  tell(refined.views, context);
+  context.print(
+      fmt::format("{} flat surfaces with {} beams; chi2 {:.3f} per degree of freedom after {} rounds",
+                  refined.surfels, refined.beams, refined.chi2, refined.rounds));
+  report(refined.views, context);
   for (const auto& name : known_from_rig_only(calibration, settings_.prior)) {
-    context.say(name + ": known from the rig only; these data do not determine it better");
+    context.print(name + ": determined by the rig's value only; these data do not determine it better");
   }
   const double noise = settings_.surfels.noise;
   context.report({{"misfit", misfit_of(refined, noise)}, {"neighbour_noise", refined.scatter}});
   const auto of_fit = check_fit(refined, calibration, *start_, context.rig(), noise);
   const auto of_rig = mistakes(sample, refined, of_fit.empty(), *measure, context);
-  for (const auto& mistake : of_rig) context.distrust(mistake);
-  // A mistake that is known by name explains the rest, which nobody needs to look into before it is mended.
+  for (const auto& mistake : of_rig) context.mark_untrusted(mistake);
+  // A known mistake explains the other caveats, which nobody needs to examine before it is corrected.
   for (const auto& caveat : of_fit) {
     if (of_rig.empty())
-      context.distrust(caveat);
+      context.mark_untrusted(caveat);
     else
-      context.say("probably for that reason: " + caveat);
+      context.print("probably for that reason: " + caveat);
   }
-  if (of_rig.empty() && of_fit.empty() && start_->doubts.empty()) {
-    context.lift_doubts(KindName<Calibration>::value,
-                        "the refined calibration fits, and agrees with the rig");
+  if (of_rig.empty() && of_fit.empty() && start_->caveats.empty()) {
+    context.resolve_caveats(KindName<Calibration>::value,
+                            "the refined calibration fits, and agrees with the rig");
   }
 }
 

@@ -8,7 +8,7 @@
 
 #include "pipeline/data/clock_map.hpp"
 #include "pipeline/data/oriented_plate.hpp"
-#include "pipeline/estimate/collected.hpp"
+#include "pipeline/estimate/measurement_buffer.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "pipeline/quality/measure.hpp"
 #include "pipeline/stage/context.hpp"
@@ -16,7 +16,7 @@
 
 namespace crisp {
 
-/// Makes a calibration as accurate as the data allow, from the flat surfaces that they show.
+/// Refines a calibration by least squares against the data's flat surfaces.
 class RefineStage final : public Stage {
  public:
   static void describe(StageDescription<RefineStage>& d);
@@ -28,14 +28,14 @@ class RefineStage final : public Stage {
   void judge(const Sample& sample, const Refinement& refined, Calibration& calibration,
              Context& context) const;
 
-  /// What is wrong in the rig, as caveats: mounts always, the rest where the calibration does not fit.
+  /// Mistakes of the rig, as caveats: mounts always, the rest where the calibration does not fit.
   std::vector<std::string> mistakes(const Sample& sample, const Refinement& refined, bool fits,
                                     Measure& measure, Context& context) const;
 
   RefinementSettings settings_;
   double sigma_ = 0.02;  // [m] near the ranges' noise, where RQE itself is hardly biased
   OrientedPlate oriented_;
-  Collected collected_;
+  MeasurementBuffer collected_;
   std::shared_ptr<const Calibration> start_;
   std::map<std::string, ClockMap> clocks_;  ///< by device
 };

@@ -24,7 +24,7 @@ std::string in_words(const Unobservable& u) {
                      u.combination.empty() ? "" : "; known is ", u.combination);
 }
 
-void tell_correlations(const Calibration& calibration, Context& context) {
+void report_correlations(const Calibration& calibration, Context& context) {
   constexpr std::size_t kMost = 3;
   constexpr double kLeast = 0.8;
   auto section = nlohmann::json::array();
@@ -34,21 +34,21 @@ void tell_correlations(const Calibration& calibration, Context& context) {
     words.push_back(fmt::format("{} and {}: {:+.2f}", pair.one, pair.other, pair.value));
   }
   context.report({{"correlations", section}});
-  if (!words.empty()) context.say(fmt::format("strongest correlations: {}", fmt::join(words, ", ")));
+  if (!words.empty()) context.print(fmt::format("strongest correlations: {}", fmt::join(words, ", ")));
 }
 
-void tell_crispness(const std::map<std::string, double>& quality, Context& context) {
+void report_rqe(const std::map<std::string, double>& quality, Context& context) {
   if (!quality.contains("rqe_before") || !quality.contains("rqe_after")) return;
   const auto start = quality.find("rqe_unrefined");
-  context.say(fmt::format("RQE {:.4f} before{}, {:.4f} after (sigma {:g} cm)", quality.at("rqe_before"),
-                          start != quality.end() ? fmt::format(", {:.4f} unrefined", start->second) : "",
-                          quality.at("rqe_after"), quality.at("rqe_sigma") * 100));
+  context.print(fmt::format("RQE {:.4f} before{}, {:.4f} after (sigma {:g} cm)", quality.at("rqe_before"),
+                            start != quality.end() ? fmt::format(", {:.4f} unrefined", start->second) : "",
+                            quality.at("rqe_after"), quality.at("rqe_sigma") * 100));
 }
 
 }  // namespace
 
-std::vector<double> crispness_of(const std::vector<SensorModel>& models, const Sample& sample,
-                                 const CrispnessSettings& settings, Measure& measure) {
+std::vector<double> rqe_of(const std::vector<SensorModel>& models, const Sample& sample,
+                           const CrispnessSettings& settings, Measure& measure) {
   LagRange lags = lag_range(models.front(), 0);
   for (const SensorModel& model : models) {
     const LagRange own = lag_range(model, 0);
@@ -61,8 +61,8 @@ std::vector<double> crispness_of(const std::vector<SensorModel>& models, const S
   return all;
 }
 
-void tell(const Calibration& calibration, const Calibration& start, Context& context) {
-  context.say(table_of(calibration, context.rig()));
+void report(const Calibration& calibration, const Calibration& start, Context& context) {
+  context.print(table_of(calibration, context.rig()));
   nlohmann::json lasers;
   for (const auto& laser : calibration.lasers) {
     for (const auto* p : {&laser.lambda, &laser.tau, &laser.alpha, &laser.eta}) {
@@ -73,30 +73,30 @@ void tell(const Calibration& calibration, const Calibration& start, Context& con
   for (const auto& u : calibration.unobservable) {
     unobservable.push_back(
         {{"parameter", u.parameter}, {"reason", u.reason}, {"combination", u.combination}});
-    const bool told_before = std::any_of(start.unobservable.begin(), start.unobservable.end(),
-                                         [&](const auto& old) { return old.parameter == u.parameter; });
-    if (!told_before) context.warn(in_words(u));
+    const bool reported_before = std::any_of(start.unobservable.begin(), start.unobservable.end(),
+                                             [&](const auto& old) { return old.parameter == u.parameter; });
+    if (!reported_before) context.warn(in_words(u));
   }
   context.report({{"lasers", lasers}, {"quality", calibration.quality}, {"unobservable", unobservable}});
-  tell_correlations(calibration, context);
-  tell_crispness(calibration.quality, context);
+  report_correlations(calibration, context);
+  report_rqe(calibration.quality, context);
 }
 
-void tell(const std::optional<CrossValidation>& halves, Context& context) {
+void report(const std::optional<CrossValidation>& halves, Context& context) {
   if (!halves) {
-    context.say("cross-validation: the plate turned too little, or half of the beams determines too little");
+    context.print(
+        "cross-validation: the plate turned too little, or half of the beams determines too little");
     return;
   }
   context.report(
       {{"cross_validation",
         {{"difference", halves->difference}, {"expected", halves->expected}, {"ratio", halves->ratio()}}}});
-  context.say(fmt::format(
-      "cross-validation: fitted to either half of the turns, the clouds differ by {:.2f} mm (RMS), "
-      "{:.1f} times what their standard errors say (1 is honest; less where all turns share an error)",
+  context.print(fmt::format(
+      "cross-validation: fitted to either half of the turns, the clouds differ by {:.2f} mm (RMS), {:.1f} times their standard errors (1 is expected; less where all turns share an error)",
       halves->difference * 1e3, halves->ratio()));
 }
 
-void tell(const std::vector<ViewConsistency>& views, Context& context) {
+void report(const std::vector<ViewConsistency>& views, Context& context) {
   auto section = nlohmann::json::array();
   for (const auto& pair : views) {
     section.push_back({{"view", pair.view},
@@ -108,12 +108,12 @@ void tell(const std::vector<ViewConsistency>& views, Context& context) {
   context.report({{"views", section}});
   const auto least = std::ranges::min_element(views, {}, &ViewConsistency::share);
   if (least == views.end()) return;
-  context.say(fmt::format(
-      "views agree on {:.0f} % or more of the flat surfaces that they share; least: {} and {}, on {}",
-      100 * least->share, least->view, least->other, in_words(least->orientation)));
+  context.print(
+      fmt::format("views agree on at least {:.0f} % of their common flat surfaces; least: {} and {}, on {}",
+                  100 * least->share, least->view, least->other, in_words(least->orientation)));
 }
 
-void tell(const RecordingLags& lags, const PlateTrajectory& plate, Context& context) {
+void report(const RecordingLags& lags, const PlateTrajectory& plate, Context& context) {
   const auto recordings = recordings_of(plate);
   const auto& lasers = context.rig().lasers;
   std::string words = fmt::format(
@@ -135,7 +135,7 @@ void tell(const RecordingLags& lags, const PlateTrajectory& plate, Context& cont
     }
     section.push_back(own);
   }
-  context.say(words);
+  context.print(words);
   context.report({{"recordings", section}});
 }
 

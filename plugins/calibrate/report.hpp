@@ -19,22 +19,22 @@ struct CrispnessSettings {
   std::size_t points = 60000;  ///< about so many
 };
 
-/// [nat] How crisp the cloud is with each of some models, by the same beams: spread evenly over the surfaces
-/// that the first one puts them on, and covered by the plate's readings at the lags of all.
-std::vector<double> crispness_of(const std::vector<SensorModel>& models, const Sample& sample,
-                                 const CrispnessSettings& settings, Measure& measure);
+/// [nat] RQE of the cloud under each of some models, for the same beams: spread evenly over the surfaces on
+/// which the first model puts them, and covered by encoder readings at the lags of all.
+std::vector<double> rqe_of(const std::vector<SensorModel>& models, const Sample& sample,
+                           const CrispnessSettings& settings, Measure& measure);
 
-/// Puts a calibration into the run's summary: the table for people, all of its numbers for programs, and a
-/// warning for each parameter that is not observable, unless a stage above has said so of `start`.
-void tell(const Calibration& calibration, const Calibration& start, Context& context);
+/// Adds a calibration to the run's summary: the table for people, all of its numbers for programs, and a
+/// warning for each unobservable parameter, unless a stage above has reported it for `start`.
+void report(const Calibration& calibration, const Calibration& start, Context& context);
 
 /// The recordings, and each one's lags, for people and for programs.
-void tell(const RecordingLags& lags, const PlateTrajectory& plate, Context& context);
+void report(const RecordingLags& lags, const PlateTrajectory& plate, Context& context);
 
-/// How far the halves of a recording agree.
-void tell(const std::optional<CrossValidation>& halves, Context& context);
+/// Reports the agreement of a recording's halves.
+void report(const std::optional<CrossValidation>& halves, Context& context);
 
 /// How consistent the views are: all pairs for programs, the least consistent one for people.
-void tell(const std::vector<ViewConsistency>& views, Context& context);
+void report(const std::vector<ViewConsistency>& views, Context& context);
 
 }  // namespace crisp

@@ -64,7 +64,7 @@ double distance(const Calibration& found, const Calibration& nominal, const Sear
   return least;
 }
 
-/// What may be wrong in a rig, and how far the calibration is from nominal values then.
+/// A possible mistake of a rig, with the calibration's distance from nominal values under it.
 struct Hypothesis {
   std::string caveat;
   double distance = 0;
@@ -72,13 +72,11 @@ struct Hypothesis {
 
 std::string other_direction(const Calibration& calibration) {
   const bool is_clockwise = calibration.direction == CountDirection::clockwise;
-  const char* says = is_clockwise ? "clockwise" : "counter-clockwise";
+  const char* states = is_clockwise ? "clockwise" : "counter-clockwise";
   const char* counts = is_clockwise ? "counter-clockwise" : "clockwise";
   return fmt::format(
-      "the encoder counts {}, not {}, by the signs of tau and alpha and the order of the lasers: the cloud "
-      "is the mirror "
-      "image of the scene. Set plate.direction: {} in the rig",
-      counts, says, is_clockwise ? "counter_clockwise" : "clockwise");
+      "the encoder counts {}, not {}, by the signs of tau and alpha and the order of the lasers: the cloud is the mirror image of the scene. Set plate.direction: {} in the rig",
+      counts, states, is_clockwise ? "counter_clockwise" : "clockwise");
 }
 
 std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, const SearchRange& range) {
@@ -88,9 +86,7 @@ std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, con
   for (LaserCalibration& laser : all_turned.lasers) laser.alpha.value += kPi;
   if (nominal.lasers.size() > 1) {
     all.push_back(
-        {"all lasers are mounted upside down, or their mounts are off by 180 degrees, against what the rig "
-         "says. "
-         "Turn each mount, or each nominal alpha, by 180 degrees in the rig",
+        {"all lasers are mounted upside down, or their mounts are off by 180 degrees, compared with the rig. Turn each mount, or each nominal alpha, by 180 degrees in the rig",
          distance(found, all_turned, range)});
   }
   for (std::size_t i = 0; i < nominal.lasers.size(); ++i) {
@@ -99,24 +95,23 @@ std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, con
     turned.lasers[i].alpha.value += kPi;
     all.push_back(
         {fmt::format(
-             "{0} is mounted upside down, or its mount is off by 180 degrees, against what the rig says. "
-             "Turn {0}'s mount, or its nominal alpha, by 180 degrees in the rig",
+             "{0} is mounted upside down, or its mount is off by 180 degrees, compared with the rig. Turn {0}'s mount, or its nominal alpha, by 180 degrees in the rig",
              name),
          distance(found, turned, range)});
     for (std::size_t j = 0; j < i; ++j) {
       Calibration exchanged = nominal;
       std::swap(exchanged.lasers[i], exchanged.lasers[j]);
-      all.push_back({fmt::format("{} and {} are exchanged: each was found where the rig has the other. "
-                                 "Exchange their addresses "
-                                 "in the rig, or their cables",
-                                 nominal.lasers[j].name, name),
-                     distance(found, exchanged, range)});
+      all.push_back(
+          {fmt::format(
+               "{} and {} are exchanged: each has the other's nominal values. Exchange their addresses in the rig, or their cables",
+               nominal.lasers[j].name, name),
+           distance(found, exchanged, range)});
     }
   }
   return all;
 }
 
-/// How far a parameter may be from its nominal value, and what that is called.
+/// Largest distance of a parameter from its nominal value, with its description.
 struct Limit {
   double size = 0;     ///< 0: as far as it likes
   std::string option;  ///< of calibrate.rqe, if the rig gives no standard deviation
@@ -138,9 +133,7 @@ void add_if_outside(const std::string& laser, const Parameter& found, const Para
   const std::string remedy =
       limit.option.empty() ? "or give it a larger sd" : fmt::format("or raise {}", limit.option);
   caveats.push_back(fmt::format(
-      "{}.{} is {:.1f} {}, more than {} ({:.1f} {}) from the rig's nominal {:.1f} {}: the calibration is "
-      "probably in a wrong "
-      "local minimum. Check the rig's mount, direction and nominal values, {} if {} may be as far off",
+      "{}.{} is {:.1f} {}, more than {} ({:.1f} {}) from the rig's nominal {:.1f} {}: the calibration is probably in a wrong local minimum. Check the rig's mount, direction and nominal values, {} if {} may be as far off",
       laser, nominal.name, found.value * unit.factor, unit.name, what, limit.size * unit.factor, unit.name,
       nominal.value * unit.factor, unit.name, remedy, nominal.name));
 }

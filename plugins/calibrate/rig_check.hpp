@@ -19,7 +19,7 @@ Calibration mirrored(const Calibration& calibration);
 /// by 180°: in the form that is nearer to the rig's nominal values.
 Calibration match_form_of_rig(Calibration calibration, const Rig& rig);
 
-/// What a rig's nominal values say of a calibration.
+/// Result of comparing a calibration with a rig's nominal values.
 struct RigCheck {
   bool is_mirrored = false;   ///< the mirror image agrees with the rig, clearly better than the calibration
   bool is_explained = false;  ///< what contradicts the rig is one of its usual mistakes
@@ -27,33 +27,30 @@ struct RigCheck {
   std::vector<std::string> caveats;  ///< what contradicts the rig, and what to do; empty if nothing does
 };
 
-/// Compares a calibration with the rig's nominal values. Neither RQE nor surfels can do that: a mirrored
-/// scene is as crisp, and so is one whose lasers have exchanged their names.
+/// Compares a calibration with the rig's nominal values. Neither RQE nor surfels can do it: a mirrored scene
+/// has the same RQE, and so has one whose lasers have exchanged their names.
 ///
 /// A contradiction is explained, where that fits clearly better, by one of: counts that grow the other way;
-/// two lasers that are exchanged; a laser that is mounted upside down. Otherwise each τ and α outside its
-/// range is reported by itself.
+/// two exchanged lasers; a laser mounted upside down. Otherwise each τ and α outside its range is reported by
+/// itself.
 ///
 /// @param calibration  one laser for each of the rig's, in its order
 /// @param range        [m, rad] how far τ and α may be from their nominal values
 RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const SearchRange& range);
 
-/// Where the rig leaves the encoder's direction to the calibration, and the mirror image is what agrees with
-/// the rig: the mirror image, in the form that is near to the rig. Otherwise nothing.
+/// The calibration's mirror image, in the form near the rig, if the rig leaves the encoder's direction to the
+/// calibration and the mirror image agrees with the rig. Otherwise nothing.
 std::optional<Calibration> in_direction_of_rig(const Calibration& calibration, const Rig& rig,
                                                const RigCheck& check);
 
-/// What the user is told then.
+/// The message then.
 inline constexpr const char* kCountsClockwise =
-    "the encoder counts clockwise, by the signs of tau and alpha and the order of the lasers; the "
-    "calibration "
-    "takes it so. Set plate.direction: clockwise in the rig";
+    "the encoder counts clockwise, by the signs of tau and alpha and the order of the lasers; the calibration takes it so. Set plate.direction: clockwise in the rig";
 
 /// The parameters whose standard error is about that which the rig gives them.
 std::vector<std::string> known_from_rig_only(const Calibration& calibration, const SearchRange& prior);
 
-/// Of the parameters of which the rig gives a standard deviation those that are more than three from their
-/// nominal value, as caveats.
+/// Caveats for parameters that are more than three of the rig's standard deviations from their nominal value.
 std::vector<std::string> far_from_nominal(const Calibration& calibration, const Rig& rig);
 
 }  // namespace crisp

@@ -13,8 +13,8 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/data/mirror_angle.hpp"
+#include "pipeline/estimate/requested_terms.hpp"
 #include "pipeline/estimate/turn_period.hpp"
-#include "pipeline/estimate/wanted_terms.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 #include "plugins/calibrate/rig_search.hpp"
 
@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kBeams = 100'000;  // enough to see whether they fit
 constexpr const char* kMirrorZero = "mount.mirror_zero";
 
-/// How the rig would have to be changed.
+/// A possible correction of the rig.
 struct RigHypothesis {
   std::string change;               ///< in words: "plate.direction: clockwise"
   double direction = 1;             ///< −1: the encoder counts the other way
@@ -39,7 +39,7 @@ std::string with_mount(const RigLaser& laser, double turn) {
                      laser.mount / kDegree);
 }
 
-/// What may be wrong with the plate, or with all lasers alike.
+/// Possible mistakes of the plate, or of all lasers alike.
 std::vector<RigHypothesis> common_hypotheses(const Rig& rig) {
   const std::size_t n = rig.lasers.size();
   const bool is_clockwise = rig.plate.direction == CountDirection::clockwise;
@@ -85,8 +85,8 @@ class ChangedSample {
 /// "0.000" and not "-0.000".
 double without_sign_of_zero(double value) { return std::abs(value) < 5e-4 ? 0 : value; }
 
-/// "laser1.mount.mirror_zero" for each laser whose mirror sweeps: a device of single beams has no mount to
-/// tell.
+/// "laser1.mount.mirror_zero" for each laser whose mirror sweeps: the mount of a single-beam device is not
+/// identifiable.
 std::vector<std::string> mount_terms(const Sample& sample, const Rig& rig) {
   constexpr float kSweep = 30 * kDegree;
   std::vector<std::string> terms;
@@ -105,7 +105,7 @@ std::optional<Refinement> refined_with_mounts(const SensorModel& model, const Sa
   Calibration start = model.calibration();
   RefinementSettings refinement = settings.refinement;
   for (auto& term : mount_terms(sample, rig)) refinement.terms.push_back(std::move(term));
-  add_wanted_terms(start, refinement.terms, *settings.terms);
+  add_requested_terms(start, refinement.terms, *settings.terms);
   try {
     return refine_by_surfels(SensorModel(start, *settings.terms), sample, refinement,
                              [&](int) { return !settings.interrupted(); });
@@ -127,7 +127,7 @@ bool fits_with(const RigHypothesis& hypothesis, const Sample& sample, const Rig&
     const Outcome crisp = calibrate_by_rqe(start, changed.sample(), *settings.measure, rqe);
     if (settings.interrupted()) return false;
     const auto refined = refined_with_mounts(crisp.model, changed.sample(), rig, settings);
-    return refined && refined->outcome.doubts.empty() && !refined->views.empty() &&
+    return refined && refined->outcome.caveats.empty() && !refined->views.empty() &&
            check_with_rig(calibration_of(refined->outcome, rig), rig, SearchRange{}).caveats.empty();
   } catch (const Error&) {
     return false;  // RQE refuses the data with that
@@ -161,7 +161,7 @@ std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sa
   const Sample some = thin_evenly(sample, kBeams, 1);
   if (mount_terms(some, rig).empty()) return {};
   const auto refined = refined_with_mounts(model, some, rig, settings);
-  if (settings.interrupted() || !refined || !refined->outcome.doubts.empty()) return {};
+  if (settings.interrupted() || !refined || !refined->outcome.caveats.empty()) return {};
   const Calibration found = calibration_of(refined->outcome, rig);
   for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
     for (const TermParameters& term : found.lasers[laser].terms) {
@@ -169,11 +169,10 @@ std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sa
       const Parameter& zero = term.parameters.front();
       if (!zero.free || std::abs(zero.value) < std::max(kLeast, kClearly * zero.std_error)) continue;
       const RigLaser& own = rig.lasers[laser];
-      caveats.push_back(
-          fmt::format("{}'s mount is off: {:.3f} ± {:.3f} deg fits, the rig has {:.3f} deg. Set mount in the "
-                      "rig, or find it with calibrate.refine's terms: [{}]",
-                      own.name, without_sign_of_zero((own.mount - zero.value) / kDegree),
-                      zero.std_error / kDegree, own.mount / kDegree, kMirrorZero));
+      caveats.push_back(fmt::format(
+          "{}'s mount is off: {:.3f} ± {:.3f} deg fits, the rig has {:.3f} deg. Set mount in the rig, or estimate it with calibrate.refine's terms: [{}]",
+          own.name, without_sign_of_zero((own.mount - zero.value) / kDegree), zero.std_error / kDegree,
+          own.mount / kDegree, kMirrorZero));
     }
   }
   return caveats;
@@ -200,7 +199,7 @@ std::optional<std::string> find_rig_error(const Sample& sample, const Rig& rig,
     if (auto change = mount_of_one(laser, some, rig, settings)) changes.push_back(std::move(*change));
   }
   if (changes.empty()) return std::nullopt;
-  return fmt::format("the rig is probably wrong: with {} the data fit. Set it in the rig",
+  return fmt::format("the rig is probably wrong: the data fit with {}. Set it in the rig",
                      fmt::join(changes, ", "));
 }
 

@@ -13,7 +13,7 @@
 
 namespace crisp {
 
-/// What is needed to calibrate anew under another assumption of the rig.
+/// Settings for calibrating again under another assumption on the rig.
 struct HypothesisSettings {
   const TermRegistry* terms = nullptr;
   Measure* measure = nullptr;

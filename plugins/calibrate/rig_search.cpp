@@ -7,7 +7,7 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
-#include "pipeline/estimate/base_slots.hpp"
+#include "pipeline/estimate/base_parameters.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/report.hpp"
@@ -19,7 +19,7 @@ namespace {
 /// [nat] In ordinary rooms the next local minimum is 0.3 to 0.5 above the optimum.
 constexpr double kClearlyCrisper = 0.1;
 
-constexpr double kDeviations = 3;  // [standard deviations] of a nominal value within which one is looked for
+constexpr double kDeviations = 3;              // [standard deviations] of a nominal value: the search range
 constexpr double kUsualLambda = 20 * kDegree;  // within which nominal λ are, unless the rig is wrong
 
 double off(const Outcome& outcome, const SearchRange& range, std::size_t parameter) {
@@ -97,7 +97,7 @@ Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measur
   const SearchRange near = search_range_around(start, rig, given);
   const SearchRange nearest = search_range_with_lambda(start, rig, given);
   const auto fits = [&](const std::optional<Refinement>& fit) {
-    return fit && fit->outcome.doubts.empty() &&
+    return fit && fit->outcome.caveats.empty() &&
            check_with_rig(calibration_of(fit->outcome, rig), rig, given).caveats.empty();
   };
   Outcome here = calibrated(near, 0, 0.5);
@@ -114,10 +114,10 @@ Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measur
 
   Outcome anywhere = calibrated(given, 0.7, 0.25);
   const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
-  const auto crispness = crispness_of({anywhere.model, here.model}, sample,
-                                      {.sigma = sigma, .points = settings.points}, measure);
+  const auto rqe =
+      rqe_of({anywhere.model, here.model}, sample, {.sigma = sigma, .points = settings.points}, measure);
   const double clearly = ends_here ? 0 : kClearlyCrisper;
-  if (interrupted() || crispness[0] + clearly > crispness[1]) return here;
+  if (interrupted() || rqe[0] + clearly > rqe[1]) return here;
   if (check_with_rig(calibration_of(anywhere, rig), rig, given).is_explained) return anywhere;
   report(0.95, "flat surfaces");
   const auto other = refined(anywhere, sample, rig, interrupted);

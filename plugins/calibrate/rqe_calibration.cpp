@@ -9,50 +9,45 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/data/shown_unit.hpp"
-#include "pipeline/estimate/base_slots.hpp"
-#include "pipeline/estimate/can_be_told.hpp"
+#include "pipeline/estimate/base_parameters.hpp"
+#include "pipeline/estimate/identifiability.hpp"
 #include "pipeline/estimate/observability.hpp"
 #include "pipeline/estimate/turn_period.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
-#include "plugins/calibrate/crispest.hpp"
-#include "plugins/calibrate/deepest_valley.hpp"
-#include "plugins/calibrate/optimum_scatter.hpp"
+#include "plugins/calibrate/multistart_search.hpp"
 #include "plugins/calibrate/report.hpp"
+#include "plugins/calibrate/rqe_minimizer.hpp"
+#include "plugins/calibrate/sandwich_covariance.hpp"
 
 namespace crisp {
 namespace {
 
 constexpr const char* kSingleSpots =
-    "the plate was only ever seen in a few directions, as its rate and the mirrors' are commensurate: walls "
-    "are "
-    "spots far from one another, and a crisp cloud of spots is no calibration. Record at another rate, or "
-    "with "
-    "a changing one";
+    "the beams have few directions only, since the rates of the plate and the mirrors are commensurate: walls appear as separate spots, whose RQE does not determine a calibration. Record at another rate, or with a changing one";
 
 void refuse_a_standing_plate(const PlateTrajectory& plate) {
   constexpr double kLeast = 1 * kDegree;
   const auto [low, high] = std::ranges::minmax(plate.angles());
   if (high - low >= kLeast) return;
-  throw Error("the plate stands still in these data: no surface is seen twice", "record while it turns");
+  throw Error("the plate is stationary in these data: no surface is seen twice", "record while it turns");
 }
 
-/// @param inside  those of the beams that are covered at all the lags that are looked at
+/// @param inside  those of the beams that are covered at all the lags of the search
 void refuse_a_short_recording(const Sample& all, const Sample& inside, const LagRange& lag,
                               double half_width) {
   if (covered(all, 0, 0).beams.size() == 0) {
-    throw Error("the plate's readings cover none of the beams",
-                "see crisp info for whether the plate's sentences are in the capture");
+    throw Error("the encoder readings cover none of the beams",
+                "check by crisp info that the plate's sentences are in the capture");
   }
   const Sample front = in_plane(inside, half_width, Half::kFront);
   std::map<std::uint16_t, std::size_t> scans;
   for (const auto laser : front.beams.laser) ++scans[laser];
   const auto enough = [](const auto& laser) { return laser.second >= kFewBeams; };
-  const bool looks_there = !scans.empty() || inside.beams.size() == 0;  // some scanners do not
-  if (!looks_there || std::ranges::any_of(scans, enough)) return;
+  const bool is_there = !scans.empty() || inside.beams.size() == 0;  // some scanners do not
+  if (!is_there || std::ranges::any_of(scans, enough)) return;
   throw Error(
       fmt::format(
-          "the recording is too short: no laser has {} scans in it that the plate's readings cover at "
-          "lags of {:.0f} to {:.0f} ms",
+          "the recording is too short: no laser has {} scans that encoder readings cover at lags of {:.0f} to {:.0f} ms",
           kFewBeams, lag.earliest * 1e3, lag.latest * 1e3),
       "record several turns of the plate");
 }
@@ -67,12 +62,12 @@ class RqeCalibration {
         report_(report),
         model_(start),
         sample_(with_margin(start, sample, settings_.in_plane)),
-        parameters_(can_be_told(free_parameters(start, sample.beams, settings.fixed), start, sample_,
-                                settings.in_plane.range)) {
+        parameters_(identifiable_parameters(free_parameters(start, sample.beams, settings.fixed), start,
+                                            sample_, settings.in_plane.range)) {
     keep_where_one_side_is_seen();
     if (parameters_.free.empty()) {
-      throw Error("these data leave nothing to calibrate",
-                  "record with more than one laser or with a plate that turns, and see what is fixed");
+      throw Error("these data leave no parameter to calibrate",
+                  "record with more than one laser or with a turning plate, and check the option fixed");
     }
   }
 
@@ -81,7 +76,7 @@ class RqeCalibration {
     Sample used = crisp::in_plane(sample_, settings_.in_plane.half_width, Half::kBoth);
     if (settings_.full_field) used = full_field_from_each_minimum();
     refuse_a_lag_without_end();
-    tell(0.8, "standard errors");
+    report(0.8, "standard errors");
     Eigen::MatrixXd covariance = scatter(used);
     const auto known = observability(inverse(covariance), parameters_.free, model_.names(),
                                      ranges_of(settings_.in_plane.range, model_, parameters_.free));
@@ -95,13 +90,13 @@ class RqeCalibration {
             .free = parameters_.free,
             .covariance = std::move(covariance),
             .unobservable = parameters_.unobservable,
-            .doubts = doubts(),
+            .caveats = caveats(),
             .other_minima = other_minima(),
             .not_estimated = not_estimated_};
   }
 
  private:
-  /// The beams that the plate's readings cover at every η that is looked at, which the range is told.
+  /// The beams that encoder readings cover at every η of the search; sets the range's ends.
   static Sample with_margin(const SensorModel& start, const Sample& sample, InPlaneSettings& settings) {
     SearchRange& range = settings.range;
     const LagRange lag = lag_range(start, range.eta);
@@ -113,7 +108,7 @@ class RqeCalibration {
     return inside;
   }
 
-  /// A lag that ran away tells that the cloud became no crisper anywhere near.
+  /// A lag at the end of its range shows that RQE has no minimum near the start.
   void refuse_a_lag_without_end() const {
     for (const std::size_t parameter : parameters_.free) {
       const std::string& name = model_.names()[parameter];
@@ -121,11 +116,10 @@ class RqeCalibration {
       if (!is_at_the_end(settings_.in_plane.range, name, value)) continue;
       const auto period = turn_period(sample_);
       if (period && contradicts_counts(*period)) throw Error(counts_caveat(*period));
-      throw Error(fmt::format("{} ran to {:.0f} ms, the end of its range: no cloud there is crisp", name,
-                              value * 1e3),
-                  "see whether the rig's mount, lambda and tau are right, and record several turns of the "
-                  "plate; if lags may "
-                  "be as large, raise eta_range");
+      throw Error(
+          fmt::format("{} reached {:.0f} ms, the end of its search range: RQE has no minimum there", name,
+                      value * 1e3),
+          "check the rig's mount, lambda and tau, and record several turns of the plate; if lags may be as large, raise eta_range");
     }
   }
 
@@ -148,25 +142,25 @@ class RqeCalibration {
     }
   }
 
-  void tell(double done, std::string_view what) const {
+  void report(double done, std::string_view what) const {
     if (report_) report_(done, what);
   }
 
   void in_plane() {
-    tell(0, "beams in the plate's plane");
-    rivals_ = calibrate_in_plane(model_, parameters_.free, sample_, measure_, settings_.in_plane);
+    report(0, "beams in the plate's plane");
+    competitors_ = calibrate_in_plane(model_, parameters_.free, sample_, measure_, settings_.in_plane);
   }
 
   Sample full_field() {
     const auto sigmas = annealing(settings_.sigma_from, settings_.sigma_to);
     Sample thin;
     for (std::size_t k = 0; k < sigmas.size(); ++k) {
-      tell(0.25 + 0.55 * static_cast<double>(k) / static_cast<double>(sigmas.size()),
-           fmt::format("sigma {:.2g} cm", sigmas[k] * 100));
+      report(0.25 + 0.55 * static_cast<double>(k) / static_cast<double>(sigmas.size()),
+             fmt::format("sigma {:.2g} cm", sigmas[k] * 100));
       thin = thin_by_area(sample_, model_, beams_for(sigmas[k], settings_.points), settings_.seed);
       const MinimiserSettings& minimiser = settings_.in_plane.minimiser;
-      crispest(model_, thin, parameters_.free, measure_, sigmas[k], settings_.in_plane.range,
-               k + 1 < sigmas.size() ? rough(minimiser) : minimiser);
+      minimize_rqe(model_, thin, parameters_.free, measure_, sigmas[k], settings_.in_plane.range,
+                   k + 1 < sigmas.size() ? rough(minimiser) : minimiser);
     }
     return thin;
   }
@@ -176,91 +170,92 @@ class RqeCalibration {
   /// plate hardly changes its rate; all beams together hardly ever do.
   Sample full_field_from_each_minimum() {
     const SensorModel in_plane_optimum = model_;
-    std::erase_if(rivals_, [](const Rival& rival) { return rival.height > kClearlyDeeper; });
+    std::erase_if(competitors_,
+                  [](const CompetingMinimum& competitor) { return competitor.height > kClearlyDeeper; });
     Sample used = full_field();
-    for (Rival& rival : rivals_) {
+    for (CompetingMinimum& competitor : competitors_) {
       const SensorModel best = model_;
-      model_ = with_one(in_plane_optimum, rival.parameter, rival.at);
+      model_ = with_one(in_plane_optimum, competitor.parameter, competitor.at);
       std::vector<std::size_t> others = parameters_.free;  // lags as they were found
       std::erase_if(others, [&](std::size_t parameter) {
-        return parameter == rival.parameter || model_.names()[parameter].ends_with(".eta");
+        return parameter == competitor.parameter || model_.names()[parameter].ends_with(".eta");
       });
-      tell(0.25, fmt::format("another minimum, of {}", model_.names()[rival.parameter]));
+      report(0.25, fmt::format("competing minimum, of {}", model_.names()[competitor.parameter]));
       calibrate_in_plane(model_, others, sample_, measure_, settings_.in_plane);
       Sample own = full_field();
-      const auto quality = crispness_of({best, model_}, sample_, {.sigma = settings_.sigma_to}, measure_);
-      const auto place = static_cast<Eigen::Index>(rival.parameter);
-      rival.height = std::abs(quality[1] - quality[0]);
-      rival.at = quality[1] < quality[0] ? best.values()[place] : model_.values()[place];
+      const auto quality = rqe_of({best, model_}, sample_, {.sigma = settings_.sigma_to}, measure_);
+      const auto place = static_cast<Eigen::Index>(competitor.parameter);
+      competitor.height = std::abs(quality[1] - quality[0]);
+      competitor.at = quality[1] < quality[0] ? best.values()[place] : model_.values()[place];
       if (quality[1] < quality[0]) {
         used = std::move(own);
       } else {
         model_ = best;
       }
     }
-    std::erase_if(rivals_, [&](const Rival& rival) { return is_same_minimum(rival, used); });
+    std::erase_if(competitors_,
+                  [&](const CompetingMinimum& competitor) { return is_same_minimum(competitor, used); });
     return used;
   }
 
   /// Whether all beams led from both minima to one: to where they place the cloud alike to within the kernel.
-  bool is_same_minimum(const Rival& rival, const Sample& used) const {
-    const double here = model_.values()[static_cast<Eigen::Index>(rival.parameter)];
-    const bool is_angle = !model_.names()[rival.parameter].ends_with(".eta");
-    const double step =
-        search_basis(model_, used, {rival.parameter}, settings_.in_plane.range, settings_.sigma_to)(0, 0);
-    return between(rival.at, here, is_angle) <= std::abs(step);
+  bool is_same_minimum(const CompetingMinimum& competitor, const Sample& used) const {
+    const double here = model_.values()[static_cast<Eigen::Index>(competitor.parameter)];
+    const bool is_angle = !model_.names()[competitor.parameter].ends_with(".eta");
+    const double step = search_basis(model_, used, {competitor.parameter}, settings_.in_plane.range,
+                                     settings_.sigma_to)(0, 0);
+    return between(competitor.at, here, is_angle) <= std::abs(step);
   }
 
   Eigen::MatrixXd scatter(const Sample& used) {
     const double sigma = settings_.full_field ? settings_.sigma_to : settings_.in_plane.sigma_to;
-    return optimum_scatter(model_, used, parameters_.free, measure_,
-                           {.scale = sigma,
-                            .noise = settings_.noise,
-                            .probes = settings_.probes,
-                            .seed = settings_.seed,
-                            .range = settings_.in_plane.range});
+    return sandwich_covariance(model_, used, parameters_.free, measure_,
+                               {.scale = sigma,
+                                .noise = settings_.noise,
+                                .probes = settings_.probes,
+                                .seed = settings_.seed,
+                                .range = settings_.in_plane.range});
   }
 
-  std::vector<std::string> doubts() const {
+  std::vector<std::string> caveats() const {
     std::vector<std::string> found;
     if (sees_single_spots(sample_, settings_.in_plane)) found.emplace_back(kSingleSpots);
-    for (const Rival& rival : rivals_) {
-      if (is_indistinct(rival)) found.push_back(in_words(rival));
+    for (const CompetingMinimum& competitor : competitors_) {
+      if (is_indistinct(competitor)) found.push_back(in_words(competitor));
     }
     return found;
   }
 
   std::vector<std::string> other_minima() const {
     std::vector<std::string> found;
-    for (const Rival& rival : rivals_) {
-      if (!is_indistinct(rival) && rival.height <= kClearlyDeeper) found.push_back(in_words(rival));
+    for (const CompetingMinimum& competitor : competitors_) {
+      if (!is_indistinct(competitor) && competitor.height <= kClearlyDeeper)
+        found.push_back(in_words(competitor));
     }
     return found;
   }
 
   /// Whether all beams together do not separate two minima: no refinement of the one does, either.
-  bool is_indistinct(const Rival& rival) const {
+  bool is_indistinct(const CompetingMinimum& competitor) const {
     constexpr double kIndistinct = 0.02;  // [nat]
-    return settings_.full_field && rival.height <= kIndistinct;
+    return settings_.full_field && competitor.height <= kIndistinct;
   }
 
-  std::string in_words(const Rival& rival) const {
-    const std::string& name = model_.names()[rival.parameter];
+  std::string in_words(const CompetingMinimum& competitor) const {
+    const std::string& name = model_.names()[competitor.parameter];
     const ShownUnit unit = shown_unit(name.ends_with(".eta") ? "s" : "rad");
-    const double here = model_.values()[static_cast<Eigen::Index>(rival.parameter)];
+    const double here = model_.values()[static_cast<Eigen::Index>(competitor.parameter)];
     return fmt::format(
-        "{} has another minimum at {:.4g} {}, next to {:.4g} {}, where the cloud{} is as crisp to {:.3f} "
-        "nat: "
-        "change the plate's rate more, record longer, or give {} with its sd in the rig",
-        name, rival.at * unit.factor, unit.name, here * unit.factor, unit.name,
-        settings_.full_field ? "" : " of the beams in the plate's plane", rival.height, name);
+        "{} has a competing minimum at {:.4g} {}, next to {:.4g} {}, whose RQE{} differs by {:.3f} nat only: change the plate's rate more, record longer, or give {} with its sd in the rig",
+        name, competitor.at * unit.factor, unit.name, here * unit.factor, unit.name,
+        settings_.full_field ? "" : " of the beams in the plate's plane", competitor.height, name);
   }
 
   RqeCalibrationSettings settings_;
   Measure& measure_;
   const Reporter& report_;
   SensorModel model_;
-  std::vector<Rival> rivals_;
+  std::vector<CompetingMinimum> competitors_;
   Sample sample_;
   FreeParameters parameters_;
   std::vector<std::size_t> not_estimated_;

@@ -17,24 +17,24 @@ struct RqeCalibrationSettings {
   bool full_field = true;          ///< whether the whole field of view follows, or that was all
   double sigma_from = 0.2;         ///< [m] kernel width over the full field at first
   double sigma_to = 0.05;          ///< [m] and at last
-  std::size_t points = 60000;      ///< about so many beams of the full field are looked at
+  std::size_t points = 60000;      ///< approximate number of beams of the full field that are used
   double noise = 0.012;            ///< [m] standard deviation of a range, for the standard errors
   std::size_t probes = 32;         ///< noisy copies of the data that the standard errors are taken from
   std::uint64_t seed = 1;
 };
 
-/// Told what is being done: the fraction of the work so far, and a word for what is next.
+/// Receives progress: the fraction of the work so far, and the current activity.
 using Reporter = std::function<void(double done, std::string_view what)>;
 
-/// Finds λ, τ, α and η at which the cloud of `sample` is crispest: first from the beams in the plate's plane,
-/// in the paper's order, then from the whole field of view with σ narrowing.
+/// Estimates λ, τ, α and η by minimizing the RQE of the cloud of `sample`: first from the beams in the
+/// plate's plane, in the paper's order, then from the whole field of view with σ narrowing.
 ///
-/// The standard errors are those of the scatter that the ranges' noise causes. The optimum of a smooth
-/// entropy also has a bias that they do not show; calibrate.refine removes it.
+/// The standard errors include the scatter by the ranges' noise. The optimum of a smooth entropy also has a
+/// bias that they do not include; calibrate.refine removes it.
 ///
 /// @param start   where to start; λ of all but the first laser may be anywhere
 /// @param sample  all beams; need not be covered
-/// @throws Error  if nothing is left to be turned
+/// @throws Error  if no parameter is free
 Outcome calibrate_by_rqe(const SensorModel& start, const Sample& sample, Measure& measure,
                          const RqeCalibrationSettings& settings, const Reporter& report = {});
 

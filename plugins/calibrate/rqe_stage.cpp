@@ -17,60 +17,55 @@ namespace crisp {
 
 void RqeStage::describe(StageDescription<RqeStage>& d) {
   d.name("calibrate.rqe")
-      .summary("turns lambda, tau, alpha and eta until the cloud is as crisp as it can be");
+      .summary(
+          "estimates lambda, tau, alpha and eta by minimizing the cloud's Rényi quadratic entropy (RQE)");
   d.details(
-      "From the data alone, in two steps. First the two beams of each laser that lie in the plate's plane, "
-      "in the order of Sheehan, Harrison and Newman: each eta, each tau and alpha, each lambda around the "
-      "whole circle. Then the whole field of view, with the kernel narrowing. It starts from the rig's "
-      "nominal "
-      "values, or from those of a calibrate.load above. The standard errors show the scatter that noise "
-      "causes; a bias of some millimetres, which an entropy's optimum has, is left to calibrate.refine.\n\n"
-      "A plate that stands still is refused. One that is only seen in a few directions, since its rate and "
-      "the mirrors' are commensurate (2 and 50 Hz, exactly), is calibrated with a warning not to trust it. "
-      "Of "
-      "several recordings (what pauses of 5 s divide) the longest is looked at.");
+      "Self-calibration from the data alone (Sheehan, Harrison and Newman), in two steps. First the two beams of each laser that lie in the plate's plane, in the paper's order: each eta, each tau and alpha, each lambda around the whole circle. Then the whole field of view, with a decreasing kernel width. It starts from the rig's nominal values, or from those of a calibrate.load above. The standard errors include the ranges' noise; the bias of an entropy's optimum, some millimetres, is removed by calibrate.refine.\n\n"
+      "A stationary plate is an error. A calibration with few plate angles, since the rates of plate and mirrors are commensurate (2 and 50 Hz, exactly), gets a caveat. The longest of several recordings (separated by pauses of 5 s) is used.");
   d.takes<Measurements>().holds<PlateTrajectory>().holds<Calibration>(Need::optional).gives<Calibration>();
-  d.option("sigma", &RqeStage::sigma_, "kernel width over the whole field of view: at first, and at last")
+  d.option("sigma", &RqeStage::sigma_,
+           "kernel width for the whole field of view: first and last; start well above the noise")
       .unit("m")
       .range(1e-3, 10)
       .count(2, 2);
-  d.option("in_plane_sigma", &RqeStage::in_plane_sigma_, "and for the beams in the plate's plane")
+  d.option("in_plane_sigma", &RqeStage::in_plane_sigma_,
+           "kernel width for the beams in the plate's plane: first and last")
       .unit("m")
       .range(1e-3, 10)
       .count(2, 2);
   d.option("in_plane_width", &RqeStage::settings_, &RqeCalibrationSettings::in_plane,
-           &InPlaneSettings::half_width, "largest angle of a beam to that plane")
+           &InPlaneSettings::half_width, "largest angle between a beam and the plate's plane")
       .unit("rad")
       .range(0, 0.1);
   d.option("full_field", &RqeStage::settings_, &RqeCalibrationSettings::full_field,
-           "whether the whole field of view follows; the paper has the two beams alone");
+           "whether to continue with the whole field of view; the paper uses the two beams alone");
   d.option("points", &RqeStage::settings_, &RqeCalibrationSettings::points,
-           "about so many points are looked at, spread evenly over the surfaces")
+           "approximate number of points used, sampled evenly over the surfaces")
       .range(1000, 1e7);
   d.option("lambda_range", &RqeStage::range_, &SearchRange::lambda,
-           "how far lambda is turned at a time; where it starts does not matter")
+           "search range of lambda in one step; its start does not matter")
       .unit("rad")
       .range(1e-6, 3.2);
-  d.option("tau_range", &RqeStage::range_, &SearchRange::tau, "how far tau may be from its start")
+  d.option("tau_range", &RqeStage::range_, &SearchRange::tau, "search range of tau around its start")
       .unit("m")
       .range(1e-6, 10);
-  d.option("alpha_range", &RqeStage::range_, &SearchRange::alpha, "how far alpha may be from its start")
+  d.option("alpha_range", &RqeStage::range_, &SearchRange::alpha, "search range of alpha around its start")
       .unit("rad")
       .range(1e-6, 1.5);
-  d.option("eta_range", &RqeStage::range_, &SearchRange::eta, "how far eta may be from its start")
+  d.option("eta_range", &RqeStage::range_, &SearchRange::eta, "search range of eta around its start")
       .unit("s")
       .range(1e-6, 1);
   d.option("fixed", &RqeStage::settings_, &RqeCalibrationSettings::fixed,
-           "parameters that are left as they are: laser1.eta, or eta for that of all lasers");
+           "parameters that are held: laser1.eta, or eta for that of all lasers");
   d.option("noise", &RqeStage::settings_, &RqeCalibrationSettings::noise,
            "standard deviation of a range, for the standard errors")
       .unit("m")
       .range(1e-6, 1);
-  d.option("measure", &RqeStage::measure_, "what is lowest when a cloud is crispest: rqe, or a plugin's");
+  d.option("measure", &RqeStage::measure_, "measure to minimize: rqe, or a plugin's");
   d.option("search", &RqeStage::measure_settings_, &MeasureSettings::search,
-           "how neighbours are found: grid, flann, exact, or a plugin's");
+           "neighbour search: grid, flann, exact, or a plugin's");
   d.option("cutoff", &RqeStage::measure_settings_, &MeasureSettings::cutoff,
-           "distance in kernel widths beyond which pairs are left out")
+           "distance in kernel widths beyond which pairs are neglected")
       .range(1, 12);
 }
 
@@ -83,8 +78,7 @@ void RqeStage::check(const RunSettings& run) const {
   const auto narrows = [](const auto& sigma, const char* name) {
     return of_option(name, [&sigma, name] {
       if (sigma[0] >= sigma[1]) return;
-      throw Error(std::string(name) + ": the kernel has to become narrower, not wider",
-                  "write the larger sigma first");
+      throw Error(std::string(name) + ": the kernel width must decrease", "write the larger sigma first");
     });
   };
   check_all(narrows(sigma_, "sigma"), narrows(in_plane_sigma_, "in_plane_sigma"),
@@ -100,24 +94,22 @@ void RqeStage::process(const Inputs& in, Outputs&, Context& context) {
 
 Calibration RqeStage::compared_with_rig(Calibration calibration, Context& context) const {
   const RigCheck check = check_with_rig(calibration, context.rig(), range_);
-  const bool asks_direction = context.rig().plate.direction == CountDirection::automatic && !start_;
+  const bool finds_direction = context.rig().plate.direction == CountDirection::automatic && !start_;
   if (!start_) {
     if (auto turned = in_direction_of_rig(calibration, context.rig(), check)) {
       context.warn(kCountsClockwise);
       return std::move(*turned);
     }
   }
-  if (asks_direction && !check.knows_direction) {
-    calibration.doubts.emplace_back(
-        "nothing shows which way the encoder counts, as the mirror image agrees with the rig's nominal "
-        "values as well: the cloud may be the mirror image of the scene. Set plate.direction in the rig");
-    context.distrust(calibration.doubts.back());
+  if (finds_direction && !check.knows_direction) {
+    calibration.caveats.emplace_back(
+        "the encoder's sense of rotation is undetermined, since the mirror image agrees with the rig's nominal values as well: the cloud may be the mirror image of the scene. Set plate.direction in the rig");
+    context.mark_untrusted(calibration.caveats.back());
   } else if (!check.knows_direction && !start_) {
-    context.say(
-        "plate.direction is known from the rig only: the mirror image agrees with the nominal values as "
-        "well");
+    context.print(
+        "plate.direction is determined by the rig only: the mirror image agrees with the nominal values as well");
   }
-  for (const auto& caveat : check.caveats) context.distrust(caveat);
+  for (const auto& caveat : check.caveats) context.mark_untrusted(caveat);
   return calibration;
 }
 
@@ -141,33 +133,32 @@ void RqeStage::finish(Outputs& out, Context& context) {
                         [&](double done, std::string_view what) { context.progress(done, what); });
   if (context.interrupted()) return;
 
-  for (const auto& doubt : outcome.doubts) context.distrust(doubt);
-  for (const auto& minimum : outcome.other_minima) context.distrust(minimum);
+  for (const auto& caveat : outcome.caveats) context.mark_untrusted(caveat);
+  for (const auto& minimum : outcome.other_minima) context.mark_untrusted(minimum);
   Calibration calibration = calibration_of(outcome, context.rig());
-  calibration.doubts = outcome.doubts;  // of the data: no refinement answers them
+  calibration.caveats = outcome.caveats;  // of the data: no refinement answers them
   const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
-  const auto crispness = crispness_of({outcome.model, SensorModel(start, terms)}, sample,
-                                      {.sigma = sigma, .points = settings.points}, *measure);
-  calibration.quality = {{"rqe_before", crispness[1]}, {"rqe_after", crispness[0]}, {"rqe_sigma", sigma}};
+  const auto rqe = rqe_of({outcome.model, SensorModel(start, terms)}, sample,
+                          {.sigma = sigma, .points = settings.points}, *measure);
+  calibration.quality = {{"rqe_before", rqe[1]}, {"rqe_after", rqe[0]}, {"rqe_sigma", sigma}};
   calibration.provenance["calibration"] = "calibrate.rqe";
   calibration = compared_with_rig(std::move(calibration), context);
   if (calibration.quality.at("rqe_after") > calibration.quality.at("rqe_before")) {
-    context.distrust("the calibration made the cloud less crisp than it was");
+    context.mark_untrusted(
+        "the calibration increased the cloud's Rényi quadratic entropy: it is worse than its start");
   }
-  if (outcome.free.empty()) context.distrust("RQE determines none of the parameters");
+  if (outcome.free.empty()) context.mark_untrusted("RQE determines none of the parameters");
   if (!outcome.not_estimated.empty()) {
     std::vector<std::string> names;
     for (const std::size_t parameter : outcome.not_estimated)
       names.push_back(outcome.model.names()[parameter]);
-    context.say(
-        fmt::format("{} stay as they were: the laser sees one side of the spin axis only, and a smaller room "
-                    "would be as crisp (calibrate.refine finds them)",
-                    fmt::join(names, ", ")));
+    context.print(fmt::format(
+        "{} are held: the laser sees one side of the spin axis only, and RQE does not determine them (calibrate.refine estimates them)",
+        fmt::join(names, ", ")));
   }
-  tell(calibration, {}, context);
-  context.say(
-      "standard errors count how beams scatter; by how much the crispest cloud is not the true one comes on "
-      "top, some millimetres (calibrate.refine)");
+  report(calibration, {}, context);
+  context.print(
+      "standard errors include the ranges' noise, but not the bias of RQE's optimum of some millimetres, which calibrate.refine removes");
   out.give(std::move(calibration));
 }
 

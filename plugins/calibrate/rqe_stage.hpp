@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pipeline/data/oriented_plate.hpp"
-#include "pipeline/estimate/collected.hpp"
+#include "pipeline/estimate/measurement_buffer.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 #include "plugins/calibrate/rqe_calibration.hpp"
@@ -33,7 +33,7 @@ class RqeStage final : public Stage {
   std::string measure_ = "rqe";
   MeasureSettings measure_settings_{.search = "grid", .cutoff = 5};
   OrientedPlate oriented_;
-  Collected collected_;
+  MeasurementBuffer collected_;
   std::shared_ptr<const Calibration> start_;
 };
 

@@ -53,10 +53,10 @@ void refuse_single_beams(const Measurements& beams, const Calibration& lasers,
   }
   if (found.empty()) return;
   throw Error(
-      fmt::format("all beams have one and the same mirror angle, of {}: its alpha, lambda and tau cannot be "
-                  "estimated separately",
-                  fmt::join(found, ", ")),
-      "record whole scans (the laser's output range), or leave them as they are: fixed: [alpha, tau]");
+      fmt::format(
+          "all beams of {} have the same mirror angle: its alpha, lambda and tau are not identifiable separately",
+          fmt::join(found, ", ")),
+      "record whole scans (the laser's output range), or hold them: fixed: [alpha, tau]");
 }
 
 }  // namespace crisp

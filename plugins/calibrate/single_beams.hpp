@@ -9,9 +9,9 @@
 
 namespace crisp {
 
-/// A laser whose beams all have one mirror angle is no scanner: turning its mirror by alpha is the same as
-/// turning its mount by lambda, and no more than a distance from the spin axis tells tau.
-/// @param lasers  of the rig, whose names are told
+/// A laser whose beams all have one mirror angle is no scanner: rotating its mirror by alpha equals rotating
+/// its mount by lambda, and only a distance from the spin axis determines tau.
+/// @param lasers  of the rig, named in the message
 /// @param fixed   parameters that are not estimated: laser1.alpha, or alpha for that of all lasers
 /// @throws Error  that names the lasers with such beams whose alpha is to be estimated
 void refuse_single_beams(const Measurements& beams, const Calibration& lasers,

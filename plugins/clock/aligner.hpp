@@ -21,7 +21,6 @@ namespace crisp {
 
 /// How stamps become hub times.
 struct AlignmentSettings {
-  LineFinder find = line_by_convex_hull;
   TimeSource source = TimeSource::clock;
   double drift = 200e-6 / 3600;  ///< [1/s] largest change of a clock's rate in a second
   std::optional<double> window;  ///< [s] stretch of stamps that one line is fitted to; none: automatic
@@ -30,13 +29,13 @@ struct AlignmentSettings {
   std::optional<unsigned> mirror_half_width;  ///< stamps on either side that smooth the mirror's motion
 };
 
-/// What an alignment did, for people and for the summary.
+/// Report of an alignment, for people and for the summary.
 struct AlignmentReport {
   std::vector<DeviceReport>
       devices;  ///< the lasers in the order of the rig, then the plate; of each recording
   std::map<std::string, std::uint64_t> counts;
   std::vector<std::string> warnings;
-  std::vector<std::string> doubts;   ///< why the times cannot be trusted
+  std::vector<std::string> caveats;  ///< why the times cannot be trusted
   std::vector<StampStep> hub_steps;  ///< by how much the hub's clock was set: forwards
   double hub_deviation = 0;          ///< [s] by how much at most it deviated from a steady one
 
@@ -44,7 +43,7 @@ struct AlignmentReport {
   void append(AlignmentReport other);
 };
 
-/// Where an alignment puts what it makes: the plate's trajectory over a time first, then measurements in it.
+/// Receives an alignment's results: the plate's trajectory over a time first, then measurements in it.
 struct AlignmentSink {
   std::function<void(PlateTrajectory)> trajectory;
   std::function<void(std::shared_ptr<const Measurements>)> measurements;
@@ -63,11 +62,11 @@ class Aligner {
   virtual void add(std::shared_ptr<const Scan> scan) = 0;
   virtual void add(const PlateReading& reading) = 0;
   /// Hands out all that is left.
-  /// @throws Error if there was no scan of any laser, or no reading of the plate
+  /// @throws Error if there was no scan of any laser, or no encoder reading
   virtual AlignmentReport finish() = 0;
 };
 
-/// What an aligner knows of a rig's devices.
+/// An aligner's tracks of a rig's devices.
 class HubTracks {
  public:
   HubTracks(const Rig& rig, const AlignmentSettings& settings);
@@ -83,7 +82,7 @@ class HubTracks {
 
   std::vector<LaserTrack>& lasers() { return lasers_; }
   const std::vector<LaserTrack>& lasers() const { return lasers_; }
-  /// What a scan measured, on the hub's clock.
+  /// Measurements of a scan, on the hub's clock.
   std::shared_ptr<const Measurements> measurements_of(const TimedScan& scan);
   PlateTrack& plate() { return plate_; }
   const PlateTrack& plate() const { return plate_; }

@@ -14,9 +14,9 @@ constexpr double kFar = 1e-3;  // [s] a plate at 1 Hz turns by 0.36° in that ti
 void count_losses(const DeviceReport& device, std::map<std::string, std::uint64_t>& counts) {
   const auto count = [&](const char* what, std::uint64_t n) { counts[device.device + ": " + what] = n; };
   count("telegrams lost", device.lost);
-  count("telegrams that came twice", device.repeated);
-  count("telegrams that came after later ones", device.late);
-  count("telegrams with the stamp of the one before", device.standing);
+  count("repeated telegrams", device.repeated);
+  count("telegrams out of order", device.late);
+  count("telegrams with the stamp of their predecessor", device.standing);
   count("telegrams with impossible times", device.damaged);
   count("clock resets", device.resets);
   count("silences of a second or more", device.silences.size());
@@ -27,7 +27,7 @@ void warn_of_steps(const std::string& device, const char* what, const std::vecto
   if (steps.empty()) return;
   const StampStep& largest =
       *std::ranges::max_element(steps, {}, [](const StampStep& step) { return std::abs(step.by); });
-  warnings.push_back(fmt::format("{}: {} {} time(s), by {:+.3f} ms at {:.2f} s{}; taken out", device, what,
+  warnings.push_back(fmt::format("{}: {} {} time(s), by {:+.3f} ms at {:.2f} s{}; corrected", device, what,
                                  steps.size(), 1e3 * largest.by, largest.at,
                                  steps.size() > 1 ? ", and less elsewhere" : ""));
 }
@@ -35,7 +35,7 @@ void warn_of_steps(const std::string& device, const char* what, const std::vecto
 void warn_of_device(const DeviceReport& device, std::vector<std::string>& warnings) {
   const std::string& name = device.device;
   if (device.received == 0) {
-    warnings.push_back(name + ": nothing came from it");
+    warnings.push_back(name + ": no data of it");
     return;
   }
   if (!device.silences.empty()) {
@@ -47,7 +47,7 @@ void warn_of_device(const DeviceReport& device, std::vector<std::string>& warnin
                     device.silences.size(), longest->duration, longest->begin));
   }
   if (device.resets > 0) {
-    warnings.push_back(fmt::format("{}: its clock was reset {} time(s); each stretch has a line of its own",
+    warnings.push_back(fmt::format("{}: its clock was reset {} time(s); each segment has a line of its own",
                                    name, device.resets));
   }
   warn_of_steps(name, "its clock jumped", device.clock_steps, warnings);
@@ -63,19 +63,20 @@ std::string about(std::uint64_t n, std::uint64_t all) {
 std::string reason_of(const DeviceReport& device) {
   constexpr double kStands = 0.25;  // [s] a clock that ticks more coarsely is of no use either
   if (device.standing >= std::max(device.late, device.damaged)) {
-    const std::string same = about(device.standing, device.received) + " carry the stamp of the one before";
-    if (device.standstill < kStands) return "its clock ticks too coarsely: " + same;
+    const std::string same =
+        about(device.standing, device.received) + " carry the stamp of their predecessor";
+    if (device.standstill < kStands) return "its clock's resolution is too coarse: " + same;
     return fmt::format("its clock stands still (for {:.1f} s): {}", device.standstill, same);
   }
   if (device.late >= device.damaged) {
-    return about(device.late, device.received) + " came after later ones, by their stamps";
+    return about(device.late, device.received) + " are out of order, by their stamps";
   }
-  return about(device.damaged, device.received) + " have times that fit none before or after";
+  return about(device.damaged, device.received) + " have times inconsistent with those before and after";
 }
 
-/// Says of which device more than a few telegrams are left out: a doubt where hardly any is of use. What came
-/// twice is no loss.
-void tell_losses(const DeviceReport& device, AlignmentReport& report) {
+/// Reports a device of which more than a few telegrams are left out: a caveat where hardly any is usable.
+/// Repeated telegrams are no loss.
+void report_losses(const DeviceReport& device, AlignmentReport& report) {
   constexpr double kFew = 0.03;
   constexpr double kNearlyAll = 0.95;
   const auto lost = static_cast<double>(device.late + device.standing + device.damaged);
@@ -88,41 +89,41 @@ void tell_losses(const DeviceReport& device, AlignmentReport& report) {
     return;
   }
   if (share <= kFew) return;
-  (share < kNearlyAll ? report.warnings : report.doubts)
-      .push_back(fmt::format("{}: {}; they are left out. {}", device.device, reason_of(device),
-                             device.standing > 0 ? "Switch on its time stamps or update its firmware; "
-                                                   "clock.receipt places by receipt times instead"
-                                                 : "Check the device and the order of the recording"));
+  (share < kNearlyAll ? report.warnings : report.caveats)
+      .push_back(fmt::format(
+          "{}: {}; they are left out. {}", device.device, reason_of(device),
+          device.standing > 0
+              ? "Switch on its time stamps or update its firmware; clock.receipt places by receipt times instead"
+              : "Check the device and the order of the recording"));
 }
 
 /// A line that is as steep as any may be fits stamps that have no clock in common. Few stamps, or close ones,
 /// can make it steep by chance; but then they are not far from it.
-std::string doubt_of(const DeviceReport& device) {
+std::string caveat_of(const DeviceReport& device) {
   if (!device.clock || device.clock->residual_median < kFar) return {};
   if (std::abs(device.clock->skew_ppm()) < 0.99e6 * kMostSkew) return {};
   return fmt::format(
-      "{}: its stamps fit no steady clock (skew beyond {:.0f} ppm; half of them more than {:.1f} ms from it)",
+      "{}: its stamps fit no clock of constant rate (skew beyond {:.0f} ppm; half of them more than {:.1f} ms from it)",
       device.device, 1e6 * kMostSkew, 1e3 * device.clock->residual_median);
 }
 
-/// How far a clock may be from its line [s] at the ends of half a minute about its middle; a longer recording
-/// has more than one line. Where the shortest delay or the device's time stepped, or hardly any telegram came
-/// in without waiting, stamps lie far from the line but for a few, and its slope is the work of these.
+/// Uncertainty of a clock's line [s] at the ends of half a minute about its middle; a longer recording has
+/// more than one line. Where the minimum delay or the device's time stepped, or hardly any telegram came
+/// without delay, few stamps are near the line, and they alone determine its slope.
 double error_of_clock(const ClockMap& clock) {
   constexpr double kLong = 30;  // [s]
   const double span = clock.device_end - clock.pieces.front().device_begin;
   return clock.skew_std_error * std::min(kLong, 0.5 * span);
 }
 
-/// Says where a clock is hardly known: so that it is a doubt, or only a warning.
-void tell_error_of_clock(const ClockMap& clock, AlignmentReport& report) {
+/// Reports a poorly determined clock: as a caveat, or only as a warning.
+void report_error_of_clock(const ClockMap& clock, AlignmentReport& report) {
   constexpr double kMuch = 0.25e-3;  // [s] a plate at 1 Hz turns by 0.09° in that time
   const double error = error_of_clock(clock);
   if (error < kMuch) return;
-  (error < kFar ? report.warnings : report.doubts)
+  (error < kFar ? report.warnings : report.caveats)
       .push_back(fmt::format(
-          "{}: its clock is known to {:.1f} ms only ({:.0f} ± {:.0f} ppm): too few telegrams came without "
-          "delay, or the delay or its time stepped, which diagnose.stamps tells",
+          "{}: its clock is determined to {:.1f} ms only ({:.0f} ± {:.0f} ppm): too few telegrams came without delay, or the delay or its time stepped, which diagnose.clocks detects",
           clock.device, 1e3 * error, clock.skew_ppm(), 1e6 * clock.skew_std_error));
 }
 
@@ -134,7 +135,7 @@ void AlignmentReport::append(AlignmentReport other) {
   for (auto& warning : other.warnings) warnings.push_back(std::move(warning));
   hub_steps.insert(hub_steps.end(), other.hub_steps.begin(), other.hub_steps.end());
   hub_deviation = std::max(hub_deviation, other.hub_deviation);
-  for (auto& doubt : other.doubts) doubts.push_back(std::move(doubt));
+  for (auto& caveat : other.caveats) caveats.push_back(std::move(caveat));
 }
 
 AlignmentReport HubTracks::report() const {
@@ -144,32 +145,30 @@ AlignmentReport HubTracks::report() const {
     report.counts[laser.laser().name + ": beams without echo"] = laser.without_echo();
     if (laser.sees_nothing())
       report.warnings.push_back(fmt::format(
-          "{}: none of its {} beams has an echo: it looks at nothing within its range, its window is "
-          "covered, or it sends codes in place of ranges",
+          "{}: none of its {} beams has an echo: nothing is within its range, its window is covered, or it sends codes in place of ranges",
           laser.laser().name, laser.without_echo()));
     if (auto warning = laser.stamp_warning(); !warning.empty()) report.warnings.push_back(std::move(warning));
   }
   for (const auto& device : report.devices) {
     count_losses(device, report.counts);
     warn_of_device(device, report.warnings);
-    tell_losses(device, report);
-    if (auto doubt = doubt_of(device); !doubt.empty()) report.doubts.push_back(std::move(doubt));
-    if (device.clock) tell_error_of_clock(*device.clock, report);
+    report_losses(device, report);
+    if (auto caveat = caveat_of(device); !caveat.empty()) report.caveats.push_back(std::move(caveat));
+    if (device.clock) report_error_of_clock(*device.clock, report);
   }
   const std::string& plate = report.devices.back().device;
   report.counts[plate + ": readings after its zero was lost"] = plate_.after_lost_zero();
   report.counts[plate + ": readings with an impossible angle"] = plate_.impossible();
   report.counts[plate + ": readings at one hub time"] = plate_.simultaneous();
   report.counts["scans of lasers that the rig does not have"] = unknown_lasers_;
-  report.counts["telegrams whose receipt went back in time"] = back_in_time_;
+  report.counts["telegrams received before their predecessor"] = back_in_time_;
   if (plate_.after_lost_zero() > 0) {
     report.warnings.push_back(fmt::format(
-        "{}: the encoder lost its zero; what came after has no angle in common with the rest and is left out",
-        plate));
+        "{}: the encoder lost its zero; later readings have an unknown offset and are left out", plate));
   }
   if (back_in_time_ > 0) {
     report.warnings.emplace_back(
-        "the hub's clock went back by more than a second: what came then is not aligned");
+        "the hub's clock went back by more than a second: later data are not aligned");
   }
   return report;
 }

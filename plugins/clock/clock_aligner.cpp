@@ -16,7 +16,7 @@ constexpr double kWindow = 60;          // [s]
 constexpr double kLongestWindow = 240;  // [s] bounds the memory
 constexpr double kLate = 30;            // [s] a scan may come in so long after it was swept
 
-/// Of what is taken out there is one word, and not one for each device.
+/// One warning for a removed deviation of the hub's clock, and not one for each device.
 void warn_of_hub_clock(AlignmentReport& report) {
   if (report.hub_deviation <= 0) return;
   std::string steps;
@@ -27,11 +27,9 @@ void warn_of_hub_clock(AlignmentReport& report) {
         fmt::format(" (set {} time(s), by {:+.3f} ms at {:.2f} s{})", report.hub_steps.size(),
                     1e3 * largest.by, largest.at, report.hub_steps.size() > 1 ? ", and less elsewhere" : "");
   }
-  report.warnings.push_back(
-      fmt::format("the hub's clock deviates by up to {:.3f} ms from those of all devices alike{}: it was set "
-                  "or slewed, as NTP "
-                  "does, or the hub was busy. This is taken out",
-                  1e3 * report.hub_deviation, steps));
+  report.warnings.push_back(fmt::format(
+      "the hub's clock deviates by up to {:.3f} ms from those of all devices{}: it was set or slewed, as by NTP, or the hub was busy. The deviation is corrected",
+      1e3 * report.hub_deviation, steps));
 }
 
 }  // namespace
@@ -79,7 +77,7 @@ void ClockAligner::advance_windows() {
   }
 }
 
-/// What all devices' clocks tell alike is the hub's.
+/// A deviation common to all devices' clocks is the hub's.
 void ClockAligner::take_out_hub_deviation() {
   std::vector<std::vector<ReceivedStamp>> stamps;
   for (const auto& laser : tracks_.lasers()) stamps.push_back(laser.clock().unsettled());
@@ -102,8 +100,10 @@ bool ClockAligner::is_too_short() const {
   if (settings_.window || length_ >= kLongestWindow) return false;
   const double drift =
       settings_.drift * length_ * length_ / 8;  // of a line through the window from its clock
-  const auto doubtful = [&](const auto& track) { return track.clock().doubt(begin_ + length_) > drift; };
-  return doubtful(tracks_.plate()) || std::ranges::any_of(tracks_.lasers(), doubtful);
+  const auto is_uncertain = [&](const auto& track) {
+    return track.clock().uncertainty(begin_ + length_) > drift;
+  };
+  return is_uncertain(tracks_.plate()) || std::ranges::any_of(tracks_.lasers(), is_uncertain);
 }
 
 void ClockAligner::settle(double begin, double end) {
@@ -147,14 +147,12 @@ void ClockAligner::end_recording() {
     hand_out(std::numeric_limits<double>::infinity());
     report_.append(tracks_.report());
   } else {
-    ++report_.counts["recordings without any scan, or without two readings of the plate"];
+    ++report_.counts["recordings without any scan, or without two encoder readings"];
     const std::uint64_t scans = tracks_.scans_received();
-    report_.counts["scans of recordings without two readings of the plate"] += scans;
+    report_.counts["scans of recordings without two encoder readings"] += scans;
     if (scans > 0)
       report_.warnings.push_back(fmt::format(
-          "{}: nothing came from it in one of several recordings with pauses between them: the {} scans of "
-          "that "
-          "recording are left out. See whether it was switched on, and whether its packets were recorded",
+          "{}: no data of it in one of several recordings with pauses between them: the {} scans of that recording are left out. Check that it was switched on, and that its packets were recorded",
           tracks_.plate().clock().device(), scans));
   }
   tracks_.begin_anew();

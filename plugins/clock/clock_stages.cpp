@@ -75,101 +75,76 @@ void AlignStage::describe_alignment(StageDescription<S>& d) {
            "longest silence of the encoder to interpolate across")
       .unit("s")
       .range(1e-4, 10);
-  d.option("plate_smoothing", &AlignStage::settings_, &AlignmentSettings::plate,
-           &PlateMotionSettings::smoothing,
-           "readings of the plate so near to a moment say together where it was between the steps of its "
-           "encoder, or those within a half or a quarter of it where it is shaken; no angle is moved by more "
-           "than "
-           "0.6 steps. 0: as read")
+  d.option(
+       "plate_smoothing", &AlignStage::settings_, &AlignmentSettings::plate, &PlateMotionSettings::smoothing,
+       "half width of the window over which readings are smoothed between the steps of the encoder; where the plate is shaken, a half or a quarter of it is used. No angle is moved by more than 0.6 steps. 0: readings as they are")
       .unit("s")
       .range(0, 1);
-  d.option(
-       "mirror_smoothing", &AlignStage::settings_, &AlignmentSettings::mirror_half_width,
-       "scans on either side that smooth the motion of a mirror; auto: as many as foretell its stamps best")
+  d.option("mirror_smoothing", &AlignStage::settings_, &AlignmentSettings::mirror_half_width,
+           "scans on either side that smooth the motion of a mirror; auto: chosen by cross-validation")
       .range(1, 10);
 }
 
 template <class S>
 void AlignStage::describe_windows(StageDescription<S>& d) {
-  d.option("window", &AlignStage::settings_, &AlignmentSettings::window,
-           "stretch of stamps that one line is fitted to; what is shorter than 1.5 of it has one line; auto: "
-           "60 s, "
-           "and up to 240 s where delays are rough")
+  d.option(
+       "window", &AlignStage::settings_, &AlignmentSettings::window,
+       "duration of stamps to which one line is fitted; less than 1.5 of it have one line; auto: 60 s, and up to 240 s where delays are irregular")
       .unit("s")
       .range(1, 3600);
   d.option("margin", &AlignStage::settings_, &AlignmentSettings::margin,
-           "by how much a piece of the plate's trajectory covers more than its measurements' times")
+           "margin by which a piece of the plate's trajectory exceeds its measurements' times")
       .unit("s")
       .range(0, 10);
 }
 
 template <class S>
 void AlignStage::describe_fit(StageDescription<S>& d) {
-  d.option("drift", &AlignStage::drift_,
-           "largest change of a clock's rate, in ppm in an hour; a device that warms up "
-           "faster needs more")
+  d.option(
+       "drift", &AlignStage::drift_,
+       "largest change of a clock's rate, in ppm in an hour; increase it for a device that warms up quickly")
       .unit("ppm/h")
       .range(0, 1e5);
 }
 
 void ConvexHullStage::describe(StageDescription<ConvexHullStage>& d) {
-  d.name("clock.convex_hull").summary("puts all stamps on the hub's clock, by the convex hull below them");
+  d.name("clock.convex_hull")
+      .summary("transforms all stamps to the hub's clock, by the convex hull below them");
   d.details(
-      "A telegram comes in late, never early: the device's clock is the line below all pairs of transmission "
-      "and receipt time that is nearest to them, an edge of their lower convex hull (Zhang, Liu, Xia 2002). "
-      "Long "
-      "recordings have a line a window; the map between the windows' middles is straight, so that it follows "
-      "a "
-      "clock that drifts. A reset of a device begins a new line. After a pause of 5 s, in which nothing came "
-      "from any device, another "
-      "recording begins, which has nothing in common with the one before it.\n\n"
-      "Each beam gets the time at which it was fired: the mirror's motion is taken from the scans' own "
-      "stamps, "
-      "since mirrors turn up to 0.6 % slower than they should, and wander.");
+      "Telegrams are delayed, never early: the device's clock is the highest line below all pairs of transmission and receipt time, an edge of their lower convex hull (Zhang, Liu, Xia 2002). Long recordings have a line per window, and the map is linear between the windows' centres, so that it follows a clock's drift. A reset of a device begins a new line. After a pause of 5 s without items from any device another recording begins, independent of the one before it.\n\n"
+      "Each beam gets its firing time: the mirror's motion is estimated from the scans' own stamps, since mirrors turn up to 0.6 % slower than nominal, and wander.");
   describe_alignment(d);
   describe_windows(d);
   describe_fit(d);
 }
 
 void OnlineStage::describe(StageDescription<OnlineStage>& d) {
-  d.name("clock.online")
-      .summary("puts stamps on the hub's clock as they come in, and scans on as soon as they can");
+  d.name("clock.online").summary("transforms stamps to the hub's clock as they arrive, with bounded delay");
   d.details(
-      "For live pipelines: each scan is handed on, with its piece of the plate's trajectory, as soon as the "
-      "plate's "
-      "readings cover it. A device's clock is the line below its stamps of the last `window` that "
-      "clock.convex_hull would find; what was handed on is not corrected when it becomes better known. After "
-      "a "
-      "restart of a device its clock is a new one, and its scans wait for `warm_up`. The mirror's motion is "
-      "taken "
-      "from the stamps so far.\n\n"
-      "What is handed on depends on the items and their times of receipt alone: from a recording of a live "
-      "run the "
-      "same stage makes the same measurements. With a calibration from above, the readings that its lags "
-      "need are "
-      "waited for.");
+      "For live pipelines: each scan is passed on, with its piece of the plate's trajectory, as soon as encoder readings cover it. A device's clock is the line of clock.convex_hull for its stamps of the last `window`; scans passed on are not corrected later. After a restart of a device its clock is a new one, and its scans wait for `warm_up`. The mirror's motion is estimated from the stamps so far.\n\n"
+      "The output depends on the items and their times of receipt alone: from a recording of a live run the same stage makes the same measurements. With a calibration from above, the stage waits for the readings that its lags require.");
   describe_alignment(d);
   d.holds<Calibration>(Need::optional);
   d.option("window", &OnlineStage::online_, &OnlineSettings::window,
-           "of stamps to which a clock's line is fitted")
+           "duration of stamps to which a clock's line is fitted")
       .unit("s")
       .range(1, 3600);
   d.option("warm_up", &OnlineStage::online_, &OnlineSettings::warm_up,
-           "of a device's stamps before its clock is believed")
+           "duration of a device's stamps before its clock is used")
       .unit("s")
       .range(0, 60);
-  d.option("margin", &OnlineStage::online_, &OnlineSettings::margin,
-           "by how much a piece of the plate's trajectory covers more than its scan, as far as it is there "
-           "already")
+  d.option(
+       "margin", &OnlineStage::online_, &OnlineSettings::margin,
+       "margin by which a piece of the plate's trajectory exceeds its scan, as far as it has been received")
       .unit("s")
       .range(0, 1);
-  d.option("lag_margin", &OnlineStage::online_, &OnlineSettings::lag_margin,
-           "by which lags may become greater than the calibration from above says, where calibrate.watch "
-           "below finds them anew")
+  d.option(
+       "lag_margin", &OnlineStage::online_, &OnlineSettings::lag_margin,
+       "margin for lags beyond the calibration from above, where calibrate.watch below estimates them again")
       .unit("s")
       .range(0, 0.1);
-  d.option("patience", &OnlineStage::online_, &OnlineSettings::patience,
-           "for the plate's readings, after which a scan is handed on without them")
+  d.option("plate_timeout", &OnlineStage::online_, &OnlineSettings::plate_timeout,
+           "timeout for encoder readings, after which a scan is passed on without them")
       .unit("s")
       .range(0, 60);
   describe_fit(d);
@@ -189,15 +164,15 @@ void OnlineStage::take_lags(const std::shared_ptr<const Calibration>& calibratio
 void OnlineStage::process(const Inputs& in, Outputs& out, Context& context) {
   take_lags(in.share<Calibration>());
   AlignStage::process(in, out, context);
-  if (context.is_watched()) tell(context);
+  if (context.is_watched()) report(context);
 }
 
-void OnlineStage::tell(Context& context) {
-  constexpr double kTellEvery = 0.5;  // [s]
+void OnlineStage::report(Context& context) {
+  constexpr double kReportEvery = 0.5;  // [s]
   const auto& aligner = static_cast<const OnlineAligner&>(*aligner_);
-  if (!told_) told_ = aligner.now();  // the first stamps say nothing of a skew
-  if (aligner.now() - *told_ < kTellEvery) return;
-  told_ = aligner.now();
+  if (!reported_) reported_ = aligner.now();  // the first stamps do not determine a skew
+  if (aligner.now() - *reported_ < kReportEvery) return;
+  reported_ = aligner.now();
   StageStatus status{.line = "skew"};
   for (const DeviceReport& device : aligner.devices()) {
     const double skew = device.clock ? 1e6 * (device.clock->pieces.back().rate - 1) : 0;
@@ -207,28 +182,13 @@ void OnlineStage::tell(Context& context) {
   }
   status.line += fmt::format(" ppm, {} scans wait for the plate", aligner.waiting());
   status.gauges.push_back({"scans_waiting", static_cast<double>(aligner.waiting())});
-  context.tell(status);
-}
-
-void LinearProgramStage::describe(StageDescription<LinearProgramStage>& d) {
-  d.name("clock.linear_program").summary("puts all stamps on the hub's clock, by a linear programme");
-  d.details(
-      "The same line as clock.convex_hull finds, by another algorithm: maximise the height of a line below "
-      "all "
-      "stamps (Moon, Skelly, Towsley 1999). The two agree to rounding; one checks the other.");
-  describe_alignment(d);
-  describe_windows(d);
-  describe_fit(d);
+  context.set_status(status);
 }
 
 void ReceiptStage::describe(StageDescription<ReceiptStage>& d) {
-  d.name("clock.receipt").summary("takes the hub's receipt times as they are, delays and all");
+  d.name("clock.receipt").summary("uses the hub's receipt times, delays included (baseline)");
   d.details(
-      "The baseline to compare with: each scan is placed by the receipt of its telegram, less the time from "
-      "its "
-      "stamp to its transmission, and each reading of the plate by its receipt. The clocks are fitted only "
-      "to "
-      "report the delays that are trusted here.");
+      "The baseline for comparisons: each scan is placed by the receipt of its telegram, less the time from its stamp to its transmission, and each encoder reading by its receipt. Clocks are fitted only to report the delays that are neglected here.");
   describe_alignment(d);
   describe_windows(d);
 }
@@ -253,17 +213,17 @@ void AlignStage::process(const Inputs& in, Outputs& out, Context& context) {
 void AlignStage::finish(Outputs& out, Context& context) {
   out_ = &out;
   if (!aligner_)
-    throw Error("nothing was received: no scan, no reading of the plate", "check the rig's addresses");
+    throw Error("nothing was received: no scan, no encoder reading", "check the rig's addresses");
   const AlignmentReport report = aligner_->finish();
   auto devices = nlohmann::json::array();
   for (const auto& device : report.devices) devices.push_back(to_json(device));
   for (const auto& [what, n] : report.counts) context.count(what, n);
   for (const auto& warning : report.warnings) context.warn(warning);
-  for (const auto& doubt : report.doubts) context.distrust(doubt);
+  for (const auto& caveat : report.caveats) context.mark_untrusted(caveat);
   context.report(
       {{"devices", devices},
        {"hub_clock", {{"deviation", report.hub_deviation}, {"steps", to_json(report.hub_steps)}}}});
-  context.say(table_of(report.devices));
+  context.print(table_of(report.devices));
   for (const auto& device : report.devices) {
     if (device.clock) out.give(*device.clock);
   }

@@ -12,7 +12,7 @@
 
 namespace crisp {
 
-/// What the clock stages have in common: all but where a hub time comes from.
+/// Common base of the clock stages: all but the source of the hub times.
 class AlignStage : public Stage {
  public:
   void process(const Inputs& in, Outputs& out, Context& context) override;
@@ -41,13 +41,6 @@ class ConvexHullStage final : public AlignStage {
   static void describe(StageDescription<ConvexHullStage>& d);
 };
 
-/// `clock.linear_program`
-class LinearProgramStage final : public AlignStage {
- public:
-  LinearProgramStage() { settings_.find = line_by_linear_program; }
-  static void describe(StageDescription<LinearProgramStage>& d);
-};
-
 /// `clock.online`
 class OnlineStage final : public AlignStage {
  public:
@@ -59,12 +52,12 @@ class OnlineStage final : public AlignStage {
   std::unique_ptr<Aligner> make_aligner(const Rig& rig, AlignmentSink sink) const override;
 
  private:
-  void tell(Context& context);
+  void report(Context& context);
   void take_lags(const std::shared_ptr<const Calibration>& calibration);
 
   OnlineSettings online_;
   std::shared_ptr<const Calibration> calibration_;
-  std::optional<double> told_;  ///< [s since the epoch]
+  std::optional<double> reported_;  ///< [s since the epoch]
 };
 
 /// `clock.receipt`

@@ -20,11 +20,11 @@ void DelayHistogram::add(double delay) {
 
 double DelayHistogram::quantile(double share) const {
   if (count_ == 0) return 0;
-  const double wanted = share * static_cast<double>(count_);
+  const double requested = share * static_cast<double>(count_);
   std::uint64_t below = 0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     below += bins_[bin];
-    if (below > 0 && static_cast<double>(below) >= wanted) {
+    if (below > 0 && static_cast<double>(below) >= requested) {
       return kShortest * std::exp(kRatio * (static_cast<double>(bin) + 0.5));
     }
   }

@@ -84,8 +84,8 @@ void DeviceStamps::watch_count(const Last& now, std::int64_t steps, double hub) 
   }
 }
 
-/// When it was sent, without the steps of the clock. What was counted is ascending, even where something that
-/// looked like a step turned out to be none.
+/// The time of sending, without the steps of the clock. Ascending even where a suspected step turned out to
+/// be none.
 std::int64_t DeviceStamps::even(const Last& now) const {
   const std::int64_t even_us = now.device_us - std::llround(1e6 * counted_.jumped());
   return any_ ? std::max(even_us, last_.even_us - last_.handover_us + now.handover_us + 1) : even_us;

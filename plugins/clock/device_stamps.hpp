@@ -19,7 +19,7 @@ struct SilentTime {
   double duration = 0;  ///< [s]
 };
 
-/// What became of one device's telegrams or readings.
+/// Counts of one device's telegrams or readings.
 struct DeviceReport {
   std::string device;             ///< the rig's name of it
   std::optional<ClockMap> clock;  ///< nothing where no stamp was of use
@@ -28,7 +28,7 @@ struct DeviceReport {
   std::uint64_t lost = 0;      ///< by the gaps of its counter; 0 where it has none
   std::uint64_t repeated = 0;  ///< came twice: left out
   std::uint64_t late = 0;      ///< came after later ones: left out
-  std::uint64_t standing = 0;  ///< carry the stamp of the one before, but another count: left out
+  std::uint64_t standing = 0;  ///< carry the stamp of their predecessor, but another count: left out
   std::uint64_t damaged = 0;   ///< with times that fit nothing before or after: left out
   std::uint64_t resets = 0;    ///< of its clock
   double standstill = 0;       ///< [s] for how long at most its clock stood still
@@ -37,18 +37,18 @@ struct DeviceReport {
   std::vector<StampStep> clock_steps;  ///< by how much its clock jumped: forwards
   std::vector<StampStep> delay_steps;  ///< by how much its shortest delay grew
 
-  /// Of those received, how many were of no use.
+  /// Number of received telegrams that were unusable.
   std::uint64_t left_out() const { return repeated + late + standing + damaged; }
 };
 
-/// What is done with a device whose clock stands still.
+/// Treatment of a device whose clock stands still.
 enum class StandingClock {
   leave_out,   ///< what carries the stamp of the one before is of no use
   by_receipt,  ///< the receipts take the place of its clock
 };
 
-/// Takes in the stamps of one device: unwraps its counter and its clock, fits the clock, and counts what is
-/// missing, repeated or damaged.
+/// Processes the stamps of one device: unwraps its counter and its clock, fits the clock, and counts
+/// missing, repeated and damaged ones.
 class DeviceStamps {
  public:
   struct Arrival {
@@ -91,7 +91,7 @@ class DeviceStamps {
     std::int64_t even_us = 0;  // without them
     CounterUnwrapper counter;
   };
-  /// Looks for a step of the clock since the last.
+  /// Detects a step of the clock since the last stamp.
   void watch_count(const Last& now, std::int64_t steps, double hub);
   std::int64_t even(const Last& now) const;
   /// The steps of the counter or, where they contradict the device's time, those that its time makes likely.

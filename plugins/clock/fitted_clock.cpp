@@ -42,8 +42,7 @@ double mean_device(std::span<const Stamp> stamps) {
 
 }  // namespace
 
-FittedClock::FittedClock(std::string device, LineFinder find, double bend)
-    : device_(std::move(device)), find_(std::move(find)), bend_(bend) {}
+FittedClock::FittedClock(std::string device, double bend) : device_(std::move(device)), bend_(bend) {}
 
 void FittedClock::add(std::int64_t device_us, double hub) {
   hub -= hub_ahead_;
@@ -123,7 +122,7 @@ void FittedClock::forget_before(Segment& segment, double device) {
 
 ClockLine FittedClock::line_of(const Segment& segment) const {
   const auto vertices = segment.hull.vertices();
-  return find_(vertices, 0.5 * (vertices.front().device + segment.last_device));
+  return line_by_convex_hull(vertices, 0.5 * (vertices.front().device + segment.last_device));
 }
 
 std::optional<FittedClock::WindowFit> FittedClock::fit(const Segment& segment, double end) const {
@@ -132,7 +131,8 @@ std::optional<FittedClock::WindowFit> FittedClock::fit(const Segment& segment, d
     if (segment.hub(stamp) < end) fit.stamps.push_back(stamp);
   }
   if (fit.stamps.empty()) return std::nullopt;
-  fit.line = find_(with_bounds(fit.stamps, segment.hull.vertices(), bend_), mean_device(fit.stamps));
+  fit.line =
+      line_by_convex_hull(with_bounds(fit.stamps, segment.hull.vertices(), bend_), mean_device(fit.stamps));
   const double span = fit.stamps.back().device - fit.stamps.front().device;
   fit.errors = errors_of_line(fit.stamps, fit.line);
   fit.errors.at_center = std::hypot(fit.errors.at_center, segment.later_error);
@@ -179,7 +179,7 @@ void FittedClock::take_out_steps() {
   }
 }
 
-/// What was usual stays as it is: of a segment that has no line yet, it is what lasted longer.
+/// The usual part stays: for a segment without a line yet, the longer one.
 void FittedClock::take_out(Segment& segment, const DelayStep& step) {
   auto& stamps = segment.stamps;
   const auto at = [&](std::size_t i) { return stamps.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -206,13 +206,14 @@ void FittedClock::make_hull_anew(Segment& segment, double first) const {
   segment.hull = std::move(hull);
 }
 
-double FittedClock::doubt(double end) const {
-  double doubt = 0;
+double FittedClock::uncertainty(double end) const {
+  double uncertainty = 0;
   for (const auto& segment : segments_) {
     const auto window = fit(segment, end);
-    if (window && window->stamps.size() >= kEnoughStamps) doubt = std::max(doubt, window->errors.at_center);
+    if (window && window->stamps.size() >= kEnoughStamps)
+      uncertainty = std::max(uncertainty, window->errors.at_center);
   }
-  return doubt;
+  return uncertainty;
 }
 
 void FittedClock::settle(double begin, double end) {

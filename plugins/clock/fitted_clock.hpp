@@ -18,9 +18,6 @@
 
 namespace crisp {
 
-/// Finds the line of a clock from its stamps, as line_by_convex_hull() does.
-using LineFinder = std::function<ClockLine(std::span<const Stamp> stamps, double center)>;
-
 /// A jump of a device's clock, or of its link's shortest delay.
 struct StampStep {
   double at = 0;  ///< [s since the epoch] receipt of the first stamp after it
@@ -40,30 +37,30 @@ struct StampStep {
 class FittedClock {
  public:
   /// @param bend [1/s] largest change of the clock's rate in a second
-  FittedClock(std::string device, LineFinder find, double bend);
+  FittedClock(std::string device, double bend);
 
   /// @param device_us [µs] unwrapped device time, later than all before
   /// @param hub       [s since the epoch] receipt
   void add(std::int64_t device_us, double hub);
   /// The next stamp begins a new segment.
   void cut() { cut_ = true; }
-  /// Takes back the last stamp, unless it is settled.
+  /// Removes the last stamp, unless it is settled.
   void drop_last();
-  /// Takes back the segment of the last stamp, which was its only one: it was damaged, not a reset.
+  /// Removes the segment of the last stamp, which was its only one: it was damaged, not a reset.
   void drop_last_segment();
 
-  /// Takes out the steps of the shortest delay among the stamps that are not settled.
+  /// Corrects the steps of the minimum delay among the stamps that are not settled.
   void take_out_steps();
   const std::vector<StampStep>& delay_steps() const { return delay_steps_; }
 
   /// The stamps that are not settled, of the longest stretch without a reset.
   std::vector<ReceivedStamp> unsettled() const;
-  /// Takes the hub's deviation out of those stamps, and what it is at its end out of all that come later.
+  /// Corrects those stamps by the hub's deviation, and all later ones by its last value.
   void take_out(const HubDeviation& deviation);
 
-  /// How far the line of the window that ends at `end` [s since the epoch] is from being known [s]; 0 if
-  /// there are too few stamps to say.
-  double doubt(double end) const;
+  /// Uncertainty of the line of the window that ends at `end` [s since the epoch], in s; 0 if there are too
+  /// few stamps for an estimate.
+  double uncertainty(double end) const;
   /// Fits the window of all stamps received before `end` [s since the epoch] that are not settled, forgets
   /// what no later window needs, and carries the map on to the middle between `begin` and `end`.
   void settle(double begin, double end);
@@ -79,10 +76,10 @@ class FittedClock {
 
   /// Whether all stamps so far are settled.
   bool idle() const;
-  /// What is settled so far; nothing before the first line.
+  /// The clock's map so far; nothing before the first line.
   const std::optional<ClockMap>& map() const { return map_; }
   const std::string& device() const { return device_; }
-  /// How many stamps it was given, less those that were taken back.
+  /// Number of added stamps, less the removed ones.
   std::size_t stamps() const { return stamps_; }
 
  private:
@@ -124,7 +121,6 @@ class FittedClock {
   void close(Segment& segment);
 
   std::string device_;
-  LineFinder find_;
   double bend_;
   bool cut_ = true;
   std::deque<Segment> segments_;

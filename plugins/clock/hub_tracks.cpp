@@ -10,7 +10,7 @@ namespace {
 DeviceStamps stamps_of(const std::string& device, const AlignmentSettings& settings) {
   const auto standing =
       settings.source == TimeSource::receipt ? StandingClock::by_receipt : StandingClock::leave_out;
-  return {device, FittedClock(device, settings.find, settings.drift), 0, standing};
+  return {device, FittedClock(device, settings.drift), 0, standing};
 }
 
 std::vector<LaserTrack> tracks_of(const Rig& rig, const AlignmentSettings& settings) {
@@ -83,24 +83,24 @@ bool HubTracks::has_readings() const { return plate_.clock().stamps() > 1; }
 void HubTracks::refuse_if_missing() const {
   if (!has_scans()) {
     throw Error("there is no scan of any laser of the rig",
-                "check the addresses in the rig, or what was recorded");
+                "check the addresses in the rig, or the recording");
   }
   const DeviceReport plate = plate_.report(begin_.value_or(now_), now_);
   if (!has_readings() && plate.standing > 0) {
-    throw Error(plate.device + ": its clock stands still: " + std::to_string(plate.standing) + " of " +
-                    std::to_string(plate.received) +
-                    " readings carry the stamp of the one before, so that none can be placed in time",
-                "let the encoder's sentences carry its own running microseconds; clock.receipt places by "
-                "receipt times instead");
+    throw Error(
+        plate.device + ": its clock stands still: " + std::to_string(plate.standing) + " of " +
+            std::to_string(plate.received) +
+            " readings carry the stamp of their predecessor, so that none can be placed in time",
+        "have the encoder's sentences carry its running microseconds; clock.receipt places by receipt times instead");
   }
   if (plate.stamps == 1) {
-    throw Error("there is a single reading of the plate (" + plate.device + ")",
-                "check what was recorded: between two readings only the plate's angle is known");
+    throw Error("there is a single encoder reading (" + plate.device + ")",
+                "check the recording: the plate's angle is known between two readings only");
   }
   if (!has_readings()) {
-    throw Error("there is no reading of the plate (" + plate_.clock().device() + ")",
-                "check the plate's address in the rig, or what was recorded: without its angle nothing can "
-                "be placed");
+    throw Error(
+        "there is no encoder reading (" + plate_.clock().device() + ")",
+        "check the plate's address in the rig, or the recording: beams cannot be placed without the plate's angle");
   }
 }
 

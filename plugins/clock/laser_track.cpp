@@ -89,9 +89,7 @@ std::string LaserTrack::stamp_warning() const {
   const double period = stamps_.period();
   if (laser_.period_offset != 0 || period <= 0 || handover >= kLeastHandover * period) return {};
   return fmt::format(
-      "{}: its scans leave {:.1f} ms after their stamps, but a full sweep takes {:.1f} ms: the stamps are "
-      "late by "
-      "whole turns of the mirror; set period_offset: -1 for {} in the rig",
+      "{}: its scans leave {:.1f} ms after their stamps, but a full sweep takes {:.1f} ms: the stamps are late by whole turns of the mirror; set period_offset: -1 for {} in the rig",
       laser_.name, 1e3 * handover, 1e3 * kLeastHandover * period, laser_.name);
 }
 

@@ -13,7 +13,7 @@
 
 namespace crisp {
 
-/// Where the hub times of measurements come from.
+/// Source of the measurements' hub times.
 enum class TimeSource {
   clock,    ///< the device's time, through the map of its clock
   receipt,  ///< the hub's receipt time, as it is
@@ -50,7 +50,7 @@ class LaserTrack {
   }
   std::uint64_t without_echo() const { return without_echo_; }  ///< beams
   bool sees_nothing() const { return beams_ > 0 && without_echo_ == beams_; }
-  /// What the stamps say against the rig's period_offset, or "".
+  /// A contradiction between the stamps and the rig's period_offset, or "".
   std::string stamp_warning() const;
 
  private:

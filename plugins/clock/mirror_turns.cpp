@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "pipeline/data/robust.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
 namespace {
@@ -59,7 +59,7 @@ LocalFit fit_about(Stamps run, std::size_t i, std::size_t half_width) {
           c00 / determinant};
 }
 
-/// How far each stamp is from where its neighbours foretell it.
+/// Error of each stamp's prediction from its neighbours.
 std::vector<double> foretelling_errors(Stamps run, std::size_t half_width) {
   std::vector<double> errors(run.size(), 0);
   for (std::size_t i = 0; i < run.size(); ++i) {
@@ -72,7 +72,7 @@ std::vector<double> foretelling_errors(Stamps run, std::size_t half_width) {
 double scatter(const std::vector<double>& errors) {
   std::vector<double> sizes(errors.size());
   std::transform(errors.begin(), errors.end(), sizes.begin(), [](double e) { return std::abs(e); });
-  return sizes.empty() ? 0 : middle_of(sizes);
+  return sizes.empty() ? 0 : median_in_place(sizes);
 }
 
 /// Stamps without large gaps between them.
@@ -82,7 +82,7 @@ std::vector<Stamps> runs_of(Stamps stamps) {
     steps.push_back(static_cast<double>(stamps[i].turn - stamps[i - 1].turn));
   }
   auto ordered = steps;
-  const double largest = kLargestGap * middle_of(ordered);
+  const double largest = kLargestGap * median_in_place(ordered);
   std::vector<Stamps> runs;
   std::size_t begin = 0;
   for (std::size_t i = 1; i <= stamps.size(); ++i) {
@@ -109,8 +109,8 @@ std::size_t best_half_width(const std::vector<Stamps>& runs) {
   return best;
 }
 
-/// The stamps, with those that stand out drawn to within the bound of where the others foretell them. An
-/// outlier spoils its neighbours' forecasts, too, until it is tamed: hence more than one round.
+/// The stamps, with outliers clipped to the bound around their prediction. An outlier affects its neighbours'
+/// predictions, too, until it is clipped: hence more than one round.
 std::vector<MirrorStamp> tamed(Stamps run, std::size_t half_width) {
   std::vector<MirrorStamp> tame(run.begin(), run.end());
   auto errors = foretelling_errors(run, half_width);
@@ -147,7 +147,7 @@ std::vector<MirrorTurn> smooth_mirror(Stamps stamps, const MirrorSmoothing& smoo
   for (const auto& turn : turns) {
     if (turn.period > 0) periods.push_back(turn.period);
   }
-  const double usual = periods.empty() ? smoothing.nominal_period : middle_of(periods);
+  const double usual = periods.empty() ? smoothing.nominal_period : median_in_place(periods);
   for (auto& turn : turns) {
     if (std::abs(turn.period - usual) > kImplausible * usual) turn.period = usual;
   }

@@ -8,7 +8,7 @@
 
 namespace crisp {
 
-/// When a laser says that its mirror passed its index.
+/// A laser's stamp of its mirror's index pulse.
 struct MirrorStamp {
   std::int64_t turn = 0;  ///< which turn it was: the scan counter, unwrapped
   double time = 0;        ///< [s] device time, with its jitter
@@ -20,9 +20,9 @@ struct MirrorTurn {
   double period = 0;  ///< [s] of device time a turn
 };
 
-/// How the turns are smoothed.
+/// Settings for smoothing the turns.
 struct MirrorSmoothing {
-  std::size_t half_width = 0;  ///< how many stamps on either side count; 0: as the stamps themselves tell
+  std::size_t half_width = 0;  ///< number of stamps used on either side; 0: by cross-validation
   double nominal_period = 0;   ///< [s] for a stamp that stands alone
 };
 
@@ -31,8 +31,8 @@ struct MirrorSmoothing {
 ///
 /// A parabola over the turn number is fitted to each stamp and its neighbours, within runs of stamps without
 /// large gaps; stamps that stand out by more than three times the scatter count no more than that (Huber).
-/// The half width, if not given, is the one by which stamps are best foretold from their neighbours
-/// (leave-one-out, median of the absolute errors): 2 to 10.
+/// The half width, if not given, is the one with the best predictions of stamps from their neighbours
+/// (leave-one-out cross-validation, median of the absolute errors): 2 to 10.
 ///
 /// @param stamps ascending in turn and time
 /// @return one turn a stamp

@@ -64,7 +64,7 @@ void OnlineAligner::release() {
   while (!waiting_.empty()) {
     const TimedScan& scan = waiting_.front();
     const bool covered = is_covered(scan);
-    const double longest = settings_.patience + settings_.warm_up + settings_.greatest_lag;
+    const double longest = settings_.plate_timeout + settings_.warm_up + settings_.greatest_lag;
     const double waited = tracks_.now() - last_beam(scan);
     if (!covered && waited < longest && waited > -kFuture) return;
     if (!covered) ++impatient_;
@@ -88,7 +88,7 @@ AlignmentReport OnlineAligner::finish() {
   for (const auto& scan : std::exchange(waiting_, {})) hand_out(scan);
   tracks_.finish_clocks();
   AlignmentReport report = tracks_.report();
-  report.counts["scans that did not wait longer for the plate"] = impatient_;
+  report.counts["scans passed on without encoder readings (timeout)"] = impatient_;
   return report;
 }
 

@@ -10,23 +10,23 @@ namespace crisp {
 
 /// How stamps become hub times while they come in.
 struct OnlineSettings {
-  double window = 60;     ///< [s] of stamps that a clock's line is fitted to
-  double warm_up = 0.5;   ///< [s] of stamps of a device before its line is believed
-  double margin = 0.06;   ///< [s] by which a trajectory covers more than its scan, as far as it is known
-  double patience = 0.2;  ///< [s] for the plate's readings, after which a scan goes without them
-  double least_lag = 0;   ///< [s] of any laser behind the plate: the least η, and
+  double window = 60;          ///< [s] of stamps that a clock's line is fitted to
+  double warm_up = 0.5;        ///< [s] of stamps of a device before its line is used
+  double margin = 0.06;        ///< [s] by which a trajectory covers more than its scan, as far as it is known
+  double plate_timeout = 0.2;  ///< [s] for the encoder readings, after which a scan goes without them
+  double least_lag = 0;        ///< [s] of any laser behind the plate: the least η, and
   double greatest_lag =
       0;                  ///< [s] the greatest, so that the readings that a scan is placed by are waited for
-  double lag_margin = 0;  ///< [s] by which lags may turn out to be greater than a calibration says
+  double lag_margin = 0;  ///< [s] margin of lags beyond the calibration
 };
 
-/// Stamps on either side that smooth the mirror's motion, unless told otherwise: of those so far.
+/// Default number of stamps on either side that smooth the mirror's motion: of those so far.
 inline constexpr unsigned kOnlineMirror = 5;
 
 /// The settings with the lags of a calibration's lasers, and the margin.
 OnlineSettings with_lags(OnlineSettings settings, const Calibration& calibration);
 
-/// From scans and readings in the order of receipt to measurements, each scan as soon as the plate's readings
+/// From scans and readings in the order of receipt to measurements, each scan as soon as the encoder readings
 /// cover it. A device's clock is the line below its stamps of the last minute; what was handed out is not
 /// corrected when the line becomes better known. So what is handed out depends on the items alone, and their
 /// times of receipt: a recording of them gives the same again.
@@ -58,7 +58,7 @@ class OnlineAligner final : public Aligner {
   AlignmentSink sink_;
   HubTracks tracks_;
   std::deque<TimedScan> waiting_;
-  std::uint64_t impatient_ = 0;  ///< scans that went without the plate's readings
+  std::uint64_t impatient_ = 0;  ///< scans that went without the encoder readings
 };
 
 }  // namespace crisp

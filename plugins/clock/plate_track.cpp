@@ -15,9 +15,10 @@ namespace {
 constexpr double kFastestChange = 100;  // [turns/s²] no plate spins up faster
 constexpr double kSlack = 0.01;         // [turns] what times and counts may be off otherwise
 constexpr std::uint64_t kJumpsThatCount = 5;
-constexpr std::ptrdiff_t kForSlopes = 2;  // readings beyond what is asked for, so that its ends are as smooth
+constexpr std::ptrdiff_t kForSlopes =
+    2;  // readings beyond the requested ones, so that its ends are as smooth
 
-/// How far a counter of 32 bits went from one value to another, forwards or back.
+/// Difference of two values of a 32-bit counter, forwards or back.
 std::int32_t counted(std::uint32_t from, std::uint32_t to) { return static_cast<std::int32_t>(to - from); }
 
 }  // namespace
@@ -34,13 +35,13 @@ PlateTrack::PlateTrack(const RigPlate& plate, DeviceStamps stamps, TimeSource so
 }
 
 bool PlateTrack::goes_on(const Latest& from, const PlateReading& reading) {
-  constexpr double kMostDelay = 1;   // [s]
-  constexpr double kMostDoubt = 60;  // [s] beyond which a wrap of the clock could be mistaken for chance
+  constexpr double kMostDelay = 1;      // [s]
+  constexpr double kLargestError = 60;  // [s] beyond which a wrap of the clock could be mistaken for chance
   const double hub_s = 1e-9 * static_cast<double>(reading.receipt_ns - from.receipt_ns);
-  const double doubt = kMostDelay + kMostSkew * std::abs(hub_s);
+  const double caveat = kMostDelay + kMostSkew * std::abs(hub_s);
   const auto device_us =
       nearest_congruent(std::int64_t{reading.device_us} - from.device_us, std::int64_t{1} << 32, 1e6 * hub_s);
-  return doubt < kMostDoubt && std::abs(1e-6 * static_cast<double>(device_us) - hub_s) < doubt;
+  return caveat < kLargestError && std::abs(1e-6 * static_cast<double>(device_us) - hub_s) < caveat;
 }
 
 bool PlateTrack::add(const PlateReading& reading, double hub) {

@@ -18,7 +18,7 @@ struct PlateMotionSettings {
   double smoothing = kEncoderSmoothing;  ///< [s] see between_steps()
 };
 
-/// The readings of the plate on their way to a trajectory.
+/// The encoder readings on their way to a trajectory.
 class PlateTrack {
  public:
   /// @throws Error if the rig gives no counts a revolution
@@ -28,7 +28,7 @@ class PlateTrack {
   /// @return whether the clock has another stamp
   /// @throws Error as DeviceStamps::accept
   bool add(const PlateReading& reading, double hub);
-  /// What a later track needs to tell whether the encoder went on counting.
+  /// State from which a later track determines whether the encoder's count continued.
   struct Latest {
     std::uint32_t device_us = 0;
     std::int64_t receipt_ns = 0;
@@ -88,7 +88,7 @@ class PlateTrack {
   Before before_reset_;  ///< for a reset that turns out to be none
   std::optional<Latest> latest_;
   std::optional<Latest> before_;  ///< of another recording, until there is a first reading
-  bool zero_is_new_ = false;      ///< and no piece has said so
+  bool zero_is_new_ = false;      ///< and no piece has reported it
   Reading jumped_;
   std::uint64_t jumps_ = 0;  ///< in a row, each from the place of the one before it
   std::uint64_t impossible_ = 0;

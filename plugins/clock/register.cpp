@@ -7,7 +7,6 @@ namespace crisp {
 
 void register_clock(Registrar& registrar) {
   registrar.stage<ConvexHullStage>();
-  registrar.stage<LinearProgramStage>();
   registrar.stage<OnlineStage>();
   registrar.stage<ReceiptStage>();
 }

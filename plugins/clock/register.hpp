@@ -5,7 +5,7 @@
 
 namespace crisp {
 
-/// The stages clock.convex_hull, clock.linear_program and clock.receipt.
+/// The stages clock.convex_hull, clock.online and clock.receipt.
 void register_clock(Registrar& registrar);
 
 }  // namespace crisp

@@ -20,7 +20,7 @@ bool came_back(float range) { return (range > 0) & (range < std::numeric_limits<
 
 /// Up to where all beams from k on came back.
 std::size_t run_end(std::span<const float> ranges, std::size_t k) {
-  constexpr std::size_t kStep = 32;  // looked at without a branch: by vectors
+  constexpr std::size_t kStep = 32;  // processed without a branch: vectorized
   for (; k + kStep <= ranges.size(); k += kStep) {
     unsigned back = 1;
     for (std::size_t i = k; i < k + kStep; ++i) back &= static_cast<unsigned>(came_back(ranges[i]));

@@ -25,7 +25,7 @@ struct TimedScan {
 /// The measurements of a scan: one for each beam that came back, in the order of firing.
 ///
 /// @param timed   with at least one echo; the first is taken
-/// @param laser   says by how much the reported angles are off θ
+/// @param laser   gives the offset of the reported angles from θ
 /// @param epoch_ns [ns since the Unix epoch]
 /// @param out     holds them afterwards, and nothing else
 void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64_t epoch_ns,

@@ -16,7 +16,7 @@ namespace crisp::cuda {
 inline void check(cudaError_t status, const std::string& what) {
   if (status == cudaSuccess) return;
   throw Error("the graphics processor failed to " + what + ": " + cudaGetErrorString(status),
-              "see what `nvidia-smi` says of it, or measure with `measure: rqe` and `search: grid`");
+              "check it with `nvidia-smi`, or measure with `measure: rqe` and `search: grid`");
 }
 
 /// n values in the memory of the current device, owned.

@@ -33,7 +33,7 @@ __global__ void __launch_bounds__(kLanes) sum_units(PlanView plan, PairKernel ke
 void check_room(std::size_t points, std::size_t bytes) {
   std::size_t free = 0;
   std::size_t all = 0;
-  check(cudaMemGetInfo(&free, &all), "say how much memory it has");
+  check(cudaMemGetInfo(&free, &all), "report its memory");
   if (bytes <= free) return;
   throw Error("a cloud of " + std::to_string(points) + " points needs " + std::to_string(bytes >> 20) +
                   " MiB of the graphics processor's memory, of which " + std::to_string(free >> 20) +
@@ -71,17 +71,17 @@ class GpuPlan {
     at_.y.upload(points.y);
     at_.z.upload(points.z);
     weight_.upload(weights);
-    if (gradient && !pull_) {
+    if (gradient && !gradient_) {
       check_room(points.size(), 3 * sizeof(double) * points.size());
-      pull_.emplace(points.size());
+      gradient_.emplace(points.size());
     }
     const PlanView view{at_.x.data(),  at_.y.data(),  at_.z.data(), weight_.data(),
                         index_.data(), units_.data(), near_.data(), near_begin_.data()};
     Results results{nullptr, nullptr, nullptr, kernel_.data(), pairs_.data()};
     if (gradient) {
-      results.x = pull_->x.data();
-      results.y = pull_->y.data();
-      results.z = pull_->z.data();
+      results.x = gradient_->x.data();
+      results.y = gradient_->y.data();
+      results.z = gradient_->z.data();
     }
     if (needs_double_) {
       sum_units<double><<<blocks_, kLanes>>>(view, kernel, results);
@@ -90,14 +90,14 @@ class GpuPlan {
     }
     check(cudaGetLastError(), "begin to sum");
     check(cudaDeviceSynchronize(), "sum");
-    if (gradient) sums.pull = {pull_->x.download(), pull_->y.download(), pull_->z.download()};
+    if (gradient) sums.gradient = {gradient_->x.download(), gradient_->y.download(), gradient_->z.download()};
     sums.kernel = kernel_.download();
     sums.pairs = pairs_.download();
     return sums;
   }
 
  private:
-  /// How many it takes, once it is sure that there is room.
+  /// Number of blocks, once memory is available.
   static unsigned blocks_with_room(const CellPlan& plan) {
     const std::size_t points = plan.order.index.size();
     check_room(points, points * (4 * sizeof(double) + sizeof(std::uint32_t)) +
@@ -115,7 +115,7 @@ class GpuPlan {
   DeviceArray<std::uint64_t> near_begin_;
   DeviceVectors at_;
   DeviceArray<double> weight_;
-  std::optional<DeviceVectors> pull_;  // once it is asked for
+  std::optional<DeviceVectors> gradient_;  // once it is requested
   DeviceArray<double> kernel_;
   DeviceArray<std::uint64_t> pairs_;
 };

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kPointBlock = 65536;  // points
 
 /// [radii] by which cells are wider than the kernel reaches: while no coordinate has moved by half of that,
-/// points within the radius still are in cells beside one another.
+/// points within the radius still are in adjacent cells.
 constexpr double kSlack = 0.1;
 
 /// Whether no coordinate is farther from where it was than `most` [m].
@@ -60,19 +60,19 @@ const UnitSearch::Planned& UnitSearch::planned_for(const PointsView& points, dou
 }
 
 GaussianSums UnitSearch::sums(const PointsView& points, std::span<const double> weights,
-                              const TruncatedGaussian& kernel, const SumsWanted& wanted) {
+                              const TruncatedGaussian& kernel, const RequestedSums& requested) {
   const Planned& planned = planned_for(points, kernel.radius);
   const double scale = std::sqrt(kernel.exponent * std::numbers::log2e);
   const double radius = scale * kernel.radius;
-  UnitSums sums = planned.sum(points, weights, {scale, radius * radius, kernel.floor}, wanted.gradient);
+  UnitSums sums = planned.sum(points, weights, {scale, radius * radius, kernel.floor}, requested.gradient);
 
   GaussianSums result;
   result.kernel = std::accumulate(sums.kernel.begin(), sums.kernel.end(), 0.0);
   const auto ordered_pairs = std::accumulate(sums.pairs.begin(), sums.pairs.end(), std::uint64_t{0});
   result.pairs = (ordered_pairs - points.size()) / 2;  // each point met itself
   result.tested = planned.cells.tested;
-  result.pull = std::move(sums.pull);
-  if (wanted.error) result.error = truncation_bound(kernel, spatial_order(points, kernel.radius), weights);
+  result.gradient = std::move(sums.gradient);
+  if (requested.error) result.error = truncation_bound(kernel, spatial_order(points, kernel.radius), weights);
   return result;
 }
 

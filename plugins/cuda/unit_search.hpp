@@ -13,9 +13,9 @@
 
 namespace crisp::cuda {
 
-/// What all units of a plan gave; see Results.
+/// Results of all units of a plan; see Results.
 struct UnitSums {
-  Vectors pull;                ///< of each point; empty: unwanted
+  Vectors gradient;            ///< of each point; empty: unwanted
   std::vector<double> kernel;  ///< of each unit
   std::vector<std::uint64_t> pairs;
 };
@@ -34,10 +34,10 @@ class UnitSearch final : public Search {
  public:
   explicit UnitSearch(TakePlan take_plan) : take_plan_(std::move(take_plan)) {}
 
-  /// That of "grid": lists of neighbours are made by the processor.
+  /// Same index as "grid": the processor makes the lists of neighbours.
   std::unique_ptr<NeighbourIndex> index(const PointsView& points, double radius) const override;
   GaussianSums sums(const PointsView& points, std::span<const double> weights,
-                    const TruncatedGaussian& kernel, const SumsWanted& wanted) override;
+                    const TruncatedGaussian& kernel, const RequestedSums& requested) override;
 
  private:
   struct Planned {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstdint>
 
-// What a graphics processor computes, written once for it and for the processor that tests it: constexpr
+// Computations of the graphics processor, written once for it and for the processor that tests it: constexpr
 // functions and plain pointers, which nvcc compiles for both (--expt-relaxed-constexpr).
 namespace crisp::cuda {
 
-/// Points that are summed side by side, and neighbours that they look at together.
+/// Number of points that are summed in parallel, and of neighbours that they process together.
 inline constexpr std::uint32_t kLanes = 64;
 
 /// Slots from first up to, not including, last.
@@ -36,7 +36,7 @@ struct PlanView {
   const std::uint64_t* near_begin;  ///< of each cell's list; one more than cells
 };
 
-/// What is summed for each pair: in kernel units, the squared distance of two points is −log₂ of their
+/// The summed kernel of each pair: in kernel units, the squared distance of two points is −log₂ of their
 /// kernel G / G(0).
 struct PairKernel {
   double scale;    ///< [kernel units / m]
@@ -97,7 +97,7 @@ constexpr void add_neighbours(const Neighbour<Real>& own, const Neighbour<Real>*
   sums.z += z;
 }
 
-/// What the lanes of a unit share.
+/// Data shared by the lanes of a unit.
 template <class Real>
 struct Shared {
   Neighbour<Real> near[kLanes];
@@ -105,14 +105,14 @@ struct Shared {
   std::uint64_t pairs[kLanes];
 };
 
-/// What one lane has for itself.
+/// Data of one lane.
 template <class Real>
 struct Lane {
   Neighbour<Real> own{};
   PointSums sums{};
 };
 
-/// Where the results of all units go.
+/// Output arrays of all units.
 struct Results {
   double* x;  ///< of each point: wᵢ Σⱼ wⱼ G/G(0) · (xᵢ − xⱼ) [m]; null: unwanted
   double* y;

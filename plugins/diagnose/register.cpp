@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/register.hpp"
 
-#include "plugins/diagnose/crispness_stage.hpp"
-#include "plugins/diagnose/encoder_stage.hpp"
-#include "plugins/diagnose/findings_inspector.hpp"
-#include "plugins/diagnose/model_stage.hpp"
-#include "plugins/diagnose/noise_stage.hpp"
-#include "plugins/diagnose/scatter_stage.hpp"
-#include "plugins/diagnose/stamps_stage.hpp"
+#include "plugins/diagnose/clocks/clocks_stage.hpp"
+#include "plugins/diagnose/clocks/encoder_stage.hpp"
+#include "plugins/diagnose/model/model_stage.hpp"
+#include "plugins/diagnose/noise/noise_model_stage.hpp"
+#include "plugins/diagnose/noise/noise_stage.hpp"
+#include "plugins/diagnose/report/crispness_stage.hpp"
+#include "plugins/diagnose/report/findings_inspector.hpp"
 
 namespace crisp {
 
@@ -16,8 +16,8 @@ void register_diagnose(Registrar& registrar) {
   registrar.stage<DiagnoseEncoderStage>();
   registrar.stage<DiagnoseModelStage>();
   registrar.stage<DiagnoseNoiseStage>();
-  registrar.stage<DiagnoseScatterStage>();
-  registrar.stage<DiagnoseStampsStage>();
+  registrar.stage<DiagnoseNoiseModelStage>();
+  registrar.stage<DiagnoseClocksStage>();
   registrar.inspector(findings_inspector());
 }
 

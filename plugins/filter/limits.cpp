@@ -20,7 +20,7 @@ bool is_within(const Limits& limits, double value) {
 void check_limits(const Limits& limits, const std::string& name) {
   if (limits.size() == 1) throw Error(name + " has one limit", "give the smallest and the largest value");
   if (limits.size() == 2 && limits[0] > limits[1]) {
-    throw Error(fmt::format("{}: [{:g}, {:g}] keeps nothing", name, limits[0], limits[1]),
+    throw Error(fmt::format("{}: [{:g}, {:g}] is empty", name, limits[0], limits[1]),
                 "give the smaller limit first");
   }
 }
@@ -40,7 +40,7 @@ Cloud crop(const Cloud& cloud, const CropLimits& limits) {
 }
 
 Measurements within(const Measurements& beams, const RangeLimits& limits) {
-  const auto wanted = [&](std::uint16_t laser) {
+  const auto requested = [&](std::uint16_t laser) {
     return limits.lasers.empty() || std::count(limits.lasers.begin(), limits.lasers.end(), laser) > 0;
   };
   Measurements kept;
@@ -49,7 +49,7 @@ Measurements within(const Measurements& beams, const RangeLimits& limits) {
     const bool keep = is_within(limits.range, static_cast<double>(beams.range[i])) &&
                       is_within(limits.mirror_angle, static_cast<double>(beams.mirror_angle[i])) &&
                       is_within(limits.remission, static_cast<double>(beams.remission[i])) &&
-                      wanted(beams.laser[i]);
+                      requested(beams.laser[i]);
     if (keep) kept.append(beams, i);
   }
   return kept;

@@ -17,7 +17,7 @@ using Limits = std::vector<double>;
 /// @throws Error if the first is above the second, or there is only one
 void check_limits(const Limits& limits, const std::string& name);
 
-/// Where the points are that are kept, in the plate's frame.
+/// Limits of the kept points, in the plate's frame.
 struct CropLimits {
   Limits x;         ///< [m]
   Limits y;         ///< [m]
@@ -25,7 +25,7 @@ struct CropLimits {
   Limits distance;  ///< [m] from the plate's centre
 };
 
-/// The points within all limits, in their order. What is not a number is within none that is set.
+/// The points within all limits, in their order. A value that is not a number is outside of every limit.
 Cloud crop(const Cloud& cloud, const CropLimits& limits);
 
 /// The measurements that are kept.

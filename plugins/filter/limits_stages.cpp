@@ -21,10 +21,9 @@ void as_limits(Declaration declaration, const char* unit, double most) {
 }  // namespace
 
 void CropStage::describe(StageDescription<CropStage>& d) {
-  d.name("filter.crop").summary("keeps the points that lie within a box, or at some distance");
+  d.name("filter.crop").summary("keeps points within a box, or within limits of distance");
   d.details(
-      "Each limit is a list of the smallest and the largest value: `z: [-1m, 2m]`. Without a limit, all "
-      "values are kept.");
+      "Each limit is a list of the smallest and the largest value: `z: [-1m, 2m]`. Without a limit, all values are kept.");
   d.takes<Cloud>().gives<Cloud>();
   as_limits(d.option("x", &CropStage::limits_, &CropLimits::x, "limits of x in the plate's frame"), "m", 1e6);
   as_limits(d.option("y", &CropStage::limits_, &CropLimits::y, "limits of y in the plate's frame"), "m", 1e6);
@@ -52,7 +51,7 @@ void CropStage::process(const Inputs& in, Outputs& out, Context& context) {
 }
 
 void CropStage::finish(Outputs&, Context& context) {
-  context.say(fmt::format("kept {} of {} points", kept_, all_));
+  context.print(fmt::format("kept {} of {} points", kept_, all_));
 }
 
 void RangeStage::describe(StageDescription<RangeStage>& d) {
@@ -61,17 +60,16 @@ void RangeStage::describe(StageDescription<RangeStage>& d) {
       .summary(
           "keeps the measurements within limits of range, mirror angle and remission, or of some lasers");
   d.details(
-      "Before calibration or assembly: leaves out what the scanner sees of itself, or one laser. Each limit "
-      "is a list of the smallest and the largest value: `range: [0.3m, 30m]`.");
+      "Before calibration or assembly: removes beams on the scanner itself, or one laser. Each limit is a list of the smallest and the largest value: `range: [0.3m, 30m]`.");
   d.takes<Measurements>().gives<Measurements>();
   as_limits(d.option("range", &RangeStage::range_, "limits of the range"), "m", 1e6);
   as_limits(d.option("mirror_angle", &RangeStage::mirror_angle_,
-                     "limits of the mirror's angle, the mount's taken off"),
+                     "limits of the mirror's angle, relative to the mount"),
             "rad", kTurn);
   as_limits(d.option("remission", &RangeStage::remission_,
                      "limits of the remission, in the device's units; 0 where the device sends none"),
             "1", 1e6);
-  d.option("lasers", &RangeStage::lasers_, "names of the lasers that are kept; none: all");
+  d.option("lasers", &RangeStage::lasers_, "names of the lasers to keep; none: all");
 }
 
 void RangeStage::check(const RunSettings& run) const {
@@ -105,7 +103,7 @@ void RangeStage::process(const Inputs& in, Outputs& out, Context& context) {
 }
 
 void RangeStage::finish(Outputs&, Context& context) {
-  context.say(fmt::format("kept {} of {} measurements", kept_, all_));
+  context.print(fmt::format("kept {} of {} measurements", kept_, all_));
 }
 
 }  // namespace crisp

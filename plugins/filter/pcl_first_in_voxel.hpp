@@ -29,7 +29,7 @@ class FirstInVoxel : public pcl::Filter<PointT> {
   }
   double getLeafSize() const { return size_; }
 
-  /// How many points the last filter() dropped that have no voxel: they are no numbers, or 2^31 voxels or
+  /// Number of points without a voxel that the last filter() dropped: they are no numbers, or 2^31 voxels or
   /// more from the origin.
   std::size_t getTooFar() const { return too_far_; }
 

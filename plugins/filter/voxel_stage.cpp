@@ -12,13 +12,9 @@ namespace crisp {
 void VoxelStage::describe(StageDescription<VoxelStage>& d) {
   d.name("filter.voxel").summary("thins the cloud to one point in each cell of a grid");
   d.details(
-      "The first point in each cell stays as it was measured, with its time, laser and beam; no mean is "
-      "taken. "
-      "The grid is one for all clouds that come, so that memory grows with the surface that was seen, not "
-      "with "
-      "the recording. It reaches 2^31 cells from the origin; points beyond are counted, and warned of.");
+      "Keeps the first point in each cell as measured, with its time, laser and beam, and not a mean. All incoming clouds share one grid, so that memory grows with the seen surface, not with the recording. The grid extends 2^31 cells from the origin; points beyond are counted, with a warning.");
   d.takes<Cloud>().gives<Cloud>();
-  d.option("size", &VoxelStage::size_, "edge of a cell").unit("m").range(1e-4, 100);
+  d.option("size", &VoxelStage::size_, "edge length of a cell").unit("m").range(1e-4, 100);
 }
 
 void VoxelStage::process(const Inputs& in, Outputs& out, Context& context) {
@@ -34,19 +30,17 @@ void VoxelStage::process(const Inputs& in, Outputs& out, Context& context) {
     if (found == InVoxel::nowhere) ++nowhere;
   }
   too_far_ += too_far;
-  context.count("points in a cell that had one", cloud.size() - thinned.size() - too_far - nowhere);
-  context.count("points too far away for this grid", too_far);
-  context.count("points whose place is no number", nowhere);
+  context.count("points in occupied cells", cloud.size() - thinned.size() - too_far - nowhere);
+  context.count("points outside of the grid", too_far);
+  context.count("points with a coordinate that is no number", nowhere);
   out.give(std::move(thinned));
 }
 
 void VoxelStage::finish(Outputs&, Context& context) {
   if (too_far_ == 0) return;
-  context.warn(
-      fmt::format("{} points are dropped that are {:.3g} km or more from the origin, beyond the grid's 2^31 "
-                  "cells: give a "
-                  "larger size, leave out strays by filter.crop above, or subtract a shift (grabber.cloud)",
-                  too_far_, std::ldexp(size_, 31) / 1000));
+  context.warn(fmt::format(
+      "{} points are dropped that are {:.3g} km or more from the origin, beyond the grid's 2^31 cells: give a larger size, remove outliers by filter.crop above, or subtract a shift (grabber.cloud)",
+      too_far_, std::ldexp(size_, 31) / 1000));
 }
 
 }  // namespace crisp

@@ -8,7 +8,7 @@
 
 namespace crisp {
 
-/// What a point finds in its cell of a grid.
+/// State of a point's cell in a grid.
 enum class InVoxel {
   first,    ///< no point was there before
   later,    ///< another one was

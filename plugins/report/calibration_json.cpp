@@ -75,7 +75,7 @@ Json calibration_json(const Calibration& calibration, const Calibration& nominal
           {"correlations", correlations_json(calibration)},
           {"quality", calibration.quality},
           {"unobservable", unobservable_json_of(calibration)},
-          {"doubts", calibration.doubts},
+          {"caveats", calibration.caveats},
           {"provenance", calibration.provenance}};
 }
 

@@ -7,9 +7,8 @@
 
 namespace crisp {
 
-/// What a report shows of a calibration: parameters in mm, degrees and ms with standard errors, the values of
-/// the rig and of an earlier calibration beside them, correlations of the free ones, and what is
-/// not observable.
+/// A calibration for a report: parameters in mm, degrees and ms with standard errors, next to the values of
+/// the rig and of an earlier calibration, correlations of the free ones, and unobservable ones.
 ///
 /// @param nominal  the rig's values; a parameter that it lacks has none
 /// @param against  an earlier calibration of the same scanner; null: none

@@ -20,7 +20,7 @@ struct ValueRange {
   double high = 0;
 };
 
-/// Of those that are numbers.
+/// For finite values.
 template <class Values>
 ValueRange range_of(const Values& values) {
   ValueRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};

@@ -32,7 +32,7 @@ std::size_t largest_cap(const std::vector<CellRun>& cells, std::size_t count) {
 std::vector<std::uint32_t> even_sample(const SpatialOrder& order, std::size_t count) {
   const std::vector<CellRun> cells = cell_runs(order, 0);
   const std::size_t cap = largest_cap(cells, count);
-  // What the cap leaves over: one more in the first cells that have one.
+  // The remainder below the cap: one more in the first cells that have one.
   std::size_t spare = count - kept_under(cells, cap);
   std::vector<std::uint32_t> chosen;
   chosen.reserve(std::min(count, order.index.size()));

@@ -6,6 +6,7 @@
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/calibration_file.hpp"
+#include "pipeline/files/renamed_names.hpp"
 #include "pipeline/files/utc_now.hpp"
 #include "pipeline/pcd/cloud_table.hpp"
 #include "pipeline/pcd/parts.hpp"
@@ -59,7 +60,7 @@ PageContent batch_content(const fs::path& folder, Json batch) {
   return content;
 }
 
-/// What stages wrote beside the summary of their run.
+/// Adds results that stages wrote next to the summary of their run.
 void add_results(const fs::path& folder, const FolderPageSettings& settings, FolderPage& page) {
   Json& data = page.content.data;
   if (const fs::path file = folder / "calibration.yaml"; is_file(file)) {
@@ -70,7 +71,10 @@ void add_results(const fs::path& folder, const FolderPageSettings& settings, Fol
     page.read.push_back(file);
   }
   if (const fs::path file = folder / "diagnosis.json"; is_file(file)) {
-    data["findings"] = use_json(file, [](const Json& findings) { return findings; });
+    data["findings"] = use_json(file, [](Json findings) {
+      rename_old_keys(findings, "diagnosis");
+      return findings;
+    });
     page.read.push_back(file);
   }
   const fs::path cloud = folder / "cloud.pcd";
@@ -90,9 +94,12 @@ FolderPage folder_page(const fs::path& folder, const FolderPageSettings& setting
   const fs::path file = folder / kSummary;
   if (!is_file(file)) {
     throw Error(folder.string() + " holds neither summary.json nor batch.json",
-                "name the folder that crisp run or crisp batch wrote into (-o)");
+                "give the output folder of crisp run or crisp batch (-o)");
   }
-  page.content = use_json(file, [&](const Json& summary) { return run_content(summary, folder); });
+  page.content = use_json(file, [&](Json summary) {
+    rename_old_keys(summary, "summary");
+    return run_content(summary, folder);
+  });
   page.read.push_back(file);
   add_results(folder, settings, page);
   return page;

@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// What a folder's page is made with.
+/// Settings of a folder's page.
 struct FolderPageSettings {
   std::size_t points = 300'000;        ///< most points of the cloud
   Calibration nominal;                 ///< the rig's values

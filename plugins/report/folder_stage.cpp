@@ -8,17 +8,15 @@
 namespace crisp {
 
 void FolderReportStage::describe(StageDescription<FolderReportStage>& d) {
-  d.name("report.folder").summary("writes the HTML page of what a run or a batch left in a folder");
+  d.name("report.folder").summary("writes an HTML report of a run's or a batch's results");
   d.details(
-      "Of a run: from summary.json, and from calibration.yaml, diagnosis.json, cloud.pcd and the plots where "
-      "they are there. Only `write.report` shows the cloud before the calibration as well, and how the plate "
-      "turned: a folder does not hold the measurements. Of a batch: from batch.json; each row leads to the "
-      "report of its run.");
-  d.option("folder", &FolderReportStage::folder_, "where the run or the batch wrote its results").required();
-  d.option("file", &FolderReportStage::file_, "where to write it; auto: report.html in the folder").writes();
-  d.option("points", &FolderReportStage::points_, "most points that the page's cloud has").range(1, 5e6);
+      "For a run: from summary.json, and from calibration.yaml, diagnosis.json, cloud.pcd and the plots if they exist. Only `write.report` also shows the cloud before the calibration and the motion of the plate, since a folder does not hold the measurements. For a batch: from batch.json; each row links to the report of its run.");
+  d.option("folder", &FolderReportStage::folder_, "folder of the results").required();
+  d.option("file", &FolderReportStage::file_, "output file; auto: report.html in the folder").writes();
+  d.option("points", &FolderReportStage::points_, "maximum number of points in the report's cloud")
+      .range(1, 5e6);
   d.option("against", &FolderReportStage::against_,
-           "an earlier calibration of the scanner, whose values are shown next to the new ones; auto: none");
+           "earlier calibration of the scanner to compare with; auto: none");
 }
 
 void FolderReportStage::process(const Inputs&, Outputs&, Context& context) {

@@ -9,11 +9,11 @@
 
 namespace crisp {
 
-/// How the plate turned: times [s from the first], angles [turns] and rates [Hz], at most `most` of them.
+/// Motion of the plate: times [s from the first], angles [turns] and rates [Hz], at most `most` of them.
 /// Between readings farther apart than the trajectory interpolates across, a null breaks each list.
 nlohmann::ordered_json motion_json(const PlateTrajectory& plate, std::size_t most = 1500);
 
-/// How often each laser looked where: beams by mirror angle (rows, from −180° to 180°) and the plate's angle
+/// Coverage of each laser: number of beams by mirror angle (rows, from −180° to 180°) and the plate's angle
 /// (columns, from 0° to 360°), in cells of 10°; one table a laser.
 nlohmann::ordered_json coverage_json(const Sample& sample, const std::vector<std::string>& lasers);
 

@@ -29,7 +29,7 @@ std::span<const unsigned char> bytes_of(std::string_view text) {
   return {reinterpret_cast<const unsigned char*>(text.data()), text.size()};
 }
 
-/// How a Content-Security-Policy names a script.
+/// Hash of a script for a Content-Security-Policy.
 std::string script_hash(std::string_view script) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned size = 0;
@@ -72,8 +72,7 @@ std::string page_html(const PageContent& content) {
   const std::string script = page_script();
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}; "
-      "style-src 'unsafe-inline'; img-src data:\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data:\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"generator\" content=\"crisp {}\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n"
       "<body>\n<noscript>This page needs JavaScript. It is all in the file: nothing is loaded.</noscript>\n"

@@ -16,7 +16,7 @@ struct ReportPlot {
   std::string svg;
 };
 
-/// All that a report's page shows. What is null or empty has no section.
+/// Content of a report's page. Null or empty parts have no section.
 struct PageContent {  // NOLINT(bugprone-exception-escape): moving JSON checks what it holds
   std::string title;
   nlohmann::ordered_json data;  ///< what the page's scripts read: summary, calibration, findings, motion …

@@ -26,23 +26,19 @@ std::vector<std::string> names_of(const Rig& rig) {
 }  // namespace
 
 void WriteReportStage::describe(StageDescription<WriteReportStage>& d) {
-  d.name("write.report").summary("writes the run as one HTML page for people");
+  d.name("write.report").summary("writes an HTML report of the run");
   d.details(
-      "One file that opens in a browser from disk and loads nothing: the verdict, the calibration with its "
-      "standard errors, the cloud in 3D before and after, the devices, the diagnosis with its plots, and the "
-      "run's origin. The page is written when the run is over, as it shows what all stages reported. "
-      "docs/report.md describes it. `crisp report FOLDER` makes one of what a run left.\n\n"
-      "The points are chosen evenly over the surfaces: the cells of a voxel grid, of 10 cm, keep equally "
-      "many. Both clouds show the same beams: before, under the rig's nominal values, and after, under the "
-      "calibration. Of a recording of more than 2 million beams, points are chosen from a part.");
+      "One file that opens in a browser from disk and loads nothing: the verdict, the calibration with its standard errors, the cloud in 3D before and after, the devices, the diagnosis with its plots, and the run's provenance. The page is written at the end of the run, as it shows the reports of all stages. docs/how-to/report.md describes it. `crisp report FOLDER` makes one from the results of a run.\n\n"
+      "The points are sampled evenly over the surfaces: each cell of a voxel grid of 10 cm keeps equally many. Both clouds show the same beams: before, under the rig's nominal values, and after, under the calibration. For a recording of more than 2 million beams, points are sampled from a part.");
   d.takes<Measurements>()
       .takes<Findings>(Need::optional)
       .holds<PlateTrajectory>()
       .holds<Calibration>(Need::optional);
-  d.option("file", &WriteReportStage::file_, "where to write it, NAME.html").writes().required();
-  d.option("points", &WriteReportStage::points_, "most points that the page's cloud has").range(1, 5e6);
+  d.option("file", &WriteReportStage::file_, "output file, NAME.html").writes().required();
+  d.option("points", &WriteReportStage::points_, "maximum number of points in the report's cloud")
+      .range(1, 5e6);
   d.option("against", &WriteReportStage::against_,
-           "an earlier calibration of the scanner, whose values are shown next to the new ones; auto: none");
+           "earlier calibration of the scanner to compare with; auto: none");
 }
 
 void WriteReportStage::process(const Inputs& in, Outputs&, Context& context) {
@@ -83,7 +79,7 @@ void WriteReportStage::finish(Outputs&, Context& context) {
     }
   }
   data["laser_names"] = names_of(context.rig());
-  context.say("the page is " + file_.string());
+  context.print("the page is " + file_.string());
   context.wrote(file_);
   context.when_recorded(
       [data = std::move(data), cloud = std::move(cloud), file = file_](const Json& summary) {

@@ -8,7 +8,7 @@
 #include "pipeline/data/calibration.hpp"
 #include "pipeline/data/findings.hpp"
 #include "pipeline/data/oriented_plate.hpp"
-#include "pipeline/estimate/collected.hpp"
+#include "pipeline/estimate/measurement_buffer.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
 
@@ -27,7 +27,7 @@ class WriteReportStage final : public Stage {
   std::optional<std::filesystem::path> against_;
 
   static constexpr std::size_t kMostBeams = 2'000'000;  ///< that points are chosen from
-  Collected collected_{kMostBeams};
+  MeasurementBuffer collected_{kMostBeams};
   bool has_beams_ = false;
   OrientedPlate oriented_;
   std::shared_ptr<const Calibration> calibration_;

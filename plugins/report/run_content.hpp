@@ -7,11 +7,11 @@
 
 namespace crisp {
 
-/// The page of a run, but for its calibration, findings and cloud: verdict, devices, origin, and the plots
-/// that its stages drew.
+/// The report of a run without its calibration, findings and cloud: verdict, devices, provenance, and the
+/// stages' plots.
 ///
-/// @param summary  what summary.json holds
-/// @param folder   where plots are that are no longer where the run wrote them; empty: nowhere
+/// @param summary  the content of summary.json
+/// @param folder   fallback folder of plots that have moved since the run; empty: none
 PageContent run_content(const nlohmann::ordered_json& summary, const std::filesystem::path& folder = {});
 
 }  // namespace crisp

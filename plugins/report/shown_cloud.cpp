@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSide = 0.1;  // [m] of the cells that points are chosen from
 
-/// NaN where the plate's readings do not cover a beam.
+/// NaN where the encoder readings do not cover a beam.
 Vectors placed_or_nan(const SensorModel& model, const Measurements& beams, const PlateTrajectory& plate) {
   Vectors points;
   points.assign(beams.size(), std::numeric_limits<double>::quiet_NaN());

@@ -30,7 +30,7 @@ struct ShownCloud {
 };
 
 /// Places beams under both models and chooses at most `count` of them evenly over the surfaces that the
-/// second sees. Beams that the plate's readings do not cover under either are left out.
+/// second sees. Beams that the encoder readings do not cover under either are left out.
 ShownCloud shown_cloud(const Sample& sample, const SensorModel& before, const SensorModel& after,
                        std::size_t count);
 

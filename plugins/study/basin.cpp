@@ -6,18 +6,18 @@
 
 #include "grabbers/simulate/random.hpp"
 #include "pipeline/data/error.hpp"
-#include "pipeline/estimate/base_slots.hpp"
+#include "pipeline/estimate/base_parameters.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 
 namespace crisp {
 namespace {
 
-/// What a calibration came to.
+/// Result of a calibration.
 struct End {
   SensorModel model;
-  Eigen::VectorXd std_error;        // of the parameters that it turned
-  std::vector<std::size_t> free;    // which they are
-  std::vector<std::string> doubts;  // all that it says against itself
+  Eigen::VectorXd std_error;         // of the parameters that it turned
+  std::vector<std::size_t> free;     // which they are
+  std::vector<std::string> caveats;  // of the calibration
 };
 
 void add(std::vector<std::string>& to, const std::vector<Unobservable>& unobservable) {
@@ -33,8 +33,8 @@ End refined(const SensorModel& start, const Sample& sample, const TrialSettings&
   End end{.model = found.outcome.model,
           .std_error = found.outcome.covariance.diagonal().cwiseSqrt(),
           .free = found.outcome.free,
-          .doubts = found.outcome.doubts};
-  add(end.doubts, found.outcome.unobservable);
+          .caveats = found.outcome.caveats};
+  add(end.caveats, found.outcome.unobservable);
   return end;
 }
 
@@ -45,10 +45,10 @@ End calibrated(const SensorModel& start, const Sample& sample, const TrialSettin
   RqeCalibrationSettings rqe = settings.rqe;
   rqe.full_field = settings.beams == BeamChoice::kAll;
   rqe.noise = settings.noise;
-  const Outcome crispest = calibrate_by_rqe(start, sample, measure, rqe);
-  End end = refined(crispest.model, sample, settings);
-  end.doubts.insert(end.doubts.begin(), crispest.doubts.begin(), crispest.doubts.end());
-  add(end.doubts, crispest.unobservable);
+  const Outcome minimum = calibrate_by_rqe(start, sample, measure, rqe);
+  End end = refined(minimum.model, sample, settings);
+  end.caveats.insert(end.caveats.begin(), minimum.caveats.begin(), minimum.caveats.end());
+  add(end.caveats, minimum.unobservable);
   return end;
 }
 
@@ -63,7 +63,7 @@ SensorModel drawn_start(const SensorModel& truth, const StartRange& range, std::
     };
     const double turn = random.uniform(-range.lambda, range.lambda);
     if (laser > 0) value(kLambda) += turn;
-    value(kTau) = random.uniform(range.tau_least, range.tau_most);
+    value(kTau) = random.uniform(range.min_tau, range.max_tau);
     value(kAlpha) += random.uniform(-range.alpha, range.alpha);
     value(kEta) += random.uniform(-range.eta, range.eta);
   }
@@ -81,10 +81,10 @@ class Exploration {
   BasinRecording run(std::size_t starts) {
     const SensorModel truth(recording_.simulated.truth);
     const Sample sample = recording_.sample();
-    BasinRecording result{.seed = seed_, .parameters = {}, .starts = {}, .doubts = {}, .failure = {}};
+    BasinRecording result{.seed = seed_, .parameters = {}, .starts = {}, .caveats = {}, .failure = {}};
     try {
       const End optimum = refined(truth, sample, settings_.trial);
-      result.doubts = optimum.doubts;
+      result.caveats = optimum.caveats;
       for (const std::size_t parameter : optimum.free) result.parameters.push_back(truth.names()[parameter]);
       for (std::size_t k = 0; k < starts; ++k) {
         result.starts.push_back(explore(drawn_start(truth, settings_.range, seed_, k), sample, optimum));
@@ -97,19 +97,19 @@ class Exploration {
 
  private:
   BasinStart explore(const SensorModel& start, const Sample& sample, const End& optimum) {
-    BasinStart result{.recording = seed_, .start = {}, .farthest = {}, .doubts = {}};
+    BasinStart result{.recording = seed_, .start = {}, .farthest = {}, .caveats = {}};
     const Eigen::VectorXd drawn = picked(start, optimum.free);
     result.start.assign(drawn.begin(), drawn.end());
     try {
       const End end = calibrated(start, sample, settings_.trial, measure_);
-      result.doubts = end.doubts;
+      result.caveats = end.caveats;
       compare(result, end, optimum);
     } catch (const Error& error) {
-      result.doubts = {error.message()};
+      result.caveats = {error.message()};
       result.off = std::numeric_limits<double>::infinity();
     }
     const bool same = result.off <= settings_.same;
-    result.ending = same ? Ending::kSame : result.doubts.empty() ? Ending::kSilent : Ending::kDoubted;
+    result.ending = same ? Ending::kSame : result.caveats.empty() ? Ending::kSilent : Ending::kWithCaveats;
     return result;
   }
 
@@ -137,7 +137,7 @@ class Exploration {
 
 std::vector<BasinRecording> explore_basin(const BasinSettings& settings, const MakeMeasure& make_measure,
                                           const StudyHooks& hooks) {
-  const std::size_t each = settings.starts_a_recording;
+  const std::size_t each = settings.starts_per_recording;
   return run_in_parallel<BasinRecording>(
       share_of(settings.part, settings.recordings()), settings.threads, hooks, [&](std::size_t k) {
         const auto measure = make_measure();

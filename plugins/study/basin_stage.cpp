@@ -17,60 +17,53 @@ BasinStage::BasinStage() {
 }
 
 void BasinStage::describe(StageDescription<BasinStage>& d) {
-  d.name("study.basin").summary("calibrates from starts all over the range, and sees where each ends");
+  d.name("study.basin").summary("determines the calibration's basin of convergence");
   d.details(
-      "Simulated recordings are calibrated by calibrate.rqe and calibrate.refine from starts drawn evenly "
-      "over "
-      "the range: tau, alpha and eta of each laser, and lambda of all but the first. Counted is how many end "
-      "in "
-      "the optimum at the truth (calibrate.refine alone, started at the truth), elsewhere but saying that "
-      "they "
-      "are not sure (a doubt, a parameter that is named unobservable, an error), or elsewhere and sure of "
-      "it. "
-      "The truth of each recording is drawn up to 2 cm, 3 degrees, 5 degrees (lambda) and 40 ms from the "
-      "rig's "
-      "nominal values.");
+      "Calibrates simulated recordings by calibrate.rqe and calibrate.refine from starts drawn evenly over the range: tau, alpha and eta of each laser, and lambda of all but the first. Counts how many end in the optimum at the truth (calibrate.refine alone, started at the truth), elsewhere with a caveat, an unobservable parameter or an error, and elsewhere without one. The truth of each recording is drawn up to 2 cm, 3 degrees, 5 degrees (lambda) and 40 ms from the rig's nominal values.");
   describe_scene(d, &BasinStage::scene_);
   const auto trial = &BasinStage::trial;
   d.option("beams", trial, &TrialSettings::beams,
-           "the paper's two in the plate's plane, or those of the whole field of view")
+           "beams used: the paper's two in the plate's plane, or the whole field of view")
       .choices({{"in_plane", BeamChoice::kInPlane}, {"all", BeamChoice::kAll}});
-  d.option("starts", &BasinStage::settings_, &BasinSettings::starts, "how many").range(1, 1e6);
-  d.option("starts_a_recording", &BasinStage::settings_, &BasinSettings::starts_a_recording,
-           "how many of them share a recording; each recording has its own seed, truth and motion")
+  d.option("starts", &BasinStage::settings_, &BasinSettings::starts, "number of starts").range(1, 1e6);
+  d.option("starts_per_recording", &BasinStage::settings_, &BasinSettings::starts_per_recording,
+           "number of starts per recording; each recording has its own seed, truth and motion")
       .range(1, 1e6);
   d.option("same", &BasinStage::settings_, &BasinSettings::same,
-           "standard errors by which each parameter of two ends may differ that count as the same")
+           "largest difference of parameters, in standard errors, between ends in the same optimum")
       .range(1e-6, 100);
-  d.option("lasers", trial, &TrialSettings::lasers, "how many, of the rig's").range(1, 64);
-  d.option("duration", trial, &TrialSettings::duration, "of each recording").unit("s").range(1, 1000);
+  d.option("lasers", trial, &TrialSettings::lasers, "number of lasers, the first of the rig's").range(1, 64);
+  d.option("duration", trial, &TrialSettings::duration, "duration of each recording")
+      .unit("s")
+      .range(1, 1000);
   describe_motion(d, &BasinStage::motion);
   d.option("noise", trial, &TrialSettings::noise, "standard deviation of a range").unit("m").range(1e-5, 1);
   const auto range = &BasinSettings::range;
-  d.option("tau_least", &BasinStage::settings_, range, &StartRange::tau_least, "least tau of a start")
+  d.option("min_tau", &BasinStage::settings_, range, &StartRange::min_tau, "smallest tau of a start")
       .unit("m")
       .range(-10, 10);
-  d.option("tau_most", &BasinStage::settings_, range, &StartRange::tau_most, "largest tau of a start")
+  d.option("max_tau", &BasinStage::settings_, range, &StartRange::max_tau, "largest tau of a start")
       .unit("m")
       .range(-10, 10);
-  d.option("alpha", &BasinStage::settings_, range, &StartRange::alpha, "how far off alpha is at most")
+  d.option("alpha", &BasinStage::settings_, range, &StartRange::alpha, "largest error of alpha at a start")
       .unit("rad")
       .range(0, 3.2);
-  d.option("lambda", &BasinStage::settings_, range, &StartRange::lambda, "and lambda")
+  d.option("lambda", &BasinStage::settings_, range, &StartRange::lambda, "largest error of lambda at a start")
       .unit("rad")
       .range(0, 3.2);
-  d.option("eta", &BasinStage::settings_, range, &StartRange::eta, "and eta").unit("s").range(0, 1);
+  d.option("eta", &BasinStage::settings_, range, &StartRange::eta, "largest error of eta at a start")
+      .unit("s")
+      .range(0, 1);
   describe_part(d, &BasinStage::part_);
-  d.option("file", &BasinStage::file_, "where every start goes, as CSV").writes();
+  d.option("file", &BasinStage::file_, "output file of all starts, CSV").writes();
 }
 
 void BasinStage::check(const RunSettings& run) const {
   check_all([&] { check_part(part_, run); }, [&] { check_lasers(settings_.trial, run.rig); },
-            of_option("tau_most",
+            of_option("max_tau",
                       [&] {
-                        if (settings_.range.tau_least <= settings_.range.tau_most) return;
-                        throw Error("the least tau of a start is above the largest",
-                                    "give a `tau_most` above `tau_least`");
+                        if (settings_.range.min_tau <= settings_.range.max_tau) return;
+                        throw Error("min_tau is above max_tau", "give a `max_tau` above `min_tau`");
                       }),
             [&] { make_motion(settings_.trial.motion, settings_.trial.duration, 1); });
 }
@@ -98,11 +91,11 @@ void BasinStage::process(const Inputs&, Outputs&, Context& context) {
 void BasinStage::finish(Outputs&, Context& context) {
   if (write_if_part(context, part_, extent_, recordings_, basin_json)) return;
   const BasinTally tally = tally_of(recordings_);
-  context.say(basin_text(recordings_));
+  context.print(basin_text(recordings_));
   context.report({{"starts", tally.starts},
                   {"same", tally.same},
-                  {"same_doubted", tally.same_doubted},
-                  {"doubted", tally.doubted},
+                  {"same_doubted", tally.same_with_caveats},
+                  {"caveats", tally.with_caveats},
                   {"silent", tally.silent},
                   {"recordings_failed", tally.failed}});
   if (file_.empty()) return;

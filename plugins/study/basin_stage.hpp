@@ -11,8 +11,7 @@
 
 namespace crisp {
 
-/// `study.basin`: whether calibrations end in the same optimum from wherever they start, or say that they
-/// are not sure.
+/// `study.basin`: whether calibrations end in the same optimum from wherever they start, or add a caveat.
 class BasinStage final : public Stage {
  public:
   BasinStage();

@@ -15,30 +15,30 @@ const char* word(Ending ending) {
   switch (ending) {
     case Ending::kSame:
       return "same";
-    case Ending::kDoubted:
-      return "doubted";
+    case Ending::kWithCaveats:
+      return "caveats";
     case Ending::kSilent:
       return "silent";
   }
   return "";
 }
 
-/// What a calibration said, in one line and without quotation marks.
-std::string in_one(const std::vector<std::string>& doubts) {
-  std::string text = fmt::format("{}", fmt::join(doubts, "; "));
+/// A calibration's caveats, in one line and without quotation marks.
+std::string in_one(const std::vector<std::string>& caveats) {
+  std::string text = fmt::format("{}", fmt::join(caveats, "; "));
   std::ranges::replace(text, '"', '\'');
   std::ranges::replace(text, '\n', ' ');
   return text;
 }
 
-std::string told(const BasinRecording& recording, std::size_t k) {
+std::string reported(const BasinRecording& recording, std::size_t k) {
   const BasinStart& start = recording.starts[k];
   std::string text = fmt::format("recording {} start {}: ", recording.seed, k);
-  if (start.farthest.empty()) return text + in_one(start.doubts);
+  if (start.farthest.empty()) return text + in_one(start.caveats);
   const ParameterKind& kind = kind_of(start.farthest);
   text += fmt::format("{} off by {:.4g} {}, {:.3g} standard errors", start.farthest, start.error / kind.in_si,
                       kind.unit, start.off);
-  return text + (start.doubts.empty() ? "; it was sure" : "; it said: " + in_one(start.doubts));
+  return text + (start.caveats.empty() ? "; without caveats" : "; caveats: " + in_one(start.caveats));
 }
 
 }  // namespace
@@ -50,9 +50,9 @@ BasinTally tally_of(const std::vector<BasinRecording>& recordings) {
     for (const BasinStart& start : recording.starts) {
       ++tally.starts;
       tally.same += start.ending == Ending::kSame ? 1 : 0;
-      tally.doubted += start.ending == Ending::kDoubted ? 1 : 0;
+      tally.with_caveats += start.ending == Ending::kWithCaveats ? 1 : 0;
       tally.silent += start.ending == Ending::kSilent ? 1 : 0;
-      tally.same_doubted += start.ending == Ending::kSame && !start.doubts.empty() ? 1 : 0;
+      tally.same_with_caveats += start.ending == Ending::kSame && !start.caveats.empty() ? 1 : 0;
     }
   }
   return tally;
@@ -67,15 +67,15 @@ std::string basin_text(const std::vector<BasinRecording>& recordings) {
   std::string text = fmt::format("{} on {}\n", counted(tally.starts, "start"),
                                  counted(recordings.size() - tally.failed, "recording"));
   text += line("ended in the optimum at the truth", tally.same);
-  text += line("  of these said to be not sure", tally.same_doubted);
-  text += line("elsewhere, and said to be not sure", tally.doubted);
-  text += line("elsewhere, and sure", tally.silent);
+  text += line("  of these with caveats", tally.same_with_caveats);
+  text += line("elsewhere, with caveats", tally.with_caveats);
+  text += line("elsewhere, without caveats", tally.silent);
   for (const BasinRecording& recording : recordings) {
     if (!recording.failure.empty()) {
       text += fmt::format("recording {}: even from the truth: {}\n", recording.seed, recording.failure);
     }
     for (std::size_t k = 0; k < recording.starts.size(); ++k) {
-      if (recording.starts[k].ending != Ending::kSame) text += told(recording, k) + "\n";
+      if (recording.starts[k].ending != Ending::kSame) text += reported(recording, k) + "\n";
     }
   }
   text.pop_back();
@@ -83,7 +83,7 @@ std::string basin_text(const std::vector<BasinRecording>& recordings) {
 }
 
 std::string basin_csv(const std::vector<BasinRecording>& recordings) {
-  std::string text = "recording,start,parameter,unit,value,ending,off,farthest,error,doubts\n";
+  std::string text = "recording,start,parameter,unit,value,ending,off,farthest,error,caveats\n";
   for (const BasinRecording& recording : recordings) {
     for (std::size_t k = 0; k < recording.starts.size(); ++k) {
       const BasinStart& start = recording.starts[k];
@@ -91,7 +91,7 @@ std::string basin_csv(const std::vector<BasinRecording>& recordings) {
         const std::string& name = recording.parameters[p];
         text += fmt::format("{},{},{},{},{:.6g},{},{:.3g},{},{:.6g},\"{}\"\n", recording.seed, k, name,
                             kind_of(name).si, start.start[p], word(start.ending), start.off, start.farthest,
-                            start.error, in_one(start.doubts));
+                            start.error, in_one(start.caveats));
       }
     }
   }

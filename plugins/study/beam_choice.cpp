@@ -30,7 +30,7 @@ std::vector<std::uint16_t> in_plane_of(const RigLaser& laser, const FieldOfView&
 
 /// Only the beams that `wanted` lists for their laser.
 SimulatedMeasurements narrowed(const SimulatedMeasurements& all,
-                               const std::vector<std::vector<std::uint16_t>>& wanted) {
+                               const std::vector<std::vector<std::uint16_t>>& requested) {
   SimulatedMeasurements result{.beams = {},
                                .surface = {},
                                .cos_incidence = {},
@@ -39,7 +39,7 @@ SimulatedMeasurements narrowed(const SimulatedMeasurements& all,
                                .no_echo = all.no_echo};
   result.beams.epoch_ns = all.beams.epoch_ns;
   for (std::size_t i = 0; i < all.beams.size(); ++i) {
-    const auto& of_laser = wanted[all.beams.laser[i]];
+    const auto& of_laser = requested[all.beams.laser[i]];
     if (std::ranges::find(of_laser, all.beams.beam[i]) == of_laser.end()) continue;
     result.beams.append(all.beams, i);
     result.surface.push_back(all.surface[i]);
@@ -53,16 +53,16 @@ SimulatedMeasurements narrowed(const SimulatedMeasurements& all,
 SimulatedMeasurements simulate_beams(BeamChoice beams, ScannerSettings scanner, const Scene& scene,
                                      const Motion& motion, const TermRegistry& terms) {
   if (beams == BeamChoice::kAll) return simulate_measurements(scanner, scene, motion, terms);
-  std::vector<std::vector<std::uint16_t>> wanted;
+  std::vector<std::vector<std::uint16_t>> requested;
   scanner.beams.clear();
   for (std::size_t i = 0; i < scanner.rig.lasers.size(); ++i) {
-    wanted.push_back(in_plane_of(scanner.rig.lasers[i], scanner.pattern_of(i).field));
-    scanner.beams.insert(scanner.beams.end(), wanted.back().begin(), wanted.back().end());
+    requested.push_back(in_plane_of(scanner.rig.lasers[i], scanner.pattern_of(i).field));
+    scanner.beams.insert(scanner.beams.end(), requested.back().begin(), requested.back().end());
   }
   std::ranges::sort(scanner.beams);
   scanner.beams.erase(std::unique(scanner.beams.begin(), scanner.beams.end()), scanner.beams.end());
-  // Where lasers are mounted differently, each fires the others' beams, too.
-  return narrowed(simulate_measurements(scanner, scene, motion, terms), wanted);
+  // With differently mounted lasers, each fires the others' beams, too.
+  return narrowed(simulate_measurements(scanner, scene, motion, terms), requested);
 }
 
 }  // namespace crisp

@@ -5,7 +5,7 @@
 
 namespace crisp {
 
-/// Which of its lasers' beams a study looks at.
+/// The beams of its lasers that a study uses.
 enum class BeamChoice {
   kAll,      ///< the whole field of view
   kInPlane,  ///< of each laser the two that lie in the plate's plane, θ = ±90°, or as near as its step allows

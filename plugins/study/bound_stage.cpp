@@ -16,7 +16,7 @@
 namespace crisp {
 namespace {
 
-nlohmann::json parameters_json(const SceneBound& bound, const std::optional<Reached>& reached) {
+nlohmann::json parameters_json(const SceneBound& bound, const std::optional<RefinementAccuracy>& refinement) {
   auto json = nlohmann::json::object();
   for (std::size_t k = 0; k < bound.parameters.size(); ++k) {
     const double error = bound.std_errors[static_cast<Eigen::Index>(k)];
@@ -25,9 +25,9 @@ nlohmann::json parameters_json(const SceneBound& bound, const std::optional<Reac
       entry["std_error"] = error;
       entry["std_error_with_steps"] = bound.with_steps[static_cast<Eigen::Index>(k)];
     }
-    if (!reached || !reached->failure.empty()) continue;
-    const double claimed = reached->std_errors[static_cast<Eigen::Index>(k)];
-    if (std::isfinite(claimed)) entry["refined_std_error"] = claimed;
+    if (!refinement || !refinement->failure.empty()) continue;
+    const double estimated = refinement->std_errors[static_cast<Eigen::Index>(k)];
+    if (std::isfinite(estimated)) entry["refined_std_error"] = estimated;
   }
   return json;
 }
@@ -53,28 +53,18 @@ nlohmann::json planes_json(const SceneBound& bound, const Scene& scene) {
 }  // namespace
 
 void BoundStage::describe(StageDescription<BoundStage>& d) {
-  d.name("study.bound").summary("says before a recording how well it would determine the parameters");
+  d.name("study.bound").summary("computes the Cramer-Rao bound of the parameters for a planned recording");
   d.details(
-      "The Cramer-Rao bound: no unbiased calibration from such a recording has smaller standard errors, "
-      "however it works. It is computed from the beams that the scanner would fire at the scene, with every "
-      "surface of the scene as unknown as the parameters, three numbers each, and projected out. What the "
-      "motion or the scene leave undetermined is named, with the combination that is known all the same: at "
-      "constant speed each eta against the lambdas.\n\n"
-      "Beside it stand the standard errors that calibrate.refine gives itself on one such recording with "
-      "noise "
-      "(`refine`): what the method reaches.\n\n"
-      "The scanner is the run's rig, as it nominally is, or that of `calibration`. The plate's encoder and "
-      "the clocks count as exact, and the effects of the model beyond lambda, tau, alpha and eta as known. "
-      "A second figure counts the steps of the rig's encoder as well, as normal noise of the plate's "
-      "angle.\n\n"
-      "What is known before a recording, against which a parameter counts as determined, is what "
-      "calibrate.refine takes for known: lambda and alpha to 0.05 rad, tau to 3 cm, eta to 10 ms.");
+      "The Cramer-Rao bound: the least standard errors of any unbiased calibration from such a recording. It is computed from the beams that the scanner would fire at the scene, with every surface of the scene as unknown as the parameters, three numbers each, and projected out. Parameters that the motion or the scene leave undetermined are named, with the combination that is determined: at constant speed each eta against the lambdas.\n\n"
+      "For comparison, `refine` adds the standard errors that calibrate.refine estimates on one such recording with noise.\n\n"
+      "The scanner has the rig's nominal values, or those of `calibration`. The plate's encoder and the clocks count as exact, and the effects of the model beyond lambda, tau, alpha and eta as known. A second bound counts the steps of the rig's encoder as well, as normal noise of the plate's angle.\n\n"
+      "A parameter counts as determined against the prior of calibrate.refine: lambda and alpha to 0.05 rad, tau to 3 cm, eta to 10 ms.");
   describe_scene(d, &BoundStage::scene_);
   d.option("beams", &BoundStage::beams_,
-           "those of the whole field of view, or the paper's two in the plate's plane")
+           "beams used: the whole field of view, or the paper's two in the plate's plane")
       .choices({{"all", BeamChoice::kAll}, {"in_plane", BeamChoice::kInPlane}});
   d.option("duration", &BoundStage::scanner_, &ScannerSettings::duration,
-           "how long to record; from some ten seconds on the errors fall with the root of it")
+           "duration of the recording; from some ten seconds on errors decrease with its square root")
       .unit("s")
       .range(0.01, 100);
   d.option("noise", &BoundStage::scanner_, &ScannerSettings::range, &RangeSettings::sigma,
@@ -85,8 +75,9 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
   describe_truth(d, &BoundStage::truth_);
   describe_field(d, &BoundStage::scanner_);
   describe_kinds(d, &BoundStage::kinds_);
-  d.option("refine", &BoundStage::refine_, "whether to try as well what calibrate.refine reaches");
-  d.option("file", &BoundStage::file_, "where the bounds go, as CSV").writes();
+  d.option("refine", &BoundStage::refine_,
+           "whether to add the standard errors of calibrate.refine on a simulated recording");
+  d.option("file", &BoundStage::file_, "output file of the bounds, CSV").writes();
 }
 
 std::vector<Effect> BoundStage::effects(const RunSettings& run) const {
@@ -122,32 +113,32 @@ void BoundStage::process(const Inputs&, Outputs&, Context& context) {
   if (context.interrupted()) return;
   if (refine_) {
     context.progress(0.3, "calibrate.refine");
-    reached_ = reached_by_refinement(scanner, scene, motion, beams_, bound_.parameters, terms);
+    refinement_ = refinement_accuracy(scanner, scene, motion, beams_, bound_.parameters, terms);
   }
-  tell(scene, context);
+  report(scene, context);
 }
 
-void BoundStage::tell(const Scene& scene, Context& context) const {
+void BoundStage::report(const Scene& scene, Context& context) const {
   context.report({{"scene", scene.name},
                   {"beams", bound_.beams},
                   {"no_echo", bound_.no_echo},
                   {"planes", planes_json(bound_, scene)},
-                  {"parameters", parameters_json(bound_, reached_)},
+                  {"parameters", parameters_json(bound_, refinement_)},
                   {"unobservable", unobservable_json(bound_)}});
-  const auto met = std::ranges::count_if(bound_.beams_on, [](std::size_t beams) { return beams > 0; });
-  context.say(fmt::format("{:g} s in the {}: {} beams on {} surfaces, {} that meet nothing; noise {:g} mm",
-                          scanner_.duration, scene.name, bound_.beams, met, bound_.no_echo,
-                          scanner_.range.sigma * 1e3));
-  if (!reached_ || !reached_->failure.empty()) return;
-  context.report({{"refined_beams", reached_->beams}, {"refined_surfaces", reached_->surfaces}});
-  context.say(fmt::format("calibrate.refine finds {} flat surfaces with {} of them", reached_->surfaces,
-                          reached_->beams));
+  const auto hit = std::ranges::count_if(bound_.beams_on, [](std::size_t beams) { return beams > 0; });
+  context.print(fmt::format("{:g} s in the {}: {} beams on {} surfaces, {} without echo; noise {:g} mm",
+                            scanner_.duration, scene.name, bound_.beams, hit, bound_.no_echo,
+                            scanner_.range.sigma * 1e3));
+  if (!refinement_ || !refinement_->failure.empty()) return;
+  context.report({{"refined_beams", refinement_->beams}, {"refined_surfaces", refinement_->surfaces}});
+  context.print(fmt::format("calibrate.refine finds {} flat surfaces with {} of them", refinement_->surfaces,
+                            refinement_->beams));
 }
 
 void BoundStage::finish(Outputs&, Context& context) {
-  context.say(bound_text(bound_, reached_));
+  context.print(bound_text(bound_, refinement_));
   if (file_.empty()) return;
-  write_file(file_, bound_csv(bound_, reached_));
+  write_file(file_, bound_csv(bound_, refinement_));
   context.wrote(file_);
 }
 

@@ -7,12 +7,12 @@
 #include "grabbers/simulate/world.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
-#include "plugins/study/reached.hpp"
+#include "plugins/study/refinement_accuracy.hpp"
 #include "plugins/study/scene_bound.hpp"
 
 namespace crisp {
 
-/// `study.bound`: says before a recording how well it would determine the scanner's parameters.
+/// `study.bound`: computes the Cramér-Rao bound of the scanner's parameters for a planned recording.
 class BoundStage final : public Stage {
  public:
   static void describe(StageDescription<BoundStage>& d);
@@ -22,10 +22,10 @@ class BoundStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
-  // What the options are declared on.
+  // Target of the options.
   MotionSettings& motion() { return scanner_.motion; }
 
-  void tell(const Scene& scene, Context& context) const;
+  void report(const Scene& scene, Context& context) const;
   std::vector<Effect> effects(const RunSettings& run) const;
 
   ScannerSettings scanner_;
@@ -36,7 +36,7 @@ class BoundStage final : public Stage {
   bool refine_ = true;
   std::filesystem::path file_;
   SceneBound bound_;
-  std::optional<Reached> reached_;
+  std::optional<RefinementAccuracy> refinement_;
 };
 
 }  // namespace crisp

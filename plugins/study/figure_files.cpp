@@ -11,7 +11,7 @@ namespace {
 /// A line each with the cloud's points, blocks apart by two blank lines.
 std::string beam_clouds(const Figures& figures) {
   std::string text =
-      "# Figure 4: the cloud of the beam at -45 deg with no lag, and with the lag of the least RQE\n";
+      "# Figure 4: the cloud of the beam at -45 deg with no lag, and with the lag of least RQE\n";
   for (const BeamCloud* cloud : {&figures.before, &figures.after}) {
     text += fmt::format("# eta {:.6f} s\n# x [m]  y [m]\n", cloud->eta);
     for (const auto& point : cloud->points.colwise())
@@ -50,7 +50,7 @@ std::string curves(const std::string& title, const std::string& abscissa, const 
 
 std::string optima(const Figures& figures) {
   std::string text =
-      "# Figure 6: where RQE has its minimum over tau and alpha; the truth is 0.2 m, 0 deg\n"
+      "# Figure 6: minimum of RQE over tau and alpha; the truth is 0.2 m, 0 deg\n"
       "# sigma [m]  tau [m]  alpha [deg]\n";
   for (const Optimum& at : figures.optima) {
     text += fmt::format("{:g} {:.6f} {:.5f}\n", at.sigma, at.tau, at.alpha / kDegree);
@@ -69,10 +69,11 @@ std::map<std::string, std::string> figure_files(const FigureSettings& settings, 
       {"fig6_alpha.dat", curves("Figure 6: RQE over alpha with the true tau, at several sigma", "alpha [deg]",
                                 settings.alpha, kDegree, settings.widths, figures.over_alpha)},
       {"fig6_optimum.dat", optima(figures)},
-      {"fig7_eta.dat", curves(fmt::format("Figure 7: RQE of the beam at -45 deg over eta, at several sigma; "
-                                          "the truth is {:g} s",
-                                          settings.eta),
-                              "eta [s]", settings.lag, 1, settings.lag_widths, figures.over_lag)}};
+      {"fig7_eta.dat",
+       curves(
+           fmt::format("Figure 7: RQE of the beam at -45 deg over eta, at several sigma; the truth is {:g} s",
+                       settings.eta),
+           "eta [s]", settings.lag, 1, settings.lag_widths, figures.over_lag)}};
 }
 
 }  // namespace crisp

@@ -5,9 +5,9 @@
 
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/paper.hpp"
-#include "pipeline/estimate/base_slots.hpp"
+#include "pipeline/estimate/base_parameters.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
-#include "plugins/calibrate/crispest.hpp"
+#include "plugins/calibrate/rqe_minimizer.hpp"
 
 namespace crisp {
 namespace {
@@ -44,7 +44,7 @@ class Studio {
     std::vector<Optimum> optima;
     for (const double sigma : settings_.widths) {
       SensorModel model = truth_;
-      crispest(model, both_, {kTau, kAlpha}, measure_, sigma, {.tau = 0.4}, {});
+      minimize_rqe(model, both_, {kTau, kAlpha}, measure_, sigma, {.tau = 0.4}, {});
       optima.push_back({.sigma = sigma, .tau = model.values()[kTau], .alpha = model.values()[kAlpha]});
     }
     return optima;
@@ -68,7 +68,7 @@ class Studio {
     const auto costs = curve(truth_, kEta, settings_.lag, front_, kSigma);
     const auto least = static_cast<std::size_t>(std::ranges::min_element(costs) - costs.begin());
     SensorModel model = with_one(truth_, kEta, settings_.lag.at(least));
-    crispest(model, front_, {kEta}, measure_, kSigma, {.eta = 0.002}, {});
+    minimize_rqe(model, front_, {kEta}, measure_, kSigma, {.eta = 0.002}, {});
     return cloud(model);
   }
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "plugins/study/trial.hpp"
+#include "plugins/study/monte_carlo_trial.hpp"
 
 namespace crisp {
 
@@ -19,8 +19,8 @@ struct Axis {
   }
 };
 
-/// What figures 4 to 7 of Sheehan, Harrison and Newman are drawn of: one laser's two beams in the plate's
-/// plane, a true lag that the calibration has to find, and the ranges over which it is looked for.
+/// Settings of figures 4 to 7 of Sheehan, Harrison and Newman: one laser's two beams in the plate's plane, a
+/// true lag to be estimated, and the ranges of its search.
 struct FigureSettings {
   std::uint64_t seed = 1;
   double eta = -0.03;                                          ///< [s] the true lag
@@ -42,7 +42,7 @@ struct CostCurves {
   std::vector<std::vector<double>> cost;  ///< [σ][step]
 };
 
-/// Where RQE has its minimum over τ and α at one σ.
+/// Minimum of RQE over τ and α at one σ.
 struct Optimum {
   double sigma = 0;  ///< [m]
   double tau = 0;    ///< [m]
@@ -65,8 +65,8 @@ struct Figures {
   CostCurves over_lag;          ///< figure 7: of the front beam, over η, at each of the lag widths
 };
 
-/// Computes what the figures show. Figures 5 and 6 have η at the truth.
-/// @param interrupted  asked between the parts; what is missing then is empty
+/// Computes the figures' data. Figures 5 and 6 have η at the truth.
+/// @param interrupted  polled between the parts; missing parts are then empty
 Figures make_figures(const FigureSettings& settings, Measure& measure,
                      const std::function<bool()>& interrupted = {});
 

@@ -10,14 +10,13 @@
 namespace crisp {
 
 void FiguresStage::describe(StageDescription<FiguresStage>& d) {
-  d.name("study.figures").summary("computes the paper's figures 4 to 7 as data to be plotted");
+  d.name("study.figures").summary("computes the data of the paper's figures 4 to 7");
   d.details(
-      "From a simulated recording of one laser's two beams in the plate's plane: the cloud of one beam with "
-      "and without its lag (figure 4), RQE over tau and alpha (figure 5), at several kernel widths (figure "
-      "6), "
-      "and over eta (figure 7). Plain columns with a header; docs/figures holds scripts that draw them.");
-  d.option("folder", &FiguresStage::folder_, "where the files go").writes_into({"fig*.dat"}).required();
-  d.option("eta", &FiguresStage::settings_, &FigureSettings::eta, "the true lag").unit("s").range(-0.1, 0.1);
+      "From a simulated recording of one laser's two beams in the plate's plane: the cloud of one beam with and without its lag (figure 4), RQE over tau and alpha (figure 5), at several kernel widths (figure 6), and over eta (figure 7). Plain columns with a header; docs/figures holds scripts that draw them.");
+  d.option("folder", &FiguresStage::folder_, "folder of the output files")
+      .writes_into({"fig*.dat"})
+      .required();
+  d.option("eta", &FiguresStage::settings_, &FigureSettings::eta, "true lag").unit("s").range(-0.1, 0.1);
   d.option("sigma", &FiguresStage::settings_, &FigureSettings::sigma, "kernel width in figure 5")
       .unit("m")
       .range(1e-3, 10);
@@ -43,8 +42,8 @@ void FiguresStage::finish(Outputs&, Context& context) {
     context.wrote(folder_ / name);
   }
   context.report({{"eta", settings_.eta}, {"eta_found", figures_.after.eta}});
-  context.say(fmt::format("figure 4: a lag of {:.2f} ms, found as {:.2f} ms", settings_.eta * 1e3,
-                          figures_.after.eta * 1e3));
+  context.print(fmt::format("figure 4: a lag of {:.2f} ms, found as {:.2f} ms", settings_.eta * 1e3,
+                            figures_.after.eta * 1e3));
 }
 
 }  // namespace crisp

@@ -3,9 +3,9 @@
 
 namespace crisp {
 
-std::vector<Trial> run_trials(const MonteCarloSettings& settings, const MakeMeasure& make_measure,
-                              const StudyHooks& hooks) {
-  return run_in_parallel<Trial>(
+std::vector<MonteCarloTrial> run_trials(const MonteCarloSettings& settings, const MakeMeasure& make_measure,
+                                        const StudyHooks& hooks) {
+  return run_in_parallel<MonteCarloTrial>(
       share_of(settings.part, settings.runs), settings.threads, hooks, [&](std::size_t k) {
         return run_trial(settings.trial, settings.first_seed + run_of(settings.part, k), make_measure);
       });

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "plugins/study/monte_carlo_trial.hpp"
 #include "plugins/study/parallel_runs.hpp"
 #include "plugins/study/study_part.hpp"
-#include "plugins/study/trial.hpp"
 
 namespace crisp {
 
@@ -19,7 +19,7 @@ struct MonteCarloSettings {
 
 /// Runs all trials of the part, in the order of their seeds. What each gives depends on its seed alone, and
 /// not on the number of threads. Interrupted, it returns early, with trials missing.
-std::vector<Trial> run_trials(const MonteCarloSettings& settings, const MakeMeasure& make_measure,
-                              const StudyHooks& hooks = {});
+std::vector<MonteCarloTrial> run_trials(const MonteCarloSettings& settings, const MakeMeasure& make_measure,
+                                        const StudyHooks& hooks = {});
 
 }  // namespace crisp

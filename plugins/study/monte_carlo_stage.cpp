@@ -18,7 +18,7 @@
 namespace crisp {
 namespace {
 
-/// Null where no run told anything.
+/// Null without successful runs.
 nlohmann::json json_of_runs(const Scatter& scatter) {
   if (scatter.estimates == 0) return nullptr;
   return {{"mean", scatter.mean}, {"std_dev", scatter.std_dev}};
@@ -34,10 +34,10 @@ nlohmann::json json_of(const Table& table) {
                             {"bound", row.bound},
                             {"bound_with_steps", row.bound_with_steps},
                             {"refined", json_of_runs(row.refined)}};
-    const bool told = row.refined.estimates > 0;
-    entry["std_error"] = told ? nlohmann::json(row.refined.claimed) : nullptr;
-    entry["within_68"] = told ? nlohmann::json(row.refined.one) : nullptr;
-    entry["within_95"] = told ? nlohmann::json(row.refined.two) : nullptr;
+    const bool reported = row.refined.estimates > 0;
+    entry["std_error"] = reported ? nlohmann::json(row.refined.estimated) : nullptr;
+    entry["within_68"] = reported ? nlohmann::json(row.refined.one) : nullptr;
+    entry["within_95"] = reported ? nlohmann::json(row.refined.two) : nullptr;
     if (row.rqe) entry["rqe"] = json_of_runs(*row.rqe);
     if (row.paper) entry["paper"] = {{"mean", row.paper->mean}, {"std_dev", row.paper->std_dev}};
     json[row.parameter] = std::move(entry);
@@ -48,69 +48,63 @@ nlohmann::json json_of(const Table& table) {
 }  // namespace
 
 void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
-  d.name("study.monte_carlo").summary("calibrates simulated recordings and makes the paper's Table 1 anew");
+  d.name("study.monte_carlo")
+      .summary("Monte Carlo study of calibration errors: reproduces Table 1 of the paper");
   d.details(
-      "By default section 5.2 of Sheehan, Harrison and Newman: of each laser the two beams that lie in the "
-      "plate's plane, in a room of upright walls; tau is 0.20 m, alpha is 0, lambda starts up to half a turn "
-      "off. Other scenes and the whole field of view are studied likewise. Two estimators side by side, the "
-      "optimum of RQE as in the paper and the least squares against flat surfaces that follow by default, "
-      "next "
-      "to the paper's figures and to the Cramer-Rao bound for the same beams with the scene unknown. Each "
-      "run "
-      "is its own seed, from --seed on: what it gives depends on nothing else.\n\n"
-      "`estimators: refined` leaves RQE out, which takes half of the time or more, and starts the refinement "
-      "where "
-      "RQE "
-      "would have ended: up to 5 mm, 0.7 degrees (alpha, lambda) and 0.3 ms off the truth. Such runs say "
-      "nothing of whether RQE gets there.");
+      "By default section 5.2 of Sheehan, Harrison and Newman: the two beams of each laser in the plate's plane, in a room of upright walls; tau is 0.20 m, alpha is 0, lambda starts up to half a turn off. Other scenes and the whole field of view are options. The table compares two estimators, the optimum of RQE as in the paper and the least squares against flat surfaces that follow by default, with the paper's figures and with the Cramer-Rao bound for the same beams and an unknown scene. Each run has its own seed, from --seed on, which alone determines its result.\n\n"
+      "`estimators: refined` skips RQE, which takes half of the time or more, and starts the refinement where RQE would have ended: up to 5 mm, 0.7 degrees (alpha, lambda) and 0.3 ms off the truth. Such runs do not test whether RQE converges.");
   describe_scene(d, &MonteCarloStage::scene_);
   d.option("beams", &MonteCarloStage::trial, &TrialSettings::beams,
-           "the paper's two in the plate's plane, or those of the whole field of view")
+           "beams used: the paper's two in the plate's plane, or the whole field of view")
       .choices({{"in_plane", BeamChoice::kInPlane}, {"all", BeamChoice::kAll}});
   d.option("estimators", &MonteCarloStage::trial, &TrialSettings::estimators,
-           "RQE and the refinement after it, or the refinement alone")
+           "estimators to run: RQE and the refinement after it, or the refinement alone")
       .choices({{"both", Estimators::kBoth}, {"refined", Estimators::kRefined}});
-  d.option("runs", &MonteCarloStage::settings_, &MonteCarloSettings::runs, "how many").range(1, 1e6);
-  d.option("lasers", &MonteCarloStage::trial, &TrialSettings::lasers, "how many, of the rig's").range(1, 64);
-  d.option("duration", &MonteCarloStage::trial, &TrialSettings::duration, "of each recording")
+  d.option("runs", &MonteCarloStage::settings_, &MonteCarloSettings::runs, "number of simulated recordings")
+      .range(1, 1e6);
+  d.option("lasers", &MonteCarloStage::trial, &TrialSettings::lasers,
+           "number of lasers, the first of the rig's")
+      .range(1, 64);
+  d.option("duration", &MonteCarloStage::trial, &TrialSettings::duration, "duration of each recording")
       .unit("s")
       .range(1, 1000);
   describe_motion(d, &MonteCarloStage::motion);
   d.option("motion_seed", &MonteCarloStage::trial, &TrialSettings::motion_seed,
-           "one motion of the plate for all runs; auto: each draws its own");
+           "seed of one plate motion for all runs; auto: each run draws its own");
   d.option("noise", &MonteCarloStage::trial, &TrialSettings::noise, "standard deviation of a range")
       .unit("m")
       .range(1e-5, 1);
-  describe_likeness(d, &MonteCarloStage::likeness_);
-  d.option("effects", &MonteCarloStage::effects_,
-           "what befalls the lasers besides, untold to the estimators: `{noise.mixed_pixels: {divergence: "
-           "15mrad, aperture: 8mm}}`, by the names that `crisp effects` lists");
+  describe_realism(d, &MonteCarloStage::realism_);
+  d.option(
+      "effects", &MonteCarloStage::effects_,
+      "error effects of the simulated lasers, unknown to the estimators: `{noise.mixed_pixels: {divergence: 15mrad, aperture: 8mm}}`, named as in `crisp effects`");
   d.option(
        "outliers", &MonteCarloStage::trial, &TrialSettings::outliers,
-       "share of the ranges that are replaced at random: four fifths of them by nearer ones, the others by "
-       "some up to 5 m farther")
+       "fraction of ranges that are replaced by outliers: four fifths of them nearer, the others up to 5 m farther")
       .unit("1")
       .range(0, 1);
   d.option("eta", &MonteCarloStage::trial, &TrialSettings::truth, &Departures::eta,
-           "the true lags are drawn up to this from 0, where RQE starts")
+           "largest true lag, drawn around 0, where RQE starts")
       .unit("s")
       .range(0, 0.09);
-  d.option("tau_off", &MonteCarloStage::start, &Departures::tau,
-           "how far off tau is where RQE starts, at most")
+  d.option("tau_off", &MonteCarloStage::start, &Departures::tau, "largest error of tau at RQE's start")
       .unit("m")
       .range(0, 0.1);
-  d.option("alpha_off", &MonteCarloStage::start, &Departures::alpha, "and alpha").unit("rad").range(0, 0.3);
-  d.option("lambda_off", &MonteCarloStage::start, &Departures::lambda, "and lambda")
+  d.option("alpha_off", &MonteCarloStage::start, &Departures::alpha, "largest error of alpha at RQE's start")
+      .unit("rad")
+      .range(0, 0.3);
+  d.option("lambda_off", &MonteCarloStage::start, &Departures::lambda,
+           "largest error of lambda at RQE's start")
       .unit("rad")
       .range(0, 3.2);
   d.option("sigma", &MonteCarloStage::sigma_,
-           "kernel width of RQE on the beams in the plate's plane: at first, and at last")
+           "kernel width of RQE for the beams in the plate's plane: first and last")
       .unit("m")
       .range(1e-3, 10)
       .count(2, 2);
   describe_part(d, &MonteCarloStage::part_);
-  d.option("runs_file", &MonteCarloStage::runs_file_, "where every run goes, as CSV").writes();
-  d.option("table_file", &MonteCarloStage::table_file_, "where the table goes, as text").writes();
+  d.option("runs_file", &MonteCarloStage::runs_file_, "output file of all runs, CSV").writes();
+  d.option("table_file", &MonteCarloStage::table_file_, "output file of the table, text").writes();
 }
 
 void MonteCarloStage::check(const RunSettings& run) const {
@@ -119,14 +113,13 @@ void MonteCarloStage::check(const RunSettings& run) const {
             of_option("sigma",
                       [&] {
                         if (sigma_[0] >= sigma_[1]) return;
-                        throw Error("the kernel has to become narrower, not wider",
-                                    "write the larger sigma first");
+                        throw Error("the kernel width must decrease", "write the larger sigma first");
                       }),
             [&] {
               const bool steady = motion.kind == MotionKind::constant ||
                                   (motion.kind == MotionKind::varying && motion.min_rate == motion.max_rate);
               if (!steady) return;
-              throw Error("a plate at constant speed does not tell eta from lambda",
+              throw Error("a plate at constant speed does not distinguish eta from lambda",
                           "let max_rate be larger than min_rate, or choose another motion");
             },
             [&] { make_motion(motion, settings_.trial.duration, 1); }, [&] { check_effects(run); });
@@ -135,19 +128,19 @@ void MonteCarloStage::check(const RunSettings& run) const {
 void MonteCarloStage::check_effects(const RunSettings& run) const {
   TrialSettings trial = settings_.trial;
   trial.rig = run.rig;
-  effects_of_real_devices(likeness_.devices, run.rig, laser_catalogue(known_terms(run)));
+  effects_of_real_devices(realism_.devices, run.rig, laser_catalogue(known_terms(run)));
   use_effects(trial, run);
 }
 
-void MonteCarloStage::use_likeness(TrialSettings& trial, Context& context) const {
-  if (likeness_.empty()) return;
+void MonteCarloStage::use_realism(TrialSettings& trial, Context& context) const {
+  if (realism_.empty()) return;
   const auto catalogue = laser_catalogue(known_terms(context.run()));
   RecordingSettings recording{.scanner = {.rig = trial.rig}};
-  apply_device_effects(likeness_.load(catalogue, context), recording);
+  apply_device_effects(realism_.load(catalogue, context), recording);
   trial.laser_effects = recording.scanner.laser_effects;
   trial.counted_noise = noise_in(trial, context.seed());
-  context.say(fmt::format("ranges scatter by {:.2f} mm (RMS) with the noise that was measured",
-                          1e3 * *trial.counted_noise));
+  context.print(fmt::format("ranges have {:.2f} mm (RMS) of noise with the measured devices",
+                            1e3 * *trial.counted_noise));
   context.report({{"noise", *trial.counted_noise}});
 }
 
@@ -164,7 +157,7 @@ void MonteCarloStage::process(const Inputs&, Outputs&, Context& context) {
   settings.threads = context.threads();
   settings.trial.rig = context.rig();
   settings.trial.scene = scene_.load(context);
-  use_likeness(settings.trial, context);
+  use_realism(settings.trial, context);
   use_effects(settings.trial, context.run());
   settings.trial.rqe.in_plane.sigma_from = sigma_[0];
   settings.trial.rqe.in_plane.sigma_to = sigma_[1];
@@ -179,7 +172,7 @@ void MonteCarloStage::process(const Inputs&, Outputs&, Context& context) {
     return run_trials(settings, rqe_maker(context.run()),
                       {.progress = progress, .interrupted = [&] { return context.interrupted(); }});
   };
-  trials_ = run_or_read<Trial>(context, part_, extent_, run, trial_of);
+  trials_ = run_or_read<MonteCarloTrial>(context, part_, extent_, run, trial_of);
 }
 
 void MonteCarloStage::finish(Outputs&, Context& context) {
@@ -187,14 +180,14 @@ void MonteCarloStage::finish(Outputs&, Context& context) {
   const bool papers = scene_.name == "paper" && scene_.file.empty() && trial().beams == BeamChoice::kInPlane;
   const Table table = table_of(trials_, papers);
   const std::string text = table_text(table);
-  context.say(text);
+  context.print(text);
   context.report(json_of(table));
-  if (table.runs > 0 && !tells_of_refinement(table)) {
-    context.distrust(fmt::format(
-        "not one of {} runs was refined to near the truth: nothing is told of the errors", table.runs));
+  if (table.runs > 0 && !reports_refinement(table)) {
+    context.mark_untrusted(fmt::format(
+        "none of {} runs was refined to near the truth: the errors are undetermined", table.runs));
   }
   context.count("runs that could not be refined", table.refined_failed);
-  context.count("runs that ended in another valley", table.refined_astray);
+  context.count("runs that ended in another local minimum", table.refined_astray);
   if (!runs_file_.empty()) {
     write_file(runs_file_, runs_csv(trials_));
     context.wrote(runs_file_);

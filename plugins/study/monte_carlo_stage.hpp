@@ -23,28 +23,28 @@ class MonteCarloStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
-  // What the options are declared on.
+  // Target of the options.
   TrialSettings& trial() { return settings_.trial; }
   MotionSettings& motion() { return settings_.trial.motion; }
   Departures& start() { return settings_.trial.start; }
 
   /// Has the lasers scatter as real ones were measured to, if any are named.
-  void use_likeness(TrialSettings& trial, Context& context) const;
-  /// @throws Error if one of the effects that were asked for is not known, or befalls nobody
+  void use_realism(TrialSettings& trial, Context& context) const;
+  /// @throws Error if one of the requested effects is unknown, or applies to no device
   void check_effects(const RunSettings& run) const;
-  /// Has the lasers befallen by the effects that were asked for. Estimators are not told.
+  /// Applies the requested effects to the simulated lasers. The estimators do not know them.
   void use_effects(TrialSettings& trial, const RunSettings& run) const;
 
   MonteCarloSettings settings_;
   SceneChoice scene_{.name = "paper", .file = {}};
-  LikenessChoice likeness_;
+  RealismChoice realism_;
   OptionGroups effects_;
   std::vector<double> sigma_ = {0.5, 0.1};
   std::filesystem::path runs_file_;
   std::filesystem::path table_file_;
   StudyPart part_;
   StudyExtent extent_;
-  std::vector<Trial> trials_;
+  std::vector<MonteCarloTrial> trials_;
 };
 
 }  // namespace crisp

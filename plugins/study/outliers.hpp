@@ -13,6 +13,6 @@ namespace crisp {
 ///
 /// @param share  of the beams, from 0 to 1
 /// @param seed   which: other beams and ranges for another seed
-void strew_outliers(Measurements& beams, double share, std::uint64_t seed);
+void add_outliers(Measurements& beams, double share, std::uint64_t seed);
 
 }  // namespace crisp

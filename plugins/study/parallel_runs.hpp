@@ -14,7 +14,7 @@
 
 namespace crisp {
 
-/// How the work can be watched and stopped from outside.
+/// Hooks to watch and stop the work from outside.
 struct StudyHooks {
   std::function<void(std::size_t done)> progress = {};  ///< called in the calling thread
   std::function<bool()> interrupted = {};               ///< called in any thread
@@ -29,8 +29,8 @@ class ParallelRuns {
   ParallelRuns(std::size_t runs, const Run& run, const StudyHooks& hooks)
       : run_(run), hooks_(hooks), results_(runs) {}
 
-  /// @param tell  whether to report progress
-  void work(bool tell) {
+  /// @param report  whether to report progress
+  void work(bool report) {
     // A run is small: what its kernels could do on several cores is not worth the handing over.
     tbb::task_arena alone(1);
     alone.execute([&] {
@@ -41,12 +41,12 @@ class ParallelRuns {
           fail(std::current_exception());
         }
         ++done_;
-        if (tell && hooks_.progress) hooks_.progress(done_);
+        if (report && hooks_.progress) hooks_.progress(done_);
       }
     });
   }
 
-  /// Those that were run, in their order.
+  /// The results of completed runs, in their order.
   std::vector<Result> take() {
     if (failure_) std::rethrow_exception(failure_);
     std::vector<Result> done;

@@ -20,7 +20,7 @@ std::span<const ParameterKind> parameter_kinds() {
 const ParameterKind& kind_of(const std::string& parameter) {
   const std::string name = parameter.substr(parameter.rfind('.') + 1);
   const auto found = std::ranges::find(parameter_kinds(), name, &ParameterKind::name);
-  if (found == parameter_kinds().end()) throw Error("no calibration turns the parameter " + parameter);
+  if (found == parameter_kinds().end()) throw Error("no calibration estimates the parameter " + parameter);
   return *found;
 }
 

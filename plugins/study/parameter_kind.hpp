@@ -6,7 +6,7 @@
 
 namespace crisp {
 
-/// How parameters of one name, λ, τ, α or η, are told to people.
+/// Name, unit and format of the parameters λ, τ, α or η for people.
 struct ParameterKind {
   std::string name;  ///< "tau"
   std::string unit;  ///< "mm"
@@ -17,7 +17,7 @@ struct ParameterKind {
 /// λ, τ, α, η.
 std::span<const ParameterKind> parameter_kinds();
 
-/// That of "laser1.tau".
+/// The kind of a parameter such as "laser1.tau".
 const ParameterKind& kind_of(const std::string& parameter);
 
 }  // namespace crisp

@@ -80,7 +80,7 @@ void write_own_part(Context& context, const StudyPart& part, const StudyExtent& 
   write_file(file, json_text(json) + "\n");
   context.wrote(file);
   context.report({{"runs", results.size()}});
-  context.say(fmt::format("part {}: {} of {}", part.part, results.size(), counted(extent.runs, "run")));
+  context.print(fmt::format("part {}: {} of {}", part.part, results.size(), counted(extent.runs, "run")));
 }
 
 StudyResults merge_parts(Context& context, const StudyPart& part, const StudyExtent& extent) {

@@ -3,11 +3,11 @@
 
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/registry.hpp"
-#include "plugins/study/trial.hpp"
+#include "plugins/study/monte_carlo_trial.hpp"
 
 namespace crisp {
 
-/// Makes a fresh RQE for each run: one that is used again may differ in its rounding.
+/// Makes a new RQE for each run: a reused one may differ in its rounding.
 inline MakeMeasure rqe_maker(const RunSettings& run) {
   return [registrar = run.registrar] {
     return registrar->get<MeasureRegistry>().make("rqe", {}, registrar->get<SearchRegistry>());

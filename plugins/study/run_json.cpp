@@ -56,7 +56,7 @@ Estimate estimate_of(const Json& json) {
 Json start_json(const BasinStart& start) {
   return {{"start", numbers_json(start.start)}, {"ending", static_cast<int>(start.ending)},
           {"off", number_json(start.off)},      {"farthest", start.farthest},
-          {"error", number_json(start.error)},  {"doubts", start.doubts}};
+          {"error", number_json(start.error)},  {"caveats", start.caveats}};
 }
 
 BasinStart start_of(const Json& json, std::uint64_t recording) {
@@ -66,12 +66,12 @@ BasinStart start_of(const Json& json, std::uint64_t recording) {
           .off = number_of_json(json.at("off")),
           .farthest = json.at("farthest"),
           .error = number_of_json(json.at("error")),
-          .doubts = json.at("doubts")};
+          .caveats = json.at("caveats")};
 }
 
 }  // namespace
 
-Json trial_json(const Trial& trial) {
+Json trial_json(const MonteCarloTrial& trial) {
   Json json = {{"seed", trial.seed},
                {"parameters", trial.parameters},
                {"bound", numbers_json(trial.bound)},
@@ -81,13 +81,13 @@ Json trial_json(const Trial& trial) {
   return json;
 }
 
-Trial trial_of(const Json& json) {
-  Trial trial{.seed = json.at("seed"),
-              .parameters = json.at("parameters"),
-              .bound = vector_of(json.at("bound")),
-              .bound_with_steps = vector_of(json.at("bound_with_steps")),
-              .rqe = {},
-              .refined = estimate_of(json.at("refined"))};
+MonteCarloTrial trial_of(const Json& json) {
+  MonteCarloTrial trial{.seed = json.at("seed"),
+                        .parameters = json.at("parameters"),
+                        .bound = vector_of(json.at("bound")),
+                        .bound_with_steps = vector_of(json.at("bound_with_steps")),
+                        .rqe = {},
+                        .refined = estimate_of(json.at("refined"))};
   if (json.contains("rqe")) trial.rqe = estimate_of(json["rqe"]);
   return trial;
 }
@@ -98,7 +98,7 @@ Json basin_json(const BasinRecording& recording) {
   return {{"seed", recording.seed},
           {"parameters", recording.parameters},
           {"starts", std::move(starts)},
-          {"doubts", recording.doubts},
+          {"caveats", recording.caveats},
           {"failure", recording.failure}};
 }
 
@@ -106,7 +106,7 @@ BasinRecording basin_of(const Json& json) {
   BasinRecording recording{.seed = json.at("seed"),
                            .parameters = json.at("parameters"),
                            .starts = {},
-                           .doubts = json.at("doubts"),
+                           .caveats = json.at("caveats"),
                            .failure = json.at("failure")};
   for (const auto& start : json.at("starts")) recording.starts.push_back(start_of(start, recording.seed));
   return recording;

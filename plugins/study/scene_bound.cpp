@@ -24,21 +24,21 @@ Eigen::Vector3d normal_of(const Surface& surface) {
   return sum.normalized();
 }
 
-/// The beams that met something flat, and what. Curved things, foliage and what moves tell too little, or too
-/// intricately, to be counted.
-struct FlatlyMet {
+/// Beams on flat surfaces, and their surfaces. Curved things, foliage and moving things carry too little
+/// information, or too intricate, to be counted.
+struct HitFlat {
   Sample sample;
   std::vector<std::uint32_t> surface;
 };
-FlatlyMet met_flatly(const SimulatedMeasurements& all, const Scene& scene) {
-  FlatlyMet met{.sample = {.plate = &all.plate}, .surface = {}};
-  met.sample.beams.epoch_ns = all.beams.epoch_ns;
+HitFlat hit_flat(const SimulatedMeasurements& all, const Scene& scene) {
+  HitFlat hit{.sample = {.plate = &all.plate}, .surface = {}};
+  hit.sample.beams.epoch_ns = all.beams.epoch_ns;
   for (std::size_t i = 0; i < all.beams.size(); ++i) {
     if (all.surface[i] >= scene.surfaces.size()) continue;
-    met.sample.beams.append(all.beams, i);
-    met.surface.push_back(all.surface[i]);
+    hit.sample.beams.append(all.beams, i);
+    hit.surface.push_back(all.surface[i]);
   }
-  return met;
+  return hit;
 }
 
 /// The least errors of `known`, which are some of `free`; infinite for the rest.
@@ -69,10 +69,9 @@ ScannerSettings without_noise(ScannerSettings scanner) {
 SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const Motion& motion,
                        BeamChoice beams, const TermRegistry& terms) {
   const auto exact = simulate_beams(beams, without_noise(scanner), scene, motion, terms);
-  const FlatlyMet met = met_flatly(exact, scene);
-  if (met.surface.empty()) {
-    throw Error("none of the beams meets anything flat",
-                "see what the scene holds, and how far the lasers reach");
+  const HitFlat hit = hit_flat(exact, scene);
+  if (hit.surface.empty()) {
+    throw Error("no beam meets a flat surface", "check the scene and the lasers' range");
   }
   std::vector<Eigen::Vector3d> normals;
   for (const Surface& surface : scene.surfaces) normals.push_back(normal_of(surface));
@@ -89,22 +88,24 @@ SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const
   }
   const auto information_with = [&](double encoder_step) -> Eigen::MatrixXd {
     return Eigen::MatrixXd(from_rig.asDiagonal()) +
-           calibration_information(truth, met.sample, met.surface, normals, free,
+           calibration_information(truth, hit.sample, hit.surface, normals, free,
                                    {.range = scanner.range.sigma, .encoder_step = encoder_step});
   };
   const Eigen::MatrixXd information = information_with(0);
   const double step = std::abs(scanner.rig.plate.angle_per_count());
-  const Observability told = observability(information, free, truth.names(), ranges_of(prior, truth, free));
+  const Observability reported =
+      observability(information, free, truth.names(), ranges_of(prior, truth, free));
 
   SceneBound bound{.parameters = {},
-                   .std_errors = errors_of_known(information, free, told.known),
-                   .with_steps = errors_of_known(information_with(step), free, told.known),
+                   .std_errors = errors_of_known(information, free, reported.known),
+                   .with_steps = errors_of_known(information_with(step), free, reported.known),
                    .unobservable = parameters.unobservable,
                    .beams_on = std::vector<std::size_t>(scene.things(), 0),
                    .beams = exact.beams.size(),
                    .no_echo = exact.no_echo};
   for (const std::size_t slot : free) bound.parameters.push_back(truth.names()[slot]);
-  bound.unobservable.insert(bound.unobservable.end(), told.unobservable.begin(), told.unobservable.end());
+  bound.unobservable.insert(bound.unobservable.end(), reported.unobservable.begin(),
+                            reported.unobservable.end());
   for (const auto surface : exact.surface) ++bound.beams_on[surface];
   return bound;
 }

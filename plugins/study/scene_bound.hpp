@@ -12,12 +12,12 @@ namespace crisp {
 /// How well a recording could determine a calibration at best.
 struct SceneBound {
   std::vector<std::string> parameters;  ///< m that a calibration turns, "laser1.tau": see free_parameters()
-  /// m [SI]: the least standard errors of an unbiased estimator that is not told the scene (Cramér–Rao), the
-  /// unobservable parameters being known; infinite for these.
+  /// m [SI]: the least standard errors of an unbiased estimator without knowledge of the scene (Cramér–Rao),
+  /// the unobservable parameters being known; infinite for these.
   Eigen::VectorXd std_errors;
   /// m [SI]: the same where the plate's angle is known but by the steps of its encoder, counted as noise.
   Eigen::VectorXd with_steps;
-  std::vector<Unobservable> unobservable;  ///< not told better than is known before a recording
+  std::vector<Unobservable> unobservable;  ///< not determined better than before the recording
   std::vector<std::size_t> beams_on;       ///< by surface of the scene
   std::size_t beams = 0;                   ///< of which something came back
   std::size_t no_echo = 0;                 ///< of which nothing did

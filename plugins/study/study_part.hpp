@@ -20,7 +20,7 @@ struct StudyPart {
   bool is_merge() const { return !merge.empty(); }
 };
 
-/// How many of all runs are a part's.
+/// Number of a part's runs.
 inline std::size_t share_of(const Shard& part, std::size_t runs) {
   return runs < part.number ? 0 : (runs - part.number) / part.count + 1;
 }
@@ -33,12 +33,11 @@ template <class S, class Way>
 void describe_part(S& d, Way way) {
   d.option(
       "part", way, &StudyPart::part,
-      "`3/64`: only every 64th run, from the third on; its results go to part.json in the output folder");
-  d.option("merge", way, &StudyPart::merge,
-           "the folder of the parts' output folders: nothing is done but to merge their results");
-  d.option("part_key", way, &StudyPart::key,
-           "only parts of the same key are merged; `crisp monte-carlo` and `crisp basin` give that of their "
-           "options");
+      "`3/64`: compute only every 64th run, from the third on; its results go to part.json in the output folder");
+  d.option("merge", way, &StudyPart::merge, "folder of the parts' output folders: only merge their results");
+  d.option(
+      "part_key", way, &StudyPart::key,
+      "key that parts to merge must share; `crisp monte-carlo` and `crisp basin` derive it from their options");
 }
 
 }  // namespace crisp

@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "plugins/study/trial.hpp"
+#include "plugins/study/monte_carlo_trial.hpp"
 
 namespace crisp {
 
 /// How estimates of one kind of parameter lie about the truth.
 struct Scatter {
-  double mean = 0;     ///< error
-  double std_dev = 0;  ///< of the error
-  double claimed = 0;  ///< RMS of the standard errors that the estimator gave itself; 0 where it gave none
-  double one = 0;      ///< share of errors within 1 of these;
-  double two = 0;      ///< within 1.96
+  double mean = 0;       ///< error
+  double std_dev = 0;    ///< of the error
+  double estimated = 0;  ///< RMS of the standard errors that the estimator gave itself; 0 where it gave none
+  double one = 0;        ///< share of errors within 1 of these;
+  double two = 0;        ///< within 1.96
   std::size_t estimates =
       0;  ///< that were counted: without any, the figures are none. Not known of the paper's
 };
@@ -36,22 +36,23 @@ struct ErrorRow {
 struct Table {
   std::vector<ErrorRow> rows;  ///< λ, τ, α, η; those that were estimated
   std::size_t runs = 0;
-  std::size_t rqe_astray = 0;  ///< runs left out of the estimator's columns: they ended in another valley,
+  std::size_t rqe_astray =
+      0;  ///< runs left out of the estimator's columns: they ended in another local minimum,
   std::size_t refined_astray = 0;  ///< some parameter being off by more than 5 cm, 5° or 20 ms,
   std::size_t refined_failed = 0;  ///< or without an estimate
 };
 
-/// @param papers  whether the trials are those of the paper, so that its figures can stand beside them
-Table table_of(const std::vector<Trial>& trials, bool papers = true);
+/// @param papers  whether the trials are those of the paper, so that its figures are shown next to them
+Table table_of(const std::vector<MonteCarloTrial>& trials, bool papers = true);
 
-/// Whether any run was refined, and ended in the true valley.
-bool tells_of_refinement(const Table& table);
+/// Whether any run was refined, and ended in the true minimum.
+bool reports_refinement(const Table& table);
 
 /// For people.
 std::string table_text(const Table& table);
 
 /// Every run, a line a parameter:
 /// "seed,parameter,unit,bound,bound_with_steps,rqe_error,error,std_error,failure", SI.
-std::string runs_csv(const std::vector<Trial>& trials);
+std::string runs_csv(const std::vector<MonteCarloTrial>& trials);
 
 }  // namespace crisp

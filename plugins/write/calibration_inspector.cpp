@@ -27,8 +27,8 @@ Inspection inspect(const std::filesystem::path& file, const Rig&) {
     inspection.text += fmt::format("\n  unobservable: {}: {}", u.parameter, u.reason);
     inspection.data["unobservable"].push_back(u.parameter);
   }
-  for (const auto& doubt : calibration.doubts) inspection.text += "\n  NOT TO BE TRUSTED: " + doubt;
-  inspection.data["doubts"] = calibration.doubts;
+  for (const auto& caveat : calibration.caveats) inspection.text += "\n  UNTRUSTED: " + caveat;
+  inspection.data["caveats"] = calibration.caveats;
   inspection.data["quality"] = calibration.quality;
   inspection.data["provenance"] = calibration.provenance;
   for (const auto& [key, value] : calibration.provenance)
@@ -37,7 +37,7 @@ Inspection inspect(const std::filesystem::path& file, const Rig&) {
 }
 
 /// Both a rig and a calibration begin with the schema and the lasers; only a calibration gives values of
-/// them, or doubts, which stand before.
+/// them, or caveats, which stand before.
 bool recognises(std::string_view head) {
   const auto has = [head](const char* key) { return head.find(key) != std::string_view::npos; };
   return has("crisp:") && (has("\ndoubts:") || (has("lasers:") && has("value:")));
@@ -51,7 +51,7 @@ Inspector calibration_inspector() {
           .inspect = inspect,
           .compare =
               [](const std::filesystem::path& first, const std::filesystem::path& second) {
-                return side_by_side(read_calibration(first), read_calibration(second));
+                return compare_calibrations(read_calibration(first), read_calibration(second));
               },
           .urdf = [](const std::filesystem::path& file,
                      const Rig& rig) { return to_urdf(read_calibration(file), rig); }};

@@ -8,17 +8,17 @@ namespace crisp {
 void WriteCalibrationStage::describe(StageDescription<WriteCalibrationStage>& d) {
   d.name("write.calibration").summary("writes the calibration as YAML");
   d.details(
-      "What the stages above doubted is in the file, too: calibrate.load then does not trust it, either.");
+      "The file holds the caveats of the stages above: calibrate.load then marks its result untrusted, too.");
   d.takes<Calibration>();
-  d.option("file", &WriteCalibrationStage::file_, "where to write it").writes().required();
+  d.option("file", &WriteCalibrationStage::file_, "output file, NAME.yaml").writes().required();
 }
 
 void WriteCalibrationStage::process(const Inputs& in, Outputs&, Context&) { last_ = in.share<Calibration>(); }
 
 void WriteCalibrationStage::finish(Outputs&, Context& context) {
-  if (!last_) throw Error("no calibration came, so none was written");
+  if (!last_) throw Error("there was no calibration to write");
   Calibration calibration = *last_;
-  calibration.doubts = context.doubts_above();
+  calibration.caveats = context.caveats_above();
   calibration.provenance["crisp"] = CRISP_VERSION;
   write_calibration(file_, calibration);
   context.wrote(file_);

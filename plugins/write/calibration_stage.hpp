@@ -23,7 +23,7 @@ class WriteCalibrationStage final : public Stage {
   std::shared_ptr<const Calibration> last_;
 };
 
-/// What `crisp info` says of a calibration's file.
+/// Description of a calibration file for `crisp info`.
 Inspector calibration_inspector();
 
 }  // namespace crisp

@@ -49,7 +49,7 @@ std::string figure(double value, double error) {
 std::string line_of(const Row& row) {
   const Parameter& known = row.first ? *row.first : *row.second;
   const ShownUnit unit = shown_unit(known.unit);
-  // As of independent recordings: of one and the same, the difference is less than this says.
+  // For independent recordings: for one and the same, the difference is less.
   const double error =
       unit.factor * std::hypot(row.first ? row.first->std_error : 0, row.second ? row.second->std_error : 0);
   const auto shown = [&](const Parameter* p) { return p ? figure(unit.factor * p->value, error) : "-"; };
@@ -73,16 +73,16 @@ std::string quality_line(const std::string& name, const Calibration& first, cons
   return fmt::format("\n  {:<36}{:<5}{:>14}{:>14}", figure_in_words(name), "", shown(first), shown(second));
 }
 
-std::string doubts_of(const char* which, const Calibration& calibration) {
+std::string caveats_of(const char* which, const Calibration& calibration) {
   std::string text;
-  for (const auto& doubt : calibration.doubts)
-    text += fmt::format("\n  the {} is NOT TO BE TRUSTED: {}", which, doubt);
+  for (const auto& caveat : calibration.caveats)
+    text += fmt::format("\n  the {} is UNTRUSTED: {}", which, caveat);
   return text;
 }
 
 }  // namespace
 
-std::string side_by_side(const Calibration& first, const Calibration& second) {
+std::string compare_calibrations(const Calibration& first, const Calibration& second) {
   std::string text = fmt::format("  {:<36}{:<5}{:>14}{:>14}{:>14}{:>12}", "parameter", "unit", "first",
                                  "second", "difference", "std errors");
   for (const Row& row : rows_of(first, second)) text += line_of(row);
@@ -91,7 +91,7 @@ std::string side_by_side(const Calibration& first, const Calibration& second) {
     for (const auto& [name, value] : calibration->quality) figures.insert(name);
   }
   for (const auto& name : figures) text += quality_line(name, first, second);
-  return text + doubts_of("first", first) + doubts_of("second", second);
+  return text + caveats_of("first", first) + caveats_of("second", second);
 }
 
 std::string figure_in_words(const std::string& name) { return name == "chi2" ? "chi2 (misfit)" : name; }

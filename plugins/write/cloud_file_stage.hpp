@@ -22,13 +22,11 @@ class CloudFileStage final : public Stage {
  public:
   static void describe(StageDescription<CloudFileStage>& d) {
     d.name(Writer::kStage).summary(Writer::kSummary);
-    d.details(std::string(Writer::kDetails) +
-              "\n\nAll clouds that come become one file. It is written while they come, so that memory does "
-              "not grow with it, and takes its name when it is complete. Recordings with a pause of 5 s "
-              "between them, maybe of other places, are together in it, which is warned of; `write.pcd` "
-              "keeps them apart.");
+    d.details(
+        std::string(Writer::kDetails) +
+        "\n\nAll incoming clouds become one file. It is written while they arrive, with bounded memory, and takes its name when it is complete. Recordings separated by a pause of 5 s, possibly of different places, share the file, with a warning; `write.pcd` separates them.");
     d.template takes<Cloud>().template takes<PlateTrajectory>(Need::optional);
-    d.option("file", &CloudFileStage::file_, std::string("where to write it, NAME") + Writer::kEnding)
+    d.option("file", &CloudFileStage::file_, std::string("output file, NAME") + Writer::kEnding)
         .writes()
         .ending(Writer::kEnding)
         .required();
@@ -58,11 +56,10 @@ class CloudFileStage final : public Stage {
     context.wrote(file_);
     if (recording_ > 0) {
       context.warn(fmt::format(
-          "{} holds {} recordings with pauses between them; where they are of different places, write.pcd "
-          "keeps them apart",
+          "{} holds {} recordings with pauses between them; if they are of different places, use write.pcd, which separates them",
           file_.string(), recording_ + 1));
     }
-    context.say(fmt::format("{} points in {}", writer_->points(), file_.string()));
+    context.print(fmt::format("{} points in {}", writer_->points(), file_.string()));
     context.report({{"points", writer_->points()}, {"files", {file_.string()}}});
   }
 

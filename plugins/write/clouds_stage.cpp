@@ -18,28 +18,19 @@ const std::string kCloud = "cloud";
 }  // namespace
 
 void WriteCloudsStage::describe(StageDescription<WriteCloudsStage>& d) {
-  d.name("write.clouds").summary("writes each cloud as a PCD file of its own, as soon as it comes");
+  d.name("write.clouds").summary("writes each cloud as a PCD file of its own, as soon as it is complete");
   d.details(
-      "For clouds of a live scanner, below `assemble.revolutions`: NAME_0001.pcd, NAME_0002.pcd and so on. "
-      "Each "
-      "file is whole from the moment at which it has its name. Those of an earlier run that are beyond the "
-      "last of this one are removed when it ends. With "
-      "`keep`, the oldest are removed, so that "
-      "the "
-      "disk does not fill. A disk that is full ends the writing, and the run's summary says so; the other "
-      "stages go on. Clouds are written beside the other stages' work; one that comes while two still wait "
-      "for "
-      "the disk waits as well, and with it the stages above.");
+      "For clouds of a live scanner, below `assemble.revolutions`: NAME_0001.pcd, NAME_0002.pcd and so on. Each file is complete from the moment it has its name. Higher-numbered files of an earlier run are removed at the end. With `keep`, the oldest are removed, which bounds the disk space. A full disk ends the writing, which the summary reports; the other stages go on. A thread of its own writes; while two clouds wait for the disk, a third one blocks the stages above.");
   d.takes<Cloud>();
-  d.option("file", &WriteCloudsStage::file_, "where to write them, NAME.pcd")
+  d.option("file", &WriteCloudsStage::file_, "output files, NAME.pcd")
       .writes({"<stem>_####<ext>"})
       .ending(".pcd")
       .required();
-  d.option("format", &WriteCloudsStage::format_, "how the points follow the header")
+  d.option("format", &WriteCloudsStage::format_, "encoding of the points")
       .choices({{"binary_compressed", PcdFormat::binary_compressed},
                 {"binary", PcdFormat::binary},
                 {"ascii", PcdFormat::ascii}});
-  d.option("keep", &WriteCloudsStage::keep_, "how many of the last are kept; 0: all").range(0, 1e9);
+  d.option("keep", &WriteCloudsStage::keep_, "number of latest clouds to keep; 0: all").range(0, 1e9);
 }
 
 void WriteCloudsStage::write(const Cloud& cloud) {
@@ -74,8 +65,8 @@ void WriteCloudsStage::process(const Inputs& in, Outputs&, Context& context) {
 void WriteCloudsStage::fail(const Error& error, Context& context) {
   failed_ = true;
   const std::string what = "no more clouds were written: " + error.message();
-  context.distrust(what);
-  context.tell({.line = "no more clouds are written", .events = {what}});
+  context.mark_untrusted(what);
+  context.set_status({.line = "no more clouds are written", .events = {what}});
 }
 
 void WriteCloudsStage::finish(Outputs&, Context& context) {
@@ -85,11 +76,11 @@ void WriteCloudsStage::finish(Outputs&, Context& context) {
     fail(error, context);
   }
   writer_.reset();
-  context.count("clouds that were not written", given_ - written_);
+  context.count("lost clouds (not written)", given_ - written_);
   for (const auto& file : kept_) context.wrote(file);
-  if (written_ > 0) tell_removed(remove_numbered_beyond(file_, written_, kCloud), context);
+  if (written_ > 0) report_removed(remove_numbered_beyond(file_, written_, kCloud), context);
   context.report({{"clouds", written_}});
-  context.say(fmt::format("{} clouds written, {} of them kept", written_, kept_.size()));
+  context.print(fmt::format("{} clouds written, {} of them kept", written_, kept_.size()));
 }
 
 }  // namespace crisp

@@ -35,7 +35,7 @@ class WriteCloudsStage final : public Stage {
   std::uint64_t given_ = 0;
   bool failed_ = false;
 
-  // of the thread that writes, until it has nothing left to do
+  // owned by the writing thread until it has finished
   std::uint64_t written_ = 0;
   std::deque<std::filesystem::path> kept_;
   std::optional<Batcher<std::shared_ptr<const Cloud>>> writer_;

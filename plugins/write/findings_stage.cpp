@@ -7,15 +7,15 @@
 namespace crisp {
 
 void WriteFindingsStage::describe(StageDescription<WriteFindingsStage>& d) {
-  d.name("write.findings").summary("writes what a diagnosis says as JSON");
+  d.name("write.findings").summary("writes the findings of a diagnosis as JSON");
   d.takes<Findings>();
-  d.option("file", &WriteFindingsStage::file_, "where to write it").writes().required();
+  d.option("file", &WriteFindingsStage::file_, "output file, NAME.json").writes().required();
 }
 
 void WriteFindingsStage::process(const Inputs& in, Outputs&, Context&) { last_ = in.share<Findings>(); }
 
 void WriteFindingsStage::finish(Outputs&, Context& context) {
-  if (!last_) throw Error("no findings came, so none were written");
+  if (!last_) throw Error("there were no findings to write");
   write_file(file_, findings_json(*last_));
   context.wrote(file_);
 }

@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// Writes what a diagnosis says, for programs.
+/// Writes the findings of a diagnosis as JSON, for programs.
 class WriteFindingsStage final : public Stage {
  public:
   static void describe(StageDescription<WriteFindingsStage>& d);

@@ -11,8 +11,8 @@
 
 namespace crisp {
 
-/// What for_each_finite_point() leaves out, as a run counts it.
-inline constexpr const char* kNotFinite = "points that are not numbers";
+/// Name of the count of points that for_each_finite_point() drops.
+inline constexpr const char* kNotFinite = "points with coordinates that are no numbers";
 
 /// Calls `use` for each point of a cloud whose position and time are numbers, with its time since `stamp`.
 /// @param stamp  [µs since the Unix epoch] of the file; the same for all clouds of a run of crisp
@@ -33,8 +33,8 @@ std::size_t for_each_finite_point(const Cloud& cloud, std::uint64_t stamp, Use u
 }
 
 inline Error no_point_came() {
-  return Error("no point came, so that there is no cloud to write",
-               "the losses and warnings above say why; without any, no stage above gave one");
+  return Error("there are no points, so no cloud to write",
+               "see the losses and warnings above for the cause; without any, no stage above gave one");
 }
 
 }  // namespace crisp

@@ -21,12 +21,7 @@ class LasWriter {
   static constexpr const char* kSummary = "writes the cloud as a LAS file";
   static constexpr const char* kEnding = ".las";
   static constexpr const char* kDetails =
-      "LAS 1.4, point format 6, with the extra bytes laser and beam. Coordinates are whole tenths of a "
-      "millimetre, so that rounding changes none by more than 0.05 mm; they reach 214 km from the file's "
-      "offset, and a point beyond is left out and counted. Intensities are whole numbers from 0 to 65535, "
-      "and those that are not are rounded and counted. Times are adjusted standard GPS time, with the leap "
-      "seconds of the recording's day, exact to 0.1 µs; where the cloud has no date they are seconds since "
-      "its epoch. The point source ID counts recordings from 1.";
+      "LAS 1.4, point format 6, with the extra bytes laser and beam. Coordinates are whole tenths of a millimetre, so that rounding changes none by more than 0.05 mm; they reach 214 km from the file's offset, and a point beyond is left out and counted. Intensities are whole numbers from 0 to 65535, and those that are not are rounded and counted. Times are adjusted standard GPS time, with the leap seconds of the recording's day, exact to 0.1 µs; where the cloud has no date they are seconds since its epoch. The point source ID counts recordings from 1.";
 
   /// @param stamp  [µs since the Unix epoch] which the points' times count from
   /// @param first  of the points, near which the offset is

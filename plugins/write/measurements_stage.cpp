@@ -6,13 +6,9 @@
 namespace crisp {
 
 void WriteMeasurementsStage::describe(StageDescription<WriteMeasurementsStage>& d) {
-  d.name("write.measurements").summary("writes raw measurements, from which another run goes on");
+  d.name("write.measurements").summary("writes raw measurements, for processing in another run");
   d.details(
-      "NAME.pcd holds a row for each measurement: range, mirror_angle, time, plate_angle, laser, beam and "
-      "remission, in metres, radians and seconds since the epoch in the header's comment. NAME.plate.pcd "
-      "holds "
-      "the readings of the plate. No calibration is applied. `grabber.pcd` gives exactly what came in "
-      "here.\n\n"
+      "NAME.pcd holds a row for each measurement: range, mirror_angle, time, plate_angle, laser, beam and remission, in metres, radians and seconds since the epoch in the header's comment. NAME.plate.pcd holds the encoder readings. No calibration is applied. `grabber.pcd` restores exactly the same measurements.\n\n"
       "Where the plate's trajectory comes in pieces (recordings of several minutes), so do the files.");
   d.takes<Measurements>().holds<PlateTrajectory>();
   describe_parts(d, &WriteMeasurementsStage::options_, {"<stem>.plate.pcd", "<stem>_####.plate.pcd"});
@@ -33,15 +29,15 @@ void WriteMeasurementsStage::process(const Inputs& in, Outputs&, Context&) {
 
 void WriteMeasurementsStage::write_part(bool more) {
   const auto file = writer_->write(to_table(pending_, *plate_), more);
-  writer_->write_beside(plate_path(file), to_table(*plate_));
+  writer_->write_next_to(plate_path(file), to_table(*plate_));
   written_ += pending_.size();
   pending_ = {};
 }
 
 void WriteMeasurementsStage::finish(Outputs&, Context& context) {
   if (pending_.size() == 0) {
-    throw Error("no measurement came, so that there is nothing to write",
-                "the losses and warnings above say why; without any, no stage above gave one");
+    throw Error("there are no measurements to write",
+                "see the losses and warnings above for the cause; without any, no stage above gave one");
   }
   write_part(false);
   finish_parts(*writer_, written_, "measurements", context);

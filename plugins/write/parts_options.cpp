@@ -5,11 +5,11 @@
 
 namespace crisp {
 
-void tell_removed(const std::vector<std::filesystem::path>& files, Context& context) {
+void report_removed(const std::vector<std::filesystem::path>& files, Context& context) {
   if (files.empty()) return;
-  context.say(fmt::format("removed {} of an earlier run: {}{}", files.size() == 1 ? "a file" : "files",
-                          files.front().string(),
-                          files.size() == 1 ? "" : " to " + files.back().filename().string()));
+  context.print(fmt::format("removed {} of an earlier run: {}{}", files.size() == 1 ? "a file" : "files",
+                            files.front().string(),
+                            files.size() == 1 ? "" : " to " + files.back().filename().string()));
 }
 
 void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what, Context& context) {
@@ -19,12 +19,12 @@ void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what,
     names.push_back(file.string());
     context.wrote(file);
   }
-  tell_removed(writer.remove_older(), context);
+  report_removed(writer.remove_older(), context);
   std::string where = files.front().string();
   if (files.size() > 1) {
     where += fmt::format(" {} {}", files.size() == 2 ? "and" : "to", files.back().filename().string());
   }
-  context.say(fmt::format("{} {} in {}", count, what, where));
+  context.print(fmt::format("{} {} in {}", count, what, where));
   context.report({{std::string(what), count}, {"files", names}});
 }
 

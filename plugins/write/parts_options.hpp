@@ -26,34 +26,34 @@ struct PartsOptions {
   }
 };
 
-/// @param also  what is written beside the parts, see OptionDeclaration::writes
+/// @param also  files written next to the parts, see OptionDeclaration::writes
 template <class S>
 void describe_parts(StageDescription<S>& d, PartsOptions S::*options,
                     std::initializer_list<std::string_view> also = {}) {
   std::vector<std::string_view> files = {"<stem>_####<ext>"};
   files.insert(files.end(), also.begin(), also.end());
-  d.option("file", options, &PartsOptions::file, "where to write it, NAME.pcd")
+  d.option("file", options, &PartsOptions::file, "output file, NAME.pcd")
       .writes(files)
       .ending(".pcd")
       .required();
-  d.option("format", options, &PartsOptions::format, "how the points follow the header")
+  d.option("format", options, &PartsOptions::format, "encoding of the points")
       .choices({{"binary_compressed", PcdFormat::binary_compressed},
                 {"binary", PcdFormat::binary},
                 {"ascii", PcdFormat::ascii}});
   d.option("split_points", options, &PartsOptions::split_points,
-           "most points in one file; what is longer becomes NAME_0001.pcd, NAME_0002.pcd and so on")
+           "maximum number of points in one file; more are split into NAME_0001.pcd, NAME_0002.pcd and so on")
       .range(1, 1e8);
   d.option("split_duration", options, &PartsOptions::split_duration,
-           "longest time in one file; auto: no limit")
+           "maximum duration of one file; auto: no limit")
       .unit("s")
       .range(1e-3, 1e9);
 }
 
-/// Tells the run of files of an earlier one that were removed.
-void tell_removed(const std::vector<std::filesystem::path>& files, Context& context);
+/// Reports removed files of an earlier run.
+void report_removed(const std::vector<std::filesystem::path>& files, Context& context);
 
-/// Puts the files in their place, removes those of an earlier run under the same name, and tells the run of
-/// them.
+/// Moves the files to their place, removes those of an earlier run under the same name, and registers the
+/// files with the run.
 /// @param what they hold, for people: "points"
 void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what, Context& context);
 

@@ -12,16 +12,7 @@ namespace crisp {
 void WritePcdStage::describe(StageDescription<WritePcdStage>& d) {
   d.name("write.pcd").summary("writes the cloud as a PCD file");
   d.details(
-      "All clouds that come become one, with the fields x, y, z, intensity, laser, beam and time: seconds, "
-      "as "
-      "double, since the epoch that the comment `# crisp epoch_ns` in the header gives in nanoseconds since "
-      "1970. PCL reads it. A recording that is too long for one file becomes several, so "
-      "that "
-      "memory does not grow with it; and what comes after a pause of 5 s, maybe of another place, is in a "
-      "file of "
-      "its own: a pause of the plate's readings or, where no stage above gives these, between two clouds. "
-      "The "
-      "files appear when all of them are complete.");
+      "All incoming clouds become one, with the fields x, y, z, intensity, laser, beam and time: seconds, as double, since the epoch that the comment `# crisp epoch_ns` in the header gives in nanoseconds since 1970. PCL reads it. A recording that is too long for one file is split, which bounds the memory; and data after a pause of 5 s, possibly of another place, go to a file of their own: a pause of the encoder readings or, where no stage above gives these, between two clouds. The files appear when all of them are complete.");
   d.takes<Cloud>().takes<PlateTrajectory>(Need::optional);
   describe_parts(d, &WritePcdStage::options_);
 }

@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// From where a cloud is looked at: along −z, along +y or along −x.
+/// Viewing direction: along −z, along +y or along −x.
 enum class PictureView { top, front, side };
 
 struct PictureSettings {

@@ -11,32 +11,25 @@ namespace crisp {
 void WritePictureStage::describe(StageDescription<WritePictureStage>& d) {
   d.name("write.picture").summary("draws the cloud as a PNG picture");
   d.details(
-      "In parallel projection, each laser in a colour of its own (blue, orange, green, and again), the "
-      "brighter "
-      "the more points fall on a pixel: where lasers disagree, seams of colour are seen; where they agree, "
-      "the "
-      "picture is white.");
+      "Parallel projection, each laser in a colour of its own (blue, orange, green, and again), with brightness by the number of points in a pixel: disagreement between lasers shows as seams of colour, agreement as white.");
   d.takes<Cloud>();
-  d.option("file", &WritePictureStage::file_, "where to write it, NAME.png")
-      .writes()
-      .ending(".png")
-      .required();
+  d.option("file", &WritePictureStage::file_, "output file, NAME.png").writes().ending(".png").required();
   d.option("view", &WritePictureStage::settings_, &PictureSettings::view,
-           "from where it is seen: top (x to the right, y upwards), front (x, z) or side (y, z)")
+           "view: top (x to the right, y upwards), front (x, z) or side (y, z)")
       .choices({{"top", PictureView::top}, {"front", PictureView::front}, {"side", PictureView::side}});
   d.option("depth", &WritePictureStage::depth_,
-           "only points between these two are drawn: heights for top, y for front, x for side")
+           "depth limits of the drawn points: heights for top, y for front, x for side")
       .unit("m")
       .count(0, 2);
   d.option("across", &WritePictureStage::settings_, &PictureSettings::across,
-           "how much of the world is seen from edge to edge")
+           "width of the view from edge to edge")
       .unit("m")
       .range(1e-3, 1e6);
-  d.option("centre", &WritePictureStage::centre_, "what is in the middle of the picture")
-      .unit("m")
-      .count(2, 2);
-  d.option("width", &WritePictureStage::settings_, &PictureSettings::width, "pixels").range(1, 20000);
-  d.option("height", &WritePictureStage::settings_, &PictureSettings::height, "pixels").range(1, 20000);
+  d.option("centre", &WritePictureStage::centre_, "centre of the view").unit("m").count(2, 2);
+  d.option("width", &WritePictureStage::settings_, &PictureSettings::width, "width in pixels")
+      .range(1, 20000);
+  d.option("height", &WritePictureStage::settings_, &PictureSettings::height, "height in pixels")
+      .range(1, 20000);
 }
 
 void WritePictureStage::check(const RunSettings&) const {
@@ -60,15 +53,15 @@ void WritePictureStage::process(const Inputs& in, Outputs&, Context&) {
 }
 
 void WritePictureStage::finish(Outputs&, Context& context) {
-  if (!painter_) throw Error("no cloud came, so there is nothing to draw");
+  if (!painter_) throw Error("there is no cloud to draw");
   if (drawn_ == 0) {
     std::error_code failure;
     std::filesystem::remove(file_.string() + kProvenance, failure);
-    if (std::filesystem::remove(file_, failure)) tell_removed({file_}, context);
-    return context.warn(file_.string() + " is not written: no point lies in what it shows");
+    if (std::filesystem::remove(file_, failure)) report_removed({file_}, context);
+    return context.warn(file_.string() + " is not written: no point is in its view");
   }
   write_file(file_, as_png(painter_->picture()));
-  context.say(fmt::format("{} points in {}", drawn_, file_.string()));
+  context.print(fmt::format("{} points in {}", drawn_, file_.string()));
   context.wrote(file_);
 }
 

@@ -17,7 +17,7 @@ PlyWriter::PlyWriter(const std::filesystem::path& file, std::uint64_t stamp, con
   file_.write(header());
 }
 
-/// Of the same length whatever the count is: a comment takes what the count leaves.
+/// The header's length is independent of the count: a comment fills the rest.
 std::string PlyWriter::header() const {
   const std::string count = std::to_string(points_);
   return fmt::format(

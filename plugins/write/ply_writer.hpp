@@ -19,10 +19,7 @@ class PlyWriter {
   static constexpr const char* kSummary = "writes the cloud as a PLY file";
   static constexpr const char* kEnding = ".ply";
   static constexpr const char* kDetails =
-      "Binary, little-endian, with the properties x, y, z, intensity (float), laser, beam (ushort) and time: "
-      "seconds, as double, since the epoch that the comment `crisp epoch_ns` in the header gives in "
-      "nanoseconds since 1970. Every number is exactly the cloud's. PCL reads it, as do most "
-      "viewers.";
+      "Binary, little-endian, with the properties x, y, z, intensity (float), laser, beam (ushort) and time: seconds, as double, since the epoch that the comment `crisp epoch_ns` in the header gives in nanoseconds since 1970. Every number is exactly the cloud's. PCL reads it, as do most viewers.";
 
   /// @param stamp  [µs since the Unix epoch] which the points' times count from
   PlyWriter(const std::filesystem::path& file, std::uint64_t stamp, const Point& first);

@@ -10,12 +10,13 @@
 
 namespace crisp {
 
-/// Which recording a point is of: by the pauses of the plate's readings, and where there are none by silences
+/// Which recording a point is of: by the pauses of the encoder readings, and where there are none by silences
 /// between a cloud and all that came before it. Points are no measure of it themselves: a filter may leave
 /// none for minutes, and they need not come in the order of time.
 class RecordingBorders {
  public:
-  /// How the plate turned, in pieces in the order of time, each before the clouds that were taken meanwhile.
+  /// Adds the motion of the plate, in pieces in the order of time, each before the clouds that were taken
+  /// meanwhile.
   void add(const PlateTrajectory& plate) {
     for (const Recording& recording : recordings_of(plate)) {
       if (end_ && recording.begin - *end_ > kPause) borders_.push_back((*end_ + recording.begin) / 2);
@@ -37,7 +38,7 @@ class RecordingBorders {
 
  private:
   std::vector<double> borders_;   // [s since epoch] the middles of the pauses
-  std::optional<double> end_;     // [s since epoch] of the plate's readings
+  std::optional<double> end_;     // [s since epoch] of the encoder readings
   std::optional<double> latest_;  // [s since epoch] of all points so far
 };
 

@@ -22,14 +22,9 @@ void append_instant(std::string& to, std::int64_t epoch_ns, double time) {
 void WriteTrajectoryStage::describe(StageDescription<WriteTrajectoryStage>& d) {
   d.name("write.trajectory").summary("writes the plate's angles over time as a table (CSV)");
   d.details(
-      "A row is a reading of the encoder on the hub's clock: time [s since 1970], angle [rad, continued over "
-      "whole "
-      "turns, counter-clockwise seen from +z] and rate [rad/s]. The lag η of a laser is not applied.");
+      "A row is an encoder reading on the hub's clock: time [s since 1970], angle [rad, unwrapped, counter-clockwise seen from +z] and rate [rad/s]. The lag η of a laser is not applied.");
   d.takes<PlateTrajectory>();
-  d.option("file", &WriteTrajectoryStage::path_, "where to write it, NAME.csv")
-      .writes()
-      .ending(".csv")
-      .required();
+  d.option("file", &WriteTrajectoryStage::path_, "output file, NAME.csv").writes().ending(".csv").required();
 }
 
 void WriteTrajectoryStage::process(const Inputs& in, Outputs&, Context&) {
@@ -50,10 +45,10 @@ void WriteTrajectoryStage::process(const Inputs& in, Outputs&, Context&) {
 
 void WriteTrajectoryStage::finish(Outputs&, Context& context) {
   if (!file_ || readings_ == 0)
-    throw Error("no reading of the plate came", "the losses and warnings above say why");
+    throw Error("there are no encoder readings to write", "see the losses and warnings above for the cause");
   file_->commit();
   context.wrote(path_);
-  context.say(fmt::format("{} readings in {}", readings_, path_.string()));
+  context.print(fmt::format("{} readings in {}", readings_, path_.string()));
   context.report({{"readings", readings_}});
 }
 

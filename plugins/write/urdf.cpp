@@ -37,7 +37,7 @@ double mount_of(const std::string& laser, const Rig& rig) {
   return found == rig.lasers.end() ? 0 : found->mount;
 }
 
-/// What URDF cannot hold of a laser.
+/// Properties of a laser that URDF cannot hold.
 std::string lost_of(const LaserCalibration& laser) {
   std::string lost =
       fmt::format("    <!-- lag of the plate behind {}: {:.9g} s", laser.name, laser.eta.value);
@@ -63,9 +63,7 @@ std::string to_urdf(const Calibration& calibration, const Rig& rig) {
     urdf += fmt::format(
         "\n  <link name=\"{0}\"/>\n"
         "  <joint name=\"{0}_joint\" type=\"fixed\">\n"
-        "{1}"
-        "    <!-- ros2 run tf2_ros static_transform_publisher {2:.9f} {3:.9f} 0 {6:.9f} {5:.9f} {4:.9f} "
-        "plate {0} -->\n"
+        "{1}    <!-- ros2 run tf2_ros static_transform_publisher {2:.9f} {3:.9f} 0 {6:.9f} {5:.9f} {4:.9f} plate {0} -->\n"
         "    <parent link=\"plate\"/>\n"
         "    <child link=\"{0}\"/>\n"
         "    <origin xyz=\"{2:.9f} {3:.9f} 0\" rpy=\"{4:.9f} {5:.9f} {6:.9f}\"/>\n"

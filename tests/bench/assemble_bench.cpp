@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How fast measurements become points, on one core: scan by scan, as a recording streams through the stage;
-// beside a plain copy of as many bytes.
+// Rate at which measurements become points, on one core: scan by scan, as a recording streams through the
+// stage; compared with a plain copy of as many bytes.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

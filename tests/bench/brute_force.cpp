@@ -8,13 +8,13 @@
 namespace crisp::bench {
 namespace {
 
-struct Pull {
+struct Gradient {
   float kernel = 0, x = 0, y = 0, z = 0;
 };
 
-Pull all_on(const float* x, const float* y, const float* z, std::size_t n, std::size_t i, float exponent,
-            float floor, float radius2) {
-  Pull sum;
+Gradient all_on(const float* x, const float* y, const float* z, std::size_t n, std::size_t i, float exponent,
+                float floor, float radius2) {
+  Gradient sum;
   for (std::size_t j = 0; j < n; ++j) {
     const float dx = x[i] - x[j];
     const float dy = y[i] - y[j];
@@ -39,15 +39,15 @@ PairSums by_brute_force(const Vectors& cloud, const TruncatedGaussian& kernel) {
   const std::vector<float> y(cloud.y.begin(), cloud.y.end());
   const std::vector<float> z(cloud.z.begin(), cloud.z.end());
   PairSums sums;
-  sums.pull.assign(cloud.size(), 0);
+  sums.gradient.assign(cloud.size(), 0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Pull own =
+    const Gradient own =
         all_on(x.data(), y.data(), z.data(), cloud.size(), i, static_cast<float>(kernel.exponent),
                static_cast<float>(kernel.floor), static_cast<float>(kernel.radius * kernel.radius));
     sums.kernel += static_cast<double>(own.kernel);
-    sums.pull.x[i] = static_cast<double>(own.x);
-    sums.pull.y[i] = static_cast<double>(own.y);
-    sums.pull.z[i] = static_cast<double>(own.z);
+    sums.gradient.x[i] = static_cast<double>(own.x);
+    sums.gradient.y[i] = static_cast<double>(own.y);
+    sums.gradient.z[i] = static_cast<double>(own.z);
   }
   return sums;
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How well whole captures are calibrated: each is simulated from a seed, and configs/calibrate.yaml is given
-// it alone, clocks and all. Prints a line for each capture, and what they come to in the end: errors beside
-// the standard errors that the calibration gives itself, and what RQE, the judge, thinks of the refinement
-// and of the truth.
+// Accuracy of calibrations of whole captures: each capture is simulated from a seed, and
+// configs/calibrate.yaml gets nothing else. Prints a line for each capture and a summary: errors next to the
+// calibration's own standard errors, and the RQE of the refinement and of the truth.
 //
 //     calibration_trial [SCENE [CAPTURES [FIRST]]]
 #include <fmt/format.h>
@@ -22,7 +21,7 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/calibration_file.hpp"
-#include "tests/end_to_end/workshop.hpp"
+#include "tests/end_to_end/pipeline_fixture.hpp"
 
 namespace crisp {
 namespace {
@@ -60,13 +59,13 @@ const Parameter& of(const LaserCalibration& laser, std::size_t kind) {
 class Trial {
  public:
   void run(const std::string& scene, std::uint64_t seed) {
-    const test::Workshop workshop;
-    workshop.simulate("made", {"scene=" + scene, fmt::format("seed={}", seed)});
-    const auto outcome = workshop.run("calibrate.yaml", workshop / "made/hub.pcap", "out");
-    if (!outcome.cloud) throw Error(fmt::format("seed {}: {}", seed, outcome.told));
-    doubted_ += outcome.status == ExitStatus::done ? 0 : 1;
-    const Calibration truth = read_calibration(workshop / "made/truth.yaml");
-    const Calibration found = read_calibration(workshop / "out/calibration.yaml");
+    const test::PipelineFixture fixture;
+    fixture.simulate("made", {"scene=" + scene, fmt::format("seed={}", seed)});
+    const auto outcome = fixture.run("calibrate.yaml", fixture / "made/hub.pcap", "out");
+    if (!outcome.cloud) throw Error(fmt::format("seed {}: {}", seed, outcome.console));
+    untrusted_ += outcome.status == ExitStatus::done ? 0 : 1;
+    const Calibration truth = read_calibration(fixture / "made/truth.yaml");
+    const Calibration found = read_calibration(fixture / "out/calibration.yaml");
     const auto& by_rqe = outcome.stage("calibrate.rqe")["report"]["lasers"];
     fmt::print("{:<9} seed {:<4}", scene, seed);
     for (std::size_t k = 0; k < kKinds.size(); ++k) {
@@ -82,8 +81,8 @@ class Trial {
       }
       fmt::print("  {} {:.3f} {}", kKinds[k].name, worst / kKinds[k].scale, kKinds[k].unit);
     }
-    judge(workshop, outcome.stage("calibrate.refine")["report"]["quality"]);
-    fmt::print("{}\n", outcome.status == ExitStatus::done ? "" : "; doubted");
+    judge(fixture, outcome.stage("calibrate.refine")["report"]["quality"]);
+    fmt::print("{}\n", outcome.status == ExitStatus::done ? "" : "; untrusted");
     std::fflush(stdout);
   }
 
@@ -103,7 +102,7 @@ class Trial {
                  worst(k, &Found::by_rqe) / unit, rms(k, &Found::error) / unit,
                  worst(k, &Found::error) / unit, rms(k, &Found::std_error) / unit, within(1), within(1.96));
     }
-    fmt::print("{} captures, of which the calibration doubted {}\n", gains_.size(), doubted_);
+    fmt::print("{} captures, {} of them with an untrusted calibration\n", gains_.size(), untrusted_);
     print("RQE, refined less unrefined", gains_);
     print("RQE, refined less the truth's", behind_truth_);
   }
@@ -113,14 +112,14 @@ class Trial {
     return kind == 0 ? std::remainder(difference, 2 * std::numbers::pi) : difference;
   }
 
-  /// What the judge says of the refined calibration, beside the one before and beside the truth.
-  void judge(const test::Workshop& workshop, const nlohmann::json& quality) {
+  /// Compares the RQE of the refined calibration with that before and with that of the truth.
+  void judge(const test::PipelineFixture& fixture, const nlohmann::json& quality) {
     const auto rqe = [](const nlohmann::json& all, const char* which) { return all.at(which).get<double>(); };
     gains_.push_back(rqe(quality, "rqe_after") - rqe(quality, "rqe_unrefined"));
-    std::ofstream(workshop / "truth_refined.yaml") << kRefineTheTruth;
-    const auto outcome = workshop.run((workshop / "truth_refined.yaml").string(), workshop / "made/hub.pcap",
-                                      "judged", {"calibration=" + (workshop / "made/truth.yaml").string()});
-    if (outcome.summary.is_null()) throw Error(outcome.told);
+    std::ofstream(fixture / "truth_refined.yaml") << kRefineTheTruth;
+    const auto outcome = fixture.run((fixture / "truth_refined.yaml").string(), fixture / "made/hub.pcap",
+                                     "judged", {"calibration=" + (fixture / "made/truth.yaml").string()});
+    if (outcome.summary.is_null()) throw Error(outcome.console);
     const auto& of_truth = outcome.stage("calibrate.refine")["report"]["quality"];
     behind_truth_.push_back(rqe(of_truth, "rqe_after") - rqe(of_truth, "rqe_unrefined"));
     fmt::print("  RQE {:+.4f}, to the truth {:+.4f} nat", gains_.back(), behind_truth_.back());
@@ -147,7 +146,7 @@ class Trial {
   std::array<std::vector<Found>, kKinds.size()> found_;
   std::vector<double> gains_;
   std::vector<double> behind_truth_;
-  int doubted_ = 0;
+  int untrusted_ = 0;
 };
 
 }  // namespace

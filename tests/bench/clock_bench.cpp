@@ -13,11 +13,11 @@
 namespace crisp {
 namespace {
 
-using testing::exponential_delays;
-using testing::mean_device_time;
-using testing::simulated_stamps;
-using testing::SimulatedLaser;
-using testing::SimulatedPlate;
+using test::exponential_delays;
+using test::mean_device_time;
+using test::simulated_stamps;
+using test::SimulatedLaser;
+using test::SimulatedPlate;
 
 using Event = std::variant<std::shared_ptr<const Scan>, PlateReading>;
 
@@ -74,13 +74,10 @@ void line_of_ten_minutes(benchmark::State& state, ClockLine (*find)(std::span<co
 }
 
 BENCHMARK_CAPTURE(align, convex_hull, AlignmentSettings{})->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(align, linear_program, AlignmentSettings{.find = line_by_linear_program})
-    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(align, receipt, AlignmentSettings{.source = TimeSource::receipt})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(hull_online);
 BENCHMARK_CAPTURE(line_of_ten_minutes, convex_hull, line_by_convex_hull);
-BENCHMARK_CAPTURE(line_of_ten_minutes, linear_program, line_by_linear_program);
 
 }  // namespace
 }  // namespace crisp

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How often the whole pipeline names what hides in a capture: clocks, links, the scatter of ranges, things
-// that move, and terms of the sensor's model, which hidden_trial hides in measurements. Each capture is
-// simulated from a seed, and configs/diagnose.yaml is given it alone. Prints a line for each capture, and a
+// Rate at which the whole pipeline names an injected effect of a capture: clocks, links, noise of ranges,
+// moving things, and terms of the sensor model, which hidden_trial injects into measurements. Each capture is
+// simulated from a seed, and configs/diagnose.yaml gets nothing else. Prints a line for each capture, and a
 // table in the end.
 //
 //     hidden_capture [SEEDS [FIRST [EFFECT]]]       EFFECT: one of them, `none`, or `terms`: all of the model
@@ -19,25 +19,25 @@
 #include <span>
 
 #include "pipeline/files/findings_file.hpp"
-#include "tests/end_to_end/workshop.hpp"
-#include "tests/plugins/diagnose/drawn.hpp"
+#include "tests/end_to_end/pipeline_fixture.hpp"
+#include "tests/plugins/diagnose/noise/drawn.hpp"
 
 namespace crisp {
 namespace {
 
 using Scenes = std::vector<std::string>;
 
-/// One effect as it is hidden: its own parameters and what it needs beside it.
+/// An injected effect: its own parameters and the other settings it needs.
 struct Hidden {
   std::string cause;
   std::string scope;                    ///< whose it is
   std::map<std::string, double> truth;  ///< in SI
-  std::string beside;                   ///< further effects in YAML
+  std::string given;                    ///< further effects in YAML
   std::string makes;                    ///< cause that is there with it
   Scenes scenes = {"office", "hall", "street"};
   double duration = 10;                ///< [s]
   std::vector<std::string> simulated;  ///< further options of grabber.simulate
-  std::vector<std::string> asked;      ///< further settings of the diagnosis
+  std::vector<std::string> requested;  ///< further settings of the diagnosis
 };
 
 class Drawer {
@@ -100,13 +100,12 @@ const std::map<std::string, Draw>& draws() {
       {"noise.two_peaks",
        [](Drawer& d) {
          const std::string laser = d.laser();
-         return Hidden{
-             .scope = laser,
-             .truth = {{"separation", d.uniform(0.0135, 0.0167)},
-                       {"least", d.uniform(0.05, 0.35)},
-                       {"most", d.uniform(0.65, 0.95)}},
-             .beside = fmt::format(", {}.noise.normal: {{sigma: {}}}", laser, d.uniform(4e-3, 6e-3)),
-             .makes = "range.offset"};  // the farther peak is the higher one
+         return Hidden{.scope = laser,
+                       .truth = {{"separation", d.uniform(0.0135, 0.0167)},
+                                 {"least", d.uniform(0.05, 0.35)},
+                                 {"most", d.uniform(0.65, 0.95)}},
+                       .given = fmt::format(", {}.noise.normal: {{sigma: {}}}", laser, d.uniform(4e-3, 6e-3)),
+                       .makes = "range.offset"};  // the farther peak is the higher one
        }},
       {"noise.quantisation",
        [](Drawer& d) {
@@ -141,10 +140,9 @@ std::optional<Hidden> hidden_term(const std::string& term, std::uint64_t seed) {
   hidden.simulated = {motion.kind == MotionKind::reversal ? "motion=reversal" : "motion=varying",
                       fmt::format("min_rate={}Hz", motion.min_rate),
                       fmt::format("max_rate={}Hz", motion.max_rate)};
-  if (term ==
-      "mirror.period") {  // clock stages measure it; that it should be the nominal one they must be told
+  if (term == "mirror.period") {  // clock stages measure it; that it should be nominal must be requested
     hidden.simulated.emplace_back("mirror_slowest=0");
-    hidden.asked.emplace_back("diagnose.stamps.nominal_mirrors=true");
+    hidden.requested.emplace_back("diagnose.clocks.nominal_mirrors=true");
   }
   return hidden;
 }
@@ -163,10 +161,10 @@ std::string effects_of(const Hidden& hidden) {
   }
   const std::string owner =
       hidden.scope == "plate" && built_in_terms().knows(hidden.cause) ? "" : hidden.scope + ".";
-  return fmt::format("effects={{{}{}: {{{}}}{}}}", owner, hidden.cause, parameters, hidden.beside);
+  return fmt::format("effects={{{}{}: {{{}}}{}}}", owner, hidden.cause, parameters, hidden.given);
 }
 
-/// As it stands in the lists of what cannot be told apart or does not show.
+/// Its name in the lists of indistinguishable and unobservable causes.
 std::string full_name(const Hidden& hidden) {
   return (hidden.scope == "plate" ? "" : hidden.scope + ".") + hidden.cause;
 }
@@ -192,23 +190,22 @@ class Trial {
     Hidden& hidden = *drawn;
     hidden.cause = cause;
     const std::string scene = hidden.scenes[drawer.below(hidden.scenes.size())];
-    const test::Workshop workshop;
+    const test::PipelineFixture fixture;
     std::vector<std::string> options = hidden.simulated;
     options.insert(options.end(), {fmt::format("seed={}", seed), "scene=" + scene,
                                    fmt::format("duration={}s", hidden.duration), effects_of(hidden)});
-    workshop.simulate("made", options);
-    const auto outcome = workshop.run("diagnose.yaml", workshop / "made/hub.pcap", "out", hidden.asked);
-    if (!std::ranges::count(outcome.files, "diagnosis.json")) throw Error(cause + ": " + outcome.told);
+    fixture.simulate("made", options);
+    const auto outcome = fixture.run("diagnose.yaml", fixture / "made/hub.pcap", "out", hidden.requested);
+    if (!std::ranges::count(outcome.files, "diagnosis.json")) throw Error(cause + ": " + outcome.console);
     fmt::print("{:<22} seed {:<4} {:<8} {}; found:", cause, seed, scene, effects_of(hidden));
-    count(hidden, read_findings(workshop / "out/diagnosis.json"));
-    fmt::print("{}\n", outcome.status == ExitStatus::done ? "" : "; the calibration is doubted");
+    count(hidden, read_findings(fixture / "out/diagnosis.json"));
+    fmt::print("{}\n", outcome.status == ExitStatus::done ? "" : "; the calibration is with_caveats");
     std::fflush(stdout);
   }
 
   void print() const {
     fmt::print(
-        "\n| what hides | captures | named | its class | said to be unobservable | wrong names "
-        "| parameters within 3 s.e. |\n|---|---|---|---|---|---|---|\n");
+        "\n| injected | captures | named | its class | reported as unobservable | wrong names | parameters within 3 s.e. |\n|---|---|---|---|---|---|---|\n");
     for (const auto& [cause, row] : rows_) {
       fmt::print("| {} | {} | {} | {} | {} | {} | {} of {} |\n", cause, row.captures, row.named, row.in_class,
                  row.unobservable, row.wrong, row.within_three, row.parameters);
@@ -235,13 +232,13 @@ class Trial {
     for (const auto& unnamed : findings.unnamed) fmt::print(" unnamed over {}", unnamed.covariate);
     const bool unobservable = std::ranges::any_of(
         findings.unobservable, [&](const Unobservable& one) { return one.parameter == full_name(hidden); });
-    if (unobservable) fmt::print(" said to be unobservable");
+    if (unobservable) fmt::print(" reported as unobservable");
     row.named += named ? 1 : 0;
     row.in_class += !named && in_class ? 1 : 0;
     row.unobservable += !named && !in_class && unobservable ? 1 : 0;
   }
 
-  /// Whether it is what the hidden effect makes besides, or cannot be told from that.
+  /// Whether the injected effect produces the finding as well, or is indistinguishable from it.
   static bool is_made(const Hidden& hidden, const Finding& finding) {
     const std::string full = hidden.scope + "." + hidden.makes;
     return !hidden.makes.empty() &&
@@ -249,11 +246,11 @@ class Trial {
   }
 
   static void count_parameters(const Hidden& hidden, const Finding& finding, Row& row) {
-    for (const Parameter& told : finding.parameters) {
-      const auto truth = hidden.truth.find(told.name);
-      if (truth == hidden.truth.end() || !(told.std_error > 0)) continue;
-      const double error = (told.value - truth->second) / told.std_error;
-      fmt::print(" {} {:+.1f} s.e.", told.name, error);
+    for (const Parameter& reported : finding.parameters) {
+      const auto truth = hidden.truth.find(reported.name);
+      if (truth == hidden.truth.end() || !(reported.std_error > 0)) continue;
+      const double error = (reported.value - truth->second) / reported.std_error;
+      fmt::print(" {} {:+.1f} s.e.", reported.name, error);
       ++row.parameters;
       row.within_three += std::abs(error) < 3 ? 1 : 0;
     }

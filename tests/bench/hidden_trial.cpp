@@ -17,9 +17,9 @@
 #include <map>
 #include <span>
 
-#include "tests/plugins/diagnose/drawn.hpp"
-#include "tests/plugins/diagnose/something_else.hpp"
+#include "tests/plugins/diagnose/noise/drawn.hpp"
 #include "tests/plugins/diagnose/true_gain.hpp"
+#include "tests/plugins/diagnose/unmodeled_errors.hpp"
 
 namespace crisp {
 namespace {
@@ -32,36 +32,36 @@ using test::Drawn;
 struct Outcome {
   std::size_t hidden = 0, named = 0, in_class = 0;
   std::size_t all_named = 0, all_in_class = 0;  ///< 1 if all that hides has its name; its name or its class
-  std::size_t in_span = 0;     ///< said, by name, to be what the parameters without it can do as well
-  std::size_t said_small = 0;  ///< said, by name, to show in these data from a larger size on only
+  std::size_t in_span = 0;                      ///< reported, by name, as absorbed by the other parameters
+  std::size_t said_small = 0;                   ///< reported, by name, as below these data's resolution
   std::size_t wrong = 0, unnamed = 0, right_covariate = 0;
-  std::size_t is_described = 0;  ///< 1 if something else is told with its covariate
+  std::size_t is_described = 0;  ///< 1 if an unmodeled error is reported with its covariate
   std::size_t parameters = 0, within_three = 0;
   std::size_t gains = 0;         ///< of recordings in which one cause was found and paid
   std::size_t gain_covered = 0;  ///< intervals of these in which the true gain in thickness lies
   std::size_t as_thin = 0;       ///< clouds within 3 % of the one where nothing hides
 };
 
-bool stands_for(const Departure& departure, const std::string& name) {
-  return std::ranges::any_of(departure.rivals, [&](const auto& rival) {
-    return rival.name == name && rival.behind < SelectionSettings{}.odds;
+bool stands_for(const Hypothesis& hypothesis, const std::string& name) {
+  return std::ranges::any_of(hypothesis.competitors, [&](const auto& competitor) {
+    return competitor.name == name && competitor.behind < SelectionSettings{}.odds;
   });
 }
 
 void count_hidden(const Drawn& drawn, const Diagnosis& diagnosis, const std::string& name, Outcome& outcome) {
   ++outcome.hidden;
   const auto taken = [&](auto matches) {
-    return std::ranges::any_of(diagnosis.departures, [&](const Departure& departure) {
-      return departure.accepted && departure.candidate.is_cause() && matches(departure);
+    return std::ranges::any_of(diagnosis.hypotheses, [&](const Hypothesis& hypothesis) {
+      return hypothesis.accepted && hypothesis.candidate.is_cause() && matches(hypothesis);
     });
   };
-  if (taken([&](const Departure& departure) { return departure.candidate.name == name; })) {
+  if (taken([&](const Hypothesis& hypothesis) { return hypothesis.candidate.name == name; })) {
     ++outcome.named;
-    for (const auto& told : test::told_of(diagnosis, drawn.recording.scanner.truth, name)) {
+    for (const auto& reported : test::estimates_of(diagnosis, drawn.recording.scanner.truth, name)) {
       ++outcome.parameters;
-      outcome.within_three += std::abs(told.error()) < 3 ? 1 : 0;
+      outcome.within_three += std::abs(reported.error()) < 3 ? 1 : 0;
     }
-  } else if (taken([&](const Departure& departure) { return stands_for(departure, name); })) {
+  } else if (taken([&](const Hypothesis& hypothesis) { return stands_for(hypothesis, name); })) {
     ++outcome.in_class;
   } else if (const auto limit = std::ranges::find(diagnosis.unobservable, name, &Limit::name);
              limit != diagnosis.unobservable.end()) {
@@ -69,15 +69,15 @@ void count_hidden(const Drawn& drawn, const Diagnosis& diagnosis, const std::str
   }
 }
 
-/// Whether what no cause explains is told with its covariate: as a shape that was taken, or as what is left.
+/// Whether an error without a cause is reported with its covariate: as an accepted shape, or as a residual.
 bool is_described(const Drawn& drawn, const Diagnosis& diagnosis) {
-  return std::ranges::any_of(diagnosis.departures,
-                             [&](const Departure& departure) {
-                               return departure.accepted && !departure.candidate.is_cause() &&
-                                      departure.candidate.covariate == drawn.covariate;
+  return std::ranges::any_of(diagnosis.hypotheses,
+                             [&](const Hypothesis& hypothesis) {
+                               return hypothesis.accepted && !hypothesis.candidate.is_cause() &&
+                                      hypothesis.candidate.covariate == drawn.covariate;
                              }) ||
          std::ranges::any_of(diagnosis.left_after.profiles, [&](const Profile& profile) {
-           return profile.departs() && profile.covariate == drawn.covariate;
+           return profile.is_significant() && profile.covariate == drawn.covariate;
          });
 }
 
@@ -87,26 +87,26 @@ Outcome outcome_of(const Drawn& drawn, const Diagnosis& diagnosis) {
   const auto is_all = [&](std::size_t count) { return outcome.hidden > 0 && count == outcome.hidden; };
   outcome.all_named = is_all(outcome.named) ? 1 : 0;
   outcome.all_in_class = is_all(outcome.named + outcome.in_class) ? 1 : 0;
-  for (const Departure& departure : diagnosis.departures) {
-    if (!departure.accepted) continue;
-    if (departure.candidate.is_cause()) {
+  for (const Hypothesis& hypothesis : diagnosis.hypotheses) {
+    if (!hypothesis.accepted) continue;
+    if (hypothesis.candidate.is_cause()) {
       const bool right = std::ranges::any_of(drawn.names, [&](const std::string& name) {
-        return departure.candidate.name == name || stands_for(departure, name);
+        return hypothesis.candidate.name == name || stands_for(hypothesis, name);
       });
       outcome.wrong += right ? 0 : 1;
     } else {
       ++outcome.unnamed;
-      outcome.right_covariate += departure.candidate.covariate == drawn.covariate ? 1 : 0;
+      outcome.right_covariate += hypothesis.candidate.covariate == drawn.covariate ? 1 : 0;
     }
   }
   outcome.is_described = is_described(drawn, diagnosis) ? 1 : 0;
   return outcome;
 }
 
-/// What the one cause that was found brings on held-out turns, beside what the truth would bring.
+/// The gain of the one identified cause on held-out turns, compared with the truth's gain.
 std::string judge_gain(const Drawn& drawn, const Drawn& clean, const Diagnosis& diagnosis, Outcome& outcome) {
-  if (diagnosis.departures.size() != 1 || !diagnosis.departures[0].accepted) return {};
-  const Gain& gain = diagnosis.departures[0].gains.at(0);
+  if (diagnosis.hypotheses.size() != 1 || !diagnosis.hypotheses[0].accepted) return {};
+  const Gain& gain = diagnosis.hypotheses[0].gains.at(0);
   const auto truly = test::true_thickness(drawn.recording, clean.recording, diagnosis.before.outcome.model);
   const double change = truly.with_truth - gain.before;
   const bool covered = gain.ci95[0] <= change && change <= gain.ci95[1];
@@ -122,17 +122,17 @@ std::string judge_gain(const Drawn& drawn, const Drawn& clean, const Diagnosis& 
 std::string found_by(const Diagnosis& diagnosis) {
   const double noise = RefinementSettings{}.surfels.noise;
   std::string words;
-  for (const Departure& departure : diagnosis.departures) {
+  for (const Hypothesis& hypothesis : diagnosis.hypotheses) {
     words +=
-        fmt::format(" {} ({:.2f} mm)", departure.candidate.name, 1e3 * std::sqrt(departure.square(noise)));
-    if (!departure.refused.empty()) {
-      words += fmt::format("(refused: {:.2f} mm are unexplained)", 1e3 * std::sqrt(departure.unexplained));
-    } else if (!departure.accepted && !departure.gains.empty()) {
-      const Gain& gain = *std::ranges::find(departure.gains, "log-likelihood a measurement", &Gain::metric);
+        fmt::format(" {} ({:.2f} mm)", hypothesis.candidate.name, 1e3 * std::sqrt(hypothesis.square(noise)));
+    if (!hypothesis.refused.empty()) {
+      words += fmt::format("(refused: {:.2f} mm are unexplained)", 1e3 * std::sqrt(hypothesis.unexplained));
+    } else if (!hypothesis.accepted && !hypothesis.gains.empty()) {
+      const Gain& gain = *std::ranges::find(hypothesis.gains, "log-likelihood a measurement", &Gain::metric);
       words += fmt::format("(refused: {:+.5f} to {:+.5f})", gain.ci95[0], gain.ci95[1]);
     }
-    for (const auto& rival : departure.rivals) {
-      if (rival.behind < SelectionSettings{}.odds) words += "|" + rival.name;
+    for (const auto& competitor : hypothesis.competitors) {
+      if (competitor.behind < SelectionSettings{}.odds) words += "|" + competitor.name;
     }
   }
   return words.empty() ? " nothing" : words;
@@ -172,11 +172,11 @@ class Trial {
     rows_[what].add(outcome, diagnosis.settled);
     std::string errors;
     for (const std::string& name : drawn.names) {
-      for (const auto& told : test::told_of(diagnosis, drawn.recording.scanner.truth, name)) {
-        errors += fmt::format(" {:+.1f}", told.error());
-        if (std::abs(told.error()) < 3) continue;
-        errors += fmt::format(" ({} = {:.4g} ± {:.1g}, is {:.4g})", told.name, told.estimate, told.std_error,
-                              told.truth);
+      for (const auto& reported : test::estimates_of(diagnosis, drawn.recording.scanner.truth, name)) {
+        errors += fmt::format(" {:+.1f}", reported.error());
+        if (std::abs(reported.error()) < 3) continue;
+        errors += fmt::format(" ({} = {:.4g} ± {:.1g}, is {:.4g})", reported.name, reported.estimate,
+                              reported.std_error, reported.truth);
       }
     }
     std::string hidden = drawn.covariate;
@@ -184,8 +184,7 @@ class Trial {
       hidden += fmt::format(" {} ({:.1f} mm)", drawn.names[k], 1e3 * drawn.sizes[k]);
     }
     fmt::print(
-        "{:<26} seed {:<4} {:<6} {} lasers {:<9} hidden:{}; found:{}; errors{}; p {:.3f} {:.3f}; "
-        "noise {:.3f} {:.3f} mm; {:.0f} s{}\n",
+        "{:<26} seed {:<4} {:<6} {} lasers {:<9} hidden:{}; found:{}; errors{}; p {:.3f} {:.3f}; noise {:.3f} {:.3f} mm; {:.0f} s{}\n",
         what, drawn.recording.scanner.seed, drawn.scene, drawn.recording.scanner.rig.lasers.size(),
         drawn.motion, hidden, found_by(diagnosis), errors, diagnosis.left_before.p_value,
         diagnosis.left_after.p_value, 1e3 * std::ranges::max(diagnosis.left_before.noise),
@@ -193,7 +192,7 @@ class Trial {
         diagnosis.settled ? "" : "; NOT SETTLED");
     fmt::print("{}", gain);
     for (const Profile& profile : diagnosis.left_after.profiles) {
-      if (!profile.departs()) continue;
+      if (!profile.is_significant()) continue;
       const bool of_all = profile.laser == kAllLasers;
       fmt::print("    left: {} over {}, {:.3f} mm, p {:.3f}\n",
                  of_all ? "scanner" : fmt::format("laser{}", profile.laser + 1), profile.covariate,
@@ -209,11 +208,7 @@ class Trial {
 
   void print() const {
     fmt::print(
-        "\n| what hides | recordings | all named | all named or in their class | hidden | named | its class "
-        "| the base's class | said to be too small "
-        "| wrong "
-        "names | unnamed | of these right | recordings with the right covariate | parameters within 3 s.e. "
-        "| gains whose interval covers the true one | clouds within 3 % of a clean one |\n"
+        "\n| what hides | recordings | all named | all named or in their class | hidden | named | its class | the base's class | reported as too small | wrong names | unnamed | of these right | recordings with the right covariate | parameters within 3 s.e. | gains whose interval covers the true one | clouds within 3 % of a clean one |\n"
         "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     Row all;
     for (const auto& [what, row] : rows_) {
@@ -228,8 +223,7 @@ class Trial {
   static void print(const std::string& what, const Row& row) {
     const Outcome& s = row.sum;
     fmt::print(
-        "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} of {} | {} of {} "
-        "| {} of {} |\n",
+        "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} of {} | {} of {} | {} of {} |\n",
         what, row.recordings, s.all_named, s.all_in_class, s.hidden, s.named, s.in_class, s.in_span,
         s.said_small, s.wrong, s.unnamed, s.right_covariate, s.is_described, s.within_three, s.parameters,
         s.gain_covered, s.gains, s.as_thin, s.gains);
@@ -253,27 +247,28 @@ struct Wanted {
   std::string effect;  // empty: all
 };
 
-void run(const Wanted& wanted) {
+void run(const Wanted& requested) {
   Trial trial;
-  const std::uint64_t end = wanted.first + wanted.seeds;
-  for (std::uint64_t seed = wanted.first; seed < end; ++seed) {
-    if (wanted.what == "one") {
+  const std::uint64_t end = requested.first + requested.seeds;
+  for (std::uint64_t seed = requested.first; seed < end; ++seed) {
+    if (requested.what == "one") {
       std::uint64_t k = 0;
       for (const std::string& effect : causes()) {
         const std::uint64_t own = seed + 1000 * ++k;
-        if (!wanted.effect.empty() && effect != wanted.effect) continue;
+        if (!requested.effect.empty() && effect != requested.effect) continue;
         const Drawn clean = Drawer(own).with({}, 0);
-        trial.run(effect, Drawer(own).with({effect}, wanted.size), wanted.size, &clean);
+        trial.run(effect, Drawer(own).with({effect}, requested.size), requested.size, &clean);
       }
-    } else if (wanted.what == "else") {
+    } else if (requested.what == "else") {
       for (std::size_t k = 0; k < test::something_else().size(); ++k) {
-        if (!wanted.effect.empty() && wanted.effect != std::to_string(k)) continue;
-        trial.run(fmt::format("else {}", k), Drawer(seed + 1000 * k).with_something_else(k, wanted.size),
-                  wanted.size);
+        if (!requested.effect.empty() && requested.effect != std::to_string(k)) continue;
+        trial.run(fmt::format("else {}", k), Drawer(seed + 1000 * k).with_something_else(k, requested.size),
+                  requested.size);
       }
     } else {
-      const std::size_t count = wanted.what == "three" ? 3 : wanted.what == "two" ? 2 : 0;
-      trial.run(wanted.what, Drawer(seed).with(some_of(causes(), count, seed), wanted.size), wanted.size);
+      const std::size_t count = requested.what == "three" ? 3 : requested.what == "two" ? 2 : 0;
+      trial.run(requested.what, Drawer(seed).with(some_of(causes(), count, seed), requested.size),
+                requested.size);
     }
   }
   trial.print();
@@ -284,14 +279,14 @@ void run(const Wanted& wanted) {
 
 int main(int argc, char** argv) {
   const std::span<char*> arguments(argv, static_cast<std::size_t>(argc));
-  crisp::Wanted wanted;
-  if (arguments.size() > 1) wanted.what = arguments[1];
-  if (arguments.size() > 2) wanted.seeds = std::strtoull(arguments[2], nullptr, 10);
-  if (arguments.size() > 3) wanted.first = std::strtoull(arguments[3], nullptr, 10);
-  if (arguments.size() > 4) wanted.size = std::strtod(arguments[4], nullptr) / 1e3;
-  if (arguments.size() > 5) wanted.effect = arguments[5];
+  crisp::Wanted requested;
+  if (arguments.size() > 1) requested.what = arguments[1];
+  if (arguments.size() > 2) requested.seeds = std::strtoull(arguments[2], nullptr, 10);
+  if (arguments.size() > 3) requested.first = std::strtoull(arguments[3], nullptr, 10);
+  if (arguments.size() > 4) requested.size = std::strtod(arguments[4], nullptr) / 1e3;
+  if (arguments.size() > 5) requested.effect = arguments[5];
   try {
-    crisp::run(wanted);
+    crisp::run(requested);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

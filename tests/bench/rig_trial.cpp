@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How calibration fares on any rig: tests/independent draws rigs, scenes, motions, clocks and mistakes from
-// seeds, and configs/calibrate.yaml is given the capture and the rig's file. Prints a line for each draw, and
-// at last how many were right and trusted, which mistakes were told, and how often standard errors cover.
+// Calibration of any rig: tests/independent draws rigs, scenes, motions, clocks and mistakes from seeds, and
+// configs/calibrate.yaml gets the capture and the rig's file. Prints a line for each draw, and in the end how
+// many were right and trusted, which mistakes were reported, and the coverage of the standard errors.
 //
 //     rig_trial FIRST DRAWS [NAME=VALUE...]      as independent_scanner has them: fault=mount, duration=8
 #include <fmt/format.h>
@@ -19,7 +19,7 @@
 
 #include "pipeline/files/calibration_file.hpp"
 #include "tests/end_to_end/drawn_rig.hpp"
-#include "tests/end_to_end/workshop.hpp"
+#include "tests/end_to_end/pipeline_fixture.hpp"
 
 namespace crisp {
 namespace {
@@ -27,17 +27,17 @@ namespace {
 class RigTrial {
  public:
   void run(std::uint64_t seed, const std::vector<std::string>& fixed) {
-    const test::Workshop workshop;
-    const test::DrawnRig drawn(workshop / "drawn", seed, fixed);
+    const test::PipelineFixture fixture;
+    const test::DrawnRig drawn(fixture / "drawn", seed, fixed);
     const auto begin = std::chrono::steady_clock::now();
-    const auto outcome = workshop.run("calibrate.yaml", drawn.capture(), "out", {}, drawn.rig());
+    const auto outcome = fixture.run("calibrate.yaml", drawn.capture(), "out", {}, drawn.rig());
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     std::string verdict = outcome.status == ExitStatus::done ? "trusted" : "untrusted";
     std::vector<std::string> wrong;
     if (std::ranges::count(outcome.files, "calibration.yaml") == 0) {
       verdict = "refused";
     } else {
-      for (const auto& parameter : drawn.compare(read_calibration(workshop / "out/calibration.yaml"))) {
+      for (const auto& parameter : drawn.compare(read_calibration(fixture / "out/calibration.yaml"))) {
         if (parameter.is_wrong()) {
           wrong.push_back(
               fmt::format("{} {:.1f} s.e.", parameter.name, std::abs(parameter.error) / parameter.std_error));
@@ -51,7 +51,7 @@ class RigTrial {
     ++verdicts_[drawn.fault()][verdict];
     fmt::print("{:<5} {:<9} {:<17} {:.0f} s; {}; {}\n", seed, drawn.fault(), verdict, took.count(),
                drawn.words(), fmt::join(wrong, ", "));
-    if (outcome.status != ExitStatus::done) print_reasons(outcome.told);
+    if (outcome.status != ExitStatus::done) print_reasons(outcome.console);
     std::fflush(stdout);
   }
 
@@ -75,12 +75,12 @@ class RigTrial {
   }
 
  private:
-  static void print_reasons(const std::string& told) {
+  static void print_reasons(const std::string& console) {
     std::size_t begin = 0;
-    while (begin < told.size()) {
-      const std::size_t end = std::min(told.find('\n', begin), told.size());
-      const std::string line = told.substr(begin, end - begin);
-      if (line.starts_with("not to be trusted") || line.find("error: ") != std::string::npos)
+    while (begin < console.size()) {
+      const std::size_t end = std::min(console.find('\n', begin), console.size());
+      const std::string line = console.substr(begin, end - begin);
+      if (line.starts_with("untrusted") || line.find("error: ") != std::string::npos)
         fmt::print("      {}\n", line);
       begin = end + 1;
     }

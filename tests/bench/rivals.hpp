@@ -10,7 +10,7 @@ namespace crisp::bench {
 /// What all have to find: Σᵢ Σⱼ (G(xᵢ − xⱼ) − G(R)) / G(0) and its pulls, as in GaussianSums.
 struct PairSums {
   double kernel = 0;
-  Vectors pull;
+  Vectors gradient;
 };
 
 /// nanoflann's k-d tree, a radius search and std::exp a point: how most people would write it.

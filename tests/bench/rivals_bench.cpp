@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RQE with its gradient beside its rivals, in one process, and how its cost grows: with the number of points,
-// of lasers and of threads, and with σ. Prints the ratios and exponents themselves; times are CPU times of
-// one thread, the least of a few rounds, unless said otherwise.
+// RQE with its gradient compared with competing implementations, in one process, and its complexity: in the
+// number of points, of lasers and of threads, and in σ. Prints the ratios and exponents themselves; times are
+// CPU times of one thread, the least of a few rounds, unless stated otherwise.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -68,7 +68,7 @@ double entropy(const TruncatedGaussian& kernel, double sum, std::size_t n) {
   return -std::log(kernel.peak * sum / (static_cast<double>(n) * static_cast<double>(n)));
 }
 
-void beside_rivals() {
+void next_to_rivals() {
   constexpr std::size_t kPoints = 100000;
   constexpr double kSigma = 0.02;
   const TruncatedGaussian kernel(kSigma, 7);
@@ -91,7 +91,8 @@ void beside_rivals() {
   int step = 0;
   const double second = least([&] { found = rqe(moved[step++ % 2].view(), {}, settings, *again); }, 10);
   row("grid, points moved a little", second, static_cast<double>(found.tested), found.value);
-  const auto rival = [&](const char* name, const std::function<PairSums()>& sums, double tested, int rounds) {
+  const auto competitor = [&](const char* name, const std::function<PairSums()>& sums, double tested,
+                              int rounds) {
     PairSums result;
     const double seconds = least([&] { result = sums(); }, rounds);
     row(name, seconds, tested, entropy(kernel, result.kernel, kPoints));
@@ -99,12 +100,12 @@ void beside_rivals() {
   auto flann = make_search("flann");
   const double by_flann = least([&] { found = rqe(cloud.view(), {}, settings, *flann); }, 2);
   row("FLANN's radius search, std::exp", by_flann, static_cast<double>(found.tested), found.value);
-  rival(
+  competitor(
       "nanoflann's, std::exp", [&] { return by_nanoflann(cloud, kernel); }, pairs, 2);
-  rival(
+  competitor(
       "PCL's KdTreeFLANN, std::exp", [&] { return by_pcl(cloud, kernel); }, pairs, 2);
   const double every = static_cast<double>(kPoints) * kPoints;
-  rival(
+  competitor(
       "brute force, by vectors", [&] { return by_brute_force(cloud, kernel); }, every, 1);
 }
 
@@ -151,8 +152,7 @@ Rig rig_of(std::size_t lasers) {
 
 void against_lasers() {
   fmt::print(
-      "\nagainst lasers: a calibration's step (RQE and its gradient by all parameters), 60000 beams in "
-      "all\n");
+      "\nagainst lasers: a calibration's step (RQE and its gradient by all parameters), 60000 beams in all\n");
   MeasureRegistry measures;
   register_built_in(measures);
   SearchRegistry searches;
@@ -200,7 +200,7 @@ int main() {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // each line as soon as it is known
   {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    crisp::bench::beside_rivals();
+    crisp::bench::next_to_rivals();
     crisp::bench::against_points();
     crisp::bench::against_sigma();
     crisp::bench::against_lasers();

@@ -29,9 +29,9 @@ void add_pair(const Vectors& cloud, const TruncatedGaussian& kernel, std::size_t
               double distance2, PairSums& sums) {
   const double g = std::exp(-kernel.exponent * distance2);
   sums.kernel += g - kernel.floor;
-  sums.pull.x[i] += g * (cloud.x[i] - cloud.x[j]);
-  sums.pull.y[i] += g * (cloud.y[i] - cloud.y[j]);
-  sums.pull.z[i] += g * (cloud.z[i] - cloud.z[j]);
+  sums.gradient.x[i] += g * (cloud.x[i] - cloud.x[j]);
+  sums.gradient.y[i] += g * (cloud.y[i] - cloud.y[j]);
+  sums.gradient.z[i] += g * (cloud.z[i] - cloud.z[j]);
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ PairSums by_nanoflann(const Vectors& cloud, const TruncatedGaussian& kernel) {
   const CloudForNanoflann adaptor{cloud};
   const Tree tree(3, adaptor);
   PairSums sums;
-  sums.pull.assign(cloud.size(), 0);
+  sums.gradient.assign(cloud.size(), 0);
   std::vector<std::pair<std::uint32_t, double>> found;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const std::array<double, 3> at{cloud.x[i], cloud.y[i], cloud.z[i]};
@@ -62,7 +62,7 @@ PairSums by_pcl(const Vectors& cloud, const TruncatedGaussian& kernel) {
   pcl::KdTreeFLANN<pcl::PointXYZ> tree(false);  // unsorted lists
   tree.setInputCloud(points);
   PairSums sums;
-  sums.pull.assign(cloud.size(), 0);
+  sums.gradient.assign(cloud.size(), 0);
   pcl::Indices found;
   std::vector<float> distance2;
   for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -96,7 +96,7 @@ class Report(unittest.TestCase):
         return [self.columns[axis + when][i] for axis in "xyz"]
 
     def isolate(self, points):
-        """Clips all but some points, and looks at their middle from above."""
+        """Clips all but some points, and views their middle from above."""
         low = [min(p[a] for p in points) - 0.002 for a in range(3)]
         high = [max(p[a] for p in points) + 0.002 for a in range(3)]
         middle = [(l + h) / 2 for l, h in zip(low, high)]
@@ -141,7 +141,7 @@ class Report(unittest.TestCase):
         self.assertEqual(self.browser.find_element(By.CSS_SELECTOR, "section .badge").text, "trusted")
         self.open("untrusted")
         verdict = self.browser.find_element(By.CSS_SELECTOR, "section")
-        self.assertIn("not to be trusted", verdict.text)
+        self.assertIn("untrusted", verdict.text)
         self.assertIn("front and back views agree on 45 %", verdict.text)
         self.shoot("untrusted")
 

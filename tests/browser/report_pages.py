@@ -28,26 +28,26 @@ def calibrated(program, source, folder):
 
 
 def untrusted(program, folder):
-    """The report of a run that has doubts, of a diagnosis with two causes, with markup in every name."""
+    """The report of a run that has caveats, of a diagnosis with two causes, with markup in every name."""
     folder.mkdir()
     stage = {"tag": "calibrate.refine" + ATTACK, "stage": "calibrate.refine", "seconds": 1.5, "options": {"noise": ATTACK},
              "counts": {"laser1: telegrams lost " + ATTACK: 3}, "warnings": ["a warning " + ATTACK],
-             "doubts": ["front and back views agree on 45 % " + ATTACK], "outputs": [str(folder / "laser1_residuals.svg")],
+             "caveats": ["front and back views agree on 45 % " + ATTACK], "outputs": [str(folder / "laser1_residuals.svg")],
              "report": {"devices": [{"name": "laser1" + ATTACK, "ip": ATTACK, "items": 5, "rate": 50.0}]}}
     summary = {"crisp": "0", "pipeline": ATTACK, "rig": ATTACK, "started": ATTACK, "seconds": 2, "trusted": False, "exit_status": 3,
                "inputs": [{"file": "/tmp/" + ATTACK, "bytes": 5, "sha256": "00"}], "stages": [stage]}
     (folder / "summary.json").write_text(json.dumps(summary))
     finding = {"cause": "mirror.cone", "scope": "laser1" + ATTACK, "accepted": True, "refused": "", "explained_fraction": 0.5,
-               "p_value": 1e-9, "log10_odds": 12.0, "confounded_with": ["timing.intra_scan " + ATTACK], "told_apart_by": ["both directions"],
+               "p_value": 1e-9, "log10_bayes_factor": 12.0, "confounded_with": ["timing.intra_scan " + ATTACK], "resolvable_by": ["both directions"],
                "parameters": [{"name": "kappa", "value": 0.005, "unit": "rad", "std_error": 0.0001}],
-               "alternatives": [{"cause": "base.motion", "scope": "plate", "log10_odds": 12.0}],
+               "alternatives": [{"cause": "base.motion", "scope": "plate", "log10_bayes_factor": 12.0}],
                "gain": [{"metric": "cloud thickness", "unit": "m", "before": 0.009, "after": 0.008, "ci95": [-0.0012, -0.0008]}]}
     departure = {"covariate": "mirror angle", "quantity": "range", "scope": "laser1", "amplitude": 0.001, "unit": "m",
                  "p_value": 1e-6, "amplitude_after": 0.0001, "p_value_after": 0.5}
     findings = {"crisp": 1, "findings": [finding, {**finding, "cause": "encoder.eccentricity", "scope": "plate"}], "unnamed": [],
                 "departures": [departure], "unobservable": [{"cause": ATTACK, "reason": ATTACK, "combination": ""}], "artefacts": [],
                 "devices": [], "noise": [{"laser": "laser1", "ranges": 1000, "sigma": 0.012}], "gain": finding["gain"],
-                "indistinguishable": {"before_p": 1e-9, "after_p": 0.4}}
+                "goodness_of_fit": {"before_p": 1e-9, "after_p": 0.4}}
     (folder / "diagnosis.json").write_text(json.dumps(findings))
     (folder / "laser1_residuals.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="1280" height="400" onload="window.attacked=1"><script>window.attacked=1</script>'
@@ -79,7 +79,7 @@ def batch(program, folder):
 
 
 def cloud_of(page):
-    """The columns of a page's cloud, decoded as plugins/report/encoded_cloud.hpp says; and the data of the page."""
+    """The columns of a page's cloud, decoded by the header in plugins/report/encoded_cloud.hpp; and the data of the page."""
     text = page.read_text()
     data = json.loads(re.search(r'id="report-data">(.*?)</script>', text, re.S).group(1))
     raw = zlib.decompress(base64.b64decode(re.search(r'id="report-cloud">(.*?)</script>', text, re.S).group(1)))

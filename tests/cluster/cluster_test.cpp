@@ -105,8 +105,7 @@ class ClusterTest : public ProgramTest {
     return {};
   }
 
-  /// All files of a batch's results, without its manifests; of what says how long something took, that is
-  /// taken out.
+  /// All files of a batch's results, without its manifests, and without durations.
   std::map<std::string, std::string> results(const std::string& name) const {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder_ / name)) {

@@ -128,17 +128,17 @@ void Slurm::write_configuration() {
   const std::string owner = user ? user->pw_name : "root";
   const auto ports = free_ports(kNodes.size() + 1);
   std::ofstream file(folder_ / "slurm.conf");
-  file << "ClusterName=test\n"
-       << fmt::format("SlurmctldHost={}(127.0.0.1)\nSlurmctldPort={}\n", host, ports.back())
-       << fmt::format("AuthType=auth/munge\nAuthInfo=socket={}/munge.socket,cred_expire=5\n", folder)
-       << "ProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\nSwitchType=switch/none\nMpiDefault=none\n"
-       << fmt::format("ReturnToService=2\nSlurmUser={0}\nSlurmdUser={0}\n", owner)
-       << fmt::format("SlurmctldPidFile={0}/ctld.pid\nSlurmdPidFile={0}/slurmd.%n.pid\n", folder)
-       << fmt::format("SlurmdSpoolDir={0}/spool.%n\nStateSaveLocation={0}/state\n", folder)
-       << fmt::format("SlurmctldLogFile={0}/ctld.log\nSlurmdLogFile={0}/slurmd.%n.log\n", folder)
-       << "SelectType=select/"
-          "cons_tres\nSelectTypeParameters=CR_Core\nAccountingStorageType=accounting_storage/none\n"
-       << "SlurmdTimeout=5\n";
+  file
+      << "ClusterName=test\n"
+      << fmt::format("SlurmctldHost={}(127.0.0.1)\nSlurmctldPort={}\n", host, ports.back())
+      << fmt::format("AuthType=auth/munge\nAuthInfo=socket={}/munge.socket,cred_expire=5\n", folder)
+      << "ProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\nSwitchType=switch/none\nMpiDefault=none\n"
+      << fmt::format("ReturnToService=2\nSlurmUser={0}\nSlurmdUser={0}\n", owner)
+      << fmt::format("SlurmctldPidFile={0}/ctld.pid\nSlurmdPidFile={0}/slurmd.%n.pid\n", folder)
+      << fmt::format("SlurmdSpoolDir={0}/spool.%n\nStateSaveLocation={0}/state\n", folder)
+      << fmt::format("SlurmctldLogFile={0}/ctld.log\nSlurmdLogFile={0}/slurmd.%n.log\n", folder)
+      << "SelectType=select/cons_tres\nSelectTypeParameters=CR_Core\nAccountingStorageType=accounting_storage/none\n"
+      << "SlurmdTimeout=5\n";
   for (std::size_t i = 0; i < kNodes.size(); ++i)
     file << fmt::format("NodeName={} NodeHostname={} NodeAddr=127.0.0.1 Port={} CPUs=1 State=UNKNOWN\n",
                         kNodes[i], host, ports[i]);

@@ -21,7 +21,7 @@ class SnakemakeTest : public BatchTest {
   void SetUp() override {
     if (std::system("command -v snakemake > /dev/null") != 0)
       GTEST_SKIP() << "not installed: snakemake (package snakemake)";
-    const std::string page = read_text_file(fs::path(source_dir()) / "docs/batch.md", 1 << 20);
+    const std::string page = read_text_file(fs::path(source_dir()) / "docs/how-to/batch.md", 1 << 20);
     const std::string fence = "```snakemake\n";
     const std::size_t begin = page.find(fence) + fence.size();
     write_file(folder_ / "Snakefile", page.substr(begin, page.find("```", begin) - begin));
@@ -39,7 +39,7 @@ class SnakemakeTest : public BatchTest {
 };
 
 TEST_F(SnakemakeTest, RunsTheSnakefileOfTheDocumentation) {
-  for (int i = 0; i < 12; ++i) put("r" + std::to_string(i) + ".pcap", i == 5 ? "doubt" : "done");
+  for (int i = 0; i < 12; ++i) put("r" + std::to_string(i) + ".pcap", i == 5 ? "caveat" : "done");
   ASSERT_EQ(snakemake(), 0) << content("log");
   EXPECT_THAT(calls(), SizeIs(12));
   EXPECT_THAT(calls(), Each(Pair(testing::_, 1)));

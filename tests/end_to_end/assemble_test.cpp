@@ -7,15 +7,15 @@
 #include <numbers>
 
 #include "pipeline/files/calibration_file.hpp"
+#include "tests/end_to_end/pipeline_fixture.hpp"
 #include "tests/end_to_end/room.hpp"
-#include "tests/end_to_end/workshop.hpp"
 
 namespace crisp {
 namespace {
 
 using test::Outcome;
+using test::PipelineFixture;
 using test::Residual;
-using test::Workshop;
 
 constexpr double kNoise = 0.012;  // [m]
 constexpr double kStep = 0.001;   // [m] ranges are rounded to
@@ -29,9 +29,9 @@ const double kAngleSigma =
 class Assemble : public testing::Test {
  protected:
   void simulate(std::vector<std::string> options) {
-    options.push_back("scene_file=" + test::write_room(workshop_ / "room.yaml").string());
-    workshop_.simulate("simulation", options);
-    truth_ = read_calibration(workshop_ / "simulation/truth.yaml");
+    options.push_back("scene_file=" + test::write_room(fixture_ / "room.yaml").string());
+    fixture_.simulate("simulation", options);
+    truth_ = read_calibration(fixture_ / "simulation/truth.yaml");
   }
 
   std::vector<Residual> residuals(const Outcome& outcome) const {
@@ -40,7 +40,7 @@ class Assemble : public testing::Test {
     return test::against_room(*outcome.cloud, tau);
   }
 
-  Workshop workshop_;
+  PipelineFixture fixture_;
   Calibration truth_;
 };
 
@@ -48,9 +48,9 @@ double in_sigmas(const Residual& each) { return each.distance / (kRangeSigma * e
 
 TEST_F(Assemble, PointsAreAsFarFromTheTrueWallsAsTheNoiseOfTheirRangesPutThem) {
   simulate({"duration=3s"});
-  const Outcome outcome = workshop_.assemble("simulation", "out");
-  ASSERT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  EXPECT_EQ(outcome.told, "");
+  const Outcome outcome = fixture_.assemble("simulation", "out");
+  ASSERT_EQ(outcome.status, ExitStatus::done) << outcome.console;
+  EXPECT_EQ(outcome.console, "");
   EXPECT_EQ(outcome.losses("grabber.capture") + outcome.losses("assemble.deskew"), 0U);
   EXPECT_EQ(outcome.stage("assemble.deskew")["report"]["points"], outcome.cloud->size());
 
@@ -78,11 +78,11 @@ TEST_F(Assemble, PointsAreAsFarFromTheTrueWallsAsTheNoiseOfTheirRangesPutThem) {
 
 TEST_F(Assemble, TheNominalValuesOfTheRigGiveAFarWorseCloud) {
   simulate({"duration=2s"});
-  const Outcome good = workshop_.assemble("simulation", "good");
-  write_calibration(workshop_ / "nominal.yaml", nominal_calibration(default_rig()));
-  const Outcome bad = workshop_.run("assemble.yaml", workshop_ / "simulation/hub.pcap", "bad",
-                                    {"calibration=" + (workshop_ / "nominal.yaml").string()});
-  ASSERT_EQ(bad.status, ExitStatus::done) << bad.told;
+  const Outcome good = fixture_.assemble("simulation", "good");
+  write_calibration(fixture_ / "nominal.yaml", nominal_calibration(default_rig()));
+  const Outcome bad = fixture_.run("assemble.yaml", fixture_ / "simulation/hub.pcap", "bad",
+                                   {"calibration=" + (fixture_ / "nominal.yaml").string()});
+  ASSERT_EQ(bad.status, ExitStatus::done) << bad.console;
   EXPECT_EQ(bad.cloud->size(), good.cloud->size());
   EXPECT_GT(test::rms(residuals(bad), in_sigmas), 3 * test::rms(residuals(good), in_sigmas));
 }
@@ -90,8 +90,8 @@ TEST_F(Assemble, TheNominalValuesOfTheRigGiveAFarWorseCloud) {
 TEST_F(Assemble, TheSkewsOfTheClocksAreRightWithinOnePpmOverTenMinutes) {
   simulate({"duration=600s", "clock_drift=1.4e-9", "first_angle=0deg", "last_angle=90deg", "step=5deg",
             "plate_frequency=100Hz", "remission=none"});
-  const Outcome outcome = workshop_.assemble("simulation", "out");
-  ASSERT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const Outcome outcome = fixture_.assemble("simulation", "out");
+  ASSERT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   const auto& devices = outcome.stage("clock.convex_hull")["report"]["devices"];
   ASSERT_EQ(devices.size(), 4U);
   for (const auto& device : devices) {

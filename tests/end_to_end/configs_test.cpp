@@ -17,7 +17,7 @@
 #include "pipeline/files/yaml.hpp"
 #include "pipeline/pcd/cloud_table.hpp"
 #include "tests/end_to_end/calibration_errors.hpp"
-#include "tests/end_to_end/workshop.hpp"
+#include "tests/end_to_end/pipeline_fixture.hpp"
 #include "tests/support/source_dir.hpp"
 
 namespace crisp {
@@ -40,33 +40,33 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
-  const test::Workshop workshop;
-  const auto simulated = workshop.run("simulate.yaml", {}, "made", {"grabber.simulate.duration=1s"});
-  EXPECT_EQ(simulated.status, ExitStatus::done) << simulated.told;
+  const test::PipelineFixture fixture;
+  const auto simulated = fixture.run("simulate.yaml", {}, "made", {"grabber.simulate.duration=1s"});
+  EXPECT_EQ(simulated.status, ExitStatus::done) << simulated.console;
   EXPECT_THAT(simulated.files, ElementsAre("hub.pcap", "hub.pcap.provenance.json", "summary.json",
                                            "truth.yaml", "truth.yaml.provenance.json"));
 
-  const auto assembled = workshop.assemble("made", "out");
-  EXPECT_EQ(assembled.status, ExitStatus::done) << assembled.told;
+  const auto assembled = fixture.assemble("made", "out");
+  EXPECT_EQ(assembled.status, ExitStatus::done) << assembled.console;
   EXPECT_THAT(assembled.files, ElementsAre("cloud.pcd", "cloud.pcd.provenance.json", "summary.json"));
   // 1 s at 50 Hz of 3 lasers with 541 beams each, less the part of a turn at either end, in a closed room.
   ASSERT_NE(assembled.cloud, nullptr);
   EXPECT_GT(assembled.cloud->size(), 48U * 3 * 541);
   EXPECT_LE(assembled.cloud->size(), 50U * 3 * 541);
-  EXPECT_THAT(test::bytes_of(workshop / "out/cloud.pcd").substr(0, 1000),
+  EXPECT_THAT(test::bytes_of(fixture / "out/cloud.pcd").substr(0, 1000),
               testing::HasSubstr("DATA binary_compressed"));
 }
 
 TEST(Configs, CalibrateFindsTheScannerAndMakesTheCloudFromACaptureAlone) {
-  const test::Workshop workshop;
-  workshop.simulate("made", {"duration=3s"});
-  const auto outcome = workshop.run("calibrate.yaml", workshop / "made/hub.pcap", "out");
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const test::PipelineFixture fixture;
+  fixture.simulate("made", {"duration=3s"});
+  const auto outcome = fixture.run("calibrate.yaml", fixture / "made/hub.pcap", "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   EXPECT_THAT(outcome.files, ElementsAre("calibration.yaml", "calibration.yaml.provenance.json", "cloud.pcd",
                                          "cloud.pcd.provenance.json", "report.html",
                                          "report.html.provenance.json", "summary.json"));
-  const auto errors = test::errors_of(read_calibration(workshop / "out/calibration.yaml"),
-                                      read_calibration(workshop / "made/truth.yaml"));
+  const auto errors = test::errors_of(read_calibration(fixture / "out/calibration.yaml"),
+                                      read_calibration(fixture / "made/truth.yaml"));
   EXPECT_LE(errors.tau, 0.003);
   EXPECT_LE(errors.lambda, 0.3 * kDegree);
   EXPECT_LE(errors.alpha, 0.3 * kDegree);
@@ -79,49 +79,49 @@ TEST(Configs, CalibrateFindsTheScannerAndMakesTheCloudFromACaptureAlone) {
 }
 
 TEST(Configs, PictureShowsTheCloudBeforeAndAfterACalibration) {
-  const test::Workshop workshop;
-  workshop.simulate("made", {"duration=1s"});
-  const auto drawn = workshop.run("picture.yaml", workshop / "made/hub.pcap", "out",
-                                  {"calibration=" + (workshop / "made/truth.yaml").string()});
-  EXPECT_EQ(drawn.status, ExitStatus::done) << drawn.told;
+  const test::PipelineFixture fixture;
+  fixture.simulate("made", {"duration=1s"});
+  const auto drawn = fixture.run("picture.yaml", fixture / "made/hub.pcap", "out",
+                                 {"calibration=" + (fixture / "made/truth.yaml").string()});
+  EXPECT_EQ(drawn.status, ExitStatus::done) << drawn.console;
   EXPECT_THAT(drawn.files, ElementsAre("after.png", "after.png.provenance.json", "before.png",
                                        "before.png.provenance.json", "summary.json"));
-  EXPECT_NE(test::bytes_of(workshop / "out/before.png"), test::bytes_of(workshop / "out/after.png"));
+  EXPECT_NE(test::bytes_of(fixture / "out/before.png"), test::bytes_of(fixture / "out/after.png"));
 }
 
-TEST(Configs, ReportWritesThePageOfWhatARunLeft) {
-  const test::Workshop workshop;
-  workshop.simulate("made", {"duration=1s"});
-  const auto outcome = workshop.run("report.yaml", workshop / "made", "out");
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-  EXPECT_THAT(test::bytes_of(workshop / "made/report.html"), testing::HasSubstr("grabber.simulate"));
+TEST(Configs, ReportWritesThePageOfARun) {
+  const test::PipelineFixture fixture;
+  fixture.simulate("made", {"duration=1s"});
+  const auto outcome = fixture.run("report.yaml", fixture / "made", "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
+  EXPECT_THAT(test::bytes_of(fixture / "made/report.html"), testing::HasSubstr("grabber.simulate"));
 }
 
 TEST(Configs, ConvertWritesALasFileOfACloud) {
-  const test::Workshop workshop;
-  workshop.simulate("made", {"duration=1s"});
-  ASSERT_EQ(workshop.assemble("made", "cloud").status, ExitStatus::done);
-  const std::string to = (workshop / "cloud.las").string();
-  const auto outcome = workshop.run("convert.yaml", workshop / "cloud/cloud.pcd", "out", {"to=" + to});
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const test::PipelineFixture fixture;
+  fixture.simulate("made", {"duration=1s"});
+  ASSERT_EQ(fixture.assemble("made", "cloud").status, ExitStatus::done);
+  const std::string to = (fixture / "cloud.las").string();
+  const auto outcome = fixture.run("convert.yaml", fixture / "cloud/cloud.pcd", "out", {"to=" + to});
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   EXPECT_THAT(test::bytes_of(to), testing::StartsWith("LASF"));
 }
 
 TEST(Configs, FiguresWritesTheColumnsOfThePapersFigures) {
-  const test::Workshop workshop;
-  const auto outcome = workshop.run("figures.yaml", {}, "out");
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const test::PipelineFixture fixture;
+  const auto outcome = fixture.run("figures.yaml", {}, "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   EXPECT_THAT(outcome.files,
               testing::IsSupersetOf({"fig4_beam.dat", "fig5_surface.dat", "fig6_tau.dat", "fig6_alpha.dat",
                                      "fig6_optimum.dat", "fig7_eta.dat", "summary.json"}));
 }
 
 TEST(Configs, BoundWritesTheLeastErrorOfEachParameter) {
-  const test::Workshop workshop;
-  const auto outcome = workshop.run("bound.yaml", {}, "out", {"study.bound.duration=1s"});
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const test::PipelineFixture fixture;
+  const auto outcome = fixture.run("bound.yaml", {}, "out", {"study.bound.duration=1s"});
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   EXPECT_THAT(outcome.files, ElementsAre("bound.csv", "bound.csv.provenance.json", "summary.json"));
-  const std::string bounds = test::bytes_of(workshop / "out/bound.csv");
+  const std::string bounds = test::bytes_of(fixture / "out/bound.csv");
   EXPECT_EQ(std::ranges::count(bounds, '\n'), 1 + 11)
       << "lambda, tau, alpha, eta of three lasers but lambda 1";
   const auto& report = outcome.stage("study.bound")["report"];
@@ -133,12 +133,12 @@ TEST(Configs, BoundWritesTheLeastErrorOfEachParameter) {
 }
 
 TEST(Configs, MonteCarloWritesEveryRunAndTheTable) {
-  const test::Workshop workshop;
-  const auto outcome = workshop.run("monte_carlo.yaml", {}, "out", {"runs=1"});
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const test::PipelineFixture fixture;
+  const auto outcome = fixture.run("monte_carlo.yaml", {}, "out", {"runs=1"});
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   EXPECT_THAT(outcome.files, ElementsAre("monte_carlo.csv", "monte_carlo.csv.provenance.json", "summary.json",
                                          "table1.txt", "table1.txt.provenance.json"));
-  const std::string runs = test::bytes_of(workshop / "out/monte_carlo.csv");
+  const std::string runs = test::bytes_of(fixture / "out/monte_carlo.csv");
   EXPECT_EQ(std::ranges::count(runs, '\n'), 1 + 11) << "lambda, tau, alpha, eta of three lasers but lambda 1";
 }
 
@@ -183,62 +183,62 @@ struct Emulation {
   std::thread thread;
 };
 
-/// Where the machine is too busy to send telegrams at their pace, their stamps fit no steady
-/// clock, which is said.
+/// Where the machine is too busy to send telegrams at their pace, their stamps fit no clock of constant rate, which is
+/// reported.
 testing::Matcher<ExitStatus> done_as_well_as_may_be() {
   return testing::AnyOf(ExitStatus::done, ExitStatus::not_trusted);
 }
 
 TEST(Configs, EmulateIsAScannerOfWhichLiveMakesACloud) {
-  const test::Workshop workshop;
-  workshop.simulate("made", {"duration=1s"});
-  const FreeLoopback ports(workshop / "rig.yaml");
-  const Emulation emulation(workshop / "rig.yaml", ports.plate);
-  const auto live = workshop.run("live.yaml", {}, "out",
-                                 {"duration=3s", "calibration=" + (workshop / "made/truth.yaml").string()},
-                                 workshop / "rig.yaml");
-  EXPECT_THAT(live.status, done_as_well_as_may_be()) << live.told;
+  const test::PipelineFixture fixture;
+  fixture.simulate("made", {"duration=1s"});
+  const FreeLoopback ports(fixture / "rig.yaml");
+  const Emulation emulation(fixture / "rig.yaml", ports.plate);
+  const auto live = fixture.run("live.yaml", {}, "out",
+                                {"duration=3s", "calibration=" + (fixture / "made/truth.yaml").string()},
+                                fixture / "rig.yaml");
+  EXPECT_THAT(live.status, done_as_well_as_may_be()) << live.console;
   EXPECT_THAT(live.files,
               testing::IsSupersetOf({"cloud_0001.pcd", "cloud_0001.pcd.provenance.json", "summary.json"}));
-  EXPECT_EQ(live.count("grabber.live", "laser1: telegrams that never came, by their counter"), 0U);
-  const auto cloud = cloud_of(read_pcd(workshop / "out/cloud_0001.pcd")).cloud;
+  EXPECT_EQ(live.count("grabber.live", "laser1: lost telegrams, by their counter"), 0U);
+  const auto cloud = cloud_of(read_pcd(fixture / "out/cloud_0001.pcd")).cloud;
   EXPECT_GT(cloud->size(), 541U);  // how many scans came in 3 s depends on the machine
 }
 
 TEST(Configs, LasersAndPlateMayBeGrabbedByAStageEach) {
-  const test::Workshop workshop;
-  workshop.simulate("made", {"duration=1s"});
-  const FreeLoopback ports(workshop / "rig.yaml");
+  const test::PipelineFixture fixture;
+  fixture.simulate("made", {"duration=1s"});
+  const FreeLoopback ports(fixture / "rig.yaml");
   std::string text = read_text_file(source_dir() + "/configs/live.yaml", 1 << 20);
   const std::string both = "  - stage: grabber.live\n    with: {duration: \"${duration}\"}\n";
   ASSERT_NE(text.find(both), std::string::npos);
   text.replace(text.find(both), both.size(),
                "  - stage: grabber.sick\n    with: {duration: \"${duration}\"}\n"
                "  - stage: grabber.plate\n    with: {duration: \"${duration}\"}\n");
-  std::ofstream(workshop / "each.yaml") << text;
-  const Emulation emulation(workshop / "rig.yaml", ports.plate);
-  const auto live = workshop.run((workshop / "each.yaml").string(), {}, "out",
-                                 {"duration=3s", "calibration=" + (workshop / "made/truth.yaml").string()},
-                                 workshop / "rig.yaml");
-  EXPECT_THAT(live.status, done_as_well_as_may_be()) << live.told;
+  std::ofstream(fixture / "each.yaml") << text;
+  const Emulation emulation(fixture / "rig.yaml", ports.plate);
+  const auto live = fixture.run((fixture / "each.yaml").string(), {}, "out",
+                                {"duration=3s", "calibration=" + (fixture / "made/truth.yaml").string()},
+                                fixture / "rig.yaml");
+  EXPECT_THAT(live.status, done_as_well_as_may_be()) << live.console;
   EXPECT_GT(live.stage("clock.online")["taken"]["Scan"], 3);
   EXPECT_GT(live.stage("clock.online")["taken"]["PlateReading"], 3);
   EXPECT_THAT(live.files, testing::Contains("cloud_0001.pcd"));
 }
 
 TEST(Configs, RecordWritesACaptureOfWhichAssembleMakesACloud) {
-  const test::Workshop workshop;
-  workshop.simulate("made", {"duration=1s"});
-  const FreeLoopback ports(workshop / "rig.yaml");
-  const Emulation emulation(workshop / "rig.yaml", ports.plate);
+  const test::PipelineFixture fixture;
+  fixture.simulate("made", {"duration=1s"});
+  const FreeLoopback ports(fixture / "rig.yaml");
+  const Emulation emulation(fixture / "rig.yaml", ports.plate);
   const auto recorded =
-      workshop.run("record.yaml", {}, "recorded", {"grabber.live.duration=3s"}, workshop / "rig.yaml");
-  EXPECT_EQ(recorded.status, ExitStatus::done) << recorded.told;
+      fixture.run("record.yaml", {}, "recorded", {"grabber.live.duration=3s"}, fixture / "rig.yaml");
+  EXPECT_EQ(recorded.status, ExitStatus::done) << recorded.console;
   EXPECT_THAT(recorded.files, ElementsAre("hub.pcap", "hub.pcap.provenance.json", "summary.json"));
   const auto assembled =
-      workshop.run("assemble.yaml", workshop / "recorded/hub.pcap", "out",
-                   {"calibration=" + (workshop / "made/truth.yaml").string()}, workshop / "rig.yaml");
-  EXPECT_THAT(assembled.status, done_as_well_as_may_be()) << assembled.told;
+      fixture.run("assemble.yaml", fixture / "recorded/hub.pcap", "out",
+                  {"calibration=" + (fixture / "made/truth.yaml").string()}, fixture / "rig.yaml");
+  EXPECT_THAT(assembled.status, done_as_well_as_may_be()) << assembled.console;
   EXPECT_EQ(assembled.stage("grabber.capture")["given"], recorded.stage("grabber.live")["given"])
       << "what was received is what is read";
   ASSERT_NE(assembled.cloud, nullptr);
@@ -263,13 +263,13 @@ TEST(Configs, EmulateHasTheRigOfLoopback) {
   EXPECT_EQ(run.rig.plate.counts_per_revolution, loopback.plate.counts_per_revolution);
 }
 
-TEST(Configs, AssembleSaysWhichCalibrationItMisses) {
-  const test::Workshop workshop;
-  workshop.simulate("made", {"duration=1s", "step=2deg"});
-  const auto none = workshop.run("assemble.yaml", workshop / "made/hub.pcap", "out");
+TEST(Configs, AssembleNamesTheMissingCalibration) {
+  const test::PipelineFixture fixture;
+  fixture.simulate("made", {"duration=1s", "step=2deg"});
+  const auto none = fixture.run("assemble.yaml", fixture / "made/hub.pcap", "out");
   EXPECT_EQ(none.status, ExitStatus::failed);
-  EXPECT_THAT(none.told, testing::HasSubstr("there is no calibration " + (workshop / "out").string()));
-  EXPECT_THAT(none.told, testing::HasSubstr("--set calibrate.load.file=FILE"));
+  EXPECT_THAT(none.console, testing::HasSubstr("there is no calibration " + (fixture / "out").string()));
+  EXPECT_THAT(none.console, testing::HasSubstr("--set calibrate.load.file=FILE"));
   EXPECT_THAT(none.files, ElementsAre("summary.json"));
 }
 

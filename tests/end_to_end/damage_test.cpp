@@ -6,8 +6,8 @@
 #include <cstring>
 #include <random>
 
+#include "tests/end_to_end/pipeline_fixture.hpp"
 #include "tests/end_to_end/room.hpp"
-#include "tests/end_to_end/workshop.hpp"
 
 namespace crisp {
 namespace {
@@ -40,18 +40,18 @@ std::vector<std::size_t> borders_of(const std::string& pcap) {
 class Damage : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    workshop = std::make_unique<test::Workshop>();
-    const std::string room = test::write_room(*workshop / "room.yaml").string();
-    workshop->simulate("made", {"duration=1s", "step=5deg", "plate_frequency=200Hz", "scene_file=" + room});
-    capture = test::bytes_of(*workshop / "made/hub.pcap");
+    fixture = std::make_unique<test::PipelineFixture>();
+    const std::string room = test::write_room(*fixture / "room.yaml").string();
+    fixture->simulate("made", {"duration=1s", "step=5deg", "plate_frequency=200Hz", "scene_file=" + room});
+    capture = test::bytes_of(*fixture / "made/hub.pcap");
     borders = borders_of(capture);
-    points = workshop->assemble("made", "whole").cloud->size();
+    points = fixture->assemble("made", "whole").cloud->size();
   }
-  static void TearDownTestSuite() { workshop.reset(); }
+  static void TearDownTestSuite() { fixture.reset(); }
 
   static Outcome assemble(const std::string& bytes) {
-    test::put_bytes(*workshop / "damaged.pcap", bytes);
-    return workshop->assemble("made", "out", *workshop / "damaged.pcap");
+    test::put_bytes(*fixture / "damaged.pcap", bytes);
+    return fixture->assemble("made", "out", *fixture / "damaged.pcap");
   }
 
   /// Either an error and nothing written, or a cloud that lies on the walls as the whole one does.
@@ -59,36 +59,36 @@ class Damage : public testing::Test {
     SCOPED_TRACE(what);
     EXPECT_THAT(outcome.files, Each(Not(HasSubstr(".part"))));
     if (outcome.status == ExitStatus::failed) {
-      EXPECT_THAT(outcome.told, HasSubstr("error: "));
-      EXPECT_THAT(outcome.files, ElementsAre("summary.json")) << "which says so";
+      EXPECT_THAT(outcome.console, HasSubstr("error: "));
+      EXPECT_THAT(outcome.files, ElementsAre("summary.json")) << "which reports it";
       return;
     }
     ASSERT_THAT(outcome.status, AnyOf(ExitStatus::done, ExitStatus::not_trusted));
     EXPECT_EQ(outcome.status == ExitStatus::not_trusted,
-              outcome.told.find("not to be trusted: ") != std::string::npos);
+              outcome.console.find("untrusted: ") != std::string::npos);
     ASSERT_NE(outcome.cloud, nullptr);
     EXPECT_LE(outcome.cloud->size(), points);
     if (outcome.status == ExitStatus::not_trusted) return;
     const auto deviations = test::against_room(*outcome.cloud, {0.2, 0.2, 0.2});
-    EXPECT_LT(test::rms(deviations, [](const auto& each) { return each.distance; }), 0.02) << outcome.told;
+    EXPECT_LT(test::rms(deviations, [](const auto& each) { return each.distance; }), 0.02) << outcome.console;
   }
 
-  static inline std::unique_ptr<test::Workshop> workshop;
+  static inline std::unique_ptr<test::PipelineFixture> fixture;
   static inline std::string capture;
   static inline std::vector<std::size_t> borders;
   static inline std::size_t points = 0;  ///< of the whole capture's cloud
 };
 
-TEST_F(Damage, ACaptureThatIsCutAtOrBesideTheBorderOfAPacketGivesWhatCameBefore) {
+TEST_F(Damage, ACaptureThatIsCutAtOrNextToTheBorderOfAPacketGivesWhatCameBefore) {
   for (std::size_t i = 0; i < borders.size(); i += i < 30 ? 1 : 23) {
-    for (const int beside : {-1, 0, 1}) {
-      const std::size_t end = borders[i] + static_cast<std::size_t>(beside);
+    for (const int given : {-1, 0, 1}) {
+      const std::size_t end = borders[i] + static_cast<std::size_t>(given);
       if (end > capture.size()) continue;
       const Outcome outcome = assemble(capture.substr(0, end));
       expect_sound(outcome, "cut at " + std::to_string(end));
       if (outcome.status != ExitStatus::done) continue;
       const auto cut_off =
-          outcome.count("grabber.capture", "bytes of a record that the end of the file cuts off");
+          outcome.count("grabber.capture", "bytes of a record truncated by the end of the file");
       EXPECT_EQ(cut_off, end - *std::prev(std::upper_bound(borders.begin(), borders.end(), end)));
     }
   }
@@ -102,7 +102,7 @@ TEST_F(Damage, ACaptureThatIsCutAnywhereGivesWhatCameBefore) {
     const Outcome outcome = assemble(capture.substr(0, end));
     expect_sound(outcome, "cut at " + std::to_string(end));
     if (end < capture.size() / 2) continue;
-    EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+    EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   }
 }
 
@@ -122,11 +122,11 @@ TEST_F(Damage, FlippedBitsAnywhereLeaveASoundCloudOrAnError) {
 
 TEST_F(Damage, FilesThatAreNoCapturesAreRefused) {
   for (const std::string& bytes : {std::string(), std::string("hello"), std::string(5000, '\0'),
-                                   test::bytes_of(*workshop / "made/truth.yaml"), capture.substr(24)}) {
+                                   test::bytes_of(*fixture / "made/truth.yaml"), capture.substr(24)}) {
     const Outcome outcome = assemble(bytes);
     EXPECT_EQ(outcome.status, ExitStatus::failed);
-    EXPECT_THAT(outcome.told, HasSubstr("error: grabber.capture: "));
-    EXPECT_THAT(outcome.files, ElementsAre("summary.json")) << "which says so";
+    EXPECT_THAT(outcome.console, HasSubstr("error: grabber.capture: "));
+    EXPECT_THAT(outcome.files, ElementsAre("summary.json")) << "which reports it";
   }
 }
 

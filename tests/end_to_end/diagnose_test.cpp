@@ -5,7 +5,7 @@
 
 #include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/findings_file.hpp"
-#include "tests/end_to_end/workshop.hpp"
+#include "tests/end_to_end/pipeline_fixture.hpp"
 
 namespace crisp {
 namespace {
@@ -13,10 +13,10 @@ namespace {
 using testing::ElementsAre;
 
 TEST(Configs, DiagnoseNamesTheCauseAndExtendsTheCalibration) {
-  const test::Workshop workshop;
-  workshop.simulate("made", {"duration=4s", "effects={laser2.range.offset: {c: 2cm}}"});
-  const auto outcome = workshop.run("diagnose.yaml", workshop / "made/hub.pcap", "out");
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  const test::PipelineFixture fixture;
+  fixture.simulate("made", {"duration=4s", "effects={laser2.range.offset: {c: 2cm}}"});
+  const auto outcome = fixture.run("diagnose.yaml", fixture / "made/hub.pcap", "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   EXPECT_THAT(
       outcome.files,
       ElementsAre("calibration.yaml", "calibration.yaml.provenance.json", "cloud.pcd",
@@ -30,12 +30,12 @@ TEST(Configs, DiagnoseNamesTheCauseAndExtendsTheCalibration) {
                   "laser3_stamps.svg.provenance.json", "plate_stamps.svg", "plate_stamps.svg.provenance.json",
                   "report.html", "report.html.provenance.json", "scanner_residuals.svg",
                   "scanner_residuals.svg.provenance.json", "summary.json"));
-  const auto diagnosis = nlohmann::json::parse(test::bytes_of(workshop / "out/diagnosis.json"));
+  const auto diagnosis = nlohmann::json::parse(test::bytes_of(fixture / "out/diagnosis.json"));
   ASSERT_EQ(diagnosis["findings"].size(), 1U);
   EXPECT_EQ(diagnosis["findings"][0]["cause"], "range.offset");
   EXPECT_EQ(diagnosis["findings"][0]["scope"], "laser2");
   EXPECT_TRUE(diagnosis["findings"][0]["accepted"]);
-  const Calibration calibration = read_calibration(workshop / "out/calibration.yaml");
+  const Calibration calibration = read_calibration(fixture / "out/calibration.yaml");
   ASSERT_EQ(calibration.lasers.at(1).terms.size(), 1U);
   EXPECT_NEAR(calibration.lasers[1].terms[0].parameters.at(0).value, 0.02, 0.001);
   EXPECT_FALSE(calibration.quality.contains("rqe_after")) << "it was that of the calibration before";
@@ -43,20 +43,20 @@ TEST(Configs, DiagnoseNamesTheCauseAndExtendsTheCalibration) {
 }
 
 TEST(Configs, DiagnoseTakesAFolderOfCapturesOfOneScanner) {
-  const test::Workshop workshop;
-  workshop.simulate("first", {"duration=4s", "effects={laser2.range.offset: {c: 2cm}}"});
-  const std::string truth = (workshop / "first/truth.yaml").string();
-  workshop.simulate("second",
-                    {"duration=4s", "scene=hall", "seed=7", "start=1767229200s", "calibration=" + truth});
-  const auto captures = workshop / "captures";
+  const test::PipelineFixture fixture;
+  fixture.simulate("first", {"duration=4s", "effects={laser2.range.offset: {c: 2cm}}"});
+  const std::string truth = (fixture / "first/truth.yaml").string();
+  fixture.simulate("second",
+                   {"duration=4s", "scene=hall", "seed=7", "start=1767229200s", "calibration=" + truth});
+  const auto captures = fixture / "captures";
   std::filesystem::create_directory(captures);
-  std::filesystem::rename(workshop / "first/hub.pcap", captures / "office.pcap");
-  std::filesystem::rename(workshop / "second/hub.pcap", captures / "hall.pcap");
-  const auto outcome = workshop.run("diagnose.yaml", captures, "out");
-  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
+  std::filesystem::rename(fixture / "first/hub.pcap", captures / "office.pcap");
+  std::filesystem::rename(fixture / "second/hub.pcap", captures / "hall.pcap");
+  const auto outcome = fixture.run("diagnose.yaml", captures, "out");
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   EXPECT_EQ(outcome.stage("calibrate.refine")["report"]["recordings"].size(), 2U);
   EXPECT_THAT(outcome.files, testing::IsSupersetOf({"cloud_0001.pcd", "cloud_0002.pcd"})) << "a place each";
-  const auto diagnosis = nlohmann::json::parse(test::bytes_of(workshop / "out/diagnosis.json"));
+  const auto diagnosis = nlohmann::json::parse(test::bytes_of(fixture / "out/diagnosis.json"));
   ASSERT_EQ(diagnosis["findings"].size(), 1U);
   EXPECT_EQ(diagnosis["findings"][0]["cause"], "range.offset");
   EXPECT_EQ(diagnosis["findings"][0]["scope"], "laser2");
@@ -64,26 +64,27 @@ TEST(Configs, DiagnoseTakesAFolderOfCapturesOfOneScanner) {
   EXPECT_TRUE(std::ranges::any_of(unobservable, [](const auto& one) {
     return one["cause"] == "encoder.eccentricity";
   })) << "the encoders of two simulations count from different zeros";
-  const Calibration calibration = read_calibration(workshop / "out/calibration.yaml");
+  const Calibration calibration = read_calibration(fixture / "out/calibration.yaml");
   ASSERT_EQ(calibration.lasers.at(1).terms.size(), 1U);
   EXPECT_NEAR(calibration.lasers[1].terms[0].parameters.at(0).value, 0.02, 0.001);
 }
 
 TEST(Configs, DiagnoseFindsNoiseOverIncidenceAndWeakEchoesThatASimulatedScannerThenHas) {
-  const test::Workshop workshop;
+  const test::PipelineFixture fixture;
   const std::vector<std::string> causes = {"noise.incidence_dependent", "noise.remission_dependent"};
   const auto found_in = [&](const std::string& capture, const std::string& output) {
-    const auto outcome = workshop.run("diagnose.yaml", workshop / capture, output);
-    EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.told;
-    return read_findings(workshop / (output + "/diagnosis.json")).findings;
+    const auto outcome = fixture.run("diagnose.yaml", fixture / capture, output);
+    EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
+    return read_findings(fixture / (output + "/diagnosis.json")).findings;
   };
-  workshop.simulate("made", {"duration=4s",
-                             "effects={laser1.noise.incidence_dependent: {spread: 9mm}, "
-                             "laser2.noise.remission_dependent: {jitter: 90mm}}"});
+  fixture.simulate(
+      "made",
+      {"duration=4s",
+       "effects={laser1.noise.incidence_dependent: {spread: 9mm}, laser2.noise.remission_dependent: {jitter: 90mm}}"});
   const auto first = found_in("made/hub.pcap", "first");
-  const auto simulated = workshop.run("like_real.yaml", workshop / "first", "again",
-                                      {"grabber.simulate.duration=4s", "grabber.simulate.seed=77"});
-  EXPECT_EQ(simulated.status, ExitStatus::done) << simulated.told;
+  const auto simulated = fixture.run("like_real.yaml", fixture / "first", "again",
+                                     {"grabber.simulate.duration=4s", "grabber.simulate.seed=77"});
+  EXPECT_EQ(simulated.status, ExitStatus::done) << simulated.console;
   const auto second = found_in("again/hub.pcap", "second");
   const std::vector<double> truth = {9e-3, 90e-3};
   ASSERT_EQ(first.size(), truth.size());

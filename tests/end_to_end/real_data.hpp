@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/end_to_end/workshop.hpp"
+#include "tests/end_to_end/pipeline_fixture.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace crisp::test {
@@ -27,9 +27,9 @@ class OnRealData : public testing::Test {
   bool run(const std::string& config, const std::string& recording,
            const std::vector<std::string>& set = {}) {
     if (!at_hand(recording)) return false;
-    outcome_ = workshop_.run("real/" + config, shared_data() / recording, "out", set);
-    EXPECT_EQ(outcome_.status, ExitStatus::done) << outcome_.told;
-    diagnosis_ = nlohmann::json::parse(bytes_of(workshop_ / "out/diagnosis.json"));
+    outcome_ = fixture_.run("real/" + config, shared_data() / recording, "out", set);
+    EXPECT_EQ(outcome_.status, ExitStatus::done) << outcome_.console;
+    diagnosis_ = nlohmann::json::parse(bytes_of(fixture_ / "out/diagnosis.json"));
     return true;
   }
 
@@ -41,7 +41,7 @@ class OnRealData : public testing::Test {
     return {};
   }
 
-  const Workshop workshop_;
+  const PipelineFixture fixture_;
   Outcome outcome_;           // of the last run
   nlohmann::json diagnosis_;  // likewise
 

@@ -20,8 +20,8 @@ Eigen::Matrix3d turn(double angle) {
 }
 
 /// The direction of the beam that ended at `point`. With α = 0 the scan plane stands on the radius to the
-/// laser, τ from the axis: seen from above laser, axis and point make a right angle at the laser. Which way
-/// the mirror looked, to the left or to the right of the radius, is in the beam's number.
+/// laser, τ from the axis: seen from above laser, axis and point make a right angle at the laser. The beam's
+/// number determines the side of the radius, left or right.
 Eigen::Vector3d direction_of(const Eigen::Vector3d& point, double tau, bool left) {
   const double across = std::sqrt(std::max(0.0, point.head<2>().squaredNorm() - tau * tau));
   const double to_radius = std::atan2(left ? across : -across, tau);
@@ -39,7 +39,7 @@ std::filesystem::path write_room(const std::filesystem::path& file) {
 }
 
 std::vector<Residual> against_room(const Cloud& cloud, const std::vector<double>& tau) {
-  constexpr int kDown = 180;  // the beam that looks straight down: reported 45°, in steps of 0.5° from -45°
+  constexpr int kDown = 180;  // the vertical beam: reported 45°, in steps of 0.5° from -45°
   std::vector<Residual> residuals;
   for (const Point& each : cloud) {
     const Eigen::Vector3d point = each.getVector3fMap().cast<double>();

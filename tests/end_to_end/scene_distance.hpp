@@ -11,8 +11,8 @@ namespace crisp::test {
 /// drown the rest.
 struct SceneDistance {
   double as_it_is = 0;
-  /// After the turn of the whole cloud about the spin axis that fits best. The azimuth of the first laser,
-  /// which the frame hangs on, is a convention, and no recording tells how its α is shared with it.
+  /// After the rotation of the whole cloud about the spin axis that fits best. The azimuth of the first laser
+  /// defines the frame, and no recording determines its share of α.
   double turned = 0;
   double turn = 0;  ///< [rad] this one
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What recordings of SICK lasers at rest show that the plain simulator has none of, found by
-// configs/real/sick.yaml. The figures are those of an independent look at the same recordings. Skipped where
-// they are not at hand.
+// Systematic errors of stationary SICK lasers that the plain simulator lacks, identified by
+// configs/real/sick.yaml. The figures are those of an independent evaluation of the same recordings. Skipped
+// where they are not at hand.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ TEST_F(SickData, AnLms111TurnsSlowlyJumpsAndScattersAboutTwoValues) {
   EXPECT_THAT(accepted(), testing::UnorderedElementsAre("mirror.period", "range.step", "noise.two_peaks"));
   EXPECT_NEAR(number("mirror.period", "excess"), 114.5e-6, 1e-6);  // 20 114.5 us for 20 000
   // 23.6 standard errors, by 21 pieces: (23.6² − ln 21) / 2 ln 10.
-  EXPECT_NEAR(double{finding("mirror.period")["log10_odds"]}, 120, 2);
+  EXPECT_NEAR(double{finding("mirror.period")["log10_bayes_factor"]}, 120, 2);
   EXPECT_NEAR(number("range.step", "h"), -2.05e-3, 3 * number("range.step", "h", "std_error"));
   EXPECT_GT(number("noise.two_peaks", "separation"), 13.5e-3);
   EXPECT_LT(number("noise.two_peaks", "separation"), 16.7e-3);
@@ -52,24 +52,24 @@ TEST_F(SickData, AnLms111TurnsSlowlyJumpsAndScattersAboutTwoValues) {
     const auto& ci95 = finding["gain"][0]["ci95"];
     EXPECT_GT(cause == "noise.two_peaks" ? double{ci95[0]} : -double{ci95[1]}, 0) << cause;
   }
-  EXPECT_LT(diagnosis_["indistinguishable"]["before_p"], 1e-100);
-  EXPECT_LT(diagnosis_["indistinguishable"]["after_p"], 1e-6) << "of what each beam does for itself";
+  EXPECT_LT(diagnosis_["goodness_of_fit"]["before_p"], 1e-100);
+  EXPECT_LT(diagnosis_["goodness_of_fit"]["after_p"], 1e-6) << "of what each beam does for itself";
   for (const auto& departure : diagnosis_["departures"]) {
     EXPECT_LT(departure["amplitude_after"], departure["amplitude"]) << departure["covariate"];
   }
 }
 
-TEST_F(SickData, AnLms111AnswersToWhatIsPutIn) {
+TEST_F(SickData, AnLms111AnswersToWhatIsInjected) {
   const std::string put_in =
       "{mirror.period: {excess: 20us}, latency.step: {by: 1ms, at: 1.7s}, noise.normal: {sigma: 5mm}}";
-  if (!run("answers.yaml", "sick/lms111-20210302-colab-rebuilt.pcap", {"simulate.put_in.effects=" + put_in}))
+  if (!run("answers.yaml", "sick/lms111-20210302-colab-rebuilt.pcap", {"simulate.inject.effects=" + put_in}))
     return;
   EXPECT_NEAR(number("mirror.period", "excess"), 114.5e-6 + 20e-6, 1e-6);
   EXPECT_NEAR(number("latency.step", "by"), 1e-3, 4 * number("latency.step", "by", "std_error"));
   const nlohmann::json gain = finding("mirror.period")["gain"][0];
   EXPECT_NEAR(gain["before"], 119.6e-6 + 20e-6, 1e-6) << "119.6 us of its own";
   const nlohmann::json noise = finding("noise.two_peaks")["gain"][0];
-  // 3.434 nat for 7.81 mm (RMS) of its own, and 5 mm beside them.
+  // 3.434 nat for 7.81 mm (RMS) of its own, and an injected 5 mm.
   EXPECT_NEAR(noise["before"], 3.434 - std::log(std::hypot(7.81, 5) / 7.81), 0.01);
 }
 
@@ -83,19 +83,19 @@ TEST_F(SickData, ATim781KeepsItsRateAndItsNoiseHasOnePeak) {
   EXPECT_NEAR(device["period"], 66'666.3e-6, 3 * double{device["period_std_error"]});
   EXPECT_NEAR(device["skew"], 4.5e-6, 2e-6);
   EXPECT_TRUE(has_unnamed("beam")) << "targets differ, and so does what is scattered";
-  EXPECT_TRUE(has_unnamed("time")) << "beside the jump ranges wander";
+  EXPECT_TRUE(has_unnamed("time")) << "apart from the step ranges wander";
 }
 
 TEST_F(SickData, AnLms511BeforeWhichSomebodyMovesIsGivenNoJump) {
   for (const std::string day : {"20210301", "20210302"}) {
     if (!run("telegrams.yaml", "sick/lms511-" + day + "-colab.json")) return;
-    EXPECT_THAT(accepted(), testing::ElementsAre("scene.moving")) << day << ": no tails of who moves";
-    EXPECT_TRUE(has_unnamed("time")) << "0.3 mm within 5 s, by an independent look";
+    EXPECT_THAT(accepted(), testing::ElementsAre("scene.moving")) << day << ": no tails by moving people";
+    EXPECT_TRUE(has_unnamed("time")) << "0.3 mm within 5 s, by an independent evaluation";
     EXPECT_TRUE(has_unnamed("beam"));
     const auto& device = diagnosis_["devices"].at(0);
     EXPECT_NEAR(device["period"], 40'001e-6, 3 * double{device["period_std_error"]});
     EXPECT_NEAR(double{device["skew"]}, 5e-6, 3 * double{device["skew_std_error"]})
-        << "3 and 7 ppm by that look";
+        << "3 and 7 ppm by that evaluation";
     EXPECT_NEAR(double{device["delay_median"]}, 53.5e-6, 12e-6) << "44 to 63 us";
     EXPECT_NEAR(double{device["delay_95"]}, 158e-6, 40e-6) << "127 to 190 us";
   }

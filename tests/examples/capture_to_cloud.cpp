@@ -33,7 +33,7 @@ crisp::Cloud cloud_of(const char* capture, const crisp::Rig& rig, const crisp::C
   crisp::CaptureReader reader(capture, rig);
   while (const auto item = reader.next()) std::visit([&](const auto& each) { aligner.add(each); }, *item);
   const crisp::AlignmentReport report = aligner.finish();
-  for (const auto& doubt : report.doubts) std::cerr << "not to be trusted: " << doubt << "\n";
+  for (const auto& caveat : report.caveats) std::cerr << "untrusted: " << caveat << "\n";
   return cloud;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A PCL program on a live scanner: a viewer without a display, which says how many points each revolution of
-// the plate has.
+// A PCL program on a live scanner: a viewer without a display, which prints the number of points of each
+// revolution of the plate.
 //
 //     live_viewer RIG.yaml CALIBRATION.yaml CLOUDS
 #include <condition_variable>
@@ -14,7 +14,7 @@
 
 namespace {
 
-void watch(const crisp::Rig& rig, const crisp::Calibration& calibration, long wanted) {
+void watch(const crisp::Rig& rig, const crisp::Calibration& calibration, long requested) {
   crisp::LiveCloudGrabber grabber(rig, calibration);
   std::mutex mutex;
   std::condition_variable changed;
@@ -27,7 +27,7 @@ void watch(const crisp::Rig& rig, const crisp::Calibration& calibration, long wa
   grabber.registerCallback(show);
   grabber.start();
   std::unique_lock lock(mutex);
-  changed.wait(lock, [&] { return clouds >= wanted || !grabber.isRunning(); });
+  changed.wait(lock, [&] { return clouds >= requested || !grabber.isRunning(); });
   lock.unlock();
   grabber.stop();
   if (grabber.error()) std::rethrow_exception(grabber.error());

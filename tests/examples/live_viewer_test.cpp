@@ -32,7 +32,7 @@ void write_rig(const std::filesystem::path& file, const Rig& rig) {
 }
 
 struct Ended {
-  std::string said;
+  std::string printed;
   int status = -1;
 };
 
@@ -40,7 +40,7 @@ Ended run(const std::string& command) {
   std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   Ended ended;
   std::array<char, 256> line{};
-  while (std::fgets(line.data(), line.size(), pipe) != nullptr) ended.said += line.data();
+  while (std::fgets(line.data(), line.size(), pipe) != nullptr) ended.printed += line.data();
   ended.status = pclose(pipe);
   return ended;
 }
@@ -72,26 +72,26 @@ TEST(LiveViewer, PrintsThePointsOfEachRevolution) {
                           (folder / "truth.yaml").string() + " 3");
   over = true;
   scanner.join();
-  EXPECT_EQ(ended.status, 0) << ended.said;
-  std::istringstream lines(ended.said);
+  EXPECT_EQ(ended.status, 0) << ended.printed;
+  std::istringstream lines(ended.printed);
   std::string word;
   std::size_t most =
-      0;  // a busy machine loses the greater part of a revolution, and says so in a smaller cloud
+      0;  // a busy machine loses the greater part of a revolution, which shows in a smaller cloud
   for (int k = 1; k <= 3; ++k) {
     int number = 0;
     std::size_t points = 0;
     lines >> word >> number >> word >> points >> word;
-    EXPECT_EQ(number, k) << ended.said;
-    EXPECT_GT(points, 0U) << ended.said;
+    EXPECT_EQ(number, k) << ended.printed;
+    EXPECT_GT(points, 0U) << ended.printed;
     most = std::max(most, points);
   }
-  EXPECT_GT(most, 541U) << "more than one scan: " << ended.said;
+  EXPECT_GT(most, 541U) << "more than one scan: " << ended.printed;
 }
 
-TEST(LiveViewer, SaysWhatIsWrong) {
+TEST(LiveViewer, ReportsErrors) {
   const Ended ended = run(std::string(LIVE_VIEWER) + " none.yaml none.yaml 1");
   EXPECT_NE(ended.status, 0);
-  EXPECT_NE(ended.said.find("none.yaml"), std::string::npos) << ended.said;
+  EXPECT_NE(ended.printed.find("none.yaml"), std::string::npos) << ended.printed;
 }
 
 }  // namespace

@@ -32,8 +32,8 @@ int find_code(dl_phdr_info* object, std::size_t, void* range) {
   return 1;
 }
 
-/// Lets all pass that comes from elsewhere than this part of the memory. Of one that lies across a multiple
-/// of 4 GiB, as one program in two thousand finds it, the larger part counts.
+/// Passes all calls from outside of this part of the memory. For one that lies across a multiple of 4 GiB, as
+/// one program in two thousand finds it, the larger part counts.
 void add_range(std::vector<sock_filter>& program, Range range) {
   constexpr auto kAddress = offsetof(seccomp_data, instruction_pointer);
   const auto lower = [](std::uintptr_t address) { return static_cast<std::uint32_t>(address); };

@@ -9,8 +9,7 @@ namespace crisp::test {
 namespace {
 
 constexpr const char* kColumns =
-    "faults | survived | refused (exit 2) | failed (exit 1) | untrusted (exit 3) | killed | guarantee broken "
-    "|\n";
+    "faults | survived | refused (exit 2) | failed (exit 1) | untrusted (exit 3) | killed | guarantee broken |\n";
 
 }  // namespace
 

@@ -90,13 +90,13 @@ bool is_whole(const std::string& name, const std::string& bytes, bool may_be_cut
 
 bool same_file(const std::string& name, const Files& files, const Files& expected) {
   const auto found = files.find(name);
-  const auto wanted = expected.find(name);
-  if (found == files.end() || wanted == expected.end())
-    return found == files.end() && wanted == expected.end();
-  if (is_record(name)) return same_record(found->second, wanted->second);
-  if (name == "batch.json") return counts_of(found->second) == counts_of(wanted->second);
+  const auto requested = expected.find(name);
+  if (found == files.end() || requested == expected.end())
+    return found == files.end() && requested == expected.end();
+  if (is_record(name)) return same_record(found->second, requested->second);
+  if (name == "batch.json") return counts_of(found->second) == counts_of(requested->second);
   if (is_account(name)) return is_whole(name, found->second, false);
-  return found->second == wanted->second;
+  return found->second == requested->second;
 }
 
 }  // namespace crisp::test

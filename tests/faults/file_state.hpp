@@ -17,8 +17,8 @@ bool is_hidden(const std::string& name);
 bool is_record(const std::string& name);
 /// A batch's own account: its manifest and the tables that are made of it.
 bool is_account(const std::string& name);
-/// Whether the file is whole, as far as its content tells; the last line or record of one that grows may be
-/// cut off where the program was killed.
+/// Whether the file is complete, as far as its content shows; the last line or record of one that grows may
+/// be cut off where the program was killed.
 bool is_whole(const std::string& name, const std::string& bytes, bool may_be_cut);
 
 /// Whether both sets have the file, and with the same content but for times, or neither does.

@@ -50,7 +50,7 @@ class Judge {
  private:
   bool is_done() const { return end_.signal == 0 && end_.status == stage_.status(); }
   void violate(const std::string& what) { verdict_.violations.push_back(what); }
-  /// Of the fault; none where the program was killed at some moment.
+  /// The call of the fault; none where the program was killed at some moment.
   std::string call() const { return fault_.call == 0 || end_.calls.empty() ? "" : end_.calls.front().name; }
   bool is_live() const { return stage_.scenario().command == Command::record; }
 
@@ -126,7 +126,7 @@ class Judge {
       violate(name + " was shortened");
   }
 
-  /// No record of the earlier run stays beside a file of this one.
+  /// No record of the earlier run remains next to a file of this one.
   void check_records(const Files& files) {
     for (const auto& [name, bytes] : files) {
       const bool is_result = !is_record(name) && !is_hidden(name) && !is_account(name);
@@ -136,7 +136,7 @@ class Judge {
         const auto of = stage_.earlier().find(record);
         const auto now = files.find(record);
         if (of != stage_.earlier().end() && now != files.end() && of->second == now->second)
-          violate(record + " of the earlier run beside " + name + " of this one");
+          violate(record + " of the earlier run next to " + name + " of this one");
       }
     }
   }

@@ -8,7 +8,7 @@ constexpr const char* kStamps = R"(crisp: 1
 pipeline:
   - stage: grabber.capture
     with: {file: "${input}"}
-  - stage: diagnose.stamps
+  - stage: diagnose.clocks
     with: {folder: "${output}"}
   - stage: clock.convex_hull
   - stage: calibrate.load

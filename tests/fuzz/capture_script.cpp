@@ -16,7 +16,7 @@ constexpr std::size_t kParts = 256;  // of a capture
 constexpr std::size_t kLasers = 3;
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-Rig strangers() {
+Rig unknown_devices() {
   Rig rig = default_rig();
   for (auto& laser : rig.lasers) laser.address.ip.replace(laser.address.ip.rfind('.') + 1, 1, "20");
   for (std::size_t i = 0; i < rig.lasers.size(); ++i) rig.lasers[i].address.ip += std::to_string(i);
@@ -24,7 +24,7 @@ Rig strangers() {
   return rig;
 }
 
-/// The telegram of a scan; nothing if no telegram can say it.
+/// The telegram of a scan; nothing if no telegram can encode it.
 std::optional<ScanData> telegram_of(const Scan& scan) {
   try {
     return to_scan_data(scan);
@@ -38,7 +38,7 @@ bool is_readable(const Scan& scan) {
   return std::ranges::any_of(scan.echoes.front().ranges, [](float range) { return range > 0; });
 }
 
-/// As many seconds as a pcap file can say.
+/// Clips to the seconds that a pcap file can store.
 std::int64_t in_era(std::int64_t ns) {
   constexpr std::int64_t kEra = (std::int64_t{1} << 32) * kSecond;
   return (ns % kEra + kEra) % kEra;
@@ -53,7 +53,7 @@ bool is_from_or_to(const Frame& frame, std::uint8_t host) {
 
 }  // namespace
 
-/// The network of the hub: the rig's devices, and as many strangers.
+/// The network of the hub: the rig's devices, and as many unknown ones.
 class CaptureScript::Network {
  public:
   explicit Network(ColaLanguage language)
@@ -63,23 +63,23 @@ class CaptureScript::Network {
             },
             0),
         own_(default_rig(), language, sink()),
-        other_(strangers(), language, sink()) {}
+        other_(unknown_devices(), language, sink()) {}
 
   void connect(std::size_t laser, std::int64_t ns) {
     constexpr std::int64_t kHandshake = 5'000'000;
     own_.connect(laser, ns - kHandshake);
     connected_[laser] = true;
   }
-  void send_scan(std::size_t laser, bool is_stranger, ByteView telegram, std::int64_t ns) {
-    const std::size_t connection = laser + (is_stranger ? kLasers : 0);
-    HubTraffic& hub = is_stranger ? other_ : own_;
+  void send_scan(std::size_t laser, bool is_unknown, ByteView telegram, std::int64_t ns) {
+    const std::size_t connection = laser + (is_unknown ? kLasers : 0);
+    HubTraffic& hub = is_unknown ? other_ : own_;
     if (!connected_.at(connection)) hub.connect(laser, ns - kSecond / 100);
     connected_[connection] = true;
     hub.telegram(laser, telegram, ns);
     sorter_.finish();
   }
-  void send_reading(bool is_stranger, ByteView sentence, std::int64_t ns) {
-    (is_stranger ? other_ : own_).datagram(sentence, ns);
+  void send_reading(bool is_unknown, ByteView sentence, std::int64_t ns) {
+    (is_unknown ? other_ : own_).datagram(sentence, ns);
     sorter_.finish();
   }
   std::vector<Frame> frames() { return std::move(frames_); }
@@ -132,24 +132,24 @@ void CaptureScript::send(const ItemSequence& items, std::size_t index, Network& 
   const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&items[index]);
   const std::size_t device = scan == nullptr ? kPlateDevice : (*scan)->laser;
   if (device > kPlateDevice || (scan != nullptr && device == kPlateDevice)) return;
-  bool is_stranger = false;
+  bool is_unknown = false;
   std::size_t laser = device;
   for (const Edit& edit : edits_) {
     const bool begins = index == items.size() * edit.begin / kParts;
     if (edit.operation == Operation::reconnect && begins)
       network.connect(edit.argument % kLasers, receipt_ns(items[index]));
     if (!covers(edit, index, items.size())) continue;
-    if (edit.operation == Operation::unknown_address && edit.argument % 4U == device) is_stranger = true;
+    if (edit.operation == Operation::unknown_address && edit.argument % 4U == device) is_unknown = true;
     if (edit.operation == Operation::same_address && edit.argument % kLasers == device)
       laser = (device + 1) % kLasers;
   }
   if (scan == nullptr) {
     const auto& reading = std::get<PlateReading>(items[index]);
-    return network.send_reading(is_stranger, as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
+    return network.send_reading(is_unknown, as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
   }
   const auto data = telegram_of(**scan);
   if (!data) return;
-  network.send_scan(laser, is_stranger, encode_scan_data(*data, language_), (*scan)->receipt_ns);
+  network.send_scan(laser, is_unknown, encode_scan_data(*data, language_), (*scan)->receipt_ns);
   const bool is_new = counters_[device] != (*scan)->telegram_counter;
   counters_[device] = (*scan)->telegram_counter;
   if (is_new && is_readable(**scan)) ++scans_[device];

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostItems = 1200;
 constexpr double kHubBegin = 1'700'000'000.3;  // [s since the Unix epoch]
-/// [s] From what delays hide to what counters wrap by; a leap second, TAI beside UTC, a wrap of the devices'
+/// [s] From jumps below the delays to counter wraps; a leap second, TAI against UTC, a wrap of the devices'
 /// clocks, and of 32 bits of seconds.
 constexpr std::array kJumps = {0.0, 1e-4, 1e-3, 0.02, 0.05,  0.25,   0.5,         1.0,
                                3.0, 6.0,  31.0, 37.0, 600.0, 3600.0, 4294.967296, 86400.0 * 400};
@@ -97,7 +97,7 @@ void ItemScript::operate(unsigned operation, std::size_t index, std::uint8_t arg
   }
 }
 
-/// 25 scans a second of each laser, and 100 readings, where nothing else was said.
+/// 25 scans a second of each laser, and 100 readings, by default.
 void ItemScript::send_for(double seconds) {
   constexpr double kInterval = 0.01;
   const int n = static_cast<int>(std::lround(seconds / kInterval));

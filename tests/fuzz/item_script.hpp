@@ -13,7 +13,7 @@
 
 namespace crisp {
 
-/// Scans and plate readings in the order in which a hub received them.
+/// Scans and encoder readings in the order in which a hub received them.
 using ItemSequence = std::vector<std::variant<std::shared_ptr<const Scan>, PlateReading>>;
 
 inline constexpr std::size_t kPlateDevice = 3;  ///< behind three lasers

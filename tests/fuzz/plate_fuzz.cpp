@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The plate's sentences: what is found does not depend on how the stream is cut, and each reading is written
-// as a sentence that says the same.
+// The plate's sentences: the result does not depend on how the stream is cut, and each reading is encoded as
+// an equivalent sentence.
 #include <cstdint>
 #include <cstdlib>
 #include <vector>

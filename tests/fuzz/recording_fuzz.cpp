@@ -71,10 +71,10 @@ const Registrar& registrar() {
   return all;
 }
 
-/// Whether a stage warns of something, or says that its results cannot be trusted.
+/// Whether a stage warns of something, or marks its results untrusted.
 bool is_named(const std::vector<NodeResult>& results) {
   return std::ranges::any_of(results, [](const NodeResult& result) {
-    return !result.report.warnings.empty() || !result.report.doubts.empty();
+    return !result.report.warnings.empty() || !result.report.caveats.empty();
   });
 }
 
@@ -106,7 +106,7 @@ void place(const CaptureScript& script, const std::string& file, const char* clo
     }
     require(false, "losses are named");
   } catch (const Error& error) {
-    require(!error.message().empty(), "an error says what happened");
+    require(!error.message().empty(), "an error has a message");
   }
 }
 
@@ -116,7 +116,7 @@ void place(std::span<const std::uint8_t> bytes) {
   for (const char* clock : {"clock.convex_hull", "clock.online"}) place(script, file.path(), clock);
 }
 
-/// What is regular is placed.
+/// Regular data are placed.
 bool place_four_seconds() {
   constexpr std::array<std::uint8_t, 3> kScript = {0, 0, 200};  // no edits; all devices send for 201 · 20 ms
   place(kScript);

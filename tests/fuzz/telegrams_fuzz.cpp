@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lists of telegrams: whatever the text is, bytes and times, counted losses, or an error that says where.
+// Lists of telegrams: any text gives bytes and times, counted losses, or an error with its place.
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>

@@ -196,8 +196,7 @@ bool check(const std::string& folder) {
     const double sd = robust_sd(found), quantization = 5 * kTurn / setup.plate.counts / std::sqrt(12);
     const double limit = 1.1 * std::hypot(laser.sigma, quantization) + 1e-3;
     std::printf(
-        "%s: %zu scans, %zu beams checked, median residual %.2f mm, sd %.2f mm (noise %.2f mm), "
-        "sd at eta -2 ms %.2f mm, +2 ms %.2f mm\n",
+        "%s: %zu scans, %zu beams checked, median residual %.2f mm, sd %.2f mm (noise %.2f mm), sd at eta -2 ms %.2f mm, +2 ms %.2f mm\n",
         laser.name.c_str(), scans->second.size(), found.size(), 1e3 * median(found), 1e3 * sd,
         1e3 * laser.sigma, 1e3 * sd_at(-2e-3), 1e3 * sd_at(2e-3));
     is_good = is_good && !found.empty() && sd < limit;

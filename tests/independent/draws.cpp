@@ -61,13 +61,13 @@ bool Draws::chance(const std::string& name, double probability) {
 }
 
 std::string Draws::choice(const std::string& name, const std::vector<Weighted>& values) {
-  if (const auto* wanted = fixed(name)) {
+  if (const auto* requested = fixed(name)) {
     std::string known;
     for (const auto& each : values) {
-      if (each.value == *wanted) return *wanted;
+      if (each.value == *requested) return *requested;
       known += " " + each.value;
     }
-    throw std::runtime_error(name + "=" + *wanted + " is unknown; use one of:" + known);
+    throw std::runtime_error(name + "=" + *requested + " is unknown; use one of:" + known);
   }
   std::vector<double> weights;
   for (const auto& each : values) weights.push_back(each.weight);

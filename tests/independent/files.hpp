@@ -8,7 +8,7 @@
 
 namespace independent {
 
-/// Writes the rig file with the user's values (docs/rig.md), faults included.
+/// Writes the rig file with the user's values (docs/how-to/describe-a-rig.md), faults included.
 void write_rig(const std::string& path, const Setup& setup);
 
 /// Results of a simulation.

@@ -17,8 +17,7 @@ namespace {
 constexpr const char* kUsage =
     "usage: independent_scanner SEED FOLDER [NAME=VALUE...]\n"
     "       independent_scanner check FOLDER\n"
-    "Draws a rig from SEED and writes FOLDER/capture.pcap, rig.yaml and truth.yaml; NAME=VALUE fixes a "
-    "draw,\n"
+    "Draws a rig from SEED and writes FOLDER/capture.pcap, rig.yaml and truth.yaml; NAME=VALUE fixes a draw,\n"
     "such as duration=8 scene=office motion=varied fault=none lasers=3 kind=lms1xx orientation=radial.\n"
     "check projects a capture's beams with the truth, and reports their residuals from the scene.\n";
 

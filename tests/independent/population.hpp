@@ -113,7 +113,7 @@ double eta(const Setup& setup, const LaserSetup& laser);
 
 /// η if the stamp is taken for the time of a beam at −45°, whatever the device's first angle [s].
 ///
-/// capture.md says "first possible beam (−45°)"; a 190° or 360° unit has no such beam, and this program
+/// capture.md defines "first possible beam (−45°)"; a 190° or 360° unit has no such beam, and this program
 /// stamps the first beam that the unit reports. A reader that counts beams from −45° finds this value.
 double eta_from_minus_45(const Setup& setup, const LaserSetup& laser);
 

@@ -95,9 +95,9 @@ double Mirror::turns(double time) const {
   return start_ + mean_ * integral;
 }
 
-double Mirror::time_of(double wanted) const {
-  double time = (wanted - start_) / mean_;
-  for (int i = 0; i < 3; ++i) time += (wanted - turns(time)) / rate(time);
+double Mirror::time_of(double requested) const {
+  double time = (requested - start_) / mean_;
+  for (int i = 0; i < 3; ++i) time += (requested - turns(time)) / rate(time);
   return time;
 }
 

@@ -20,7 +20,7 @@ class Mirror {
   Mirror(double nominal, double slowness, double wander, std::mt19937_64& random);
 
   double turns(double time) const;
-  double time_of(double wanted) const;  ///< inverse of turns(), by Newton's method
+  double time_of(double requested) const;  ///< inverse of turns(), by Newton's method
 
  private:
   double rate(double time) const;

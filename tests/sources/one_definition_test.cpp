@@ -39,7 +39,7 @@ namespace crisp::simd { struct Fourth {}; }
 }
 
 /// Two types of one name in one program: the linker takes one of each function that both have, and the other
-/// type's objects are read as if they were the first's. No compiler and no linker says so.
+/// type's objects are read as if they were the first's. No compiler and no linker reports it.
 TEST(TypeNames, AreDefinedOnceInTheLibraries) {
   std::map<std::string, std::vector<std::string>> places;
   for (const char* folder : {"pipeline", "grabbers", "plugins"}) {

@@ -10,7 +10,7 @@
 
 #include "pipeline/clocks/clock_line.hpp"
 
-namespace crisp::testing {
+namespace crisp::test {
 
 using Random = std::mt19937_64;
 
@@ -54,4 +54,4 @@ inline double mean_device_time(const std::vector<Stamp>& stamps) {
   return sum / static_cast<double>(stamps.size());
 }
 
-}  // namespace crisp::testing
+}  // namespace crisp::test

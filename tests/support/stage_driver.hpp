@@ -11,7 +11,7 @@
 
 namespace crisp::test {
 
-/// One stage without a pipeline around it: told its options, fed by hand, with what it gives kept.
+/// One stage without a pipeline around it: configured, fed by hand, with its outputs kept.
 class StageDriver {
  public:
   template <class S>

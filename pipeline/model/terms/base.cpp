@@ -33,10 +33,8 @@ struct BaseMotion final : DifferentiableTerm<BaseMotion> {
               .shape = true,
               .tries = {.spacing = Tries::Spacing::kLinear, .from = 0.1, .to = 2, .count = 20}}},
         .details =
-            "`origin += (vx t + ax cos 2πft + bx sin 2πft, vy t + ay cos 2πft + by sin 2πft, vz t)` in the "
-            "base's frame, t on the plate's clock since the run's epoch. A sway at the plate's own rate "
-            "looks like wobble or rocking: another speed tells them apart.",
-        .told_by = "a rate of the plate that changes",
+            "`origin += (vx t + ax cos 2πft + bx sin 2πft, vy t + ay cos 2πft + by sin 2πft, vz t)` in the base's frame, t on the plate's clock since the run's epoch. A sway at the plate's own rate resembles wobble or rocking: another speed distinguishes them.",
+        .resolvable_by = "a varying rate of the plate",
         .counts_from = CountsFrom::kRunsEpoch};
     return kInfo;
   }

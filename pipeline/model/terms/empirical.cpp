@@ -71,7 +71,7 @@ EffectParameter span_of_time() {
           .lower = 1e-3,
           .upper = 1e7,
           .neutral = 10,
-          .summary = "over which the shape goes",
+          .summary = "covariate of the shape",
           .shape = true,
           .tries = {.spacing = Tries::Spacing::kInstants, .from = 1, .to = 1, .count = 1}};
 }
@@ -173,27 +173,27 @@ std::string Shape::summary(std::size_t coefficient) const {
 EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape) : on_(on), over_(over), shape_(std::move(shape)) {
   const OnName what = describe(on);
   const std::string of = name_of(over);
-  info_ = {.name = "empirical." + underscored(what.name) + "_by_" + underscored(of) + shape_.suffix(),
-           .summary = what.name + " is off by a function of " + of + " that no cause explains",
-           .phase = what.phase,
-           .scope = what.scope,
-           .parameters = parameters(on, over, shape_),
-           .details =
-               "No cause, but the shape of a departure, for what nothing else in the catalogue "
-               "describes; x is the " +
-               of +
-               (over == Over::kTime        ? " as a share of `span`"
-                : over == Over::kRemission ? "'s logarithm"
-                : over == Over::kRange     ? " [m]"
-                : over == Over::kPlateRate ? " [rad/s]"
-                                           : " [rad]") +
-               ".",
-           .counts_from = over == Over::kTime         ? CountsFrom::kRunsEpoch
-                          : over == Over::kPlateAngle ? CountsFrom::kEncodersZero
-                                                      : CountsFrom::kNothing,
-           .needs_incidence = over == Over::kIncidence,
-           .covariate = of,
-           .is_fine = shape_.is_fine()};
+  info_ = {
+      .name = "empirical." + underscored(what.name) + "_by_" + underscored(of) + shape_.suffix(),
+      .summary = what.name + " is off by a function of " + of + " that no cause explains",
+      .phase = what.phase,
+      .scope = what.scope,
+      .parameters = parameters(on, over, shape_),
+      .details =
+          "An empirical shape without a cause, for departures that no other effect of the catalogue describes; x is the " +
+          of +
+          (over == Over::kTime        ? " as a share of `span`"
+           : over == Over::kRemission ? "'s logarithm"
+           : over == Over::kRange     ? " [m]"
+           : over == Over::kPlateRate ? " [rad/s]"
+                                      : " [rad]") +
+          ".",
+      .counts_from = over == Over::kTime         ? CountsFrom::kRunsEpoch
+                     : over == Over::kPlateAngle ? CountsFrom::kEncodersZero
+                                                 : CountsFrom::kNothing,
+      .needs_incidence = over == Over::kIncidence,
+      .covariate = of,
+      .is_fine = shape_.is_fine()};
 }
 
 void register_empirical_terms(TermRegistry& terms) {

@@ -18,7 +18,7 @@ class Shape {
  public:
   /// Σ aₖ cos kx + bₖ sin kx for the orders from `first` to `last`.
   static Shape fourier(int first, int last);
-  /// Straight between knots (ascending), where it is as high as the coefficients say; level beyond them.
+  /// Piecewise linear between knots (ascending), with the coefficients as values; constant beyond them.
   static Shape hats(std::vector<double> knots);
   /// A smooth function for x from 0 to 1: n ≥ 4 cubic B-splines at even distances. Level beyond.
   static Shape splines(int n);
@@ -38,7 +38,7 @@ class Shape {
     return fine;
   }
   bool is_fine() const { return is_fine_; }
-  /// What a term of this shape is called beside that of the usual one over the same: "_curve"; or nothing.
+  /// Suffix of this shape's name next to the usual one over the same covariate: "_curve"; or nothing.
   std::string suffix() const { return kind_ == Kind::kCurve ? "_curve" : is_fine_ ? "_finely" : ""; }
 
   template <class T>

@@ -7,20 +7,19 @@
 namespace crisp {
 namespace {
 
-/// The encoder's disk turns about a point beside its centre.
+/// The encoder's disk turns about a point off its centre.
 struct EncoderEccentricity final : DifferentiableTerm<EncoderEccentricity> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "encoder.eccentricity",
-        .summary = "the plate's encoder errs once a turn",
+        .summary = "the plate's encoder has an error with one period per turn",
         .phase = Phase::kPlate,
         .scope = Scope::kPlate,
         .parameters = {{.name = "a", .unit = "rad", .lower = -0.1, .upper = 0.1, .summary = "of cos φ"},
                        {.name = "b", .unit = "rad", .lower = -0.1, .upper = 0.1, .summary = "of sin φ"}},
         .details =
-            "`φ + a cos φ + b sin φ`. A disk of 20 mm radius that is 20 µm off its axis errs by up to "
-            "0.06°.",
-        .told_by = "lasers at other azimuths; other rates of the plate",
+            "`φ + a cos φ + b sin φ`. A disk of 20 mm radius that is 20 µm off its axis has an error of up to 0.06°.",
+        .resolvable_by = "lasers at other azimuths; other rates of the plate",
         .counts_from = CountsFrom::kEncodersZero};
     return kInfo;
   }
@@ -37,15 +36,14 @@ struct EncoderSecondHarmonic final : DifferentiableTerm<EncoderSecondHarmonic> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "encoder.second_harmonic",
-        .summary = "the plate's encoder errs twice a turn",
+        .summary = "the plate's encoder has an error with two periods per turn",
         .phase = Phase::kPlate,
         .scope = Scope::kPlate,
         .parameters = {{.name = "a", .unit = "rad", .lower = -0.1, .upper = 0.1, .summary = "of cos 2φ"},
                        {.name = "b", .unit = "rad", .lower = -0.1, .upper = 0.1, .summary = "of sin 2φ"}},
         .details =
-            "`φ + a cos 2φ + b sin 2φ`. Typically 0.02° to 0.2°. A laser's front and back, half a turn "
-            "apart, err alike: only lasers at other azimuths show it.",
-        .told_by = "lasers that are not a third of a turn apart",
+            "`φ + a cos 2φ + b sin 2φ`. Typically 0.02° to 0.2°. A laser's front and back, half a turn apart, have the same error: only lasers at other azimuths resolve it.",
+        .resolvable_by = "lasers that are not a third of a turn apart",
         .counts_from = CountsFrom::kEncodersZero};
     return kInfo;
   }
@@ -65,18 +63,17 @@ struct EncoderBacklash final : DifferentiableTerm<EncoderBacklash> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "encoder.backlash",
-        .summary = "there is play between the plate and its encoder",
+        .summary = "backlash between the plate and its encoder",
         .phase = Phase::kPlate,
         .scope = Scope::kPlate,
         .parameters = {{.name = "delta",
                         .unit = "rad",
                         .lower = -0.1,
                         .upper = 0.1,
-                        .summary = "half the play: by how much the plate is ahead of the encoder"}},
+                        .summary = "half the backlash: lead of the plate over the encoder"}},
         .details =
-            "`φ + δ tanh(ω / 0.05 rad/s)`, which is `φ + δ sign(ω)` but for a plate that hardly moves. "
-            "Typically 0.1°. Without a reversal it is a common λ.",
-        .told_by = "both directions of turning, at three rates or more"};
+            "`φ + δ tanh(ω / 0.05 rad/s)`, which is `φ + δ sign(ω)` except near standstill. Typically 0.1°. Without a reversal it is a common λ.",
+        .resolvable_by = "both directions of turning, at three rates or more"};
     return kInfo;
   }
   template <class T>
@@ -93,16 +90,16 @@ struct EncoderSpeedLag final : DifferentiableTerm<EncoderSpeedLag> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "encoder.speed_lag",
-        .summary = "the plate is off its encoder by an angle that grows with the square of its rate",
+        .summary = "the plate's angle deviates from its encoder with the square of its rate",
         .phase = Phase::kPlate,
         .scope = Scope::kPlate,
         .parameters = {{.name = "k",
                         .unit = "s^2",
                         .lower = -0.01,
                         .upper = 0.01,
-                        .summary = "angle [rad] a squared rate [rad/s]"}},
+                        .summary = "angle [rad] per squared rate [rad/s]"}},
         .details = "`φ + k ω |ω|`. Over a narrow range of rates it is a common η.",
-        .told_by = "a wide range of rates"};
+        .resolvable_by = "a wide range of rates"};
     return kInfo;
   }
   template <class T>

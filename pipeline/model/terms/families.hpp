@@ -15,7 +15,7 @@ void register_timing_terms(TermRegistry& terms);
 void register_range_terms(TermRegistry& terms);
 void register_range_in_time_terms(TermRegistry& terms);
 
-// What a departure looks like, where nothing tells its cause.
+// Departures described by their shape, where no cause is identified.
 void register_empirical_terms(TermRegistry& terms);
 
 }  // namespace crisp

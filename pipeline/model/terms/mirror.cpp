@@ -21,9 +21,8 @@ struct Cone final : DifferentiableTerm<Cone> {
                         .upper = 0.1,
                         .summary = "angle of the beam above the scan plane, outwards on the plate"}},
         .details =
-            "`direction = cos κ (cos θ, sin θ, 0) + sin κ (0, 0, 1)` in the laser's frame. Typically "
-            "0.05° to 0.4°. At one range it looks like a tangential offset.",
-        .told_by = "surfaces near and far"};
+            "`direction = cos κ (cos θ, sin θ, 0) + sin κ (0, 0, 1)` in the laser's frame. Typically 0.05° to 0.4°. At one range it resembles a tangential offset.",
+        .resolvable_by = "surfaces near and far"};
     return kInfo;
   }
   template <class T>
@@ -35,20 +34,19 @@ struct Cone final : DifferentiableTerm<Cone> {
   }
 };
 
-/// The mirror's angle is read by a disk whose centre is beside the mirror's axis.
+/// The disk that reads the mirror's angle is centred off the mirror's axis.
 struct MirrorEccentricity final : DifferentiableTerm<MirrorEccentricity> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "mirror.eccentricity",
-        .summary = "a laser's mirror angle errs once a turn",
+        .summary = "a laser's mirror angle has an error with one period per turn",
         .phase = Phase::kMirror,
         .scope = Scope::kLaser,
         .parameters = {{.name = "a", .unit = "rad", .lower = -0.05, .upper = 0.05, .summary = "of cos θ"},
                        {.name = "b", .unit = "rad", .lower = -0.05, .upper = 0.05, .summary = "of sin θ"}},
         .details =
-            "`θ + a cos θ + b sin θ`, θ as reported less the mount angle. Typically 0.05° to 0.2°. A "
-            "beam that starts beside the mirror's axis looks alike at one range.",
-        .told_by = "surfaces near and far"};
+            "`θ + a cos θ + b sin θ`, θ as reported less the mount angle. Typically 0.05° to 0.2°. A beam that starts off the mirror's axis is indistinguishable at one range.",
+        .resolvable_by = "surfaces near and far"};
     return kInfo;
   }
   template <class T>

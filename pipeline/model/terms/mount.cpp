@@ -13,13 +13,13 @@ struct TangentialOffset final : DifferentiableTerm<TangentialOffset> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "mount.tangential_offset",
-        .summary = "the beams of a laser start beside its radius",
+        .summary = "the beams of a laser start off its radius",
         .phase = Phase::kMount,
         .scope = Scope::kLaser,
         .parameters =
             {{.name = "y", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "along the tangent"}},
         .details = "`origin += (0, y, 0)` in the plate's frame at the laser. Typically 1 to 5 mm.",
-        .told_by = "surfaces near and far, to the front and to the back of the laser"};
+        .resolvable_by = "surfaces near and far, to the front and to the back of the laser"};
     return kInfo;
   }
   template <class T>
@@ -38,9 +38,8 @@ struct AxialOffset final : DifferentiableTerm<AxialOffset> {
         .scope = Scope::kLaser,
         .parameters = {{.name = "z", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "along the axis"}},
         .details =
-            "`origin += (0, 0, z)` in the plate's frame. Typically 1 to 20 mm. What is common to all "
-            "lasers moves the whole cloud and cannot be found: that of one of them is to stay 0.",
-        .told_by = "another laser in the same recording: a common height is a gauge"};
+            "`origin += (0, 0, z)` in the plate's frame. Typically 1 to 20 mm. A height common to all lasers moves the whole cloud and is not identifiable: the height of one laser is held at 0.",
+        .resolvable_by = "another laser in the same recording: a common height is a gauge"};
     return kInfo;
   }
   template <class T>
@@ -49,18 +48,18 @@ struct AxialOffset final : DifferentiableTerm<AxialOffset> {
   }
 };
 
-/// The mirror's angle counts from elsewhere than the rig's `mount` says.
+/// The mirror's angle has another zero than the rig's `mount`.
 struct MirrorZero final : DifferentiableTerm<MirrorZero> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "mount.mirror_zero",
-        .summary = "a laser is turned within its scan plane against its mount angle",
+        .summary = "a laser is rotated within its scan plane against its mount angle",
         .phase = Phase::kMirror,
         .scope = Scope::kLaser,
         .parameters =
             {{.name = "theta", .unit = "rad", .lower = -0.2, .upper = 0.2, .summary = "added to θ"}},
-        .details = "`θ + theta`. Typically 0.1° to 1°. A laser's front and back see it with opposite signs.",
-        .told_by = "the same surfaces to the front and to the back of the laser"};
+        .details = "`θ + theta`. Typically 0.1° to 1°. It has opposite signs at a laser's front and back.",
+        .resolvable_by = "the same surfaces to the front and to the back of the laser"};
     return kInfo;
   }
   template <class T>
@@ -74,18 +73,18 @@ struct ScanPlaneTilt final : DifferentiableTerm<ScanPlaneTilt> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "mount.scan_plane_tilt",
-        .summary = "a laser's scan plane leans against the spin axis",
+        .summary = "a laser's scan plane is tilted against the spin axis",
         .phase = Phase::kMount,
         .scope = Scope::kLaser,
         .parameters = {{.name = "tilt",
                         .unit = "rad",
                         .lower = -0.2,
                         .upper = 0.2,
-                        .summary = "right-handed about the tangent: the beam at θ = 0 leans to the axis"}},
+                        .summary =
+                            "right-handed about the tangent: the beam at θ = 0 tilts towards the axis"}},
         .details =
-            "`direction = Ry(tilt) direction` in the plate's frame at the laser. Typically 0.1° to 1°. "
-            "In a narrow field of view it looks like α.",
-        .told_by = "the whole sweep of the mirror"};
+            "`direction = Ry(tilt) direction` in the plate's frame at the laser. Typically 0.1° to 1°. In a narrow field of view it resembles α.",
+        .resolvable_by = "the whole sweep of the mirror"};
     return kInfo;
   }
   template <class T>

@@ -22,7 +22,7 @@ struct Wobble final : DifferentiableTerm<Wobble> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "plate.wobble",
-        .summary = "the spin axis tilts once a turn",
+        .summary = "wobble: the spin axis tilts with one period per turn",
         .phase = Phase::kBase,
         .scope = Scope::kPlate,
         .parameters =
@@ -31,10 +31,8 @@ struct Wobble final : DifferentiableTerm<Wobble> {
              {.name = "c", .unit = "rad", .lower = -0.05, .upper = 0.05, .summary = "about y, of cos φ"},
              {.name = "d", .unit = "rad", .lower = -0.05, .upper = 0.05, .summary = "about y, of sin φ"}},
         .details =
-            "`x = Rx(a cos φ + b sin φ) Ry(c cos φ + d sin φ) x` in the base's frame, about the scanner's "
-            "centre. Typically 0.006° to 0.2°. The part with a = d, b = −c turns with the plate: it is a "
-            "tilt of the plate on its axis, which all lasers share.",
-        .told_by = "floor and ceiling as well as walls on all sides",
+            "`x = Rx(a cos φ + b sin φ) Ry(c cos φ + d sin φ) x` in the base's frame, about the scanner's centre. Typically 0.006° to 0.2°. The part with a = d, b = −c turns with the plate: it is a tilt of the plate on its axis, which all lasers share.",
+        .resolvable_by = "floor and ceiling as well as walls on all sides",
         .counts_from = CountsFrom::kEncodersZero};
     return kInfo;
   }
@@ -61,7 +59,7 @@ struct Rocking final : DifferentiableTerm<Rocking> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "plate.rocking",
-        .summary = "an unbalanced plate shifts the scanner once a turn, the more the faster it turns",
+        .summary = "imbalance shifts the scanner once per turn, with the square of the rate",
         .phase = Phase::kBase,
         .scope = Scope::kPlate,
         .parameters =
@@ -70,10 +68,8 @@ struct Rocking final : DifferentiableTerm<Rocking> {
              {.name = "c", .unit = "m s^2", .lower = -1e-3, .upper = 1e-3, .summary = "along y, of cos φ"},
              {.name = "d", .unit = "m s^2", .lower = -1e-3, .upper = 1e-3, .summary = "along y, of sin φ"}},
         .details =
-            "`origin += ω² (a cos φ + b sin φ, c cos φ + d sin φ, 0)` in the base's frame, ω in rad/s: "
-            "1e-5 m s² are 1.6 mm at 2 Hz. Typically mm. At one speed the part with a = d, b = −c is a "
-            "common shift of the lasers on the plate.",
-        .told_by = "two rates of the plate",
+            "`origin += ω² (a cos φ + b sin φ, c cos φ + d sin φ, 0)` in the base's frame, ω in rad/s: 1e-5 m s² are 1.6 mm at 2 Hz. Typically mm. At one speed the part with a = d, b = −c is a common shift of the lasers on the plate.",
+        .resolvable_by = "two rates of the plate",
         .counts_from = CountsFrom::kEncodersZero};
     return kInfo;
   }

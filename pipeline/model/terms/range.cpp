@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is added to the range r that a laser reports to have the true one.
+// Corrections of the range r that a laser reports.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,14 +13,13 @@ struct RangeOffset final : DifferentiableTerm<RangeOffset> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "range.offset",
-        .summary = "a laser's ranges are all too short or too long",
+        .summary = "a laser's ranges have a constant offset",
         .phase = Phase::kRange,
         .scope = Scope::kLaser,
         .parameters = {{.name = "c", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "added to r"}},
         .details =
-            "`r + c`. The data sheet of the LMS-151 allows ±30 mm typically, ±40 mm at most. Flat walls "
-            "bulge by c cos β; what is common to all lasers is nearly invisible to crispness.",
-        .told_by = "large planes and opposed walls, near and far"};
+            "`r + c`. The data sheet of the LMS-151 allows ±30 mm typically, ±40 mm at most. Flat walls bulge by c cos β; an offset common to all lasers hardly changes RQE.",
+        .resolvable_by = "large planes and opposed walls, near and far"};
     return kInfo;
   }
   template <class T>
@@ -33,14 +32,13 @@ struct RangeScale final : DifferentiableTerm<RangeScale> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "range.scale",
-        .summary = "a laser's ranges are all too short or too long by a share",
+        .summary = "a laser's ranges have a scale error",
         .phase = Phase::kRange,
         .scope = Scope::kLaser,
         .parameters = {{.name = "s", .unit = "1", .lower = -0.05, .upper = 0.05, .summary = "share of r"}},
         .details =
-            "`r (1 + s)`. Below 0.3 %. What is common to all lasers changes the size of the whole cloud: "
-            "only a known length shows it.",
-        .told_by = "a known length"};
+            "`r (1 + s)`. Below 0.3 %. A scale common to all lasers changes the size of the whole cloud: only a known length shows it.",
+        .resolvable_by = "a known length"};
     return kInfo;
   }
   template <class T>
@@ -55,7 +53,7 @@ struct RangeIncidence final : DifferentiableTerm<RangeIncidence> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "range.incidence",
-        .summary = "a laser reads off as the incidence grows",
+        .summary = "a laser's range error depends on the incidence",
         .phase = Phase::kRange,
         .scope = Scope::kLaser,
         .parameters =
@@ -65,23 +63,19 @@ struct RangeIncidence final : DifferentiableTerm<RangeIncidence> {
               .lower = 0.01,
               .upper = 1,
               .neutral = 0.06,
-              .summary = "spread of the spot in depth at 45°, in lengths of the echo a metre of range",
+              .summary = "spread of the spot in depth at 45°, in lengths of the echo per metre of range",
               .shape = true,
               .tries = {.spacing = Tries::Spacing::kLogarithmic, .from = 0.03, .to = 0.3, .count = 3}}},
         .details =
-            "`r + c (√(1 + (spread r tan β)²) − 1)`. With a c of 47 mm and a spread of 0.06/m it is 6 mm at "
-            "60°, 14 mm at 70° and 46 mm at 80°, 5 m away, which is what Laconte et al. (Lidar measurement "
-            "bias estimation via return waveform modelling, ICRA 2019) measured, an LMS-151 among the "
-            "sensors. β comes from the surfaces, so the term does nothing until somebody has found them, "
-            "and counts a β beyond 87° as 87°.",
-        .told_by = "the same range at many incidences; patches of different reflectance",
+            "`r + c (√(1 + (spread r tan β)²) − 1)`. With a c of 47 mm and a spread of 0.06/m it is 6 mm at 60°, 14 mm at 70° and 46 mm at 80°, 5 m away, which is what Laconte et al. (Lidar measurement bias estimation via return waveform modelling, ICRA 2019) measured, an LMS-151 among the sensors. β comes from the surfaces, so the term has no effect before they are segmented; β is clipped at 87°.",
+        .resolvable_by = "the same range at many incidences; patches of different reflectance",
         .needs_incidence = true};
     return kInfo;
   }
   template <class T>
   void change(Beam<T>& beam, std::span<const T> p) const {
     using std::sqrt;
-    constexpr double kGrazing = 0.05;  // cosine of the steepest incidence that is told apart
+    constexpr double kGrazing = 0.05;  // cosine of the steepest incidence that is resolved
     const double cosine = std::clamp(std::abs(beam.cos_incidence), kGrazing, 1.0);
     const double tangent = std::sqrt(1 - cosine * cosine) / cosine;
     const T spread = p[1] * (beam.measured_range * tangent);
@@ -101,10 +95,8 @@ struct RangeIntensity final : DifferentiableTerm<RangeIntensity> {
         .parameters = {{.name = "a", .unit = "m", .lower = -0.2, .upper = 0.2, .summary = "of u"},
                        {.name = "b", .unit = "m", .lower = -0.2, .upper = 0.2, .summary = "of u²"}},
         .details =
-            "`r + a u + b u²` with `u = ln(I / 100)`, I the remission in the device's units; nothing where "
-            "it is unknown (0). Millimetres to centimetres. As the remission falls with the incidence, it "
-            "is confounded with range.incidence; neighbouring dark and light patches tell.",
-        .told_by = "dark and light patches side by side"};
+            "`r + a u + b u²` with `u = ln(I / 100)`, I the remission in the device's units; nothing where it is unknown (0). Millimetres to centimetres. As the remission falls with the incidence, it is confounded with range.incidence; neighbouring dark and light patches distinguish them.",
+        .resolvable_by = "dark and light patches side by side"};
     return kInfo;
   }
   template <class T>
@@ -120,7 +112,7 @@ struct RangeCyclic final : DifferentiableTerm<RangeCyclic> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "range.cyclic",
-        .summary = "a laser's ranges err with a period in range",
+        .summary = "a laser's range error is periodic in range",
         .phase = Phase::kRange,
         .scope = Scope::kLaser,
         .parameters =
@@ -135,10 +127,8 @@ struct RangeCyclic final : DifferentiableTerm<RangeCyclic> {
               .shape = true,
               .tries = {.spacing = Tries::Spacing::kRangePeriods, .from = 0.5, .to = 16, .count = 32}}},
         .details =
-            "`r + a sin 2πr/P + b cos 2πr/P`, which is `A sin(2πr/P + p)` with `A² = a² + b²` and "
-            "`tan p = b/a`, but linear in what is to be found. Typically millimetres: crosstalk and the "
-            "steps of a time-to-digital converter. P is to exceed 2πA, so that a distance has one range.",
-        .told_by = "surfaces at many distances"};
+            "`r + a sin 2πr/P + b cos 2πr/P`, which is `A sin(2πr/P + p)` with `A² = a² + b²` and `tan p = b/a`, but linear in the parameters. Typically millimetres: crosstalk and the steps of a time-to-digital converter. P must exceed 2πA, so that a distance has one range.",
+        .resolvable_by = "surfaces at many distances"};
     return kInfo;
   }
   template <class T>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is added to a laser's ranges as time goes by, t being the hub's time since the run's epoch.
+// Corrections of a laser's ranges over time, t being the hub's time since the run's epoch.
 #include <cmath>
 
 #include "pipeline/model/terms/families.hpp"
@@ -11,7 +11,7 @@ struct RangeWarmup final : DifferentiableTerm<RangeWarmup> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "range.warmup",
-        .summary = "a laser's ranges creep as it warms up",
+        .summary = "a laser's ranges drift as it warms up",
         .phase = Phase::kRange,
         .scope = Scope::kLaser,
         .parameters =
@@ -25,9 +25,8 @@ struct RangeWarmup final : DifferentiableTerm<RangeWarmup> {
               .shape = true,
               .tries = {.spacing = Tries::Spacing::kLogarithmic, .from = 1, .to = 100, .count = 4}}},
         .details =
-            "`r + c (1 − exp(−t/T))`, t since the run's epoch. Millimetres to centimetres over minutes to "
-            "hours. In a short run it is a range.offset and a constant growth.",
-        .told_by = "a longer recording, from a cold start",
+            "`r + c (1 − exp(−t/T))`, t since the run's epoch. Millimetres to centimetres over minutes to hours. In a short run it is confounded with range.offset and a linear drift.",
+        .resolvable_by = "a longer recording, from a cold start",
         .counts_from = CountsFrom::kRunsEpoch};
     return kInfo;
   }
@@ -43,7 +42,7 @@ struct RangeStep final : DifferentiableTerm<RangeStep> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "range.step",
-        .summary = "all ranges of a laser jump at an instant",
+        .summary = "all ranges of a laser step at an instant",
         .phase = Phase::kRange,
         .scope = Scope::kLaser,
         .parameters =
@@ -53,13 +52,12 @@ struct RangeStep final : DifferentiableTerm<RangeStep> {
               .lower = -1e5,
               .upper = 1e5,
               .neutral = 0,
-              .summary = "when, since the run's epoch",
+              .summary = "time of the step, since the run's epoch",
               .shape = true,
               .tries = {.spacing = Tries::Spacing::kInstants, .from = 0.05, .to = 0.95, .count = 19}}},
         .details =
-            "`r + h (1 + tanh((t − at) / 5 ms)) / 2`: a jump. A real LMS111 reported 2.05 mm more from "
-            "2.4 s after its start on: h is −2.05 mm then.",
-        .told_by = "a longer recording, before it and after it",
+            "`r + h (1 + tanh((t − at) / 5 ms)) / 2`: a jump. A real LMS111 reported 2.05 mm more from 2.4 s after its start on: h is −2.05 mm then.",
+        .resolvable_by = "a longer recording, before it and after it",
         .counts_from = CountsFrom::kRunsEpoch};
     return kInfo;
   }

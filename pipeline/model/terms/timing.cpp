@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When a beam was fired, beyond η: what is added to its hub time before the plate is asked where it was.
+// Corrections of a beam's firing time, beyond η: added to its hub time before the plate's angle is
+// interpolated.
 #include <numbers>
 
 #include "pipeline/model/terms/families.hpp"
@@ -12,19 +13,17 @@ struct IntraScan final : DifferentiableTerm<IntraScan> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "timing.intra_scan",
-        .summary = "the beams of a scan follow each other at another pace than was taken",
+        .summary = "the time between a scan's beams differs from the assumed one",
         .phase = Phase::kTime,
         .scope = Scope::kLaser,
         .parameters = {{.name = "kappa",
                         .unit = "s",
                         .lower = -1e-3,
                         .upper = 1e-3,
-                        .summary = "time to the next beam, beyond what was taken"}},
+                        .summary = "excess of the time between two beams over the assumed one"}},
         .details =
-            "`t + κ k` for beam k of its scan, so that φ changes by `ω κ k`. Where the time between beams "
-            "is left out altogether, κ is 28 µs at 50 Hz and half a degree, which is 2.7° over a sweep "
-            "while the plate turns at 0.5 Hz. At one speed it looks like α.",
-        .told_by = "a reversal of the plate, or other rates; the mirror's own stamps"};
+            "`t + κ k` for beam k of its scan, so that φ changes by `ω κ k`. Where the time between beams is neglected, κ is 28 µs at 50 Hz and half a degree, which is 2.7° over a sweep while the plate turns at 0.5 Hz. At one speed it resembles α.",
+        .resolvable_by = "a reversal of the plate, or other rates; the mirror's own stamps"};
     return kInfo;
   }
   template <class T>
@@ -39,20 +38,17 @@ struct MirrorPeriod final : DifferentiableTerm<MirrorPeriod> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "mirror.period",
-        .summary = "a laser's mirror takes longer for a turn than was taken",
+        .summary = "a laser's mirror period differs from the assumed one",
         .phase = Phase::kTime,
         .scope = Scope::kLaser,
         .parameters = {{.name = "excess",
                         .unit = "s",
                         .lower = -1e-2,
                         .upper = 1e-2,
-                        .summary = "of the period over the one that was taken"}},
+                        .summary = "relative excess of the period over the assumed one"}},
         .details =
-            "`t + excess θ/2π`: a term for measurements whose times were taken from a nominal period. "
-            "Real LMS1xx are 0.57 % slow, 114 µs of 20 ms, and wander by ±0.2 % within seconds. Within one "
-            "scan it cannot be told from timing.intra_scan: the stamps of successive scans tell. Simulated "
-            "telegrams come from a mirror that does turn so.",
-        .told_by = "the mirror's own stamps"};
+            "`t + excess θ/2π`: a term for measurements whose times assume a nominal period. Real LMS1xx are 0.57 % slow, 114 µs of 20 ms, and wander by ±0.2 % within seconds. Within one scan it is confounded with timing.intra_scan: the stamps of successive scans distinguish them. Simulated telegrams come from a mirror with this period.",
+        .resolvable_by = "the mirror's own stamps"};
     return kInfo;
   }
   template <class T>
@@ -61,7 +57,7 @@ struct MirrorPeriod final : DifferentiableTerm<MirrorPeriod> {
   }
 };
 
-/// What is left of a device's clock when its rate was taken to be constant.
+/// Residual drift of a device's clock whose rate was assumed constant.
 struct ClockDrift final : DifferentiableTerm<ClockDrift> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
@@ -73,17 +69,15 @@ struct ClockDrift final : DifferentiableTerm<ClockDrift> {
                         .unit = "1",
                         .lower = -0.01,
                         .upper = 0.01,
-                        .summary = "hub seconds a device second − 1, beyond what was taken"},
+                        .summary = "hub seconds per device second − 1, beyond the assumed rate"},
                        {.name = "drift",
                         .unit = "1/s",
                         .lower = -1e-3,
                         .upper = 1e-3,
-                        .summary = "by how much the skew grows in a second"}},
+                        .summary = "growth of the skew per second"}},
         .details =
-            "`t + skew t + drift t²/2`, t since the run's epoch: as the cloud sees it, a lag that varies "
-            "with time. 20 ppm over 0 to 50 °C; Sheehan, Harrison and Newman lost 90 s in 5 days, 208 ppm. "
-            "Simulated telegrams carry the stamps of a clock that does run so.",
-        .told_by = "a longer recording",
+            "`t + skew t + drift t²/2`, t since the run's epoch: a lag that varies with time. 20 ppm over 0 to 50 °C; Sheehan, Harrison and Newman lost 90 s in 5 days, 208 ppm. Simulated telegrams carry the stamps of a clock with this drift.",
+        .resolvable_by = "a longer recording",
         .counts_from = CountsFrom::kRunsEpoch};
     return kInfo;
   }

@@ -46,7 +46,7 @@ class Error(Exception):
 
 
 class NotTrustedWarning(UserWarning):
-    """A run came to its end, but its result is not to be trusted: the text says why."""
+    """A run came to its end, but its result is untrusted: the text states the caveats."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -68,13 +68,13 @@ class Result:
 
     @property
     def trusted(self) -> bool:
-        """Whether no stage had a doubt."""
+        """Whether no stage had a caveat."""
         return self.summary["trusted"]
 
     @property
-    def doubts(self) -> list:
+    def caveats(self) -> list:
         """Why the result is not to be trusted."""
-        return [doubt for stage in self.summary["stages"] for doubt in stage["doubts"]]
+        return [caveat for stage in self.summary["stages"] for caveat in stage["caveats"]]
 
 
 def run(
@@ -111,12 +111,12 @@ def run(
     )
     result = Result(**results)
     if not result.trusted:
-        warnings.warn("not to be trusted: " + "; ".join(result.doubts), NotTrustedWarning, stacklevel=2)
+        warnings.warn("not to be trusted: " + "; ".join(result.caveats), NotTrustedWarning, stacklevel=2)
     return result
 
 
 def rqe(points: numpy.ndarray, sigma: float = 0.03) -> typing.Tuple[float, numpy.ndarray]:
-    """Rényi's quadratic entropy of a cloud [nat], the lower the crisper, and its gradient by the points [1/m].
+    """Rényi's quadratic entropy of a cloud [nat] (lower is sharper), and its gradient by the points [1/m].
 
     points: n rows x, y, z [m]; sigma: [m] width of the kernel
     """

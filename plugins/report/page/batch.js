@@ -101,7 +101,7 @@ function trendPlot({parameter: name, unit, median}, rows) {
 }
 
 /**
- * Whether the whole batch can be trusted.
+ * Whether the whole batch is trusted.
  * @param {any} batch
  */
 function batchVerdict(batch) {
@@ -112,7 +112,7 @@ function batchVerdict(batch) {
   const sentence = `${counted(batch.rows.length, 'recording')}: ${parts.join(', ')}. ` +
     (odd.length > 0 ? `${counted(odd.length, 'recording')} ${odd.length === 1 ? 'stands' : 'stand'} out from the others by more than the errors allow.` : 'No recording stands out from the others.');
   return el('section', {id: 'verdict', class: isGood ? 'good' : 'bad'},
-    el('p', {class: 'sentence'}, el('span', {class: 'badge'}, isGood ? 'trusted' : 'look closer'), ' ', sentence),
+    el('p', {class: 'sentence'}, el('span', {class: 'badge'}, isGood ? 'trusted' : 'untrusted'), ' ', sentence),
     odd.length > 0 && el('ul', {}, ...odd.slice(0, 20).map((/** @type {any} */ row) => el('li', {}, rowName(row), ': ', row.stands_out.join(', ')))));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** An eye that looks at a target from a distance. */
+/** An orbit camera around a target. */
 class OrbitCamera {
   constructor() {
     /** @type {Vector} */

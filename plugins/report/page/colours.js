@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** @typedef {[number, number, number]} Rgb  0 to 255 */
 
-// Told apart by colour-blind people, too (Okabe and Ito), then round again.
+// Distinguishable by colour-blind people, too (Okabe and Ito), then round again.
 /** @type {Rgb[]} */
 const LASER_COLOURS = [[86, 180, 233], [230, 159, 0], [0, 200, 140], [240, 228, 66], [204, 121, 167], [213, 94, 0], [60, 110, 230]];
 /** @type {Rgb[]} Viridis */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * All that stages and findings say of each device, together.
+  * Merges the reports and findings of each device.
  * @param {any} data
  * @returns {Record<string, any>[]}
  */
@@ -62,7 +62,7 @@ function motionPlots(motion) {
 }
 
 /**
- * Where a laser looked: the darker a cell, the fewer beams.
+  * Coverage of a laser: the darker a cell, the fewer beams.
  * @param {{laser: string, counts: number[][]}} coverage
  */
 function coverageMap({laser, counts}) {

@@ -111,11 +111,11 @@ function findingFacts(finding) {
                  ['explains', `${shortNumber(100 * finding.explained_fraction, 2)} % of the departure`],
                  ['p-value', probability(finding.p_value)]];
   const next = (finding.alternatives || [])[0];
-  const odds = finding.log10_bayes_factor !== undefined ? finding.log10_bayes_factor : finding.log10_odds;
+  const odds = finding.log10_bayes_factor;
   if (Number.isFinite(odds) && next) facts.push(['odds', `${powerOfTen(Math.round(odds))} against ${next.cause} of ${next.scope}, the next cause`]);
-  if ((finding.confounded_with || []).length > 0) facts.push(['not told from', finding.confounded_with.join(', ')]);
-  const needs = finding.resolvable_by || finding.told_apart_by || [];
-  if (needs.length > 0) facts.push(['would be told by', needs.join('; ')]);
+  if ((finding.confounded_with || []).length > 0) facts.push(['not distinguished from', finding.confounded_with.join(', ')]);
+  const needs = finding.resolvable_by || [];
+  if (needs.length > 0) facts.push(['resolvable by', needs.join('; ')]);
   if (!finding.accepted && finding.refused) facts.push(['rejected because', finding.refused]);
   return facts;
 }

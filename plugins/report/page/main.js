@@ -19,7 +19,7 @@ function viewerOrPicture(cloud, lasers) {
     Object.assign(window, {crispViewer: viewer});
     return viewer.element;
   } catch (error) {
-    return el('div', {}, el('p', {class: 'alarm'}, `The cloud cannot be turned here: ${/** @type {Error} */ (error).message}. This is what it looks like from above.`), pictureFromAbove(cloud, 1));
+    return el('div', {}, el('p', {class: 'alarm'}, `The cloud cannot be shown in 3D: ${/** @type {Error} */ (error).message}. This is its view from above.`), pictureFromAbove(cloud, 1));
   }
 }
 

@@ -71,7 +71,7 @@ class Overlay {
   }
 
   /**
-   * A round length at the distance of what is looked at.
+    * A round length at the distance of the target.
    * @param {{pixelSize: number}} view
    * @param {number} height
    */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** Finds the point under the pointer, says what is known of it, and measures between two. */
+/** Finds the point under the pointer, shows its data, and measures the distance of two points. */
 class Picker {
   /** @param {CloudViewer} viewer */
   constructor(viewer) {

@@ -4,9 +4,9 @@
  *            against?: number, against_std_error?: number}} ShownParameter
  * @typedef {{lasers: string[], parameters: ShownParameter[], order: string[], correlations: number[][],
  *            quality: Record<string, number>, unobservable: {parameter: string, reason: string, combination: string}[],
- *            doubts: string[], provenance: Record<string, string>}} ShownCalibration
+ *            caveats: string[], provenance: Record<string, string>}} ShownCalibration
  * @typedef {{tag: string, stage: string, seconds: number, options: any, counts: Record<string, number>,
- *            warnings: string[], doubts: string[], outputs: string[], report: any}} StageRecord
+ *            warnings: string[], caveats: string[], outputs: string[], report: any}} StageRecord
  */
 
 /**
@@ -34,10 +34,10 @@ function largestErrors(free) {
 function trustedSentence(data) {
   /** @type {ShownCalibration | undefined} */
   const calibration = data.calibration;
-  if (!calibration) return 'The run came to its end, and no stage has a doubt.';
+  if (!calibration) return 'The run came to its end, and no stage has a caveat.';
   const free = calibration.parameters.filter((p) => p.free);
-  if (free.length === 0) return 'The run came to its end, and no stage has a doubt. The calibration was given, not estimated.';
-  return `The calibration can be trusted: ${counted(free.length, 'parameter')} of ${counted(calibration.lasers.length, 'laser')}, ` +
+  if (free.length === 0) return 'The run came to its end, and no stage has a caveat. The calibration was given, not estimated.';
+  return `The calibration is trusted: ${counted(free.length, 'parameter')} of ${counted(calibration.lasers.length, 'laser')}, ` +
     `with standard errors of at most ${largestErrors(free)}.`;
 }
 
@@ -53,7 +53,7 @@ function causesSentence(data) {
 }
 
 /**
- * Whether the result can be trusted, in a sentence, why not, and what to do.
+ * Whether the result is trusted, in a sentence, with its caveats and advice.
  * @param {any} data
  * @returns {{state: 'good' | 'bad', badge: string, sentence: string, reasons: string[], todo: string[]}}
  */
@@ -63,9 +63,9 @@ function verdictOf(data) {
     return {state: 'bad', badge: 'failed', sentence: 'The run stopped at an error. Its results are not complete.',
             reasons: [summary.error], todo: ['Correct what the error names, and run the pipeline again.']};
   }
-  const reasons = stagesOf(summary).flatMap((stage) => stage.doubts.map((doubt) => `${stage.tag}: ${doubt}`));
+  const reasons = stagesOf(summary).flatMap((stage) => stage.caveats.map((caveat) => `${stage.tag}: ${caveat}`));
   if (!summary.trusted) {
-    return {state: 'bad', badge: 'not to be trusted', sentence: 'The run came to its end, but its result cannot be trusted.' + causesSentence(data), reasons,
+    return {state: 'bad', badge: 'untrusted', sentence: 'The run ended, but its result is untrusted.' + causesSentence(data), reasons,
             todo: ['Do not measure in this cloud, and do not use this calibration for other recordings.',
                    'Remedy what is listed above, and record again.', ...recordingsThatWouldHelp(data)]};
   }
@@ -82,8 +82,8 @@ function verdictOf(data) {
 function recordingsThatWouldHelp(data) {
   const list = new Set();
   for (const finding of (data.findings || {}).findings || []) {
-    for (const need of finding.resolvable_by || finding.told_apart_by || [])
-      list.add(`To tell ${finding.cause} of ${finding.scope} from ${(finding.confounded_with || []).join(' and ')}, record ${need}.`);
+    for (const need of finding.resolvable_by || [])
+      list.add(`To distinguish ${finding.cause} of ${finding.scope} from ${(finding.confounded_with || []).join(' and ')}, record ${need}.`);
   }
   for (const one of (data.calibration || {}).unobservable || [])
     list.add(`${one.parameter} stays at its prior: ${one.reason}.${one.combination ? ` Known instead: ${one.combination}.` : ''}`);
@@ -91,7 +91,7 @@ function recordingsThatWouldHelp(data) {
 }
 
 /**
- * The figures that say most.
+  * The most important figures.
  * @param {any} data
  * @returns {[string, string, string][]} figure, what it is, what is expected
  */
@@ -102,8 +102,8 @@ function keyFigures(data) {
   if (Number.isFinite(quality.cross_validation))
     figures.push([shortNumber(quality.cross_validation, 2), 'cross-validation', 'two halves of the recording, calibrated apart, differ by so many times what the standard errors allow; about 1 or less is good']);
   if (Number.isFinite(quality.rqe_before) && Number.isFinite(quality.rqe_after))
-    figures.push([`${shortNumber(quality.rqe_before)} → ${shortNumber(quality.rqe_after)}`, 'Rényi quadratic entropy', 'of the cloud, before and after; less is crisper']);
-  const p = ((data.findings || {}).indistinguishable || (data.findings || {}).goodness_of_fit || {});
+    figures.push([`${shortNumber(quality.rqe_before)} → ${shortNumber(quality.rqe_after)}`, 'Rényi quadratic entropy', 'of the cloud, before and after; less is sharper']);
+  const p = (data.findings || {}).goodness_of_fit || {};
   if (Number.isFinite(p.after_p))
     figures.push([`${probability(p.before_p)} → ${probability(p.after_p)}`, 'p-value of the residuals', 'that they are those of the simulation, before and after; above 0.01 nothing but noise is left']);
   if (data.cloud) figures.push([grouped(data.cloud.of), 'points', `of which ${grouped(data.cloud.points)} are shown below`]);

@@ -19,7 +19,7 @@ function toFragment(state) {
 }
 
 /**
- * What a fragment says; what it does not say, or says as no number, stays as in `state`.
+  * Parses a URL fragment; values that are missing or no numbers stay as in `state`.
  * @param {string} fragment
  * @param {ViewState} state
  * @returns {ViewState}

@@ -79,7 +79,7 @@ class CloudViewer {
             low: this.low, high: this.high};
   }
 
-  /** What the URL's fragment says. */
+  /** Restores the view of the URL's fragment. */
   restore() {
     const state = fromFragment(location.hash, this.state());
     Object.assign(this.camera, {yaw: state.yaw, pitch: state.pitch, distance: state.distance, target: state.target});

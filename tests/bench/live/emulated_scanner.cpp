@@ -25,8 +25,8 @@
 namespace crisp {
 namespace {
 
-/// What is sent faster than in real time is simulated beforehand.
-[[noreturn]] void send_all(const Trial& trial, const Rig& rig, int tell) {
+/// Data sent faster than in real time are simulated beforehand.
+[[noreturn]] void send_all(const Trial& trial, const Rig& rig, int report) {
   RecordingSimulator simulator(recording_of(trial), office());
   const auto next = [&]() -> std::optional<HubItem> {
     const auto event = simulator.next();
@@ -55,7 +55,7 @@ namespace {
   }
   emulator.finish();
   sent.ledger = emulator.ledger();
-  if (write(tell, &sent, sizeof sent) != static_cast<ssize_t>(sizeof sent)) std::_Exit(EXIT_FAILURE);
+  if (write(report, &sent, sizeof sent) != static_cast<ssize_t>(sizeof sent)) std::_Exit(EXIT_FAILURE);
   pause();  // the devices stay where they are; the other process ends this one
   std::_Exit(EXIT_SUCCESS);
 }
@@ -122,18 +122,18 @@ ScannerProcess::ScannerProcess(const Trial& trial, const Rig& rig, const std::st
     std::_Exit(EXIT_FAILURE);
   }
   close(ends[1]);
-  told_ = ends[0];
+  reported_ = ends[0];
 }
 
 ScannerProcess::~ScannerProcess() {
   kill(process_, SIGKILL);
   waitpid(process_, nullptr, 0);
-  close(told_);
+  close(reported_);
 }
 
 std::optional<Sent> ScannerProcess::await_end() const {
   Sent sent;
-  if (read(told_, &sent, sizeof sent) != static_cast<ssize_t>(sizeof sent)) return {};
+  if (read(reported_, &sent, sizeof sent) != static_cast<ssize_t>(sizeof sent)) return {};
   return sent;
 }
 

@@ -16,10 +16,10 @@ namespace crisp {
 struct Trial {
   double seconds = 60;  ///< of the emulated scanner's time
   double speed = 1;     ///< times real time
-  double faults = 0;    ///< share of the scans that each kind of fault befalls; restarts a third of it
+  double faults = 0;    ///< share of the scans with each kind of fault; restarts a third of it
 };
 
-/// What the scanner tells when it has sent everything.
+/// The scanner's report when it has sent everything.
 struct Sent {
   std::uint64_t scans = 0, readings = 0;
   EmulatedLedger ledger;
@@ -45,7 +45,7 @@ class ScannerProcess {
   std::optional<Sent> await_end() const;
 
  private:
-  int told_ = -1;  ///< where it tells what it has sent
+  int reported_ = -1;  ///< pipe for its report
   pid_t process_ = -1;
 };
 

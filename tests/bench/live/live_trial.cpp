@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole live path in real time: an emulated scanner in a process of its own, and in this one what
-// configs/live.yaml makes, and a recording. Says what was lost, what it cost, how late the points were and
-// how far from the scene's surfaces, and whether the recording gives the same measurements again, byte for
-// byte.
+// The whole live path in real time: an emulated scanner in a process of its own, and in this one the pipeline
+// of configs/live.yaml, and a recording. Reports losses, cost, the points' delay and their distance from the
+// scene's surfaces, and whether the recording reproduces the measurements byte for byte.
 //
 //     live_trial [SECONDS [SPEED [FAULTS [SCANNER]]]]
 //
@@ -29,8 +28,8 @@
 #include "pipeline/stage/runner.hpp"
 #include "plugins/assemble/register.hpp"
 #include "plugins/calibrate/register.hpp"
+#include "plugins/calibrate/watch/register.hpp"
 #include "plugins/clock/register.hpp"
-#include "plugins/watch/register.hpp"
 #include "plugins/write/register.hpp"
 #include "tests/bench/live/emulated_scanner.hpp"
 #include "tests/bench/live/watch.hpp"
@@ -68,7 +67,7 @@ pipeline:
   - stage: assemble.deskew
 )";
 
-/// Those of the two pipelines: the fewer, the sooner it is built with sanitizers.
+/// The stages of the two pipelines: the fewer, the sooner it is built with sanitizers.
 class Stages {
  public:
   Stages() {
@@ -122,8 +121,7 @@ std::string milliseconds(const std::vector<double>& seconds) {
 void print_sent(const Sent& sent) {
   const EmulatedLedger& ledger = sent.ledger;
   std::cout << fmt::format(
-      "scanner: {} scans, {} readings of the plate, {} faults (dropped {}, damaged {}, stalled {}, restarted "
-      "{}, datagrams lost {}); unheard {}, missed {}\n",
+      "scanner: {} scans, {} encoder readings, {} faults (dropped {}, damaged {}, stalled {}, restarted {}, datagrams lost {}); unheard {}, missed {}\n",
       sent.scans, sent.readings, ledger.faults(), ledger.dropped, ledger.damaged + ledger.readings_damaged,
       ledger.stalled, ledger.restarted, ledger.readings_lost, ledger.unheard, ledger.missed);
 }
@@ -134,7 +132,7 @@ void print_counts(const std::vector<NodeResult>& results) {
     for (const auto& [what, n] : node.report.counts) {
       if (n > 0) std::cout << "  " << node.tag << ": " << what << ": " << n << "\n";
     }
-    for (const auto& doubt : node.report.doubts) std::cout << "  " << node.tag << ": " << doubt << "\n";
+    for (const auto& caveat : node.report.caveats) std::cout << "  " << node.tag << ": " << caveat << "\n";
   }
 }
 
@@ -149,8 +147,7 @@ void print_clocks(const std::vector<NodeResult>& results, const RecordingTruth& 
     // Skews are by how much the hub's seconds are more than the device's.
     const double faster = k < faults.skews.size() ? faults.skews[k] : 0;
     std::cout << fmt::format(
-        "clock of {}: skew {:+.2f} ppm, in truth {:+.2f} ppm; delays {:.0f} us in the median, "
-        "{:.0f} us at 95 %\n",
+        "clock of {}: skew {:+.2f} ppm, in truth {:+.2f} ppm; delays {:.0f} us in the median, {:.0f} us at 95 %\n",
         device.at("device").get<std::string>(), device.at("skew_ppm").get<double>(),
         1e6 * (devices.at(k).clock.skew - faster), 1e6 * device.at("delay_median").get<double>(),
         1e6 * device.at("delay_95").get<double>());
@@ -185,7 +182,7 @@ int attempt(const Trial& trial, const std::string& scanner_program, const fs::pa
   std::cout << fmt::format("received: {} scans, {} readings, {} points in {:.1f} s\n", live.scans,
                            live.readings, live.points, live.elapsed());
   std::cout << fmt::format("CPU: {:.2f} % of one core\n", 100 * cpu / live.elapsed());
-  if (trial.faults == 0) {  // otherwise not every scan that came has points, and they cannot be told apart
+  if (trial.faults == 0) {  // otherwise some received scans have no points, and cannot be matched
     std::cout << "latency from a telegram's arrival to its points: " << milliseconds(live.latencies())
               << "\n";
   }

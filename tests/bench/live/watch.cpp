@@ -73,18 +73,18 @@ void Watch::given(const std::string& tag, const Item& item) {
   } else if (const auto cloud = item.as<Cloud>(); cloud && tag == "assemble.deskew") {
     arrive(*cloud);
   }
-  if (scans + readings > 0) look();  // and not at what is there before the devices are
+  if (scans + readings > 0) sample();  // and not before the devices are there
 }
 
-void Watch::look() {
+void Watch::sample() {
   const double now = monotonic();
   if (begun_ == 0) {
     begun_ = now;
     begun_cpu_ = cpu_seconds();
   }
   last_ = now;
-  if (now - looked_ < 1) return;
-  looked_ = now;
+  if (now - checked_ < 1) return;
+  checked_ = now;
   memory_.push_back(resident_megabytes());
 }
 

@@ -17,7 +17,7 @@ namespace crisp {
 
 double monotonic();  ///< [s]
 
-/// Values of which quantiles are asked for.
+/// Sorted values, for quantiles.
 class Sorted {
  public:
   explicit Sorted(std::vector<double> values);
@@ -46,8 +46,8 @@ class Watch {
  public:
   void given(const std::string& tag, const Item& item);
 
-  /// [s] from the receipt of each telegram to its points. Scans that came in the first two seconds, while
-  /// their clocks were not believed yet, are left out.
+  /// [s] from the receipt of each telegram to its points. Scans of the first two seconds, before their clocks
+  /// are used, are left out.
   const std::vector<double>& latencies() const { return latencies_; }
   double elapsed() const { return last_ - begun_; }  ///< [s] from the first item to the last
   double cpu() const;                                ///< [s] of this process since the first item
@@ -60,12 +60,12 @@ class Watch {
 
  private:
   void arrive(const Cloud& cloud);
-  void look();
+  void sample();
 
   std::map<std::uint16_t, std::deque<std::int64_t>> waiting_;  ///< by laser: [ns] receipts of its scans
   std::vector<double> latencies_;
-  std::vector<double> memory_;                                ///< [MiB] each second
-  double begun_ = 0, begun_cpu_ = 0, looked_ = 0, last_ = 0;  ///< [s]
+  std::vector<double> memory_;                                 ///< [MiB] each second
+  double begun_ = 0, begun_cpu_ = 0, checked_ = 0, last_ = 0;  ///< [s]
 };
 
 /// A thread that only sleeps: how late the machine wakes it is what no program on it can help.

@@ -131,7 +131,7 @@ TEST_F(BagFiles, AChunkThatIsDamagedIsCounted) {
   test::put_bytes(folder_ / "a.mcap", bytes);
   BagFile read(folder_ / "a.mcap");
   EXPECT_FALSE(read.reader().next());
-  EXPECT_EQ(read.reader().losses().at("chunks whose checksum is wrong"), 1U);
+  EXPECT_EQ(read.reader().losses().at("chunks with a wrong checksum"), 1U);
 }
 
 TEST_F(BagFiles, ReadsABagThatZstdCompressedAndRefusesADatabase) {

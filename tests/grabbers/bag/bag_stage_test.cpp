@@ -137,7 +137,7 @@ TEST_F(BagStageTest, CountsWhatIsLeftOut) {
   const auto report = run({{"duration", OptionScalar(0.055)}}).report();
   EXPECT_EQ(report.counts.at("scans that are not later than the one before"), 1U);
   EXPECT_EQ(report.counts.at("messages that end before their content"), 1U);
-  EXPECT_EQ(report.counts.at("messages left out because of begin and duration"), 1U);
+  EXPECT_EQ(report.counts.at("messages outside of begin and duration"), 1U);
 }
 
 TEST_F(BagStageTest, TwoTopicsOfScansAreAnErrorUnlessTheRigNamesOne) {
@@ -156,7 +156,7 @@ TEST_F(BagStageTest, ARigOfSeveralLasersMustNameTheirTopics) {
   EXPECT_THROW(stage.check(), Error);
 }
 
-TEST_F(BagStageTest, SaysWhichTopicsThereAreWhereNoneIsTheRigs) {
+TEST_F(BagStageTest, ReportsWhichTopicsThereAreWhereNoneIsTheRigs) {
   rig_.lasers[0].topic = "/tilt_scan";
   rig_.plate.topic = "/none";
   add_scan(0, {1});

@@ -10,7 +10,7 @@
 namespace crisp {
 namespace {
 
-TEST(BagSummary, TellsTopicsTypesRatesGapsAndClocks) {
+TEST(BagSummary, ReportsTopicsTypesRatesGapsAndClocks) {
   constexpr std::int64_t kBegin = 1'700'000'000'000'000'000;
   test::TestBag bag{.topics = {{"/scan", "sensor_msgs/LaserScan", test::kLaserScanDefinition},
                                {"/joints", "sensor_msgs/JointState", test::kJointStateDefinition},

@@ -89,10 +89,8 @@ void run(sqlite3* database, const char* statement) {
 }  // namespace
 
 const char* const kLaserScanDefinition =
-    "# Single scan\nHeader header  # timestamp of the first ray\nfloat32 angle_min # [rad]\nfloat32 "
-    "angle_max\n"
-    "float32 angle_increment\n\nfloat32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 "
-    "range_max\n"
+    "# Single scan\nHeader header  # timestamp of the first ray\nfloat32 angle_min # [rad]\nfloat32 angle_max\n"
+    "float32 angle_increment\n\nfloat32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n"
     "float32[] ranges\nfloat32[] intensities\n"
     "================================================================================\n"
     "MSG: std_msgs/Header\n# Standard metadata\nuint32 seq\ntime stamp\nstring frame_id\n";
@@ -184,13 +182,9 @@ void write_db3(const std::filesystem::path& file, const TestBag& bag) {
   ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
   run(database, "CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL)");
   run(database,
-      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
-      "serialization_format TEXT NOT "
-      "NULL, offered_qos_profiles TEXT NOT NULL)");
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)");
   run(database,
-      "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL, "
-      "data BLOB "
-      "NOT NULL)");
+      "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL, data BLOB NOT NULL)");
   run(database, "CREATE INDEX timestamp_idx ON messages (timestamp ASC); BEGIN");
   for (std::size_t i = 0; i < bag.topics.size(); ++i) {
     run(database, ("INSERT INTO topics VALUES(" + std::to_string(i + 1) + ", '" + bag.topics[i].name +

@@ -63,7 +63,7 @@ struct TestMessage {
   std::string bytes;
 };
 
-/// What is to be in a bag.
+/// Content of a test's bag.
 struct TestBag {
   std::vector<TestTopic> topics;
   std::vector<TestMessage> messages;

@@ -151,7 +151,7 @@ TEST(RecordedBags, OfARealTiltingLaserGiveWhatTheirTableGives) {
   expect_same(bag, table, 2e-5);
 }
 
-TEST(RecordedBags, OfARealLaserAtRestGiveItsScans) {
+TEST(RecordedBags, OfAStationaryRealLaserGiveItsScans) {
   const fs::path file = shared_data() / "sick/lms1xx-20220923-static.bag";
   if (!fs::exists(file)) GTEST_SKIP() << "no shared data: lms1xx-20220923-static.bag";
   Rig rig = tilting_rig();

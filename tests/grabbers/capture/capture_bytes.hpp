@@ -62,7 +62,7 @@ inline const Address kLaser1{"192.168.0.1", 2112}, kLaser2{"192.168.0.2", 2112},
 inline const Address kHub{"192.168.0.100", 50000}, kHubPlate{"192.168.0.100", 4000};
 inline constexpr std::int64_t kStart = 1'700'000'000'000'000'000;
 
-/// Scan k of a laser: 50 a second, distances that tell which scan it is.
+/// Scan k of a laser: 50 a second, distances that identify the scan.
 ScanData numbered_scan(std::uint16_t k, std::size_t beams = 20);
 PlateReading numbered_reading(std::uint16_t k);
 

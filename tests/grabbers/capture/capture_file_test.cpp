@@ -69,8 +69,8 @@ TEST_F(CaptureFileTest, ReadsBothByteOrdersAndPrecisions) {
   }
 }
 
-/// The upper bits of the link type say that frames end with a checksum of 4 bytes (2 times 16 bits).
-TEST_F(CaptureFileTest, TellsTheLinkTypeFromTheLengthOfAChecksum) {
+/// The upper bits of the link type announce a frame checksum of 4 bytes (2 times 16 bits).
+TEST_F(CaptureFileTest, DistinguishesTheLinkTypeFromTheLengthOfAChecksum) {
   const auto found = read(pcap_file(packets(2), {ByteOrder::Little, false, 0x24000001}));
   ASSERT_THAT(found, SizeIs(2));
   EXPECT_EQ(found[0].interface, 1U);
@@ -143,7 +143,7 @@ TEST_F(CaptureFileTest, ReadsPcapngOfSeveralInterfacesAndSections) {
   EXPECT_EQ(losses_.of(file_loss::kNoStamp), 1U);
 }
 
-TEST_F(CaptureFileTest, TellsWhatTheCapturingComputerDropped) {
+TEST_F(CaptureFileTest, ReportsWhatTheCapturingComputerDropped) {
   PcapngBuilder file(ByteOrder::Little);
   file.section().interface(1, 9).statistics(0, 3).statistics(0, 10).statistics(7, 99);
   read(file.bytes());

@@ -61,7 +61,7 @@ std::pair<double, double> receipt_errors(const std::vector<std::string>& found) 
 
 TEST(CaptureOrder, ReadsAFileInOrderAsItIs) {
   const MemoryFile file(pcap_file(frames()));
-  const CaptureOrder order = survey_capture(file.path());
+  const CaptureOrder order = scan_capture(file.path());
   EXPECT_EQ(order.stretches.size(), 1U);
   EXPECT_THAT(order.remarks, IsEmpty());
 }
@@ -171,7 +171,7 @@ TEST(CaptureOrder, TakesOutTheOffsetOfAnInterfaceThatALaserIsAt) {
   }
 }
 
-TEST(CaptureOrder, SaysSoWhereTimesGoBackTooOftenToSortThem) {
+TEST(CaptureOrder, ReportsItWhereTimesGoBackTooOftenToSortThem) {
   auto all = frames();
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (i / 2 % 2 == 1) all[i].time_ns -= 3 * kSecond;  // of all senders

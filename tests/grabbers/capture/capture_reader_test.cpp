@@ -88,7 +88,7 @@ TEST(CaptureReader, StampsATelegramWithThePacketThatCompletesIt) {
                    [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; });
   const auto again = read_capture(pcap_file(frames));
   EXPECT_EQ(again.items, expected);
-  EXPECT_EQ(again.device("laser1").notes.of("TCP segments sent again"), segments.size());
+  EXPECT_EQ(again.device("laser1").notes.of("retransmitted TCP segments"), segments.size());
 }
 
 TEST(CaptureReader, StampsATelegramThatARetransmissionCompletesWithThat) {
@@ -128,8 +128,8 @@ TEST(CaptureReader, LosesOneTelegramWithALostSegmentAndNamesIt) {
                 return std::count(expected.begin(), expected.end(), x) == 1;
               }));
   const auto& losses = reading.device("laser1").losses;
-  EXPECT_EQ(losses.of("telegrams that never came, by their counter"), 1U);
-  EXPECT_EQ(losses.of("bytes that TCP carried but the capture lacks"), 400U);
+  EXPECT_EQ(losses.of("lost telegrams, by their counter"), 1U);
+  EXPECT_EQ(losses.of("bytes of TCP missing from the capture"), 400U);
   EXPECT_EQ(losses.of("telegrams cut by a gap or an end"), 1U);
 }
 
@@ -220,21 +220,20 @@ TEST(CaptureReader, RefusesRigsWhoseAddressesAreNoneOrTheSame) {
 TEST(CaptureReader, CountsTelegramsByTheirWholeName) {
   std::vector<Frame> frames;
   TcpConversation laser(kLaser1, kHub, into(frames));
-  const auto say = [&](const char* text, std::int64_t t) {
+  const auto send = [&](const char* text, std::int64_t t) {
     laser.send(TcpSide::Server, cola_frame(as_bytes(text), ColaLanguage::A), kStart + t * kMillisecond);
   };
-  say("sSN LMDscandatamon 1 1 1", 1);
-  say("sFA 3", 2);
+  send("sSN LMDscandatamon 1 1 1", 1);
+  send("sFA 3", 2);
   laser.send(TcpSide::Server, encode_scan_data(numbered_scan(0), ColaLanguage::B), kStart + 3 * kMillisecond);
-  say("sSN LMDscandata 1 1 89A27F 0", 4);  // ends too early
+  send("sSN LMDscandata 1 1 89A27F 0", 4);  // ends too early
   const auto reading = read_capture(pcap_file(frames));
   EXPECT_THAT(reading.items, SizeIs(1));
   const auto& device = reading.device("laser1");
   EXPECT_EQ(device.telegrams.of("sSN LMDscandatamon"), 1U);
   EXPECT_EQ(device.telegrams.of("sSN LMDscandata"), 2U);
   EXPECT_EQ(device.telegrams.of("sFA 3 (unknown variable)"), 1U);
-  EXPECT_EQ(device.losses.of("scan telegrams that cannot be read: the payload is too short for its fields"),
-            1U);
+  EXPECT_EQ(device.losses.of("unreadable scan telegrams: the payload is too short for its fields"), 1U);
 }
 
 TEST(CaptureReader, GivesReadingsOnceThatWereCapturedTwice) {
@@ -274,7 +273,7 @@ TEST(CaptureReader, CountsLostReadingsAndDamagedSentences) {
   const auto reading = read_capture(pcap_file(frames));
   EXPECT_THAT(reading.items, SizeIs(132));
   const auto& losses = reading.device("plate").losses;
-  EXPECT_EQ(losses.of("readings that never came, by their sequence"), 4U);
+  EXPECT_EQ(losses.of("lost readings, by their sequence number"), 4U);
   EXPECT_EQ(losses.of("sentences refused: a wrong checksum"), 1U);
   EXPECT_EQ(losses.of("sentences refused: a truncated line"), 1U);
 }
@@ -295,7 +294,7 @@ TEST(CaptureReader, NamesTheRestartOfADeviceAndItsSilence) {
   EXPECT_THAT(reading.items, SizeIs(100));
   const auto& device = reading.device("laser1");
   EXPECT_EQ(device.notes.of("restarts of the device's clock"), 1U);
-  EXPECT_EQ(device.losses.of("telegrams that never came, by their counter"), 0U);
+  EXPECT_EQ(device.losses.of("lost telegrams, by their counter"), 0U);
   EXPECT_NEAR(device.longest_silence, 30.02, 1e-6);
   EXPECT_EQ(device.silence_ns, kStart + 49 * 20 * kMillisecond);
 }
@@ -315,7 +314,7 @@ TEST(CaptureReader, GivesAllOfARecordingThatWasAppendedToAnother) {
   EXPECT_THAT(reading.items, SizeIs(2 * scenario.items().size()));
   for (const auto* name : {"laser1", "laser2"}) {
     EXPECT_EQ(reading.device(name).items, 60U);
-    EXPECT_EQ(reading.device(name).notes.of("TCP segments sent again"), 0U);
+    EXPECT_EQ(reading.device(name).notes.of("retransmitted TCP segments"), 0U);
   }
 }
 
@@ -340,7 +339,7 @@ TEST(CaptureReader, TakesTheSilenceOfOneDeviceForALoss) {
   });
   const auto reading = read_capture(pcap_file(frames));
   EXPECT_EQ(reading.statistics.pauses, 0U);
-  EXPECT_EQ(reading.device("plate").losses.of("readings that never came, by their sequence"), 4000U);
+  EXPECT_EQ(reading.device("plate").losses.of("lost readings, by their sequence number"), 4000U);
 }
 
 TEST(CaptureReader, InspectsACaptureWithoutARig) {

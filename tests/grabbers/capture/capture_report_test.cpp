@@ -12,7 +12,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-TEST(CaptureReport, TellsPeopleWhatACaptureHolds) {
+TEST(CaptureReport, DescribesACapture) {
   const MemoryFile file(pcap_file(Scenario{.scans = 20, .beams = 541}.frames()));
   const auto text = to_text(inspect_capture(file.path()));
   EXPECT_THAT(text, AllOf(HasSubstr(" packets, 0.1 MB"), HasSubstr("2023-11-14 22:13:19 UTC"),
@@ -25,14 +25,14 @@ TEST(CaptureReport, TellsPeopleWhatACaptureHolds) {
   EXPECT_THAT(text, testing::Not(HasSubstr("lost:")));
 }
 
-TEST(CaptureReport, SaysThatACaptureHoldsNothing) {
+TEST(CaptureReport, ReportsThatACaptureHoldsNothing) {
   const MemoryFile file(pcap_file({}));
-  EXPECT_THAT(to_text(inspect_capture(file.path())), HasSubstr("no lasers and no plate"));
+  EXPECT_THAT(to_text(inspect_capture(file.path())), HasSubstr("it holds no laser and no plate"));
 }
 
-TEST(CaptureReport, TellsOfThePausesBetweenRecordings) {
+TEST(CaptureReport, ReportsPausesBetweenRecordings) {
   const CaptureStatistics statistics{.pauses = 1, .paused = 3595.04};
-  EXPECT_THAT(to_text(statistics), HasSubstr("2 recordings, one after the other: nothing came for 3595.0 s"));
+  EXPECT_THAT(to_text(statistics), HasSubstr("2 recordings in sequence, with 3595.0 s of pauses"));
   EXPECT_EQ(to_json(statistics)["pauses"], 1);
   EXPECT_EQ(to_json(statistics)["paused"], 3595.04);
 }

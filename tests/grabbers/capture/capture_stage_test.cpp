@@ -94,9 +94,8 @@ TEST_F(CaptureStageTest, NamesLossesByTheirDevice) {
   damaged.resize(damaged.size() - 10);
   write_file(folder_ / "hub.pcap", damaged);
   const auto result = run(file());
-  EXPECT_THAT(
-      result.report.counts,
-      Contains(testing::Pair("bytes of a record that the end of the file cuts off", testing::Gt(0U))));
+  EXPECT_THAT(result.report.counts,
+              Contains(testing::Pair("bytes of a record truncated by the end of the file", testing::Gt(0U))));
 }
 
 TEST_F(CaptureStageTest, GivesAPartOfTheCapture) {
@@ -111,7 +110,7 @@ TEST_F(CaptureStageTest, GivesAPartOfTheCapture) {
   EXPECT_EQ(Taker::items, expected);
 }
 
-TEST_F(CaptureStageTest, SaysWhatItFoundInsteadOfTheRigsDevices) {
+TEST_F(CaptureStageTest, ReportsWhatItFoundInsteadOfTheRigsDevices) {
   for (auto& laser : rig_.lasers) laser.address.ip.insert(0, "1");  // 1192.168…
   EXPECT_THAT(complaint(file()), HasSubstr("no IP address"));
   rig_.lasers[1].address.ip.clear();
@@ -128,27 +127,26 @@ TEST_F(CaptureStageTest, WarnsOfDevicesThatTheRigDoesNotKnow) {
   rig_.lasers.pop_back();
   const auto result = run(file());
   EXPECT_THAT(result.report.warnings, Contains("not in the rig: laser at 192.168.0.2:2112"));
-  EXPECT_EQ(result.report.counts.at("items of a laser at 192.168.0.2:2112, which the rig does not know"),
-            10U);
+  EXPECT_EQ(result.report.counts.at("items of a laser at 192.168.0.2:2112 that is not in the rig"), 10U);
 }
 
-TEST_F(CaptureStageTest, DoubtsWhatComesWhereALaserSpeaksFromAnotherAddress) {
+TEST_F(CaptureStageTest, MarksALaserOfAnotherAddressUntrusted) {
   rig_.lasers[1].address.ip = "192.168.0.20";
   const auto result = run(file());
-  EXPECT_THAT(result.report.doubts,
-              testing::ElementsAre("nothing came of laser2 (192.168.0.20), but there is a laser at "
-                                   "192.168.0.2:2112, which the rig does not have; correct the addresses in "
-                                   "the rig",
-                                   HasSubstr("nothing came of laser3")));
+  EXPECT_THAT(
+      result.report.caveats,
+      testing::ElementsAre(
+          "there is no data of laser2 (192.168.0.20), but of an unknown laser at 192.168.0.2:2112; correct the addresses in the rig",
+          HasSubstr("there is no data of laser3")));
 }
 
-TEST_F(CaptureStageTest, DoubtsTwoLasersThatHaveOneAddress) {
+TEST_F(CaptureStageTest, MarksTwoLasersOfOneAddressUntrusted) {
   scenario_.same_address = true;
   write_file(folder_ / "hub.pcap", pcap_file(scenario_.frames()));
   const auto result = run(file());
   EXPECT_THAT(
-      result.report.doubts,
-      Contains(HasSubstr("laser1: 2 units (serial numbers 1000, 1001) send in turn from 192.168.0.1")));
+      result.report.caveats,
+      Contains(HasSubstr("laser1: 2 units (serial numbers 1000, 1001) send by turns from 192.168.0.1")));
 }
 
 TEST_F(CaptureStageTest, NamesALaserOfWhichScansCannotBeRead) {
@@ -162,22 +160,22 @@ TEST_F(CaptureStageTest, NamesALaserOfWhichScansCannotBeRead) {
   const auto half = run_with(50);
   EXPECT_THAT(
       half.warnings,
-      Contains(HasSubstr("hub.pcap: 50.0 % of the scans of laser2 (192.168.0.2) (100 of 200) cannot be used: "
-                         "100 scan telegrams that hold no scan: channels with different angles")));
+      Contains(HasSubstr(
+          "hub.pcap: 50.0 % of the scans of laser2 (192.168.0.2) (100 of 200) are unusable: 100 scan telegrams that hold no scan: channels with different angles")));
   EXPECT_THAT(half.warnings, testing::Not(Contains(HasSubstr("scans of laser1"))));
-  EXPECT_TRUE(half.doubts.empty());
+  EXPECT_TRUE(half.caveats.empty());
   const auto nearly_all = run_with(99);
-  EXPECT_THAT(nearly_all.doubts, testing::ElementsAre(HasSubstr("99.0 % of the scans of laser2")));
+  EXPECT_THAT(nearly_all.caveats, testing::ElementsAre(HasSubstr("99.0 % of the scans of laser2")));
 }
 
-TEST_F(CaptureStageTest, SaysWhatIsLeftOfACaptureThatIsShorterThanBegin) {
+TEST_F(CaptureStageTest, ReportsWhatIsLeftOfACaptureThatIsShorterThanBegin) {
   EXPECT_THAT(complaint(file() + ", begin: 100s"),
-              testing::AllOf(HasSubstr("begin and duration leave nothing of " +
+              testing::AllOf(HasSubstr("begin and duration select nothing of " +
                                        (folder_ / "hub.pcap").string() + ", which ends after 0.7 s"),
-                             HasSubstr("let it begin earlier")));
+                             HasSubstr("reduce begin")));
 }
 
-TEST_F(CaptureStageTest, SaysWhatAFileIsThatIsNoCapture) {
+TEST_F(CaptureStageTest, NamesTheKindOfAFileThatIsNoCapture) {
   write_file(folder_ / "hub.pcap", Bytes{0x1F, 0x8B, 8, 0, 0, 0, 0, 0, 0});
   EXPECT_THAT(complaint(file()), HasSubstr("hub.pcap cannot be decompressed from byte 0 on"));
   const std::string pcd = "# .PCD v0.7 - Point Cloud Data file format\n";
@@ -195,7 +193,8 @@ TEST_F(CaptureStageTest, WarnsOfWhatALaserSentThatNeverCame) {
   write_file(folder_ / "hub.pcap", pcap_file(frames));
   const auto result = run(file());
   EXPECT_THAT(result.report.warnings,
-              Contains(HasSubstr("hub.pcap: 2.0 % of what laser2 (192.168.0.2) sent (6 of 300 scans)")));
+              Contains(HasSubstr(
+                  "hub.pcap: 2.0 % of the telegrams of laser2 (192.168.0.2) (6 of 300 scans) were lost")));
   EXPECT_THAT(result.report.warnings, testing::Not(Contains(HasSubstr("laser1"))));
 }
 
@@ -279,7 +278,7 @@ TEST_F(CaptureFolder, OneWithoutCapturesIsRefused) {
   EXPECT_THAT(complaint(file()), HasSubstr("is a folder without any capture"));
 }
 
-TEST_F(CaptureStageTest, SaysThatTheFileIsMissing) {
+TEST_F(CaptureStageTest, ReportsThatTheFileIsMissing) {
   EXPECT_THAT(complaint("file: nowhere.pcap"), HasSubstr("nowhere.pcap: No such file or directory"));
   EXPECT_THAT(complaint(""), HasSubstr("file"));
 }

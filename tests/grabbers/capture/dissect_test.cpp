@@ -82,7 +82,7 @@ TEST(Dissect, LeavesThePaddingOfShortFramesOut) {
   EXPECT_EQ(as_text(found->payload), "a");
 }
 
-TEST(Dissect, TellsHowMuchTheCaptureCutOff) {
+TEST(Dissect, ReportsHowMuchTheCaptureCutOff) {
   const auto whole = tcp_frame(false);
   auto cut = packet(ByteView(whole).first(whole.size() - 20), 1);
   cut.original_size = static_cast<std::uint32_t>(whole.size());
@@ -124,7 +124,7 @@ TEST(Dissect, RefusesEveryFlippedBitOfAnIpv4Header) {
   }
 }
 
-TEST(Dissect, SaysWhyAPacketHoldsNoIp) {
+TEST(Dissect, ReportsWhyAPacketHoldsNoIp) {
   EXPECT_EQ(std::get<NoIp>(dissect_ip(packet(Bytes(60, 0), 147))), NoIp::UnknownLinkType);
   auto arp = tcp_frame(false);
   arp[12] = 0x08;

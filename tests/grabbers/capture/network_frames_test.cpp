@@ -42,7 +42,7 @@ void expect_right_checksums(const Frame& frame, bool ipv6, std::uint8_t protocol
   EXPECT_EQ(folded(transport, folded(addresses, protocol + static_cast<std::uint32_t>(length))), 0xFFFFU);
 }
 
-TEST(TcpConversation, LooksLikeARealOne) {
+TEST(TcpConversation, ResemblesARealOne) {
   std::vector<Frame> frames;
   TcpConversation conversation(kLaser1, kHub, into(frames),
                                {.server_sequence = 0xFFFFFFF0, .client_sequence = 77});

@@ -106,7 +106,7 @@ TEST(PcapWriter, RefusesToContinueAnotherKindOfFile) {
   EXPECT_EQ(as_text(read_file(folder / "notes.txt")), text);
 }
 
-TEST(PcapWriter, SaysWhenAFolderIsMissing) {
+TEST(PcapWriter, ReportsWhenAFolderIsMissing) {
   const TemporaryFolder folder;
   try {
     const PcapWriter writer(folder / "nowhere/a.pcap", PcapMode::Grow);

@@ -37,8 +37,8 @@ TEST(RealCaptures, OfAnLms111HoldItsScansOnceAndNameWhatTcpSentAgain) {
   const auto& laser = reading.statistics.devices.at(0);
   EXPECT_TRUE(laser.losses.all().empty());
   EXPECT_TRUE(reading.statistics.losses.all().empty());
-  EXPECT_EQ(laser.notes.of("scans that TCP sent again"), 3U);
-  EXPECT_EQ(laser.notes.of("TCP segments sent again"), 7U) << "of the 8, one is the hub's";
+  EXPECT_EQ(laser.notes.of("scans retransmitted by TCP"), 3U);
+  EXPECT_EQ(laser.notes.of("retransmitted TCP segments"), 7U) << "of the 8, one is the hub's";
   EXPECT_NEAR(*laser.period, 20'114.5e-6, 34e-6);
   EXPECT_GT(*laser.median_handover, 3.07e-3);
   EXPECT_LT(*laser.median_handover, 3.27e-3);

@@ -9,7 +9,7 @@
 namespace crisp {
 
 /// A captured run of the default rig without its third laser: n scans of each of two lasers, 50 a second, and
-/// ten times as many plate readings.
+/// ten times as many encoder readings.
 struct Scenario {
   std::size_t scans = 10;
   std::size_t beams = 20;

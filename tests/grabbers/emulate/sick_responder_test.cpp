@@ -11,8 +11,8 @@ namespace {
 
 using namespace std::string_literals;
 
-/// What is answered to a request without its framing, likewise.
-std::string ask(SickResponder& responder, const std::string& request, ColaLanguage language) {
+/// The answer to a request, without framing.
+std::string answer_to(SickResponder& responder, const std::string& request, ColaLanguage language) {
   const auto parsed = parse_cola(as_bytes(request), language);
   EXPECT_TRUE(parsed) << request;
   std::string answer;
@@ -28,7 +28,7 @@ TEST(SickResponder, RunsTheAsciiDialogueOfLibLms1xxToItsEnd) {
   EmulatedDevice device;
   device.measuring = false;
   SickResponder responder(device);
-  const auto a = [&](const std::string& request) { return ask(responder, request, ColaLanguage::A); };
+  const auto a = [&](const std::string& request) { return answer_to(responder, request, ColaLanguage::A); };
   EXPECT_EQ(a("sMN SetAccessMode 03 F4724744"), "sAN SetAccessMode 1");
   EXPECT_EQ(a("sMN LMCstopmeas"), "sAN LMCstopmeas 0");
   EXPECT_EQ(a("sRN LMPscancfg"), "sRA LMPscancfg 1388 1 1388 FFF92230 225510");
@@ -49,7 +49,7 @@ TEST(SickResponder, RunsTheAsciiDialogueOfLibLms1xxToItsEnd) {
 TEST(SickResponder, RunsTheBinaryDialogueOfSickScanXdToItsEnd) {
   EmulatedDevice device;
   SickResponder responder(device);
-  const auto b = [&](const std::string& request) { return ask(responder, request, ColaLanguage::B); };
+  const auto b = [&](const std::string& request) { return answer_to(responder, request, ColaLanguage::B); };
   EXPECT_EQ(b("sRN SCdevicestate"), "sRA SCdevicestate \x01"s);
   EXPECT_EQ(b("sMN SetAccessMode \x03\xf4\x72\x47\x44"), "sAN SetAccessMode \x01");
   EXPECT_EQ(b("sWN EIHstCola \x01"), "sWA EIHstCola ");
@@ -76,7 +76,7 @@ TEST(SickResponder, RunsTheBinaryDialogueOfSickScanXdToItsEnd) {
 TEST(SickResponder, RefusesAsADeviceDoes) {
   EmulatedDevice device;
   SickResponder responder(device);
-  const auto a = [&](const std::string& request) { return ask(responder, request, ColaLanguage::A); };
+  const auto a = [&](const std::string& request) { return answer_to(responder, request, ColaLanguage::A); };
   EXPECT_EQ(a("sMN LMCstopmeas"), "sFA 1") << "nobody is logged in";
   EXPECT_TRUE(device.measuring);
   EXPECT_EQ(a("sWN LMPoutputRange 1 1388 0 0"), "sFA A");
@@ -97,7 +97,7 @@ TEST(SickResponder, PutsInForceWhatIsConfiguredAsFarAsItsScansAllow) {
                              .angle_step = 5000,
                              .raw = std::vector<std::uint16_t>(541, 2)}};
   SickResponder responder(device);
-  const auto a = [&](const std::string& request) { return ask(responder, request, ColaLanguage::A); };
+  const auto a = [&](const std::string& request) { return answer_to(responder, request, ColaLanguage::A); };
   a("sMN SetAccessMode 03 F4724744");
   EXPECT_EQ(a("sMN mLMPsetscancfg 1388 1 1388 FFF92230 225510"),
             "sAN mLMPsetscancfg 0 1388 1 1388 FFF92230 225510");
@@ -115,11 +115,11 @@ TEST(SickResponder, PutsInForceWhatIsConfiguredAsFarAsItsScansAllow) {
   EXPECT_EQ(sent.channels16[0].raw.size(), 4U) << "0, 0.5, 1 and 1.5 degrees";
 }
 
-TEST(SickResponder, AnswersTheLastScanToWhoAsksForOne) {
+TEST(SickResponder, AnswersTheLastScanToWhoRequestsOne) {
   EmulatedDevice device;
   device.last.serial_number = 4711;
   SickResponder responder(device);
-  const std::string answer = ask(responder, "sRN LMDscandata", ColaLanguage::A);
+  const std::string answer = answer_to(responder, "sRN LMDscandata", ColaLanguage::A);
   EXPECT_THAT(answer, testing::StartsWith("sRA LMDscandata 1 1 1267 "));
 }
 

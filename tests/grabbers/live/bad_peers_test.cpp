@@ -73,7 +73,7 @@ TEST(BadPeers, ThatSendGarbageOfAnyLengthForALaserAreCounted) {
   const Babbler babbler(garbage);
   LiveSource source(rig_of_one(babbler.port()), {.plate = false, .sick = {.reply_timeout = 0.05}});
   EXPECT_TRUE(test::comes_true(source, "laser1", [](const DeviceStatistics& laser) {
-    return laser.losses.of("bytes that belong to no whole telegram") > kMuch &&
+    return laser.losses.of("bytes outside of whole telegrams") > kMuch &&
            laser.notes.of("connections that failed: a request was not answered") >= 2;
   }));
   const auto statistics = source.close();
@@ -87,7 +87,7 @@ TEST(BadPeers, ThatSendTelegramsWithoutEndForALaserAreCounted) {
   const Babbler babbler(bytes_of(endless));
   LiveSource source(rig_of_one(babbler.port()), {.plate = false, .sick = {.reply_timeout = 0.05}});
   EXPECT_TRUE(test::comes_true(source, "laser1", [](const DeviceStatistics& laser) {
-    return laser.losses.of("bytes that belong to no whole telegram") > kMuch;
+    return laser.losses.of("bytes outside of whole telegrams") > kMuch;
   }));
   EXPECT_EQ(of(source.close(), "laser1").items, 0U);
 }
@@ -101,11 +101,11 @@ TEST(BadPeers, ThatSendGarbageForAPlateOverTcpAreCountedAndConnectedToAnew) {
   const Babbler babbler(bytes_of(nonsense_for_a_plate()));
   Rig rig = test::loopback_rig();
   rig.plate.address.port = babbler.port();
-  LiveSource source(rig,
-                    {.lasers = false,
-                     .plate_at = {.transport = PlateTransport::Tcp, .silence = 0.05, .longest_pause = 0.1}});
+  LiveSource source(
+      rig, {.lasers = false,
+            .plate_at = {.transport = PlateTransport::Tcp, .silence = 0.05, .max_reconnect_delay = 0.1}});
   EXPECT_TRUE(test::comes_true(source, "plate", [](const DeviceStatistics& plate) {
-    return plate.losses.of("bytes that belong to no sentence") > kMuch &&
+    return plate.losses.of("bytes outside of sentences") > kMuch &&
            test::count_beginning(plate.losses, "sentences refused") > 100 &&
            plate.notes.of("connections that failed: no reading came") >= 2;
   }));
@@ -123,7 +123,7 @@ TEST(BadPeers, ThatSendGarbageForAPlateInDatagramsAreCountedAsItComes) {
   };
   EXPECT_TRUE(test::comes_true(source, "plate", [&](const DeviceStatistics& so_far) {
     sends(garbage);
-    return so_far.losses.of("bytes that belong to no sentence") > kMuch;
+    return so_far.losses.of("bytes outside of sentences") > kMuch;
   }));
   sends(encode_plate_sentence({.sequence = 7}));
   while (const auto item = source.next_within(test::kPatience)) {
@@ -138,11 +138,11 @@ TEST(BadPeers, FromAnotherAddressThanThePlatesAreCountedAndNotRead) {
   rig.plate.address.ip = "127.0.0.2";
   LiveSource source(rig, {.lasers = false, .plate_at = {.port = 0}});
   boost::asio::io_context context;
-  udp::socket stranger(context, udp::endpoint(kLoopback, 0));
+  udp::socket unknown(context, udp::endpoint(kLoopback, 0));
   EXPECT_TRUE(test::comes_true(source, "plate", [&](const DeviceStatistics& plate) {
-    stranger.send_to(boost::asio::buffer(encode_plate_sentence({.sequence = 7})),
-                     {kLoopback, source.plate_port()});
-    return plate.notes.of("datagrams from another address than the plate's") > 0;
+    unknown.send_to(boost::asio::buffer(encode_plate_sentence({.sequence = 7})),
+                    {kLoopback, source.plate_port()});
+    return plate.notes.of("datagrams from other addresses than the plate's") > 0;
   }));
   EXPECT_EQ(of(source.close(), "plate").items, 0U);
 }
@@ -173,8 +173,9 @@ LiveSettings patient() {
   constexpr double kForEver = 3600;  // [s]
   LiveSettings settings;
   settings.plate = false;
-  settings.sick.reply_timeout = settings.sick.silence = settings.sick.longest_pause = kForEver;
-  settings.plate_at = {.transport = PlateTransport::Tcp, .silence = kForEver, .longest_pause = kForEver};
+  settings.sick.reply_timeout = settings.sick.silence = settings.sick.max_reconnect_delay = kForEver;
+  settings.plate_at = {
+      .transport = PlateTransport::Tcp, .silence = kForEver, .max_reconnect_delay = kForEver};
   return settings;
 }
 
@@ -217,7 +218,7 @@ TEST(LiveSourceEndsSoon, BetweenTwoTries) {
   expect_to_end_soon(source, "pause");
 }
 
-TEST(LiveSourceEndsSoon, BeforeTheLaserHasSaidAnything) {
+TEST(LiveSourceEndsSoon, BeforeTheLaserHasSentAnything) {
   const Babbler silent({});
   LiveSource source(rig_of_one(silent.port()), patient());
   std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -144,11 +144,11 @@ INSTANTIATE_TEST_SUITE_P(Each, LiveSourceIn, testing::Values(ColaLanguage::A, Co
                            return language.param == ColaLanguage::A ? "ColaA" : "ColaB";
                          });
 
-TEST(LiveSource, ConfiguresALaserAndSaysWhatItDoesNotDo) {
+TEST(LiveSource, ConfiguresALaserAndReportsWhatItDoesNotDo) {
   const auto scans = scans_of(recorded_items(0.1), 0);
   Emulator emulator(loopback_rig(1), {.speed = 0});
-  const SickConfiguration wanted{.frequency = 25, .output_range = {0, 90 * kDegree}, .remission = false};
-  LiveSource source(emulator.rig(), {.plate = false, .sick = {.configuration = wanted}});
+  const SickConfiguration requested{.frequency = 25, .output_range = {0, 90 * kDegree}, .remission = false};
+  LiveSource source(emulator.rig(), {.plate = false, .sick = {.configuration = requested}});
   const std::vector<HubItem> items(scans.begin(), scans.end());
   std::vector<HubItem> came;
   {

@@ -15,30 +15,30 @@ CaptureStatistics received(std::uint64_t scans) {
   return statistics;
 }
 
-TEST(LiveStatus, TellsRatesLossesAndTheLatencyOfTheSlowest) {
+TEST(LiveStatus, ReportsRatesLossesAndTheLatencyOfTheSlowest) {
   LiveStatus status;
-  status.tell(received(100), 10, 0, "0 s");
+  status.report(received(100), 10, 0, "0 s");
   for (int i = 0; i < 200; ++i) status.passed(i < 197 ? 1e-4 : 3e-3);
   CaptureStatistics statistics = received(125);
   statistics.devices[0].losses.add(kTelegramsNeverCame, 2);
   statistics.losses.add("items dropped because the pipeline was too slow", 3);
-  const StageStatus told = status.tell(statistics, 10.5, 7, "1 s");
-  EXPECT_EQ(told.line, "1 s, laser1 50.0 Hz, lost 5, queue 7, latency 3.0 ms");
+  const StageStatus reported = status.report(statistics, 10.5, 7, "1 s");
+  EXPECT_EQ(reported.line, "1 s, laser1 50.0 Hz, lost 5, queue 7, latency 3.0 ms");
 }
 
-TEST(LiveStatus, TellsWhatHappenedOnceAndWhatGoesOnEveryTenSeconds) {
+TEST(LiveStatus, ReportsEventsOnceAndContinuingLossesEveryTenSeconds) {
   const std::string failed = "connections that failed: no scan came";
   LiveStatus status;
   CaptureStatistics statistics = received(1);
-  EXPECT_THAT(status.tell(statistics, 0, 0, "").events, IsEmpty());
+  EXPECT_THAT(status.report(statistics, 0, 0, "").events, IsEmpty());
   statistics.devices[0].notes.add(failed);
-  EXPECT_THAT(status.tell(statistics, 1, 0, "").events, ElementsAre("laser1: " + failed + " (1)"));
-  EXPECT_THAT(status.tell(statistics, 2, 0, "").events, IsEmpty()) << "nothing more happened";
+  EXPECT_THAT(status.report(statistics, 1, 0, "").events, ElementsAre("laser1: " + failed + " (1)"));
+  EXPECT_THAT(status.report(statistics, 2, 0, "").events, IsEmpty()) << "nothing more happened";
   statistics.devices[0].notes.add(failed, 2);
   statistics.devices[0].losses.add(kTelegramsNeverCame, 65);
-  EXPECT_THAT(status.tell(statistics, 3, 0, "").events,
+  EXPECT_THAT(status.report(statistics, 3, 0, "").events,
               ElementsAre("laser1: " + std::string(kTelegramsNeverCame) + " (65)"));
-  EXPECT_THAT(status.tell(statistics, 11, 0, "").events, ElementsAre("laser1: " + failed + " (2)"));
+  EXPECT_THAT(status.report(statistics, 11, 0, "").events, ElementsAre("laser1: " + failed + " (2)"));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ struct Model {
 
 void PrintTo(const Model& model, std::ostream* out) { *out << model.name; }
 
-/// By the data sheets. An LMS5xx measures to 80 m, which its telegrams say in units of 2 mm.
+/// By the data sheets. An LMS5xx measures to 80 m, which its telegrams encode in units of 2 mm.
 const std::vector<Model> kModels{
     {.name = "LMS111", .remissions = true},
     {.name = "LMS141", .frequency = 50, .farthest = 40},

@@ -70,7 +70,8 @@ class PseudoTerminal {
 class PlateStreams : public testing::Test {
  protected:
   static LiveSettings settings(PlateTransport transport) {
-    return {.lasers = false, .plate_at = {.transport = transport, .silence = 600, .longest_pause = 0.1}};
+    return {.lasers = false,
+            .plate_at = {.transport = transport, .silence = 600, .max_reconnect_delay = 0.1}};
   }
 };
 
@@ -91,7 +92,7 @@ TEST_F(PlateStreams, OverASerialLineAreReadAndCountWhatIsDamaged) {
   const auto statistics = source.close();
   const auto& plate = test::of(statistics, "plate");
   EXPECT_EQ(plate.items, 19U);
-  EXPECT_EQ(plate.losses.of("bytes that belong to no sentence"), 5U);
+  EXPECT_EQ(plate.losses.of("bytes outside of sentences"), 5U);
   EXPECT_EQ(test::count_beginning(plate.losses, "sentences refused"), 1U);
   EXPECT_EQ(plate.losses.of(kReadingsNeverCame), 1U);
 }

@@ -63,21 +63,21 @@ RecordedDevice::RecordedDevice(const std::vector<RecordedTelegram>& dialogue, Co
       acceptor_(context_, {boost::asio::ip::make_address("127.0.0.1"), 0}),
       client_(context_),
       buffer_(4096) {
-  std::string asked;
+  std::string requested;
   for (const RecordedTelegram& telegram : dialogue) {
     const bool event =
         !telegram.to_device && (telegram.command == "sSN" || telegram.name == "LMDscandatamon");
     if (telegram.to_device) {
-      asked = telegram.name;
+      requested = telegram.name;
     } else if (event) {
       events_.insert(events_.end(), telegram.bytes.begin(), telegram.bytes.end());
     } else if (telegram.command == "sFA") {
       refusal_ = telegram.bytes;
-    } else if (telegram.name == asked) {
-      answers_[asked] = telegram.bytes;
+    } else if (telegram.name == requested) {
+      answers_[requested] = telegram.bytes;
     }
   }
-  answers_.erase(std::string(kState));  // was asked before the device measured, and not again
+  answers_.erase(std::string(kState));  // was requested before the device measured, and not again
   accept();
   thread_ = std::thread([this] { context_.run(); });
 }
@@ -112,14 +112,14 @@ void RecordedDevice::read() {
 void RecordedDevice::answer(const ColaTelegram& request) {
   const auto recorded = answers_.find(std::string(request.name));
   const bool refused = recorded == answers_.end() && !refusal_.empty() && request.name != kState;
-  Bytes said = recorded != answers_.end() ? recorded->second
-               : refused                  ? refusal_
-                                          : responder_.answer(request);
+  Bytes printed = recorded != answers_.end() ? recorded->second
+                  : refused                  ? refusal_
+                                             : responder_.answer(request);
   const bool subscribes =
       request.command == "sEN" && request.name == kScanDataName && first_byte(request) == 1U;
-  if (subscribes) said.insert(said.end(), events_.begin(), events_.end());
+  if (subscribes) printed.insert(printed.end(), events_.begin(), events_.end());
   boost::system::error_code ignored;
-  boost::asio::write(client_, boost::asio::buffer(said), ignored);
+  boost::asio::write(client_, boost::asio::buffer(printed), ignored);
 }
 
 }  // namespace crisp::test

@@ -46,7 +46,7 @@ std::vector<std::shared_ptr<const Scan>> read_offline(const fs::path& capture) {
   return scans;
 }
 
-/// Sends each scan through an emulated laser when the hub's clock says what it said then.
+/// Sends each scan through an emulated laser at its recorded hub time.
 std::vector<std::shared_ptr<const Scan>> replay(const std::vector<std::shared_ptr<const Scan>>& scans,
                                                 ColaLanguage language) {
   test::VirtualClock clock;
@@ -67,9 +67,8 @@ std::vector<std::shared_ptr<const Scan>> replay(const std::vector<std::shared_pt
 }
 
 DeviceReport align(const std::vector<std::shared_ptr<const Scan>>& scans) {
-  LaserTrack track(RigLaser{.name = "real"},
-                   DeviceStamps("real", FittedClock("real", line_by_convex_hull, 5e-8), 0), TimeSource::clock,
-                   0);
+  LaserTrack track(RigLaser{.name = "real"}, DeviceStamps("real", FittedClock("real", 5e-8), 0),
+                   TimeSource::clock, 0);
   for (const auto& scan : scans) {
     track.add(scan, 1e-9 * static_cast<double>(scan->receipt_ns - scans.front()->receipt_ns));
   }
@@ -160,7 +159,7 @@ Heard hear(const test::RecordedDevice& device, std::size_t scans, SickSettings s
   return heard;
 }
 
-TEST(RealDialogue, GivesEachScanOnceWhateverElseTheDeviceSays) {
+TEST(RealDialogue, GivesEachScanOnceAmongOtherTelegrams) {
   for (const auto& [name, scans] : {std::pair{"lms111-20210302-colab.json", 172U},
                                     {"lms511-20210301-colab.json", 136U},
                                     {"lms511-20210302-colab.json", 174U}}) {
@@ -179,7 +178,7 @@ TEST(RealDialogue, GivesEachScanOnceWhateverElseTheDeviceSays) {
   }
 }
 
-TEST(RealDialogue, SurvivesRealRefusalsAndSaysThemInWords) {
+TEST(RealDialogue, SurvivesRealRefusalsAndReportsThemInWords) {
   const auto path = shared_data() / "sick/lms511-20210301-colab.json";
   if (!fs::exists(path)) GTEST_SKIP() << "no shared data: " << path.filename();
   const test::RecordedDevice device(test::read_dialogue(path), ColaLanguage::B);
@@ -221,8 +220,8 @@ TEST(RealDialogue, WithARadarThatHasNoScansIsGivenUpInWords) {
   EXPECT_GE(statistics.devices.at(0).telegrams.of("sRA SCdevicestate"), 1U) << "CoLa-A was found out";
 }
 
-/// Says a request to a server and gives the one answer.
-std::string ask(boost::asio::ip::tcp::socket& socket, const Bytes& request) {
+/// Sends a request to a server and returns the one answer.
+std::string request_scan(boost::asio::ip::tcp::socket& socket, const Bytes& request) {
   boost::asio::write(socket, boost::asio::buffer(request));
   ColaFramer framer;
   std::string answer;
@@ -250,7 +249,7 @@ TEST_P(RealRequests, AreAnsweredByTheEmulatedLaserAsByTheRealOne) {
   bool subscribed = false;
   for (const auto& telegram : test::read_dialogue(path)) {
     if (!telegram.to_device) continue;
-    const std::string answer = ask(socket, telegram.bytes);
+    const std::string answer = request_scan(socket, telegram.bytes);
     if (answer.starts_with("sFA")) {
       refused.insert(telegram.name.substr(0, 5));
     } else {

@@ -12,82 +12,81 @@ namespace {
 
 using Effect = SickDialogue::Effect;
 
-Effect say(SickDialogue& dialogue, const std::string& answer) {
+Effect send(SickDialogue& dialogue, const std::string& answer) {
   return dialogue.take(*parse_cola(as_bytes(answer), ColaLanguage::A));
 }
 
 TEST(SickDialogue, LogsInStartsAndSubscribes) {
   SickDialogue dialogue(ColaLanguage::A, true);
   EXPECT_EQ(as_text(dialogue.request()), "\x02sRN SCdevicestate\x03");
-  EXPECT_EQ(say(dialogue, "sRA SCdevicestate 0"), Effect::Next);
+  EXPECT_EQ(send(dialogue, "sRA SCdevicestate 0"), Effect::Next);
   EXPECT_EQ(as_text(dialogue.request()), "\x02sMN SetAccessMode 3 F4724744\x03");
-  EXPECT_EQ(say(dialogue, "sAN SetAccessMode 1"), Effect::Next);
+  EXPECT_EQ(send(dialogue, "sAN SetAccessMode 1"), Effect::Next);
   EXPECT_EQ(as_text(dialogue.request()), "\x02sMN LMCstartmeas\x03");
-  EXPECT_EQ(say(dialogue, "sAN LMCstartmeas 0"), Effect::Next);
+  EXPECT_EQ(send(dialogue, "sAN LMCstartmeas 0"), Effect::Next);
   EXPECT_EQ(as_text(dialogue.request()), "\x02sMN Run\x03");
-  EXPECT_EQ(say(dialogue, "sAN Run 1"), Effect::Next);
-  EXPECT_EQ(say(dialogue, "sRA SCdevicestate 0"), Effect::AskLater) << "the motor is not at speed";
+  EXPECT_EQ(send(dialogue, "sAN Run 1"), Effect::Next);
+  EXPECT_EQ(send(dialogue, "sRA SCdevicestate 0"), Effect::RequestLater) << "the motor is not at speed";
   EXPECT_EQ(as_text(dialogue.request()), "\x02sRN SCdevicestate\x03");
-  EXPECT_EQ(say(dialogue, "sRA SCdevicestate 1"), Effect::Next);
+  EXPECT_EQ(send(dialogue, "sRA SCdevicestate 1"), Effect::Next);
   EXPECT_EQ(as_text(dialogue.request()), "\x02sEN LMDscandata 1\x03");
-  EXPECT_EQ(say(dialogue, "sEA LMDscandata 1"), Effect::Next);
+  EXPECT_EQ(send(dialogue, "sEA LMDscandata 1"), Effect::Next);
   EXPECT_EQ(dialogue.step(), SickStep::Scans);
   EXPECT_THAT(dialogue.refusals(), testing::IsEmpty());
 }
 
 TEST(SickDialogue, ChangesNothingWhereItMayNotStart) {
   SickDialogue dialogue(ColaLanguage::A, false);
-  say(dialogue, "sRA SCdevicestate 1");
-  EXPECT_EQ(say(dialogue, "sRA SCdevicestate 1"), Effect::Next);
+  send(dialogue, "sRA SCdevicestate 1");
+  EXPECT_EQ(send(dialogue, "sRA SCdevicestate 1"), Effect::Next);
   EXPECT_EQ(as_text(dialogue.request()), "\x02sEN LMDscandata 1\x03");
 }
 
 TEST(SickDialogue, TakesNothingForAnAnswerThatIsNone) {
   SickDialogue dialogue(ColaLanguage::A, true);
-  say(dialogue, "sRA SCdevicestate 1");
-  EXPECT_EQ(say(dialogue, "sSN LMDscandata 1 1"), Effect::None);
-  EXPECT_EQ(say(dialogue, "sRA SetAccessMode 1"), Effect::None);
-  EXPECT_EQ(say(dialogue, "sAN SetAccessModeX 1"), Effect::None);
+  send(dialogue, "sRA SCdevicestate 1");
+  EXPECT_EQ(send(dialogue, "sSN LMDscandata 1 1"), Effect::None);
+  EXPECT_EQ(send(dialogue, "sRA SetAccessMode 1"), Effect::None);
+  EXPECT_EQ(send(dialogue, "sAN SetAccessModeX 1"), Effect::None);
   EXPECT_EQ(dialogue.step(), SickStep::LogIn);
 }
 
-TEST(SickDialogue, GoesOnAfterARefusalAndSaysWhatItWas) {
+TEST(SickDialogue, GoesOnAfterARefusalAndReportsWhatItWas) {
   SickDialogue dialogue(ColaLanguage::A, true);
-  EXPECT_EQ(say(dialogue, "sFA 3"), Effect::Next) << "whatever it says, it understood the language";
-  EXPECT_EQ(say(dialogue, "sAN SetAccessMode 0"), Effect::Next);
-  EXPECT_EQ(say(dialogue, "sFA 1"), Effect::Next);
-  EXPECT_THAT(
-      dialogue.refusals(),
-      testing::ElementsAre("sMN SetAccessMode: answered 0",
-                           "sMN LMCstartmeas: sFA 1 (access to the method denied at this user level: log "
-                           "in first)"));
+  EXPECT_EQ(send(dialogue, "sFA 3"), Effect::Next) << "any answer shows that it understood the language";
+  EXPECT_EQ(send(dialogue, "sAN SetAccessMode 0"), Effect::Next);
+  EXPECT_EQ(send(dialogue, "sFA 1"), Effect::Next);
+  EXPECT_THAT(dialogue.refusals(),
+              testing::ElementsAre(
+                  "sMN SetAccessMode: answered 0",
+                  "sMN LMCstartmeas: sFA 1 (access to the method denied at this user level: log in first)"));
   EXPECT_EQ(dialogue.step(), SickStep::Run);
 }
 
 TEST(SickDialogue, GivesUpWhereScansAreRefused) {
   SickDialogue dialogue(ColaLanguage::A, false);
-  say(dialogue, "sRA SCdevicestate 1");
-  say(dialogue, "sRA SCdevicestate 1");
-  EXPECT_EQ(say(dialogue, "sFA F"), Effect::Next);
+  send(dialogue, "sRA SCdevicestate 1");
+  send(dialogue, "sRA SCdevicestate 1");
+  EXPECT_EQ(send(dialogue, "sFA F"), Effect::Next);
   EXPECT_EQ(dialogue.step(), SickStep::Refused);
   EXPECT_THAT(dialogue.request(), testing::IsEmpty());
 }
 
-TEST(SickDialogue, ConfiguresOnlyWhatIsWanted) {
+TEST(SickDialogue, ConfiguresOnlyWhatIsRequested) {
   SickDialogue dialogue(ColaLanguage::A, true, {.frequency = 25, .remission = true, .ntp_off = true});
-  say(dialogue, "sRA SCdevicestate 1");
-  say(dialogue, "sAN SetAccessMode 1");
+  send(dialogue, "sRA SCdevicestate 1");
+  send(dialogue, "sAN SetAccessMode 1");
   EXPECT_EQ(as_text(dialogue.request()), "\x02sRN LMPscancfg\x03");
-  say(dialogue, "sRA LMPscancfg 1388 1 1388 FFF92230 225510");
+  send(dialogue, "sRA LMPscancfg 1388 1 1388 FFF92230 225510");
   EXPECT_EQ(as_text(dialogue.request()), "\x02sMN mLMPsetscancfg 9C4 1 1388 FFF92230 225510\x03")
       << "the resolution stays";
   EXPECT_TRUE(dialogue.is_slow());
-  EXPECT_EQ(say(dialogue, "sMA mLMPsetscancfg"), Effect::None) << "the answer is still to come";
-  EXPECT_EQ(say(dialogue, "sAN mLMPsetscancfg 0 9C4 1 1388 FFF92230 225510"), Effect::Next);
+  EXPECT_EQ(send(dialogue, "sMA mLMPsetscancfg"), Effect::None) << "the answer is still to come";
+  EXPECT_EQ(send(dialogue, "sAN mLMPsetscancfg 0 9C4 1 1388 FFF92230 225510"), Effect::Next);
   EXPECT_EQ(as_text(dialogue.request()), "\x02sWN LMDscandatacfg 1 0 1 1 0 0 0 0 0 0 0 1\x03");
-  EXPECT_EQ(say(dialogue, "sWA LMDscandatacfg"), Effect::Next);
+  EXPECT_EQ(send(dialogue, "sWA LMDscandatacfg"), Effect::Next);
   EXPECT_EQ(as_text(dialogue.request()), "\x02sWN TSCRole 0\x03");
-  EXPECT_EQ(say(dialogue, "sWA TSCRole"), Effect::Next);
+  EXPECT_EQ(send(dialogue, "sWA TSCRole"), Effect::Next);
   EXPECT_EQ(dialogue.step(), SickStep::StartMeasuring);
   EXPECT_THAT(dialogue.refusals(), testing::IsEmpty());
 }
@@ -95,21 +94,21 @@ TEST(SickDialogue, ConfiguresOnlyWhatIsWanted) {
 TEST(SickDialogue, DoesNotTurnTheMotorAnewForWhatItDoesAlready) {
   SickDialogue dialogue(ColaLanguage::A, true,
                         {.frequency = 50, .output_range = {-20 * kDegree, 200 * kDegree}});
-  say(dialogue, "sRA SCdevicestate 1");
-  say(dialogue, "sAN SetAccessMode 1");
-  say(dialogue, "sRA LMPscancfg 1388 1 9C4 FFF92230 225510");
+  send(dialogue, "sRA SCdevicestate 1");
+  send(dialogue, "sAN SetAccessMode 1");
+  send(dialogue, "sRA LMPscancfg 1388 1 9C4 FFF92230 225510");
   EXPECT_EQ(as_text(dialogue.request()), "\x02sWN LMPoutputRange 1 9C4 FFFCF2C0 1E8480\x03")
       << "at the resolution that the laser has";
 }
 
-TEST(SickDialogue, SaysWhyASettingIsRefusedAndGoesOn) {
+TEST(SickDialogue, ReportsWhyASettingIsRefusedAndGoesOn) {
   SickDialogue dialogue(ColaLanguage::A, true,
                         {.resolution = 0.25 * kDegree, .output_range = {-20 * kDegree, 200 * kDegree}});
-  say(dialogue, "sRA SCdevicestate 1");
-  say(dialogue, "sAN SetAccessMode 1");
-  say(dialogue, "sRA LMPscancfg 1388 1 1388 FFF92230 225510");
-  EXPECT_EQ(say(dialogue, "sAN mLMPsetscancfg 2 1388 1 1388 FFF92230 225510"), Effect::Next);
-  EXPECT_EQ(say(dialogue, "sFA 4"), Effect::Next);
+  send(dialogue, "sRA SCdevicestate 1");
+  send(dialogue, "sAN SetAccessMode 1");
+  send(dialogue, "sRA LMPscancfg 1388 1 1388 FFF92230 225510");
+  EXPECT_EQ(send(dialogue, "sAN mLMPsetscancfg 2 1388 1 1388 FFF92230 225510"), Effect::Next);
+  EXPECT_EQ(send(dialogue, "sFA 4"), Effect::Next);
   EXPECT_THAT(dialogue.refusals(),
               testing::ElementsAre("sMN mLMPsetscancfg: answered 2 (the resolution is not possible)",
                                    testing::StartsWith("sWN LMPoutputRange: sFA 4 (")));

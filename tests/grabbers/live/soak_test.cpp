@@ -63,13 +63,12 @@ struct Fate {
   bool restarted = false;  ///< the laser started again before it
 };
 
-/// Sends the items one by one, each when the hub's clock says what it said then, and takes what comes of
-/// them.
+/// Sends the items one by one, each at its recorded hub time, and checks the resulting items.
 class Soak {
  public:
   explicit Soak(const EmulatedFaults& faults)
       : emulator_(rig(), {.speed = 0, .plate_to = {"127.0.0.1", plate_port_}, .faults = faults}),
-        source_(emulator_.rig(), {.sick = {.reply_timeout = 600, .silence = 600, .longest_pause = 0.1},
+        source_(emulator_.rig(), {.sick = {.reply_timeout = 600, .silence = 600, .max_reconnect_delay = 0.1},
                                   .plate_at = {.port = plate_port_},
                                   .clock = clock_.reader()}) {}
 
@@ -78,12 +77,12 @@ class Soak {
     emulator_.send(item, [] { return false; });
     const EmulatedLedger now = emulator_.ledger();
     const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item);
-    const bool whole = now.delivered + now.readings > told_.delivered + told_.readings;
+    const bool whole = now.delivered + now.readings > reported_.delivered + reported_.readings;
     if (scan != nullptr) {
-      fates[(*scan)->laser].push_back({.delivered = whole, .restarted = now.restarted > told_.restarted});
+      fates[(*scan)->laser].push_back({.delivered = whole, .restarted = now.restarted > reported_.restarted});
       if (!whole) uncertain_.at((*scan)->laser) = true;
     }
-    told_ = now;
+    reported_ = now;
     if (whole) await(item);
   }
 
@@ -117,8 +116,8 @@ class Soak {
   void await(const HubItem& item) {
     const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item);
     const bool uncertain = scan != nullptr && uncertain_.at((*scan)->laser);
-    const auto patience = uncertain ? std::chrono::milliseconds(20) : std::chrono::milliseconds(60'000);
-    while (auto found = source_.next_within(patience)) {
+    const auto plate_timeout = uncertain ? std::chrono::milliseconds(20) : std::chrono::milliseconds(60'000);
+    while (auto found = source_.next_within(plate_timeout)) {
       const bool same = is_same(item, *found);
       came.push_back(std::move(*found));
       if (!same) continue;
@@ -132,7 +131,7 @@ class Soak {
   std::uint16_t plate_port_ = test::free_datagram_port();
   Emulator emulator_;
   LiveSource source_;
-  EmulatedLedger told_;
+  EmulatedLedger reported_;
   std::vector<bool> uncertain_ = std::vector<bool>(3);
 };
 

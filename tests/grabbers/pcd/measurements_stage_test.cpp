@@ -111,7 +111,7 @@ TEST_F(GrabMeasurements, ManyMeasurementsAreSplitAndComeBackTheSame) {
   expect_same(joined(read()), all);
 }
 
-TEST_F(GrabMeasurements, WithoutThePlatesFileTheAnglesBesideTheMeasurementsDo) {
+TEST_F(GrabMeasurements, WithoutThePlatesFileTheAnglesNextToTheMeasurementsDo) {
   written({{sample_measurements(2000), plate(1)}});
   fs::remove(folder_ / "run.plate.pcd");
   const auto stage = read();
@@ -186,9 +186,8 @@ TEST_F(GrabMeasurements, PointsBehindThoseThatTheHeaderGivesAreCountedAndWarnedO
   auto stage = StageDriver::of<GrabCloudStage>(file("long.pcd"));
   stage.feed();
   EXPECT_EQ(stage.given<Cloud>().at(0)->size(), 2U);
-  EXPECT_EQ(stage.report().counts.at("points beyond those that the header gives"), 1U);
-  EXPECT_THAT(stage.report().warnings,
-              testing::ElementsAre(HasSubstr("long.pcd: 1 points stand behind the 2")));
+  EXPECT_EQ(stage.report().counts.at("points beyond the header's count"), 1U);
+  EXPECT_THAT(stage.report().warnings, testing::ElementsAre(HasSubstr("long.pcd: 1 points follow the 2")));
 }
 
 TEST_F(GrabMeasurements, ACloudOfDoublesFarFromTheOriginIsWarnedOfUnlessItIsShifted) {
@@ -206,7 +205,7 @@ TEST_F(GrabMeasurements, ACloudOfDoublesFarFromTheOriginIsWarnedOfUnlessItIsShif
   // Floats of 5e6 lie 0.5 m apart, so that one is changed by 0.25 m at the most; 5 334 712.8 becomes … 713.0
   // and 5 334 713.2 as well, by 0.2 m each.
   EXPECT_THAT(far.report().warnings[0],
-              testing::AllOf(HasSubstr("are kept as floats, which changes them by up to 0.2"),
+              testing::AllOf(HasSubstr("are rounded to floats, which changes them by up to 0.2"),
                              HasSubstr("shift: [691600m, 5334700m, 500m]")));
   options["shift"] = std::vector<OptionScalar>{691'600.0, 5'334'700.0, 500.0};
   auto near = StageDriver::of<GrabCloudStage>(options);

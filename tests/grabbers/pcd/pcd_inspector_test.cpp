@@ -35,7 +35,7 @@ std::filesystem::path written(const std::string& name, std::string_view text) {
   return file;
 }
 
-TEST(PcdInspector, SaysWhatAnyProgramsCloudHolds) {
+TEST(PcdInspector, DescribesAnyProgramsCloud) {
   const Inspection inspection = pcd_inspector().inspect(written("info.pcd", kCloud), {});
   EXPECT_EQ(inspection.data["points"], 3);
   EXPECT_EQ(inspection.data["format"], "ascii");

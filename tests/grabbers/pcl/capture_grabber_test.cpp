@@ -37,7 +37,7 @@ TEST(CaptureGrabber, StopsWhilePlayingSlowly) {
   EXPECT_FALSE(grabber.isRunning());
 }
 
-TEST(CaptureGrabber, SaysFromStartThatTheFileIsNoCapture) {
+TEST(CaptureGrabber, ReportsFromStartThatTheFileIsNoCapture) {
   const MemoryFile file(as_bytes("no capture"));
   CaptureGrabber grabber(file.path());
   EXPECT_THROW(grabber.start(), Error);

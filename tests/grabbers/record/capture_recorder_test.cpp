@@ -109,8 +109,8 @@ TEST_F(CaptureRecorderTest, EndsOnAFullDiskWithoutThePipeline) {
     }
     stage.finish();
   }
-  ASSERT_EQ(stage.report().doubts.size(), 1U);
-  EXPECT_THAT(stage.report().doubts[0],
+  ASSERT_EQ(stage.report().caveats.size(), 1U);
+  EXPECT_THAT(stage.report().caveats[0],
               testing::StartsWith("the recording ended early: cannot write the capture"));
   const std::uint64_t missing = stage.report().counts.at("items that were not recorded");
   EXPECT_GT(missing, fed / 2);
@@ -132,7 +132,7 @@ TEST_F(CaptureRecorderTest, FailsWhereNothingWasReceived) {
 TEST_F(CaptureRecorderTest, BeginsANewFileAfterATimeOrASize) {
   const auto items = test::simulated_items(0.5);
   for (const RecorderSettings& settings :
-       {RecorderSettings{.most_seconds = 0.2}, RecorderSettings{.most_bytes = 60'000}}) {
+       {RecorderSettings{.most_seconds = 0.2}, RecorderSettings{.max_bytes = 60'000}}) {
     CaptureRecorder recorder(folder_ / "part.pcap", default_rig(), settings);
     for (const HubItem& item : items) recorder.write(item);
     recorder.close();
@@ -148,7 +148,7 @@ TEST_F(CaptureRecorderTest, BeginsANewFileAfterATimeOrASize) {
   }
 }
 
-TEST_F(CaptureRecorderTest, SaysWhyARecordingThatIsThereCannotBeRead) {
+TEST_F(CaptureRecorderTest, ReportsWhyARecordingThatIsThereCannotBeRead) {
   constexpr uid_t kNobody = 65534;
   { CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {}); }
   fs::permissions(folder_.path(), fs::perms::owner_all | fs::perms::group_exec | fs::perms::others_exec);
@@ -191,9 +191,9 @@ TEST_F(CaptureRecorderTest, LeavesTheFileOfAnotherProgramAsItIs) {
   auto stage = test::StageDriver::of<RecordStage>({{"file", OptionValue(OptionScalar(file.string()))}});
   try {
     stage.check();
-    FAIL() << "nothing is said before the recording";
+    FAIL() << "nothing is reported before the recording";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("hub.pcap is there already"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("hub.pcap exists and is of another program"));
   }
   EXPECT_EQ(fs::file_size(file), before);
   EXPECT_NO_THROW(CaptureRecorder(folder_ / "own.pcap", default_rig(), {}));

@@ -96,12 +96,12 @@ TEST_F(CaptureRecorderTest, BeginsAnotherFileWhereNothingBehindTheEndCouldBeRead
   record_all(recorder, second);
   EXPECT_THAT(recorder.files(), testing::ElementsAre(folder_ / "hub-2.pcap"));
   EXPECT_THAT(recorder.notes(),
-              testing::ElementsAre(testing::HasSubstr("its last 5000 bytes cannot be read")));
+              testing::ElementsAre(testing::HasSubstr("its last 5000 bytes are unreadable")));
   EXPECT_EQ(test::bytes_of(folder_ / "hub.pcap"), zeros_at_end);
   expect_same(read(folder_ / "hub-2.pcap"), second);
 }
 
-TEST_F(CaptureRecorderTest, CutsOffARecordThatACrashLeftHalfWrittenAndSaysSo) {
+TEST_F(CaptureRecorderTest, TruncatesAHalfWrittenRecordAndReportsIt) {
   const auto items = test::simulated_items(0.1);
   CaptureRecorder sound(folder_ / "hub.pcap", default_rig(), {});
   record_all(sound, items);
@@ -158,7 +158,7 @@ TEST_F(CaptureRecorderTest, LeavesASimulatedCaptureAsItIs) {
     const CaptureRecorder recorder(file, default_rig(), {});
     FAIL() << "a simulation and a recording in one file";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("hub.pcap is there already and is a simulated capture"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("hub.pcap exists and is a simulated capture"));
   }
   EXPECT_EQ(test::bytes_of(file), before);
 }

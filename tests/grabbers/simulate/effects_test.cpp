@@ -26,25 +26,25 @@ class Effects : public testing::Test {
  protected:
   Effects() { register_built_in(terms_); }
 
-  std::vector<Effect> read(const OptionGroups& wanted) {
-    return read_effects(wanted, rig_, recording_catalogue(terms_));
+  std::vector<Effect> read(const OptionGroups& requested) {
+    return read_effects(requested, rig_, recording_catalogue(terms_));
   }
-  std::string complaint(const OptionGroups& wanted) {
+  std::string complaint(const OptionGroups& requested) {
     try {
-      read(wanted);
+      read(requested);
     } catch (const Error& error) {
       return error.what();
     }
     return "nothing";
   }
-  Calibration truth_with(const OptionGroups& wanted) {
+  Calibration truth_with(const OptionGroups& requested) {
     Calibration truth = nominal_calibration(rig_);
-    add_terms(truth, read(wanted), terms_);
+    add_terms(truth, read(requested), terms_);
     return truth;
   }
-  RecordingSettings settings_with(const OptionGroups& wanted) {
+  RecordingSettings settings_with(const OptionGroups& requested) {
     RecordingSettings settings;
-    EXPECT_TRUE(apply_device_effects(read(wanted), settings).empty());
+    EXPECT_TRUE(apply_device_effects(read(requested), settings).empty());
     return settings;
   }
 
@@ -73,15 +73,15 @@ TEST_F(Effects, OfThePlateMayNameItOrNot) {
 }
 
 TEST_F(Effects, OfAllLasersAreRefinedByThoseOfOne) {
-  OptionGroups wanted = one("range.cyclic", {{"a", "3mm"}, {"P", "0.5m"}});
-  wanted.push_back(one("laser3.range.cyclic", {{"P", "0.7m"}}).front());
-  const Calibration truth = truth_with(wanted);
+  OptionGroups requested = one("range.cyclic", {{"a", "3mm"}, {"P", "0.5m"}});
+  requested.push_back(one("laser3.range.cyclic", {{"P", "0.7m"}}).front());
+  const Calibration truth = truth_with(requested);
   EXPECT_EQ(truth.lasers[1].terms.at(0).parameters[2].value, 0.5);
   EXPECT_EQ(truth.lasers[2].terms.at(0).parameters[0].value, 3e-3);
   EXPECT_EQ(truth.lasers[2].terms.at(0).parameters[2].value, 0.7);
 }
 
-TEST_F(Effects, OfNoiseAndMirrorsBefallLasers) {
+TEST_F(Effects, OfNoiseAndMirrorsAffectLasers) {
   const auto of_one = settings_with(one("laser2.noise.heavy_tail", {{"share", "1%"}, {"scale", "10"}}));
   EXPECT_EQ(of_one.scanner.laser_effects.at(0).noise.tail_share, 0);
   EXPECT_NEAR(of_one.scanner.laser_effects.at(1).noise.tail_share, 0.01, 1e-15);
@@ -90,7 +90,7 @@ TEST_F(Effects, OfNoiseAndMirrorsBefallLasers) {
   for (const auto& laser : of_all.scanner.laser_effects) EXPECT_NEAR(laser.mirror_excess, 114e-6, 1e-15);
 }
 
-TEST_F(Effects, OfClocksAndLinksBefallThePlateToo) {
+TEST_F(Effects, OfClocksAndLinksAffectThePlateToo) {
   const auto settings = settings_with(one("plate.clock.step", {{"by", "2ms"}, {"at", "3s"}}));
   EXPECT_EQ(settings.device_effects.at(0).clock.by, 0);
   EXPECT_EQ(settings.device_effects.at(3).clock.by, 2e-3);
@@ -123,7 +123,7 @@ TEST_F(Effects, BeyondTheChainCanAllBeSimulated) {
   }
 }
 
-TEST_F(Effects, SayWhatIsNotUnderstoodAndWhere) {
+TEST_F(Effects, NameUnknownWordsWithTheirPlace) {
   EXPECT_THAT(complaint(one("mirror.coin", {})), HasSubstr("x.yaml:7:3"));
   EXPECT_THAT(complaint(one("mirror.coin", {})), HasSubstr("did you mean 'mirror.cone'?"));
   EXPECT_THAT(complaint(one("laser2.mirror.coin", {})), HasSubstr("did you mean 'mirror.cone'?"));
@@ -136,7 +136,7 @@ TEST_F(Effects, SayWhatIsNotUnderstoodAndWhere) {
   EXPECT_THAT(complaint(one("noise.heavy_tail", {{"share", "120%"}})), HasSubstr("may be from 0 to 1"));
 }
 
-TEST_F(Effects, SayWhoCannotHaveThem) {
+TEST_F(Effects, NameOwnersThatCannotHaveThem) {
   EXPECT_THAT(complaint(one("laser1.plate.wobble", {})), HasSubstr("the plate's, not one laser's"));
   EXPECT_THAT(complaint(one("plate.mirror.cone", {})), HasSubstr("each laser's, not the plate's"));
   EXPECT_THAT(complaint(one("laser1.scene.moving", {})), HasSubstr("the scene's"));
@@ -144,11 +144,11 @@ TEST_F(Effects, SayWhoCannotHaveThem) {
   EXPECT_THROW(truth_with(one("noise.heavy_tail", {})), Error) << "is no term";
 }
 
-TEST_F(Effects, AllMistakesAreToldAtOnce) {
-  OptionGroups wanted = one("mirror.coin", {});
-  wanted.push_back(one("mirror.cone", {{"kapa", "1"}, {"kappa", "1s"}}).front());
+TEST_F(Effects, AllMistakesAreReportedAtOnce) {
+  OptionGroups requested = one("mirror.coin", {});
+  requested.push_back(one("mirror.cone", {{"kapa", "1"}, {"kappa", "1s"}}).front());
   try {
-    read(wanted);
+    read(requested);
     FAIL();
   } catch (const ::crisp::Errors& errors) {
     EXPECT_EQ(errors.all().size(), 3U);

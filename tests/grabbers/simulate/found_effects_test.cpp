@@ -86,25 +86,25 @@ std::vector<double> spreads_at_rest(ScannerSettings settings) {
 TEST_F(FoundEffectsTest, LeavesOutWhatIsUnknownAndNamesIt) {
   Findings all;
   all.devices = {{.device = "laser1",
-                  .skew = kUnasked,
-                  .delay_median = kUnasked,
-                  .delay_95 = kUnasked,
-                  .period = kUnasked,
-                  .wander = kUnasked}};
-  all.noise = {{.laser = "laser1", .sigma = kUnasked}};
-  all.findings = {finding("mirror.cone", "laser2", {{.name = "kappa", .unit = "rad", .value = kUnasked}})};
+                  .skew = kNotTested,
+                  .delay_median = kNotTested,
+                  .delay_95 = kNotTested,
+                  .period = kNotTested,
+                  .wander = kNotTested}};
+  all.noise = {{.laser = "laser1", .sigma = kNotTested}};
+  all.findings = {finding("mirror.cone", "laser2", {{.name = "kappa", .unit = "rad", .value = kNotTested}})};
   const FoundEffects found = effects(all);
   EXPECT_TRUE(found.effects.empty());
   EXPECT_THAT(found.others,
-              ElementsAre(HasSubstr("clock.drift of laser1, which the file does not know"),
+              ElementsAre(HasSubstr("clock.drift of laser1, which the file does not hold"),
                           HasSubstr("latency.jitter of laser1"), HasSubstr("noise.normal of laser1"),
                           HasSubstr("mirror.cone of laser2")));
 }
 
-TEST_F(FoundEffectsTest, HaveRangesScatterAsTheLawSaysThatWasFound) {
+TEST_F(FoundEffectsTest, GiveRangesTheNoiseOfTheEstimatedModel) {
   const auto spreads = spreads_at_rest(settings_with(some()).scanner);
   const double step = 1e-3 / std::sqrt(12);
-  // 54 100 ranges: the spread of normal ones is told to 0.3 %.
+  // 54 100 ranges: the spread of normal ones is determined to 0.3 %.
   EXPECT_NEAR(spreads[0], std::hypot(12e-3, step), 0.012 * 12e-3) << "nothing was found of it";
   EXPECT_NEAR(spreads[1], std::hypot(5e-3, 15e-3 / 2, step), 0.012 * 9e-3);
 }
@@ -158,8 +158,8 @@ TEST_F(FoundEffectsTest, ThatNoSimulatorKnowsAreNamed) {
   const FoundEffects found = effects(findings);
   EXPECT_THAT(found.others,
               ElementsAre("scene.moving of scene",
-                          HasSubstr("noise.mixed_pixels of laser3: the file has the share of edges"),
-                          HasSubstr("range of laser3 over the range")));
+                          HasSubstr("noise.mixed_pixels of laser3: the file holds the fraction of edges"),
+                          HasSubstr("range of laser3 over the range, unnamed")));
   ASSERT_EQ(found.effects.size(), 1U);
   EXPECT_EQ(found.effects[0].name, "mirror.cone");
   EXPECT_EQ(found.effects[0].owner, 0U);

@@ -27,7 +27,7 @@ TEST(Link, DelaysByTheMinimumAndAnExponentialJitter) {
   EXPECT_NEAR(sum / kTelegrams, 2.1e-3, 4 * 1e-4 / std::sqrt(kTelegrams));
 }
 
-TEST(Link, HasDelaysByWeibullsLaw) {
+TEST(Link, HasDelaysByWeibullsModel) {
   for (const double shape : {0.7, 1.6}) {
     Link link({.jitter = 1e-4, .shape = shape, .stall_rate = 0, .seconds_per_byte = 0}, 0, 1, "laser1");
     constexpr std::size_t kTelegrams = 20'000;
@@ -46,7 +46,7 @@ TEST(Link, HasDelaysByWeibullsLaw) {
   }
 }
 
-TEST(Link, HandsOnBurstsAsWanted) {
+TEST(Link, HandsOnBurstsAsRequested) {
   const BurstSettings bursts{.together = 0.56, .interval = 0.0133, .wait = 0.07};
   Link link(with_bursts({.jitter = 1e-6, .seconds_per_byte = 0}, bursts), 1e-3, 1, "laser1");
   constexpr int kTelegrams = 200'000;

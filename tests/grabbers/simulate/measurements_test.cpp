@@ -37,9 +37,9 @@ float range_at(const Measurements& beams, std::uint16_t laser, std::uint16_t bea
 }
 
 TEST(SimulateMeasurements, MeasuresHandWorkedRangesInABoxRoom) {
-  // Plate at rest at φ = 30°, τ = 0.2 m. θ = 90° (reported 135°, beam 360) leaves tangentially from
+  // Stationary plate at φ = 30°, τ = 0.2 m. θ = 90° (reported 135°, beam 360) leaves tangentially from
   // (0.2 cos 30°, 0.2 sin 30°) along (−sin 30°, cos 30°) and meets y = 4 after (4 − 0.1)/cos 30°. θ = 0
-  // (beam 180) looks down to z = −1, θ = 180° (beam 540) up to z = 2; θ = −90° (beam 0) back to y = −2.
+  // (beam 180) points down to z = −1, θ = 180° (beam 540) up to z = 2; θ = −90° (beam 0) back to y = −2.
   const auto simulated =
       simulate_measurements(exact_settings(), plain_room(), Motion({{0, 0}}, 30 * kDegree));
   EXPECT_NEAR(range_at(simulated.beams, 0, 360), 3.9 / std::cos(30 * kDegree), 1e-6);
@@ -176,7 +176,7 @@ TEST(SimulateMeasurements, IsTheSameForTheSameSeedOnly) {
   EXPECT_NE(one.beams.range, other.beams.range);
 }
 
-TEST(SimulateMeasurements, FiresOnlyTheBeamsThatAreAskedFor) {
+TEST(SimulateMeasurements, FiresOnlyTheBeamsThatAreRequested) {
   ScannerSettings settings;
   settings.duration = 1;
   settings.beams = {0, 360};  // the two in the plate's plane

@@ -30,13 +30,13 @@ TEST(Mirror, TurnsSlowerThanNominalAndWandersWithinItsBounds) {
   }
 }
 
-TEST(Mirror, HasThePeriodThatWasAskedFor) {
+TEST(Mirror, HasThePeriodThatWasRequested) {
   // 0.57 % of 20 ms
   Mirror mirror({.wander = 0}, 1, "laser1", 114e-6);
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(mirror.next().period, 0.020114, 1e-12);
 }
 
-TEST(Mirror, WandersAsMuchAsWasAskedFor) {
+TEST(Mirror, WandersAsMuchAsWasRequested) {
   constexpr double kRms = 1.1e-3;
   const MirrorSettings settings{.slowest = 0, .wander = Mirror::wander_of_rms(kRms)};
   Mirror mirror(settings, 1, "laser1");
@@ -56,7 +56,7 @@ TEST(Mirror, BeginsEachTurnWhereTheLastOneEnded) {
   }
 }
 
-TEST(Mirror, HasTheJitterThatWasAskedFor) {
+TEST(Mirror, HasTheJitterThatWasRequested) {
   const auto all = turns({.slowest = 0, .wander = 0, .jitter = 1e-3}, 1, 20000);
   double sum = 0;
   for (const auto& turn : all) sum += std::pow(turn.period - 0.020, 2);

@@ -13,7 +13,7 @@ struct Moments {
   double kurtosis = 0;  ///< of the fourth moment about zero
 };
 
-/// Of kDraws draws.
+/// Moments of kDraws draws.
 inline Moments moments(const std::function<double()>& draw) {
   double s1 = 0, s2 = 0, s4 = 0;
   for (int i = 0; i < kDraws; ++i) {

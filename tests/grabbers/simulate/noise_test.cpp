@@ -15,7 +15,7 @@ constexpr RangeSettings kPlain{.sigma = 0.012, .quantum = 0};
 using test::kDraws;
 using test::Moments;
 
-/// Of the errors of one kind of echo, of beams 0 to 9 in turn.
+/// Moments of the errors of one kind of echo, of beams 0 to 9 in turn.
 Moments errors_at(const NoiseEffects& effects, const EchoConditions& echo) {
   RangeNoise noise(kPlain, effects, 1, "laser1");
   std::uint16_t beam = 0;

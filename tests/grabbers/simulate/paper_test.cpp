@@ -27,7 +27,7 @@ TEST(Paper, ItsBeamsLieInThePlatesPlaneAndGoRoundTheRoom) {
   }
 }
 
-TEST(Paper, ItsPointsAreAsFarFromTheWallsAsTheNoiseSays) {
+TEST(Paper, ItsPointsAreAtTheWallsWithinTheNoise) {
   const auto simulated = simulate_measurements(paper_scanner(1), paper_room());
   const auto placed = SensorModel(simulated.truth).place(simulated.beams, simulated.plate);
   const RayCaster walls(paper_room());

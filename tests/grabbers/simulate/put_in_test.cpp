@@ -62,7 +62,7 @@ std::vector<Change> changed(const OptionGroup& effect) {
   return changes;
 }
 
-TEST(PutIn, OfTimesChangesStampsAndReceiptsAsTheEffectSays) {
+TEST(InjectEffects, OfTimesChangesStampsAndReceiptsByTheEffect) {
   const auto slow = changed({"mirror.period", {{"excess", "100us", {}}}, {}});
   EXPECT_NEAR(slow[50].device, 50 * 100e-6, 1e-6);
   EXPECT_NEAR(slow[50].receipt, 50 * 100e-6, 1e-6) << "taken later, so received later";
@@ -79,7 +79,7 @@ TEST(PutIn, OfTimesChangesStampsAndReceiptsAsTheEffectSays) {
   EXPECT_NEAR(jumped[50].device, 2e-3, 1e-9);
 }
 
-TEST(PutIn, OfRangesAddsWhatTheEffectSaysAndLeavesCodesAlone) {
+TEST(InjectEffects, OfRangesAddsTheEffectAndKeepsCodes) {
   const auto stepped = changed({"range.step", {{"h", "-5mm", {}}, {"at", "0.99s", {}}}, {}});
   EXPECT_FLOAT_EQ(stepped[49].scan.echoes[0].ranges[1], 2.0F);
   EXPECT_FLOAT_EQ(stepped[50].scan.echoes[0].ranges[1], 2.005F) << "it reports more: h takes that away";
@@ -96,7 +96,7 @@ TEST(PutIn, OfRangesAddsWhatTheEffectSaysAndLeavesCodesAlone) {
   EXPECT_NEAR(std::sqrt(squares / count), 5e-3, 4 * 5e-3 / std::sqrt(2 * count));
 }
 
-TEST(PutIn, OfTwoPeaksIsAlsoForBeamsThatCameLater) {
+TEST(InjectEffects, OfTwoPeaksIsAlsoForBeamsThatCameLater) {
   auto stage = driver({{"noise.two_peaks", {{"separation", "20mm", {}}}, {}}});
   Scan scan = scan_number(0);
   for (const std::size_t beams : {0, 2, 1000}) {
@@ -110,7 +110,7 @@ TEST(PutIn, OfTwoPeaksIsAlsoForBeamsThatCameLater) {
   EXPECT_EQ(changed.at(2)->echoes[0].ranges.size(), 1000U);
 }
 
-TEST(PutIn, WithoutEffectsChangesNothing) {
+TEST(InjectEffects, WithoutEffectsChangesNothing) {
   auto stage = driver({});
   stage.feed(scan_number(7));
   stage.feed(PlateReading{.count = 5});
@@ -121,7 +121,7 @@ TEST(PutIn, WithoutEffectsChangesNothing) {
   EXPECT_EQ(stage.given<PlateReading>().at(0)->count, 5U);
 }
 
-TEST(PutIn, OfWhatScansDoNotShowIsRefused) {
+TEST(InjectEffects, OfEffectsNotInScansIsRefused) {
   EXPECT_THROW(driver({{"mirror.cone", {{"kappa", "1deg", {}}}, {}}}).check(), Errors);
 }
 

@@ -60,7 +60,7 @@ TEST(RayCaster, AgreesWithEveryTriangleTriedInTurn) {
   }
 }
 
-TEST(RayCaster, TellsIncidenceAndSurfaceOfAHandWorkedHit) {
+TEST(RayCaster, ReportsIncidenceAndSurfaceOfAHandWorkedHit) {
   const Scene scene{"two walls",
                     {rectangle("far", {5, -1, -1}, {0, 2, 0}, {0, 0, 2}, 0.5),
                      rectangle("near", {2, -1, -1}, {0, 2, 0}, {0, 0, 2}, 0.5)}};

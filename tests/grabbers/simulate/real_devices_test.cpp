@@ -22,17 +22,17 @@ using testing::HasSubstr;
 class RealDevicesTest : public testing::Test {
  protected:
   RealDevicesTest() { register_built_in(terms_); }
-  std::vector<Effect> effects(const std::vector<std::string>& wanted) const {
-    return effects_of_real_devices(wanted, rig_, recording_catalogue(terms_));
+  std::vector<Effect> effects(const std::vector<std::string>& requested) const {
+    return effects_of_real_devices(requested, rig_, recording_catalogue(terms_));
   }
-  RecordingSettings settings_with(const std::vector<std::string>& wanted) const {
+  RecordingSettings settings_with(const std::vector<std::string>& requested) const {
     RecordingSettings settings;
-    apply_device_effects(effects(wanted), settings);
+    apply_device_effects(effects(requested), settings);
     return settings;
   }
-  std::string complaint(const std::vector<std::string>& wanted) const {
+  std::string complaint(const std::vector<std::string>& requested) const {
     try {
-      effects(wanted);
+      effects(requested);
     } catch (const Errors& errors) {
       return errors.what();
     } catch (const Error& error) {
@@ -67,7 +67,7 @@ TEST_F(RealDevicesTest, AreThoseOfTheFilesWithAllTheirHabitsOfEachLaser) {
   EXPECT_THAT(real_devices(), testing::UnorderedElementsAreArray(files));
 }
 
-TEST_F(RealDevicesTest, BefallEveryLaserOrTheOneThatIsNamed) {
+TEST_F(RealDevicesTest, AffectEveryLaserOrTheOneThatIsNamed) {
   const RecordingSettings settings = settings_with({"lms111", "laser2=tim781s", "plate=esp32_wifi"});
   EXPECT_DOUBLE_EQ(settings.scanner.laser_effects[0].noise.sigma, 5.3e-3);
   EXPECT_DOUBLE_EQ(settings.scanner.laser_effects[2].noise.separation, 14.2e-3);
@@ -79,7 +79,7 @@ TEST_F(RealDevicesTest, BefallEveryLaserOrTheOneThatIsNamed) {
   EXPECT_DOUBLE_EQ(settings_with({"lms111"}).device_effects[3].skew, 0) << "the plate is no laser";
 }
 
-TEST_F(RealDevicesTest, ReportRangesInTheStepsOfTheirFiles) {
+TEST_F(RealDevicesTest, HaveRangesInTheStepsOfTheirFiles) {
   for (const auto& [device, step] : {std::pair{"vlp16", 2e-3}, std::pair{"lms2xx", 1e-2}}) {
     ScannerSettings settings = settings_with({device}).scanner;
     settings.duration = 0.1;

@@ -158,7 +158,7 @@ TEST_F(RecordedCaptureTest, HasTheSameBytesForTheSameSeed) {
   EXPECT_FALSE(a == read(folder_ / "c.pcap"));
 }
 
-TEST_F(RecordedCaptureTest, LosesRepeatsAndDamagesFramesAsOftenAsAsked) {
+TEST_F(RecordedCaptureTest, LosesRepeatsAndDamagesFramesAsOftenAsRequested) {
   record(folder_ / "clean.pcap");
   const double clean = static_cast<double>(parse(read(folder_ / "clean.pcap")).size());
   record(folder_ / "faulty.pcap", {.lost = 0.1, .repeated = 0.05, .damaged = 0.02});

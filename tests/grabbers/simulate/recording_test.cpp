@@ -62,7 +62,7 @@ TEST(DrawDevices, DrawsClocksWithinTheirBounds) {
   EXPECT_GT(*skews.rbegin(), 200e-6);
 }
 
-TEST(SimulateRecording, StampsScansAsTheRigSaysThatTheDeviceDoes) {
+TEST(SimulateRecording, StampsScansByTheRigsDevice) {
   for (const int periods : {0, -1}) {
     RecordingSettings settings = plain_settings();
     for (auto& laser : settings.scanner.rig.lasers) laser.period_offset = periods;
@@ -192,7 +192,7 @@ TEST(SimulateRecording, HasDeviceClocksWithTheSkewsOfItsTruth) {
   }
 }
 
-TEST(SimulateRecording, LosesWhatItWasToldToLose) {
+TEST(SimulateRecording, LosesTheRequestedShare) {
   RecordingSettings settings = plain_settings();
   settings.scanner.duration = 4;
   settings.scanner.field.last = -44 * kDegree;
@@ -211,7 +211,7 @@ TEST(SimulateRecording, LosesWhatItWasToldToLose) {
     const auto step =
         static_cast<std::uint16_t>(recording.readings[i].sequence - recording.readings[i - 1].sequence);
     const auto gap = recording.readings[i].receipt_ns - recording.readings[i - 1].receipt_ns;
-    ASSERT_NEAR(static_cast<double>(gap), step * 2e6, 2e3) << "the sequence tells how many are missing";
+    ASSERT_NEAR(static_cast<double>(gap), step * 2e6, 2e3) << "the sequence counts the missing ones";
     widest = std::max(widest, gap);
   }
   EXPECT_LT(widest, 30'000'000) << "silent to the end, not in between";

@@ -39,7 +39,7 @@ TEST(ScanPatterns, AreThoseOfAllButForTheLasersThatAreNamed) {
   EXPECT_THAT(read_patterns({}, default_rig(), {}), IsEmpty());
 }
 
-TEST(ScanPatterns, EveryMistakeIsToldWithItsPlace) {
+TEST(ScanPatterns, EveryMistakeIsReportedWithItsPlace) {
   const OptionGroups wrong = {lasers_entry("laser9", {{"step", "1deg"}}),
                               lasers_entry("laser1", {{"stepp", "1deg"}, {"step", "1s"}}),
                               lasers_entry("laser2", {{"last_angle", "-90deg"}}),

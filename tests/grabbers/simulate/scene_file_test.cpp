@@ -32,9 +32,9 @@ std::string complaint(const std::string& text) {
 const std::string kHead = "crisp: 1\nscanner: {position: [1, 2, 50cm], yaw: 90deg}\nsurfaces:\n";
 
 TEST(SceneFile, DescribesTheWorldFromWhereTheScannerStands) {
-  const Scene scene = parse(kHead +
-                            "  - {rectangle: {corner: [1, 5, 0], a: [2, 0, 0], b: [0, 0, 3]}, name: wall, "
-                            "reflectance: 0.2}\n");
+  const Scene scene = parse(
+      kHead +
+      "  - {rectangle: {corner: [1, 5, 0], a: [2, 0, 0], b: [0, 0, 3]}, name: wall, reflectance: 0.2}\n");
   ASSERT_EQ(scene.surfaces.size(), 1U);
   EXPECT_EQ(scene.surfaces[0].name, "wall");
   EXPECT_EQ(scene.surfaces[0].reflectance, 0.2);
@@ -89,11 +89,10 @@ TEST(SceneFile, KnowsWhatIsRoundGrowsAndWalks) {
   EXPECT_LT((scene.bodies[2].walk.at(0.25) - Vector3d(0.35, 0, 0)).norm(), 1e-12);
 }
 
-TEST(SceneFile, StrewsCopiesInTheRegionAndClearOfTheScanner) {
+TEST(SceneFile, ScattersCopiesInTheRegionAndClearOfTheScanner) {
   const std::string text =
       kHead +
-      "  - {sphere: {middle: [0, 0, 0], radius: 0.1}, strew: {count: 200, from: [-4, -3, 0], to: "
-      "[6, 7, 1], smallest: 0.5, largest: 3, clear: 2m, seed: 7}}\n";
+      "  - {sphere: {middle: [0, 0, 0], radius: 0.1}, strew: {count: 200, from: [-4, -3, 0], to: [6, 7, 1], smallest: 0.5, largest: 3, clear: 2m, seed: 7}}\n";
   const Scene scene = parse(text);
   ASSERT_EQ(scene.bodies.size(), 200U);
   double smallest = 1;
@@ -118,23 +117,24 @@ TEST(SceneFile, StrewsCopiesInTheRegionAndClearOfTheScanner) {
             std::get<Ellipsoid>(scene.bodies[99].shape).middle);
 }
 
-TEST(SceneFile, TellsWhatCannotGrowOrWalk) {
+TEST(SceneFile, ReportsSurfacesThatCannotGrowOrWalk) {
   EXPECT_THAT(
       complaint(kHead + "  - {rectangle: {corner: [0, 0, 0], a: [1, 0, 0], b: [0, 1, 0]}, depth: 1cm}\n"),
-      HasSubstr("flat surfaces are neither foliage"));
+      HasSubstr("flat surfaces can have neither depth"));
   EXPECT_THAT(complaint(kHead + "  - {sphere: {middle: [0, 0, 0], radius: 0}}\n"),
               HasSubstr("has no volume"));
   EXPECT_THAT(complaint(kHead + "  - {sphere: {middle: [0, 0, 0], radius: 1}, depth: 0}\n"),
               HasSubstr("'depth' is not above 0"));
   EXPECT_THAT(complaint(kHead + "  - {sphere: {middle: [0, 0, 0], radius: 1}, walk: {along: [[0, 0, 0]]}}\n"),
-              HasSubstr("the walk leads nowhere"));
+              HasSubstr("the walk has no length"));
   EXPECT_THAT(
-      complaint(kHead + "  - {sphere: {middle: [0, 0, 0], radius: 1}, strew: {count: 2, from: [0, 2, 0], to: "
-                        "[2, 3, 0], clear: 9m}}\n"),
-      HasSubstr("no room to strew"));
+      complaint(
+          kHead +
+          "  - {sphere: {middle: [0, 0, 0], radius: 1}, strew: {count: 2, from: [0, 2, 0], to: [2, 3, 0], clear: 9m}}\n"),
+      HasSubstr("no place for scattered copies"));
 }
 
-TEST(SceneFile, TellsEveryMistakeAtItsPlace) {
+TEST(SceneFile, ReportsEveryMistakeAtItsPlace) {
   const std::string text = complaint(
       "crisp: 1\nscanner: {position: [0, 0]}\nsurfaces:\n"
       "  - {box: {from: [0, 0, 0], to: [1, 1, 1kg]}}\n"
@@ -153,24 +153,24 @@ TEST(SceneFile, TellsEveryMistakeAtItsPlace) {
 }
 
 TEST(SceneFile, RefusesSizesThatCannotBeMeant) {
-  for (const char* item :
-       {"{box: {from: [0, 0, 0], to: [1, 1, 1]}, yaw: 1e308}", "{sphere: {middle: [0, 0, 0], radius: 1e308}}",
-        "{cylinder: {from: [0, 0, 0], to: [0, 0, 1], radius: 1e200}}",
-        "{sphere: {middle: [0, 0, 0], radius: 1}, depth: 1e300}",
-        "{sphere: {middle: [0, 0, 0], radius: 1}, walk: {along: [[0, 0, 0], [1, 0, 0]], speed: "
-        "1e300}}",
-        "{sphere: {middle: [0, 0, 0], radius: 1}, strew: {count: 2, from: [0, 0, 0], to: [1, 1, "
-        "1], largest: 1e300}}"}) {
-    EXPECT_THAT(complaint(kHead + "  - " + item + "\n"), HasSubstr("cannot be meant")) << item;
+  for (
+      const char* item :
+      {"{box: {from: [0, 0, 0], to: [1, 1, 1]}, yaw: 1e308}", "{sphere: {middle: [0, 0, 0], radius: 1e308}}",
+       "{cylinder: {from: [0, 0, 0], to: [0, 0, 1], radius: 1e200}}",
+       "{sphere: {middle: [0, 0, 0], radius: 1}, depth: 1e300}",
+       "{sphere: {middle: [0, 0, 0], radius: 1}, walk: {along: [[0, 0, 0], [1, 0, 0]], speed: 1e300}}",
+       "{sphere: {middle: [0, 0, 0], radius: 1}, strew: {count: 2, from: [0, 0, 0], to: [1, 1, 1], largest: 1e300}}"}) {
+    EXPECT_THAT(complaint(kHead + "  - " + item + "\n"), HasSubstr("is implausible")) << item;
   }
 }
 
 TEST(SceneFile, BoundsHowMuchARepetitionCanMake) {
-  EXPECT_THAT(complaint("crisp: 1\nscanner: {position: [0, 0, 0]}\n"
-                        "shapes:\n  a:\n    - {box: {from: [0, 0, 0], to: [1, 1, 1]}, repeat: {count: 10000, "
-                        "step: [2, 0, 0]}}\n"
-                        "surfaces:\n  - {shape: a, repeat: {count: 10000, step: [0, 2, 0]}}\n"),
-              HasSubstr("more than 200000 surfaces"));
+  EXPECT_THAT(
+      complaint(
+          "crisp: 1\nscanner: {position: [0, 0, 0]}\n"
+          "shapes:\n  a:\n    - {box: {from: [0, 0, 0], to: [1, 1, 1]}, repeat: {count: 10000, step: [2, 0, 0]}}\n"
+          "surfaces:\n  - {shape: a, repeat: {count: 10000, step: [0, 2, 0]}}\n"),
+      HasSubstr("more than 200000 surfaces"));
 }
 
 TEST(SceneFile, ReadsTheScenesThatUsersCopyAsTheBuiltInOnes) {

@@ -129,8 +129,7 @@ TEST_F(SimulateStageTest, TakesItsTruthFromACalibration) {
 }
 
 TEST_F(SimulateStageTest, WritesItsEffectsIntoTheTruth) {
-  run("duration: 0.1s, truth: truth.yaml, effects: {encoder.eccentricity: {a: 0.1deg}, laser2.mirror.cone: "
-      "{kappa: 3mrad}, laser3.noise.heavy_tail: {share: 1%}, plate.clock.drift: {drift: 1e-6}}");
+  run("duration: 0.1s, truth: truth.yaml, effects: {encoder.eccentricity: {a: 0.1deg}, laser2.mirror.cone: {kappa: 3mrad}, laser3.noise.heavy_tail: {share: 1%}, plate.clock.drift: {drift: 1e-6}}");
   const Calibration truth = read_calibration(folder_ / "truth.yaml");
   ASSERT_EQ(truth.plate_terms.size(), 1U);
   EXPECT_EQ(truth.plate_terms[0].term, "encoder.eccentricity");
@@ -143,7 +142,7 @@ TEST_F(SimulateStageTest, WritesItsEffectsIntoTheTruth) {
   EXPECT_NO_THROW(SensorModel(truth, terms_)) << "assembly takes it as it is";
 }
 
-TEST_F(SimulateStageTest, PutsWhatWasFoundInTheScannerBelowWhatIsAskedFor) {
+TEST_F(SimulateStageTest, PutsWhatWasFoundInTheScannerBelowWhatIsRequested) {
   Findings findings;
   findings.findings = {{.cause = "mirror.cone",
                         .scope = "laser2",
@@ -156,8 +155,7 @@ TEST_F(SimulateStageTest, PutsWhatWasFoundInTheScannerBelowWhatIsAskedFor) {
                        {.cause = "scene.moving", .scope = "plate", .parameters = {}, .accepted = true}};
   write_file(folder_ / "diagnosis.json", findings_json(findings));
   const auto results = run(
-      "duration: 0.1s, truth: truth.yaml, findings: diagnosis.json, effects: {laser2.mirror.cone: {kappa: "
-      "4mrad}}");
+      "duration: 0.1s, truth: truth.yaml, findings: diagnosis.json, effects: {laser2.mirror.cone: {kappa: 4mrad}}");
   const Calibration truth = read_calibration(folder_ / "truth.yaml");
   EXPECT_EQ(truth.plate_terms.at(0).parameters.at(0).value, 1e-3);
   EXPECT_EQ(truth.lasers.at(1).terms.at(0).parameters.at(0).value, 4e-3);
@@ -201,7 +199,7 @@ TEST_F(SimulateStageTest, LeavesNoFilesWhenItIsInterrupted) {
   EXPECT_TRUE(fs::is_empty(folder_ / "out"));
 }
 
-TEST_F(SimulateStageTest, LosesWhatItsFaultsSay) {
+TEST_F(SimulateStageTest, HasTheLossesOfItsFaults) {
   run("duration: 2s, last_angle: -44deg, silences: [laser2@0.5s+1s], restarts: [laser1@1s]");
   EXPECT_NEAR(Tally::scans, 100 + 50 + 100, 6);
   EXPECT_THAT(complaint("duration: 2s, silences: [laser9@0.5s+1s]"), HasSubstr("laser9"));

@@ -67,8 +67,8 @@ TEST(Solid, IsPassedWhereItsInsideIs) {
       for (int k = 0; k < 40; ++k) {
         const double at = random.uniform(-5, 5);
         const bool expected = known.inside(ray.origin + at * ray.direction);
-        const bool said = through && at > through->in && at < through->out;
-        ASSERT_EQ(said, expected) << known.name << " at " << at;
+        const bool printed = through && at > through->in && at < through->out;
+        ASSERT_EQ(printed, expected) << known.name << " at " << at;
         met += expected ? 1 : 0;
       }
       ASSERT_EQ(is_inside(known.solid, ray.origin), known.inside(ray.origin)) << known.name;
@@ -94,10 +94,10 @@ TEST(Solid, IsAsFarAsTheNearestOfManyPointsOfItsSurface) {
       const Vector3d point = random_point(random);
       double nearest = std::numeric_limits<double>::infinity();
       for (const auto& p : surface) nearest = std::min(nearest, (p - point).norm());
-      const double said = distance_to_surface(known.solid, point);
-      EXPECT_LE(said, nearest + 1e-9) << known.name << " " << point.transpose();
+      const double printed = distance_to_surface(known.solid, point);
+      EXPECT_LE(printed, nearest + 1e-9) << known.name << " " << point.transpose();
       // Points of the surface are some 2 cm apart, 5 cm at its far ends.
-      EXPECT_GT(said, nearest - (nearest < 0.2 ? 0.08 : 0.02)) << known.name << " " << point.transpose();
+      EXPECT_GT(printed, nearest - (nearest < 0.2 ? 0.08 : 0.02)) << known.name << " " << point.transpose();
     }
   }
 }

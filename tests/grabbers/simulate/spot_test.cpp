@@ -35,7 +35,7 @@ TEST(Spot, SeesAPlaneAsAThinBeamDoes) {
 }
 
 TEST(Spot, MixesWhatLiesBeforeAndBehindAnEdge) {
-  // The spot at 4 m is 64 mm wide: its outer rays are 22.5 mm off the middle, so that 5 mm beside the edge
+  // The spot at 4 m is 64 mm wide: its outer rays are 22.5 mm off the middle, so that 5 mm off the edge
   // part of them meet the other wall.
   for (const double y : {-0.005, 0.005}) {
     const auto mixed = echo(edge(0.3), kLms, y);

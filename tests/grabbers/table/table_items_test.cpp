@@ -53,7 +53,7 @@ TEST(TiltingUnit, ItsFanSpreadsAlongTheAxis) {
   EXPECT_THAT(point_of(tilting(0, 0), 90 * kDegree, 30 * kDegree, 2), IsPoint(0.0, 1.0, -std::sqrt(3.0)));
 }
 
-TEST(TiltingUnit, ItsOpticalCentreMayLieBeforeTheAxisAndBesideIt) {
+TEST(TiltingUnit, ItsOpticalCentreMayLieBeforeTheAxisAndNextToIt) {
   // 0.3 m along the middle beam and 0.4 m along the fan's normal, which at 0° of tilt are x and y.
   EXPECT_THAT(point_of(tilting(0.3, 0.4), 0, 90 * kDegree, 2), IsPoint(2.3, 0.4, 0.0));
   EXPECT_THAT(point_of(tilting(0.3, 0.4), 90 * kDegree, 90 * kDegree, 2), IsPoint(-0.4, 2.3, 0.0));
@@ -132,7 +132,7 @@ TEST(TableItems, ARowThatIsLeftOutDoesNotMoveTheCount) {
   EXPECT_THAT(items.losses(), ElementsAre(Pair("rows that are earlier than the row before", 1)));
 }
 
-TEST(TableItems, SayWhatNoDeviceCountedOrTimed) {
+TEST(TableItems, ReportRowsWithoutCountOrTime) {
   const TableRow row{.time_ns = 1'000'000'000, .receipt_ns = 1'010'000'000, .ranges = {1}};
   TableRow counted = row;
   counted.counter = 7;

@@ -125,17 +125,17 @@ TEST(TableReader, ReadsTheActuatorsCounts) {
 TEST(TableReader, CountsRowsThatCannotBeReadAndNamesTheFirst) {
   const auto all = read("0,0,1\n1,zero,1\n2,0\n3,0,x\n1e3x,0,1\n4,1e300,1\n5,0,1\n", kPlain);
   EXPECT_EQ(all.rows.size(), 2U);
-  EXPECT_THAT(all.losses, ElementsAre(Pair("rows with a time or count that cannot be", 1),
-                                      Pair("rows with an angle that cannot be", 1),
-                                      Pair("rows with something that is no number", 2),
-                                      Pair("rows with too few columns", 1)));
+  EXPECT_THAT(
+      all.losses,
+      ElementsAre(Pair("rows with a field that is no number", 2), Pair("rows with an impossible angle", 1),
+                  Pair("rows with an impossible time or count", 1), Pair("rows with too few columns", 1)));
   EXPECT_THAT(all.fault, testing::HasSubstr("t.csv:2:3"));
 }
 
-TEST(TableReader, RefusesRowsWithFewerRangesThanTheySay) {
+TEST(TableReader, RefusesRowsWithFewerRangesThanTheirCount) {
   const TableFormat format{.angle_column = 1, .range_column = 3, .count_column = 2};
   EXPECT_THAT(read("0,3,1,1\n0,2,1,1\n0,-1,1\n", format).losses,
-              ElementsAre(Pair("rows with fewer ranges than they say", 2)));
+              ElementsAre(Pair("rows with fewer ranges than their count", 2)));
 }
 
 TEST(TableReader, ReadsLinesInWhateverWayTheyEndAndPassesOverAByteOrderMark) {

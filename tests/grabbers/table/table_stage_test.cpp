@@ -58,11 +58,11 @@ class TableStageTest : public testing::Test {
 
 constexpr const char* kColumns = "time_column: 1, angle_column: 2, range_column: 3, angle_step: 1deg";
 
-TEST_F(TableStageTest, ReportsWhatItReadAndWhatItLeftOut) {
+TEST_F(TableStageTest, ReportsReadAndDroppedRows) {
   const auto result = run("0,0,1,2\n1,0,x\n2,0,1,0\n", kColumns);
   EXPECT_EQ(result.report.section["rows"], 2);
   EXPECT_EQ(result.report.section["beams"], 3);
-  EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows with something that is no number", 1)));
+  EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows with a field that is no number", 1)));
   EXPECT_THAT(result.report.warnings,
               ElementsAre(HasSubstr("t.csv:2:5: here is the first of the rows with")));
 }
@@ -101,7 +101,7 @@ TEST_F(TableStageTest, ReadsAPartOfTheTable) {
   const auto result =
       run("0,0,1\n1,0,1\n2,0,1\n3,0,1\n", std::string(kColumns) + ", begin: 1s, duration: 2s");
   EXPECT_EQ(result.report.section["beams"], 2);
-  EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows left out because of begin and duration", 2)));
+  EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows outside of begin and duration", 2)));
 }
 
 TEST_F(TableStageTest, ALaserThatStandsStillHasNoReadings) {
@@ -157,14 +157,14 @@ TEST_F(TableStageTest, AColumnHasOneMeaning) {
 }
 
 TEST_F(TableStageTest, ReadsAPartOfATableThatOnlyThePeriodTimes) {
-  const auto result = run("0,1\n0,1\n0,1\n0,1\n",
-                          "angle_column: 1, range_column: 2, angle_step: 1deg, period: 1s, begin: 1s, "
-                          "duration: 2s");
+  const auto result =
+      run("0,1\n0,1\n0,1\n0,1\n",
+          "angle_column: 1, range_column: 2, angle_step: 1deg, period: 1s, begin: 1s, duration: 2s");
   EXPECT_EQ(result.report.section["beams"], 2);
-  EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows left out because of begin and duration", 2)));
+  EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows outside of begin and duration", 2)));
 }
 
-TEST_F(TableStageTest, SaysWhereTheRowsFirstAreOutOfOrder) {
+TEST_F(TableStageTest, ReportsWhereTheRowsFirstAreOutOfOrder) {
   const auto result = run("0,0,1\n1,0,1\n90,0,1\n2,0,1\n3,0,1\n", kColumns);
   EXPECT_THAT(result.report.counts, ElementsAre(Pair("rows that are earlier than the row before", 2)));
   EXPECT_EQ(result.report.section["rows"], 3) << "what is left out is no row that was read";

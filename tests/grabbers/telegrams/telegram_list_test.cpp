@@ -69,7 +69,7 @@ TEST(TelegramList, CountsWhatCannotBeRead) {
                           Pair("entries without a payload", 4), Pair("entries without a time", 5)));
 }
 
-TEST(TelegramList, SaysWhereAFileIsNone) {
+TEST(TelegramList, ReportsWhereAFileIsNone) {
   EXPECT_THAT(complaint("[\n  {\"a\": 1},\n  {\"b\" 2}\n]"), testing::HasSubstr("list.json:3:8: "));
   EXPECT_THAT(complaint(""), testing::HasSubstr("list.json:1:1: "));
   EXPECT_THAT(complaint("[{\"a\": 1}"), testing::HasSubstr("this is no JSON"));

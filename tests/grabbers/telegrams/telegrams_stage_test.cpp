@@ -76,12 +76,13 @@ TEST_F(TelegramsStageTest, GivesEachScanOnce) {
   EXPECT_EQ(scans[0]->receipt_ns, 20'000'000);
   EXPECT_EQ(scans[2]->receipt_ns, 80'000'000);
   EXPECT_THAT(scans[0]->echoes.at(0).ranges, ElementsAre(1.0F, 0.0F, 3.0F));
-  EXPECT_THAT(driver.report().counts, ElementsAre(Pair("items that came twice", 1),
-                                                  Pair("telegrams that never came, by their counter", 1)));
-  EXPECT_THAT(driver.report().warnings, ElementsAre(HasSubstr("list.json: 25.0 % of what laser2")));
+  EXPECT_THAT(driver.report().counts,
+              ElementsAre(Pair("items that came twice", 1), Pair("lost telegrams, by their counter", 1)));
+  EXPECT_THAT(driver.report().warnings,
+              ElementsAre(HasSubstr("list.json: 25.0 % of the telegrams of laser2")));
 }
 
-TEST_F(TelegramsStageTest, SaysWhatIsWrong) {
+TEST_F(TelegramsStageTest, ReportsErrors) {
   List requests;
   requests.add(cola_message("sRN", "DeviceIdent", {}, ColaLanguage::B));
   const auto complaint = [&](const std::string& text, const std::string& laser) -> std::string {

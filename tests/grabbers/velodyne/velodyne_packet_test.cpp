@@ -42,7 +42,7 @@ TEST(VelodynePacket, HasTimeAzimuthsAndReturnsWhereTheManualPutsThem) {
   EXPECT_EQ(packet->returns[5][0][3].range, 0);
 }
 
-TEST(VelodynePacket, ShotsFollowOneAnotherAsTheManualSays) {
+TEST(VelodynePacket, ShotsFollowOneAnotherAsInTheManual) {
   EXPECT_NEAR(velodyne_shot(0, 0, 15), 34.56e-6, 1e-12);
   EXPECT_NEAR(velodyne_shot(11, 1, 15), 1306.368e-6, 1e-10);
 }

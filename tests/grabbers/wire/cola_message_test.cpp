@@ -8,7 +8,7 @@ namespace {
 
 using namespace std::string_literals;
 
-TEST(ColaMessage, IsByteForByteWhatARealDriverSaidToARealLms111) {
+TEST(ColaMessage, IsByteForByteWhatARealDriverSentToARealLms111) {
   const Bytes login =
       cola_message("sMN", "SetAccessMode", {std::uint8_t{3}, std::uint32_t{0xF4724744}}, ColaLanguage::B);
   EXPECT_EQ(as_text(login), "\x02\x02\x02\x02\0\0\0\x17sMN SetAccessMode \x03\xf4\x72\x47\x44\xb3"s);

@@ -63,7 +63,7 @@ TEST(Cola, RefusesPayloadsThatBeginLikeNoTelegram) {
   }
 }
 
-TEST(Cola, RefusesToFrameWhatNoReaderWouldBelieve) {
+TEST(Cola, RefusesToFrameAnImplausiblePayload) {
   EXPECT_THROW(cola_frame({}, ColaLanguage::B), Error);
   EXPECT_THROW(cola_frame(Bytes(kLargestColaPayload + 1, 's'), ColaLanguage::A), Error);
 }

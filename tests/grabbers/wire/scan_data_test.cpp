@@ -99,11 +99,7 @@ TEST(ScanData, ReadsARealTelegramOfAnLms511WithRemissionsInEightBits) {
 
 TEST(ScanData, ReadsTheManualsExampleInAscii) {
   const std::string text =
-      "\x02sRA LMDscandata 1 1 89A27F 0 0 343 347 27477BA9 2747813B 0 0 7 0 0 1388 168 0 1 DIST1 3F800000 "
-      "00000000 "
-      "186A0 1388 15 8A1 8A5 8AB 8AC 8A6 8AC 8B6 8C8 8C2 8C9 8CB 8C4 8E4 8E1 8EB 8E0 8F5 908 8FC 907 906 0 0 "
-      "0 0 0 "
-      "0\x03";
+      "\x02sRA LMDscandata 1 1 89A27F 0 0 343 347 27477BA9 2747813B 0 0 7 0 0 1388 168 0 1 DIST1 3F800000 00000000 186A0 1388 15 8A1 8A5 8AB 8AC 8A6 8AC 8B6 8C8 8C2 8C9 8CB 8C4 8E4 8E1 8EB 8E0 8F5 908 8FC 907 906 0 0 0 0 0 0\x03";
   const auto data = decode_one(as_bytes(text));
   EXPECT_EQ(data.serial_number, 9020031U);
   EXPECT_EQ(data.telegram_counter, 835);
@@ -126,13 +122,7 @@ TEST(ScanData, ReadsTheManualsExampleInAscii) {
 
 TEST(ScanData, ReadsTheManualsExampleInBinary) {
   const auto bytes = from_hex(
-      "02 02 02 02 00 00 00 83 73 52 41 20 4c 4d 44 73 63 61 6e 64 61 74 61 20 00 01 00 01 00 89 a2 7f 00 00 "
-      "c8 c8 "
-      "c8 cc 15 58 86 d8 15 58 8c 5a 00 00 07 00 00 00 00 00 13 88 00 00 01 68 00 00 00 01 44 49 53 54 31 3f "
-      "80 00 "
-      "00 00 00 00 00 00 01 86 a0 13 88 00 15 08 93 08 95 08 af 08 b3 08 b0 08 a4 08 b0 08 bf 08 b9 08 ba 08 "
-      "d0 08 "
-      "d3 08 cf 08 de 08 eb 08 e3 08 fe 08 ec 09 03 08 fd 08 fd 00 00 00 00 00 00 00 00 00 00 00 00 2b");
+      "02 02 02 02 00 00 00 83 73 52 41 20 4c 4d 44 73 63 61 6e 64 61 74 61 20 00 01 00 01 00 89 a2 7f 00 00 c8 c8 c8 cc 15 58 86 d8 15 58 8c 5a 00 00 07 00 00 00 00 00 13 88 00 00 01 68 00 00 00 01 44 49 53 54 31 3f 80 00 00 00 00 00 00 00 01 86 a0 13 88 00 15 08 93 08 95 08 af 08 b3 08 b0 08 a4 08 b0 08 bf 08 b9 08 ba 08 d0 08 d3 08 cf 08 de 08 eb 08 e3 08 fe 08 ec 09 03 08 fd 08 fd 00 00 00 00 00 00 00 00 00 00 00 00 2b");
   const auto data = decode_one(bytes);
   EXPECT_EQ(data.telegram_counter, 51400);
   EXPECT_EQ(data.scan_counter, 51404);
@@ -147,10 +137,8 @@ TEST(ScanData, ReadsTheManualsExampleInBinary) {
 }
 
 TEST(ScanData, ReadsTheNameAndTimeOfARealTelegramInAscii) {
-  const auto data =
-      decode_one(as_bytes("\x02sSN LMDscandata 1 1 89A27F 0 0 343 347 280F6 2867F 0 0 7 0 0 1388 168 0 1 "
-                          "DIST1 3F800000 00000000 186A0 "
-                          "1388 2 8A1 8A5 0 0 1 7 Derecha 0 1 7B2 1 1 0 2A 27 28870 0\x03"));
+  const auto data = decode_one(as_bytes(
+      "\x02sSN LMDscandata 1 1 89A27F 0 0 343 347 280F6 2867F 0 0 7 0 0 1388 168 0 1 DIST1 3F800000 00000000 186A0 1388 2 8A1 8A5 0 0 1 7 Derecha 0 1 7B2 1 1 0 2A 27 28870 0\x03"));
   EXPECT_TRUE(data.channels8.empty());
   EXPECT_FALSE(data.position);
   EXPECT_EQ(data.name, "Derecha");

@@ -34,7 +34,7 @@ TEST(ScanEncoding, GivesTheTelegramBackThatAScanWasDecodedFrom) {
   EXPECT_EQ(to_scan_data(decoded(data)), data);
 }
 
-TEST(ScanEncoding, SaysRangesBeyond65MetresInCoarserUnits) {
+TEST(ScanEncoding, EncodesRangesBeyond65MetresInCoarserUnits) {
   ScanData data = telegram();
   data.channels16[0].scale = 2;  // as an LMS5xx does
   data.channels16[0].raw = {1000, 0, 40000, 16};
@@ -43,7 +43,7 @@ TEST(ScanEncoding, SaysRangesBeyond65MetresInCoarserUnits) {
   EXPECT_EQ(again.channels16[0].raw, data.channels16[0].raw);
 }
 
-TEST(ScanEncoding, SaysRemissionsOf16Bits) {
+TEST(ScanEncoding, EncodesRemissionsOf16Bits) {
   ScanData data = telegram();
   data.channels8.clear();
   data.channels16 = {
@@ -52,7 +52,7 @@ TEST(ScanEncoding, SaysRemissionsOf16Bits) {
   EXPECT_EQ(to_scan_data(decoded(data)), data);
 }
 
-TEST(ScanEncoding, RefusesWhatNoTelegramCanSay) {
+TEST(ScanEncoding, RefusesScansThatATelegramCannotEncode) {
   Scan scan = decoded(telegram());
   scan.echoes[0].ranges[0] = std::numeric_limits<float>::infinity();
   EXPECT_THROW(to_scan_data(scan), Error);

@@ -14,7 +14,7 @@
 
 namespace crisp {
 
-/// Batches of inputs that say in one word what a job does: see toy.perform.
+/// Batches of inputs whose one word determines what a job does: see toy.perform.
 class BatchTest : public ProgramTest {
  protected:
   BatchTest() {

@@ -33,26 +33,27 @@ TEST_F(BatchTest, ProcessesEachRecordingIntoAFolderOfItsName) {
   EXPECT_EQ(json("out/batch.json")["counts"]["done"], 2);
 }
 
-TEST_F(BatchTest, GoesOnWithTheOthersWhereOneFailsOrIsDoubted) {
+TEST_F(BatchTest, GoesOnWithTheOthersWhereOneFailsOrIsUntrusted) {
   put("a.pcap", "done");
   put("b.pcap", "fail");
-  put("c.pcap", "doubt");
+  put("c.pcap", "caveat");
   put("d.pcap", "abort");
   const auto run = batch();
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(field("a", "status"), "done");
   EXPECT_EQ(field("b", "status"), "failed");
-  EXPECT_THAT(field("b", "reasons"), HasSubstr("toy.perform: it was told to fail; tell it something else"));
+  EXPECT_THAT(field("b", "reasons"),
+              HasSubstr("toy.perform: the input requested a failure; use another input"));
   EXPECT_EQ(field("c", "status"), "untrusted");
-  EXPECT_THAT(field("c", "reasons"), HasSubstr("it was told to doubt"));
+  EXPECT_THAT(field("c", "reasons"), HasSubstr("the input requested a caveat"));
   EXPECT_EQ(field("d", "status"), "failed");
-  EXPECT_THAT(field("d", "reasons"), HasSubstr("signal 6 (Aborted) ended it"));
+  EXPECT_THAT(field("d", "reasons"), HasSubstr("it was killed by signal 6 (Aborted)"));
   EXPECT_THAT(run.error, HasSubstr("b: " + path("perform.yaml")));
 }
 
 TEST_F(BatchTest, EndsWithThreeWhereARecordingCannotBeTrusted) {
   put("a.pcap", "done");
-  put("b.pcap", "doubt");
+  put("b.pcap", "caveat");
   EXPECT_EQ(batch().status, 3);
   EXPECT_EQ(batch().status, 3) << "though nothing is done again";
 }
@@ -64,22 +65,22 @@ TEST_F(BatchTest, DoesNothingTwiceThatIsUnchanged) {
   const auto again = batch();
   EXPECT_EQ(again.status, 1);
   EXPECT_THAT(calls(), ElementsAre(Pair("a.pcap", 1), Pair("b.pcap", 1)));
-  EXPECT_THAT(again.error, HasSubstr("2 recordings done before and unchanged\n  1 of them failed"));
+  EXPECT_THAT(again.error, HasSubstr("2 recordings already done and unchanged\n  1 of them failed"));
 }
 
-TEST_F(BatchTest, ProcessesAChangedInputAgainAndSaysSo) {
+TEST_F(BatchTest, ProcessesAChangedInputAgainAndReportsIt) {
   put("a.pcap", "done");
   put("b.pcap", "done");
   EXPECT_EQ(batch().status, 0);
-  put("b.pcap", "doubt");
+  put("b.pcap", "caveat");
   const auto again = batch();
   EXPECT_EQ(again.status, 3);
-  EXPECT_THAT(again.error, HasSubstr("due again, as the input changed: 1 recording (b)\n"));
+  EXPECT_THAT(again.error, HasSubstr("due again, since the input changed: 1 recording (b)\n"));
   EXPECT_THAT(calls(), ElementsAre(Pair("a.pcap", 1), Pair("b.pcap", 2)));
-  EXPECT_EQ(content("out/b/b.txt"), "doubt\n");
+  EXPECT_EQ(content("out/b/b.txt"), "caveat\n");
 }
 
-TEST_F(BatchTest, TellsATouchedInputFromAChangedOneByItsContent) {
+TEST_F(BatchTest, DistinguishesATouchedInputFromAChangedOneByItsContent) {
   put("a.pcap", "done");
   EXPECT_EQ(batch().status, 0);
   const auto later = fs::last_write_time(folder_ / "in/a.pcap") + std::chrono::hours(1);
@@ -100,7 +101,8 @@ TEST_F(BatchTest, ProcessesAllAgainWithOtherSettingsAndNamesWhatChanged) {
   EXPECT_EQ(other.status, 0);
   EXPECT_THAT(
       other.error,
-      HasSubstr("due again, as the settings changed: 1 recording (a)\n  toy.perform.text: \"\" → \"!\"\n"));
+      HasSubstr(
+          "due again, since the settings changed: 1 recording (a)\n  toy.perform.text: \"\" → \"!\"\n"));
   EXPECT_EQ(content("out/a/a.txt"), "done!\n");
 }
 
@@ -122,9 +124,10 @@ TEST_F(BatchTest, RefusesAPipelineThatDoesNotDependOnTheRecording) {
       "crisp: 1\npipeline:\n  - stage: toy.perform\n    with: {file: /x, result: " + path("r.txt") + "}\n");
   const auto run = batch();
   EXPECT_EQ(run.status, 2);
-  EXPECT_THAT(run.error, HasSubstr("perform.yaml:4:30: error: toy.perform: each recording would write \"" +
-                                   path("r.txt")));
-  EXPECT_THAT(run.error, HasSubstr("nothing that it reads depends on it; let it read ${input}"));
+  EXPECT_THAT(
+      run.error,
+      HasSubstr("perform.yaml:4:30: error: toy.perform: each recording would overwrite \"" + path("r.txt")));
+  EXPECT_THAT(run.error, HasSubstr("every job would be the same; let it read ${input}"));
 }
 
 TEST_F(BatchTest, ReportsEveryMistakeOfThePipelineOnce) {
@@ -142,7 +145,7 @@ TEST_F(BatchTest, EndsAJobThatTakesTooLong) {
   const auto run = batch({"--timeout", "200ms"});
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(field("a", "status"), "failed");
-  EXPECT_THAT(field("a", "reasons"), HasSubstr("it took longer than 0.2 s"));
+  EXPECT_THAT(field("a", "reasons"), HasSubstr("it exceeded 0.2 s"));
   EXPECT_EQ(field("b", "status"), "done");
 }
 
@@ -155,7 +158,7 @@ TEST_F(BatchTest, StopsInGoodOrderOnASignalAndGoesOnLater) {
   const auto stopped = wait_for(child);
   EXPECT_EQ(stopped.status, 130);
   EXPECT_THAT(stopped.error,
-              HasSubstr("interrupted: 0 of 2 recordings ended; run the batch again to go on\n"));
+              HasSubstr("interrupted: 0 of 2 recordings ended; run the batch again to continue\n"));
   put("a.pcap", "done");
   EXPECT_EQ(batch().status, 0);
   EXPECT_THAT(calls(), ElementsAre(Pair("a.pcap", 2), Pair("b.pcap", 1)));
@@ -185,12 +188,12 @@ TEST_F(BatchTest, ProcessesAgainWhatWasKilledFromOutside) {
   kill(std::stoi(holder.substr(std::string("process ").size())), SIGKILL);
   EXPECT_EQ(wait_for(child).status, 1);
   EXPECT_EQ(field("a", "status"), "interrupted");
-  EXPECT_THAT(field("a", "reasons"), HasSubstr("signal 9 (Killed) ended it"));
+  EXPECT_THAT(field("a", "reasons"), HasSubstr("killed by signal 9 (Killed)"));
   put("a.pcap", "done");
   const auto again = batch();
   EXPECT_EQ(again.status, 0);
   EXPECT_THAT(again.error,
-              HasSubstr("due again, as they were stopped or killed from outside: 1 recording (a)\n"));
+              HasSubstr("due again, since they were stopped or killed from outside: 1 recording (a)\n"));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out/a"), {}), 3) << "result, provenance, summary";
 }
 
@@ -266,7 +269,7 @@ TEST_F(BatchTest, DividesTheRecordingsAmongShards) {
   EXPECT_EQ(called.size(), 20U);
   for (const auto& [name, count] : called) EXPECT_EQ(count, 1) << name;
   const auto whole = batch();
-  EXPECT_THAT(whole.error, HasSubstr("20 recordings done before and unchanged"));
+  EXPECT_THAT(whole.error, HasSubstr("20 recordings already done and unchanged"));
   EXPECT_THAT(calls(), called) << "what shards did counts for all";
 }
 

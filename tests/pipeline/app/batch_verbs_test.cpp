@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;
 
-TEST_F(BatchTest, StatusTellsWhatRunsAndWhatFailedAndWhy) {
+TEST_F(BatchTest, StatusReportsRunningAndFailedJobsWithReasons) {
   put("a.pcap", "done");
   put("b.pcap", "fail");
   put("c.pcap", "wait");
@@ -48,17 +48,17 @@ TEST_F(BatchTest, RetryRunsWhatFailedAsItWasRunBefore) {
   EXPECT_EQ(content("out/b/b.txt"), "done!\n");
 }
 
-TEST_F(BatchTest, RetryMarksOnlyWhereItIsToldTo) {
+TEST_F(BatchTest, RetryOnlyMarksOnRequest) {
   put("a.pcap", "fail");
   EXPECT_EQ(batch().status, 1);
   EXPECT_EQ(crisp({"batch", "retry", path("out"), "--mark"}).status, 0);
   EXPECT_EQ(calls()["a.pcap"], 1);
-  EXPECT_THAT(batch().error, HasSubstr("due again, as a retry was asked for: 1 recording (a)\n"));
+  EXPECT_THAT(batch().error, HasSubstr("due again, since a retry was requested: 1 recording (a)\n"));
   EXPECT_EQ(calls()["a.pcap"], 2);
 }
 
 TEST_F(BatchTest, TableMergesWhatShardsWroteAndCarriesTheirExitStatus) {
-  for (int i = 0; i < 6; ++i) put("r" + std::to_string(i) + ".pcap", i == 3 ? "doubt" : "done");
+  for (int i = 0; i < 6; ++i) put("r" + std::to_string(i) + ".pcap", i == 3 ? "caveat" : "done");
   batch({"--shard", "1/2"});
   const auto half = crisp({"batch", "status", path("out")});
   EXPECT_THAT(half.out, HasSubstr("6 recordings: "));

@@ -69,12 +69,11 @@ TEST_F(ClusterSubmitTest, SubmitsAnArrayAndAMergeJobThatDependsOnIt) {
 
 /// The scripts are run as Slurm runs them: by bash, with its variables.
 TEST_F(ClusterSubmitTest, ScriptsDoAllRecordingsAndWriteTheTable) {
-  put("r4.pcap", "doubt");
+  put("r4.pcap", "caveat");
   EXPECT_EQ(submit().status, 0);
   const std::string scripts = path("out/manifest/slurm/");
   const std::string tasks =
-      "export SLURM_CPUS_ON_NODE=3 SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_COUNT=6 SLURM_ARRAY_TASK_ID; "
-      "for SLURM_ARRAY_TASK_ID in 1 2 3 4 5; do bash " +
+      "export SLURM_CPUS_ON_NODE=3 SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_COUNT=6 SLURM_ARRAY_TASK_ID; for SLURM_ARRAY_TASK_ID in 1 2 3 4 5; do bash " +
       scripts + "batch.sbatch > /dev/null 2>&1; done";
   std::ignore = std::system(tasks.c_str());
   const auto first = content("out/manifest/shard-1-of-6/events.jsonl");
@@ -155,8 +154,9 @@ TEST_F(ClusterSubmitTest, NamesWhatSlurmDoesNotDo) {
   setenv("PATH", path("bin").c_str(), 1);
   const auto missing = submit();
   EXPECT_EQ(missing.status, 1);
-  EXPECT_THAT(missing.error,
-              HasSubstr("cannot run sbatch: No such file or directory; run it where Slurm's programs"));
+  EXPECT_THAT(
+      missing.error,
+      HasSubstr("cannot run sbatch: No such file or directory; run the command where Slurm's programs"));
   EXPECT_THAT(missing.error, HasSubstr("scontrol did not report Slurm's MaxArraySize"));
 }
 

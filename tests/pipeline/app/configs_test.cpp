@@ -29,8 +29,8 @@ TEST(Configs, AreRight) {
     if (!is_pipeline(entry.path())) continue;
     ++pipelines;
     // Neither errors nor warnings.
-    const std::string told = CRISP_PROGRAM " validate " + entry.path().string() + " 2>&1 >/dev/null";
-    EXPECT_EQ(std::system(("told=$(" + told + ") && test -z \"$told\"").c_str()), 0) << entry.path();
+    const std::string command = CRISP_PROGRAM " validate " + entry.path().string() + " 2>&1 >/dev/null";
+    EXPECT_EQ(std::system(("errors=$(" + command + ") && test -z \"$errors\"").c_str()), 0) << entry.path();
   }
   EXPECT_GT(pipelines, 0);
 }
@@ -56,7 +56,7 @@ std::vector<std::string> commands_of(const fs::path& file) {
   return commands;
 }
 
-/// The same command, which only checks its pipeline: validate does without what says how to run.
+/// The same command, which only checks its pipeline: validate needs no options of running.
 std::string checking(std::string command) {
   const auto replace = [&](const std::string& pattern, const std::string& with) {
     command = std::regex_replace(command, std::regex(pattern), with);
@@ -76,7 +76,7 @@ TEST(Configs, BeginWithCommandsThatAreRight) {
       if (!command.starts_with("crisp run ")) continue;
       ++commands;
       const std::string shell = "cd " + source_dir() + " && " + checking(command) + " 2>&1 >/dev/null";
-      EXPECT_EQ(std::system(("told=$(" + shell + ") && test -z \"$told\"").c_str()), 0)
+      EXPECT_EQ(std::system(("errors=$(" + shell + ") && test -z \"$errors\"").c_str()), 0)
           << entry.path() << ": " << command;
     }
   }

@@ -30,7 +30,7 @@ class ConvertTest : public ProgramTest {
   }
 };
 
-TEST_F(ConvertTest, WritesWhatTheNewFilesEndingSays) {
+TEST_F(ConvertTest, WritesTheFormatOfTheFileExtension) {
   put_cloud("cloud.pcd", 3);
   for (const auto& [name, begin] : std::map<std::string, std::string>{
            {"a.las", "LASF"}, {"b.ply", "ply\n"}, {"c.pcd", "# .PCD"}, {"D.LAS", "LASF"}}) {
@@ -70,7 +70,7 @@ TEST_F(ConvertTest, RefusesAnEndingThatIsNoCloudsAndAFolderWithoutAFormat) {
   put_cloud("cloud.pcd", 3);
   const auto ending = crisp({"convert", path("cloud.pcd"), path("cloud.xyz")});
   EXPECT_EQ(ending.status, 2);
-  EXPECT_THAT(ending.error, HasSubstr("end it in .pcd, .ply or .las"));
+  EXPECT_THAT(ending.error, HasSubstr("end the name in .pcd, .ply or .las"));
   const auto folder = crisp({"convert", path(""), path("out")});
   EXPECT_EQ(folder.status, 2);
   EXPECT_THAT(folder.error, HasSubstr("give --format las"));

@@ -23,7 +23,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(PluginLoader, RegistersTheStagesOfAPluginAndTellsWhereTheyAreFrom) {
+TEST(PluginLoader, RegistersTheStagesOfAPluginWithTheirOrigin) {
   Registrar registrar;
   PluginLoader loader(registrar);
   loader.load(TOY_PLUGIN);
@@ -84,11 +84,11 @@ TEST(PluginLoader, RefusesAPluginThatThrowsWhatIsNoException) {
   Registrar registrar;
   PluginLoader loader(registrar);
   loader.load(THROWING_PLUGIN);
-  EXPECT_EQ(loader.tried().at(0).refusal, "registering its stages it threw what is no std::exception");
+  EXPECT_EQ(loader.tried().at(0).refusal, "its registration threw something that is no std::exception");
   EXPECT_THAT(registrar.stages().names(), IsEmpty());
 }
 
-TEST(PluginLoader, SaysWhyAFileIsNoPlugin) {
+TEST(PluginLoader, ReportsWhyAFileIsNoPlugin) {
   const fs::path text = fs::path(testing::TempDir()) / "crisp_not_a_plugin.so";
   write_file(text, "just text");
   Registrar registrar;
@@ -98,7 +98,7 @@ TEST(PluginLoader, SaysWhyAFileIsNoPlugin) {
   loader.load("libm.so.6");
   EXPECT_THAT(loader.tried()[0].refusal, HasSubstr("No such file"));
   EXPECT_THAT(loader.tried()[1].refusal, HasSubstr("it is no shared object for this machine"));
-  EXPECT_FALSE(loader.tried()[2].is_loaded());  // looked for here, and not in the system's folders
+  EXPECT_FALSE(loader.tried()[2].is_loaded());  // searched here, and not in the system's folders
   fs::remove(text);
 }
 
@@ -117,9 +117,9 @@ TEST(PluginLoader, RefusesAPluginThatWasCutShortWhereverThatIs) {
     Registrar registrar;
     PluginLoader loader(registrar);
     loader.load(cut);
-    EXPECT_THAT(loader.tried().at(0).refusal, HasSubstr("it is cut short: its "));
+    EXPECT_THAT(loader.tried().at(0).refusal, HasSubstr("it is truncated: its "));
     EXPECT_THAT(loader.tried().at(0).refusal,
-                HasSubstr("reach beyond its " + std::to_string(bytes) + " bytes; copy or build it anew"));
+                HasSubstr("reach beyond its " + std::to_string(bytes) + " bytes; copy or build it again"));
     fs::remove(cut);
   }
 }

@@ -21,7 +21,7 @@
 
 namespace crisp {
 
-/// How a run of the program ended, and what it said.
+/// The exit status of a run of the program, and its output.
 struct Outcome {
   int status = -1;
   std::string out;

@@ -25,10 +25,9 @@ TEST_F(ProgressTest, RefreshesOneLineOfATerminalWithBarRateAndTimeLeft) {
     now += 1.95;
     printer.show("read", {.done = 100e6, .total = 400e6, .unit = "B", .what = "packets"});
   }
-  EXPECT_EQ(out.str(),
-            "\r\x1b[Kread                   [                        ]   0 %"
-            "\r\x1b[Kread                   [######                  ]  25 %  50 MB/s  6.0 s left  packets"
-            "\r\x1b[K");
+  EXPECT_EQ(
+      out.str(),
+      "\r\x1b[Kread                   [                        ]   0 %\r\x1b[Kread                   [######                  ]  25 %  50 MB/s  6.0 s left  packets\r\x1b[K");
 }
 
 TEST_F(ProgressTest, CutsTheLineBeforeTheLastColumnOfTheTerminal) {
@@ -36,9 +35,7 @@ TEST_F(ProgressTest, CutsTheLineBeforeTheLastColumnOfTheTerminal) {
     ProgressPrinter printer(out, true, clock, 67);
     printer.show("calibrate.refine", {.done = 0.25, .what = "σ 5 cm, λ and τ"});
   }
-  EXPECT_EQ(out.str(),
-            "\r\x1b[Kcalibrate.refine       [######                  ]  25 %  σ 5 cm, λ"
-            "\r\x1b[K");
+  EXPECT_EQ(out.str(), "\r\x1b[Kcalibrate.refine       [######                  ]  25 %  σ 5 cm, λ\r\x1b[K");
 }
 
 TEST_F(ProgressTest, PrintsPlainLinesAtMostEveryTenSecondsElsewhere) {

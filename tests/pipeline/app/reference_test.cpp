@@ -13,13 +13,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The generated pages: the index, and those of stages, whose names have a dot ("filter.range.md").
 std::set<std::string> pages_of(const fs::path& folder) {
   std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path page = entry.path().filename();
+    if (page == "README.md" || page.stem().has_extension()) names.insert(page.string());
+  }
   return names;
 }
 
-TEST(Reference, SaysWhatTheStagesDeclare) {
+TEST(Reference, DescribesTheDeclaredStages) {
   const fs::path written = fs::path(source_dir()) / "docs" / "reference";
   const fs::path fresh = fs::path(testing::TempDir()) / "crisp-reference";
   fs::remove_all(fresh);
@@ -36,7 +40,7 @@ TEST(Reference, SaysWhatTheStagesDeclare) {
   fs::remove_all(fresh);
 }
 
-TEST(Reference, SaysWhatTheEffectsDeclare) {
+TEST(Reference, DescribesTheDeclaredEffects) {
   const fs::path written = fs::path(source_dir()) / "docs" / "effects.md";
   const fs::path fresh = fs::path(testing::TempDir()) / "crisp-effects.md";
   ASSERT_EQ(std::system((CRISP_PROGRAM " effects --markdown > " + fresh.string()).c_str()), 0);

@@ -20,8 +20,7 @@ TEST_F(ProgramTest, EndsWithTwoAndEveryMistakeWhenThePipelineIsWrong) {
              "crisp: 1\npipeline:\n  - {stage: toy.sum}\n  - {stage: toy.count, with: {m: 4}}\n");
   const std::string expected =
       path("wrong.yaml") +
-      ":3:13: error: toy.sum: nothing above it gives the Number that it takes; put one of "
-      "these above it: toy.count, toy.doubt, toy.endless, toy.share, toy.throw, toy.wait\n" +
+      ":3:13: error: toy.sum: nothing above it gives the Number that it takes; put one of these above it: toy.caveat, toy.count, toy.endless, toy.share, toy.throw, toy.wait\n" +
       path("wrong.yaml") + ":4:31: error: toy.count: there is no option 'm'; did you mean 'n'?\n2 errors\n";
   for (const std::string command : {"run", "validate"}) {
     const auto outcome = crisp({command, path("wrong.yaml")});
@@ -172,9 +171,10 @@ TEST_F(ProgramTest, RefusesToOverwriteWhatComesOfAnotherStagesFile) {
   };
   const std::string cloud = "{stage: write.pcd, with: {file: \"${output}/a.pcd\"}}";
   const std::string beams = "{stage: write.measurements, with: {file: \"${output}/a.pcd\"}}";
-  EXPECT_THAT(error_of(cloud, page("a_0001.pcd")),
-              HasSubstr(":7:40: error: write.report: its /output/a_0001.pcd could overwrite /output/a_*.pcd, "
-                        "which write.pcd writes; let it write another file"));
+  EXPECT_THAT(
+      error_of(cloud, page("a_0001.pcd")),
+      HasSubstr(
+          ":7:40: error: write.report: its /output/a_0001.pcd could overwrite /output/a_*.pcd, which write.pcd writes; let it write another file"));
   EXPECT_THAT(error_of(page("a_0001.pcd"), cloud), HasSubstr("its /output/a_*.pcd could overwrite"));
   EXPECT_THAT(error_of(beams, page("a.plate.pcd")),
               HasSubstr("write.report: it would overwrite /output/a.plate.pcd, which write.measurements"));
@@ -183,9 +183,9 @@ TEST_F(ProgramTest, RefusesToOverwriteWhatComesOfAnotherStagesFile) {
   EXPECT_THAT(error_of(page("summary.json"), cloud), HasSubstr("which this run writes"));
   const std::string clouds = "{stage: write.clouds, with: {file: \"${output}/a.pcd\"}}";
   EXPECT_THAT(error_of(clouds, page("a_0001.pcd")), HasSubstr("which write.clouds writes"));
-  const std::string stamps = "{stage: diagnose.stamps, with: {folder: \"${output}\"}}";
+  const std::string stamps = "{stage: diagnose.clocks, with: {folder: \"${output}\"}}";
   EXPECT_THAT(error_of(stamps, page("laser1_stamps.svg")),
-              HasSubstr("could overwrite /output/*_stamps.svg, which diagnose.stamps writes"));
+              HasSubstr("could overwrite /output/*_stamps.svg, which diagnose.clocks writes"));
   EXPECT_THAT(error_of("{stage: write.capture, with: {file: \"${output}/h.pcap\"}}", page("h-2.pcap")),
               HasSubstr("could overwrite /output/h-*.pcap, which write.capture writes"));
   for (const auto* other :
@@ -201,8 +201,9 @@ TEST_F(ProgramTest, DoesNotReplaceWhatAStageWroteByARecordOfItsOwn) {
              "  - {stage: toy.write_undeclared, with: {folder: \"${output}\", name: summary.json}}\n");
   const auto run = crisp({"run", path("hidden.yaml"), "-o", path("out")});
   EXPECT_EQ(run.status, 1);
-  EXPECT_THAT(run.error, HasSubstr("error: toy.write_undeclared: it wrote " + path("out/summary.json") +
-                                   ", where the run's own record belongs; let it write another file\n"));
+  EXPECT_THAT(run.error,
+              HasSubstr("error: toy.write_undeclared: it wrote " + path("out/summary.json") +
+                        ", which is the name of the run's own record; let it write another file\n"));
   EXPECT_EQ(content("out/summary.json"), "undeclared");
   write_file(folder_ / "twice.yaml",
              "crisp: 1\npipeline:\n  - {stage: toy.count}\n  - {stage: toy.sum}\n"
@@ -229,15 +230,14 @@ TEST_F(ProgramTest, RefusesToRunWhereAFolderIsInTheWayOfWhatItWouldWrite) {
   EXPECT_THAT(records.error, HasSubstr("error: this run: where " + path("out/summary.json") + " would be"));
 }
 
-TEST_F(ProgramTest, SaysWhatWasMeantByWordsThatItDoesNotExpect) {
+TEST_F(ProgramTest, SuggestsTheNearestNameForUnknownWords) {
   const auto thread = crisp({"run", path("sum.yaml"), "--thread", "4", "--sead=1"});
   EXPECT_EQ(thread.status, 2);
-  EXPECT_EQ(
-      thread.error,
-      "error: not expected: --thread 4 --sead=1; did you mean '--threads'?; crisp run --help tells more\n");
+  EXPECT_EQ(thread.error,
+            "error: not expected: --thread 4 --sead=1; did you mean '--threads'?; see crisp run --help\n");
   EXPECT_EQ(crisp({"plugins", "one", "two"}).error,
-            "error: not expected: one two; crisp plugins --help tells more\n");
-  EXPECT_EQ(crisp({"run"}).error, "error: pipeline is required; crisp run --help tells more\n");
+            "error: not expected: one two; see crisp plugins --help\n");
+  EXPECT_EQ(crisp({"run"}).error, "error: pipeline is required; see crisp run --help\n");
 }
 
 TEST_F(ProgramTest, RefusesAFolderThatHoldsNoPlugin) {
@@ -248,7 +248,7 @@ TEST_F(ProgramTest, RefusesAFolderThatHoldsNoPlugin) {
             "error: the folder " + path("none") + " holds no plugin; plugins are files NAME.so\n");
 }
 
-TEST_F(ProgramTest, SaysInASentenceThatAnInputCannotBeRead) {
+TEST_F(ProgramTest, ReportsInASentenceThatAnInputCannotBeRead) {
   fs::create_symlink("b", folder_ / "a");
   fs::create_symlink("a", folder_ / "b");
   const auto loop = crisp({"run", path("sum.yaml"), "-i", path("a"), "-o", path("out")});
@@ -274,14 +274,14 @@ TEST_F(ProgramTest, RefusesALineBreakInASetting) {
   }
 }
 
-TEST_F(ProgramTest, SaysHowAStageIsWritten) {
+TEST_F(ProgramTest, ShowsTheSyntaxOfAStage) {
   write_file(folder_ / "plain.yaml", "crisp: 1\npipeline:\n  - toy.count\n");
   EXPECT_EQ(
       crisp({"validate", path("plain.yaml")}).error,
       path("plain.yaml") + ":3:5: error: stage: 'toy.count' is not a map; write `- stage: toy.count`\n");
 }
 
-TEST_F(ProgramTest, TellsAStageFromTheKeyBeforeItAndAListFromItsBrackets) {
+TEST_F(ProgramTest, DistinguishesAStageFromTheKeyBeforeItAndAListFromItsBrackets) {
   for (const char* item : {"stage toy.count", "stage:toy.count"}) {
     write_file(folder_ / "plain.yaml", "crisp: 1\npipeline:\n  - " + std::string(item) + "\n");
     EXPECT_THAT(crisp({"validate", path("plain.yaml")}).error, HasSubstr("; write `- stage: toy.count`\n"));
@@ -319,7 +319,7 @@ TEST_F(ProgramTest, ValidatesEveryStageThoughAnotherIsWrong) {
   EXPECT_THAT(of_a_rig, testing::Not(has("nobody"))) << "which lasers there are is not known";
 }
 
-TEST_F(ProgramTest, SaysThatASettingIsWrongWhereItIsGiven) {
+TEST_F(ProgramTest, ReportsThatASettingIsWrongWhereItIsGiven) {
   const auto error_of = [&](const std::string& pipeline, const std::string& setting) {
     return crisp({"validate", source_dir() + "/configs/" + pipeline, "--set", setting}).error;
   };

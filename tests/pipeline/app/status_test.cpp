@@ -17,11 +17,12 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-TEST(StatusBoard, ShowsWhatEachStageToldLastInThePipelinesOrder) {
+TEST(StatusBoard, ShowsEachStagesLastStatusInThePipelinesOrder) {
   StatusBoard board({"grabber.live", "clock.online", "calibrate.watch"});
-  board.tell("clock.online", {.line = "skew +4.5 ppm", .gauges = {{"rate_hertz", 1}, {"resets_total", 2}}});
-  board.tell("grabber.live", {.line = "laser1 50.0 Hz", .gauges = {{"rate_hertz", 50, "laser1"}}});
-  board.tell("grabber.live", {.line = "laser1 49.9 Hz", .gauges = {{"rate_hertz", 49.9, "laser1"}}});
+  board.set_status("clock.online",
+                   {.line = "skew +4.5 ppm", .gauges = {{"rate_hertz", 1}, {"resets_total", 2}}});
+  board.set_status("grabber.live", {.line = "laser1 50.0 Hz", .gauges = {{"rate_hertz", 50, "laser1"}}});
+  board.set_status("grabber.live", {.line = "laser1 49.9 Hz", .gauges = {{"rate_hertz", 49.9, "laser1"}}});
   EXPECT_EQ(board.line(), "laser1 49.9 Hz | skew +4.5 ppm");
   EXPECT_EQ(board.prometheus(),
             "# TYPE crisp_rate_hertz gauge\n"
@@ -32,7 +33,7 @@ TEST(StatusBoard, ShowsWhatEachStageToldLastInThePipelinesOrder) {
 }
 
 /// What a server answers before it closes the connection.
-std::string ask(std::uint16_t port, const std::string& request) {
+std::string get(std::uint16_t port, const std::string& request) {
   boost::asio::io_context context;
   boost::asio::ip::tcp::socket socket(context);
   socket.connect({boost::asio::ip::address_v4::loopback(), port});
@@ -44,22 +45,22 @@ std::string ask(std::uint16_t port, const std::string& request) {
 }
 
 TEST(MetricsServer, AnswersAtItsOnePlace) {
-  int asked = 0;
-  const MetricsServer server(0, [&] { return "crisp_asked " + std::to_string(++asked) + "\n"; });
-  const std::string metrics = ask(server.port(), "GET /metrics HTTP/1.0\r\n\r\n");
+  int requested = 0;
+  const MetricsServer server(0, [&] { return "crisp_requests " + std::to_string(++requested) + "\n"; });
+  const std::string metrics = get(server.port(), "GET /metrics HTTP/1.0\r\n\r\n");
   EXPECT_THAT(metrics, StartsWith("HTTP/1.0 200 OK"));
   EXPECT_THAT(metrics, HasSubstr("text/plain; version=0.0.4"));
-  EXPECT_THAT(metrics, HasSubstr("\r\n\r\ncrisp_asked 1\n"));
-  EXPECT_THAT(ask(server.port(), "GET / HTTP/1.0\r\n\r\n"), StartsWith("HTTP/1.0 404"));
-  EXPECT_THAT(ask(server.port(), "POST /metrics HTTP/1.0\r\ncontent-length: 0\r\n\r\n"),
+  EXPECT_THAT(metrics, HasSubstr("\r\n\r\ncrisp_requests 1\n"));
+  EXPECT_THAT(get(server.port(), "GET / HTTP/1.0\r\n\r\n"), StartsWith("HTTP/1.0 404"));
+  EXPECT_THAT(get(server.port(), "POST /metrics HTTP/1.0\r\ncontent-length: 0\r\n\r\n"),
               StartsWith("HTTP/1.0 404"));
 }
 
 TEST(MetricsServer, StandsNonsenseAndRequestsWithoutEnd) {
-  const MetricsServer server(0, [] { return std::string("crisp_asked 1\n"); });
-  EXPECT_EQ(ask(server.port(), std::string(1000, '\x02')), "");
-  EXPECT_EQ(ask(server.port(), "GET /metrics HTTP/1.0\r\nx: " + std::string(17'000, 'x')), "");
-  EXPECT_THAT(ask(server.port(), "GET /metrics HTTP/1.0\r\n\r\n"), HasSubstr("crisp_asked 1"));
+  const MetricsServer server(0, [] { return std::string("crisp_requests 1\n"); });
+  EXPECT_EQ(get(server.port(), std::string(1000, '\x02')), "");
+  EXPECT_EQ(get(server.port(), "GET /metrics HTTP/1.0\r\nx: " + std::string(17'000, 'x')), "");
+  EXPECT_THAT(get(server.port(), "GET /metrics HTTP/1.0\r\n\r\n"), HasSubstr("crisp_requests 1"));
 }
 
 TEST(MetricsServer, RefusesAPortThatIsTaken) {

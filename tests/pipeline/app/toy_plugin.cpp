@@ -14,22 +14,22 @@
 
 namespace crisp::toy {
 
-/// Writes the sum into a file, and doubts it if told to.
+/// Writes the sum into a file, and adds a caveat if an option requests it.
 class WriteStage final : public Stage {
  public:
   static void describe(StageDescription<WriteStage>& d) {
     d.name("toy.write").summary("writes the sum").takes<Sum>();
     d.option("file", &WriteStage::file_, "where to").writes().required();
-    d.option("doubt", &WriteStage::doubt_, "whether to doubt it");
+    d.option("caveat", &WriteStage::caveat_, "whether to caveat it");
   }
   void process(const Inputs& in, Outputs&, Context& context) override {
     sum_ = in.get<Sum>().value;
-    context.say("the sum is " + std::to_string(sum_));
+    context.print("the sum is " + std::to_string(sum_));
     context.report({{"sum", sum_}});
     context.count("sums", 1);
     context.count("sums that were lost", 0);
     context.warn("it is only a toy");
-    if (doubt_) context.distrust("the sum was doubted");
+    if (caveat_) context.mark_untrusted("the sum was with_caveats");
   }
   void finish(Outputs&, Context& context) override {
     write_file(file_, std::to_string(sum_) + "\n");
@@ -38,11 +38,11 @@ class WriteStage final : public Stage {
 
  private:
   std::filesystem::path file_;
-  bool doubt_ = false;
+  bool caveat_ = false;
   int sum_ = 0;
 };
 
-/// Writes a file of which its options say nothing.
+/// Writes a file that its options do not declare.
 class WriteUndeclaredStage final : public Stage {
  public:
   static void describe(StageDescription<WriteUndeclaredStage>& d) {
@@ -61,7 +61,7 @@ class WriteUndeclaredStage final : public Stage {
   std::string name_;
 };
 
-/// Opens a file aside, says so, and waits until it is interrupted.
+/// Opens a file aside, reports it, and waits until it is interrupted.
 class WaitStage final : public Stage {
  public:
   static void describe(StageDescription<WaitStage>& d) {
@@ -138,7 +138,7 @@ class ComplainStage final : public Stage {
  public:
   static void describe(StageDescription<ComplainStage>& d) {
     d.name("toy.complain").summary("complains of a signal").gives<Word>();
-    d.option("file", &ComplainStage::file_, "that says that it waits").required();
+    d.option("file", &ComplainStage::file_, "written once it waits").required();
   }
   void process(const Inputs&, Outputs&, Context& context) override {
     write_file(file_, "");
@@ -150,28 +150,28 @@ class ComplainStage final : public Stage {
   std::filesystem::path file_;
 };
 
-/// Does what its input says in one word: `done`, `doubt`, `fail`, `abort`, `hang` or `full`. Before, it adds
-/// a line to the journal, which tells how often it was called for which input.
+/// Does what the one word of its input requests: `done`, `caveat`, `fail`, `abort`, `hang` or `full`. Before,
+/// it adds a line to the journal, which counts the calls for each input.
 class PerformStage final : public Stage {
  public:
   static void describe(StageDescription<PerformStage>& d) {
-    d.name("toy.perform").summary("does what its input says").gives<Word>();
+    d.name("toy.perform").summary("does what its input requests").gives<Word>();
     d.option("file", &PerformStage::file_, "the input").required();
-    d.option("result", &PerformStage::result_, "what it writes").writes().required();
+    d.option("result", &PerformStage::result_, "its output").writes().required();
     d.option("journal", &PerformStage::journal_, "to which it adds a line");
-    d.option("text", &PerformStage::text_, "what it writes besides");
+    d.option("text", &PerformStage::text_, "further text of its output");
   }
   void process(const Inputs&, Outputs&, Context& context) override {
     if (!journal_.empty()) std::ofstream(journal_, std::ios::app) << file_.filename().string() + "\n";
     const std::string what = read_text_file(file_, 100);
     context.reads(file_);
     AtomicFile result(result_);
-    if (what == "fail") throw Error("it was told to fail", "tell it something else");
+    if (what == "fail") throw Error("the input requested a failure", "use another input");
     if (what == "full") throw Error("cannot write x: " + std::string(std::strerror(ENOSPC)));
     if (what == "abort") std::abort();
     while (what == "hang" || (what == "wait" && !context.interrupted()))
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    if (what == "doubt") context.distrust("it was told to doubt");
+    if (what == "caveat") context.mark_untrusted("the input requested a caveat");
     result.write(what + text_ + "\n");
     result.commit();
     context.wrote(result_);

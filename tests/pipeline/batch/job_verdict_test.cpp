@@ -38,10 +38,10 @@ TEST_F(VerdictTest, FollowsTheExitStatusOfARun) {
   EXPECT_EQ(judge({.exit_status = 3}).status, JobStatus::untrusted);
   EXPECT_EQ(judge({.exit_status = 1, .error = "error: x\n"}).status, JobStatus::failed);
   EXPECT_EQ(judge({.exit_status = 1, .error = "error: x\n"}).failure, "error: x");
-  EXPECT_THAT(judge({.exit_status = 1}).failure, HasSubstr("exit status 1 and without a message"));
+  EXPECT_THAT(judge({.exit_status = 1}).failure, HasSubstr("exited with status 1 and without a message"));
 }
 
-TEST_F(VerdictTest, TellsACrashFromAKill) {
+TEST_F(VerdictTest, DistinguishesACrashFromAKill) {
   EXPECT_EQ(judge({.signal = SIGSEGV}).status, JobStatus::failed);
   EXPECT_THAT(judge({.signal = SIGSEGV}).failure, HasSubstr("signal 11 (Segmentation fault)"));
   EXPECT_EQ(judge({.signal = SIGKILL}).status, JobStatus::interrupted);
@@ -52,7 +52,7 @@ TEST_F(VerdictTest, TellsACrashFromAKill) {
 TEST_F(VerdictTest, KnowsWhomTheBatchItselfEnded) {
   const auto late = judge({.signal = SIGKILL}, {.timeout = 7.5});
   EXPECT_EQ(late.status, JobStatus::failed);
-  EXPECT_THAT(late.failure, HasSubstr("longer than 7.5 s"));
+  EXPECT_THAT(late.failure, HasSubstr("exceeded 7.5 s"));
   EXPECT_EQ(judge({.exit_status = 0}, {.timeout = 7.5}).status, JobStatus::done) << "it was just in time";
   EXPECT_EQ(judge({.exit_status = 143}, {.stopping = true}).status, JobStatus::interrupted);
   EXPECT_EQ(judge({.exit_status = 0}, {.stopping = true}).status, JobStatus::done);
@@ -66,7 +66,7 @@ TEST_F(VerdictTest, TakesAFullDiskForNoFaultOfTheRecording) {
 
 TEST_F(VerdictTest, FindsAFullDiskAmongTheReasonsOfARunThatCameToItsEnd) {
   write_file(folder_ / "out/summary.json", R"({"inputs":[],"stages":[{"tag":"a","stage":"write.clouds",
-    "outputs":[],"doubts":["no more clouds were written: No space left on device"],"report":{}}]})");
+    "outputs":[],"caveats":["no more clouds were written: No space left on device"],"report":{}}]})");
   const auto full = judge({.exit_status = 3});
   EXPECT_EQ(full.status, JobStatus::interrupted);
   EXPECT_THAT(full.full_disk, HasSubstr("No space left"));
@@ -95,8 +95,8 @@ TEST_F(VerdictTest, KeepsWhatTheSummaryHolds) {
   const std::string input = (folder_ / "r.pcap").string();
   write_file(folder_ / "out/summary.json",
              R"({"inputs":[{"file":")" + input + R"(","bytes":7,"sha256":"abc"}],
-    "stages":[{"tag":"a","stage":"grabber.x","outputs":[],"doubts":["it is dark"],"report":{"first":5.5}},
-              {"tag":"b","stage":"write.pcd","outputs":[],"doubts":[],"report":{"points":12}}]})");
+    "stages":[{"tag":"a","stage":"grabber.x","outputs":[],"caveats":["it is dark"],"report":{"first":5.5}},
+              {"tag":"b","stage":"write.pcd","outputs":[],"caveats":[],"report":{"points":12}}]})");
   const auto event = judge({.exit_status = 3, .seconds = 1.5}).event;
   EXPECT_EQ(event["input"][0]["sha256"], "abc");
   EXPECT_EQ(event["seconds"], 1.5);
@@ -105,7 +105,7 @@ TEST_F(VerdictTest, KeepsWhatTheSummaryHolds) {
   EXPECT_EQ(event["results"]["begin"], 5.5);
 }
 
-TEST_F(VerdictTest, SaysWhatOfTheResultsCannotBeRead) {
+TEST_F(VerdictTest, ReportsUnreadableResults) {
   write_file(folder_ / "out/summary.json", "{");
   EXPECT_THAT(std::string(judge({.exit_status = 0}).event["results"]["reasons"][0]),
               HasSubstr("cannot be read"));

@@ -19,10 +19,10 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Does what the job's name says.
+/// Does what the job's name requests.
 int perform(const Job& job) {
   if (job.name == "abort") std::abort();
-  if (job.name == "throw") throw std::runtime_error("it was told to throw");
+  if (job.name == "throw") throw std::runtime_error("a requested exception");
   if (job.name == "hang" || job.name == "fork") {
     if (job.name == "fork" && fork() == 0) pause();
     std::ofstream(job.output) << getpid() << std::endl;
@@ -42,14 +42,14 @@ JobEnd end_of(JobLauncher& launcher, const std::string& name) {
   return *end;
 }
 
-TEST(JobLauncher, TellsHowAJobEnded) {
+TEST(JobLauncher, ReportsHowAJobEnded) {
   JobLauncher launcher(perform);
   EXPECT_EQ(end_of(launcher, "zero").exit_status, 0);
   EXPECT_EQ(end_of(launcher, "three").exit_status, 3);
   EXPECT_EQ(end_of(launcher, "abort").signal, SIGABRT);
   const auto threw = end_of(launcher, "throw");
   EXPECT_EQ(threw.exit_status, 1);
-  EXPECT_EQ(threw.error, "error: it was told to throw\n");
+  EXPECT_EQ(threw.error, "error: a requested exception\n");
 }
 
 TEST(JobLauncher, KeepsTheEndOfWhatAJobPrints) {

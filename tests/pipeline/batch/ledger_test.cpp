@@ -25,7 +25,7 @@ DueReason due_after(const std::vector<BatchEvent>& one, const std::vector<BatchE
   return due_reason(ledger.find("r"), "now");
 }
 
-TEST(Ledger, TellsWhyARecordingIsDue) {
+TEST(Ledger, ReportsWhyARecordingIsDue) {
   const auto ended = [](JobStatus status, const std::string& settings = "now") {
     return std::vector<BatchEvent>{event(Kind::start, 1), event(Kind::end, 2, status, settings)};
   };
@@ -48,7 +48,7 @@ TEST(Ledger, CountsTheLastEventWhicheverTaskWroteIt) {
   EXPECT_EQ(due_after(done, {event(Kind::end, 5, JobStatus::interrupted)}), DueReason::interrupted);
 }
 
-TEST(Ledger, TriesAgainOnceForEachTimeThatIsAskedFor) {
+TEST(Ledger, TriesAgainOnceForEachTimeThatIsRequested) {
   const std::vector<BatchEvent> failed = {event(Kind::start, 1), event(Kind::end, 2, JobStatus::failed)};
   EXPECT_EQ(due_after(failed, {event(Kind::retry, 3)}), DueReason::retry);
   EXPECT_EQ(due_after(failed, {event(Kind::retry, 3), event(Kind::end, 4, JobStatus::failed)}),
@@ -63,7 +63,7 @@ class PlanTest : public testing::Test {
   BatchPlan plan(const BatchLedger& ledger) const {
     return plan_batch({input()}, ledger, "now", [](const BatchInput&) { return std::filesystem::path(); });
   }
-  /// Of a recording that was done with an input as it is now, but for this.
+  /// A recording that was done with its present input, but for this change.
   template <class Change>
   BatchLedger done_with(Change change) const {
     auto files = input_files(input(), {});
@@ -86,7 +86,7 @@ TEST_F(PlanTest, LeavesWhatIsUnchanged) {
   EXPECT_EQ(unchanged.kept.at(JobStatus::done), 1U);
 }
 
-TEST_F(PlanTest, TellsChangedContentFromAChangedTime) {
+TEST_F(PlanTest, DistinguishesChangedContentFromAChangedTime) {
   const auto touched = plan(done_with([](InputFile& file) { file.mtime -= 1; }));
   EXPECT_TRUE(touched.due.empty());
   ASSERT_EQ(touched.touched.size(), 1U);

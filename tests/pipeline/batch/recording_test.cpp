@@ -42,7 +42,7 @@ TEST_F(RecordingsTest, OfAFolderAreItsFilesOfKnownKindsByTheirPaths) {
   EXPECT_THAT(names({"in/"}), ElementsAre("a/c", "b"));
 }
 
-TEST_F(RecordingsTest, AreNotLookedForAmongTheResults) {
+TEST_F(RecordingsTest, AreNotSoughtAmongTheResults) {
   put("a.pcap");
   put("out/a/cloud.pcd");
   EXPECT_THAT(names(inputs({""})), ElementsAre("a"));

@@ -44,7 +44,7 @@ TEST(SlurmEnvironment, NumbersTheTasksOfAnArrayFromItsFirst) {
       << "an array with gaps";
 }
 
-TEST(SlurmEnvironment, TellsTheCoresOfATask) {
+TEST(SlurmEnvironment, ReportsTheCoresOfATask) {
   environment = {};
   EXPECT_FALSE(cores_of_slurm(variable));
   environment = {{"SLURM_CPUS_ON_NODE", "12"}};

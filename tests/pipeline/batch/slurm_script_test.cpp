@@ -43,7 +43,7 @@ TEST(SlurmScript, HasTheValuesInItsDirectivesBeforeTheFirstCommand) {
   EXPECT_THAT(script, EndsWith("\nexec \"${CRISP:-crisp}\" batch \"$@\"\n"));
 }
 
-/// Bash itself says what the program gets.
+/// Bash itself prints the program's arguments.
 TEST(SlurmScript, GivesTheProgramItsWordsUnchanged) {
   const test::TemporaryFolder folder;
   const auto program = folder.path() / "a program";
@@ -54,11 +54,11 @@ TEST(SlurmScript, GivesTheProgramItsWordsUnchanged) {
   std::ofstream(folder.path() / "script") << complete_slurm_script(
       kSlurmBatchScript, {.options = {}, .program = program.string(), .words = words});
   const std::string shell =
-      "bash '" + (folder.path() / "script").string() + "' > '" + (folder.path() / "said").string() + "'";
+      "bash '" + (folder.path() / "script").string() + "' > '" + (folder.path() / "output").string() + "'";
   ASSERT_EQ(std::system(shell.c_str()), 0);
   std::string expected = "batch\n";
   for (const auto& word : words) expected += word + "\n";
-  EXPECT_EQ(read(folder.path() / "said"), expected);
+  EXPECT_EQ(read(folder.path() / "output"), expected);
 }
 
 TEST(SlurmScript, OfAMergeHasTheExitStatusOfTheTable) {
@@ -69,9 +69,9 @@ TEST(SlurmScript, OfAMergeHasTheExitStatusOfTheTable) {
   std::ofstream(folder.path() / "script") << complete_slurm_script(
       kSlurmMergeScript, {.options = {}, .program = program.string(), .words = {"results"}});
   const std::string shell =
-      "bash '" + (folder.path() / "script").string() + "' > '" + (folder.path() / "said").string() + "'";
+      "bash '" + (folder.path() / "script").string() + "' > '" + (folder.path() / "output").string() + "'";
   EXPECT_EQ(WEXITSTATUS(std::system(shell.c_str())), 3);
-  EXPECT_EQ(read(folder.path() / "said"), "batch status results\n");
+  EXPECT_EQ(read(folder.path() / "output"), "batch status results\n");
 }
 
 TEST(SlurmScript, LeavesNoPercentSignOfALogsFolderToSlurm) {

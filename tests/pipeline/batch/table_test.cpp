@@ -47,8 +47,7 @@ TEST(Table, HasARowARecordingWithItsLastResults) {
   EXPECT_EQ(rows.count("done"), 1U);
   EXPECT_EQ(
       printed([&](const TextSink& sink) { print_csv(rows, sink); }),
-      "name,status,reasons,ended,seconds,cpu_seconds,memory,input_bytes,begin,points,causes,stands_out,chi2,"
-      "l.eta,l.eta.std_error,l.tau,l.tau.std_error\n"
+      "name,status,reasons,ended,seconds,cpu_seconds,memory,input_bytes,begin,points,causes,stands_out,chi2,l.eta,l.eta.std_error,l.tau,l.tau.std_error\n"
       "a,failed,\"x, \"\"y\"\"\",2026-01-01T00:00:01.000Z,0,0,0,0,,,,,,,,,\n"
       "b,done,,2026-01-01T00:00:03.000Z,1.5,1.25,1000,5,7.5,12,mirror.cone of l,,0.5,,,0.25,0.125\n");
   const auto json =
@@ -69,7 +68,7 @@ TEST(Table, CountsAsDueWhatIsOfOtherSettingsOrHalfDone) {
   const auto rows = read_rows(folder.path());
   EXPECT_EQ(rows.count("due"), 2U);
   EXPECT_EQ(rows.rows[0].reasons.front(), "it was processed with other settings");
-  EXPECT_EQ(rows.rows[1].reasons.front(), "it was half done when its batch ended");
+  EXPECT_EQ(rows.rows[1].reasons.front(), "it was incomplete when its batch ended");
 }
 
 TEST(Table, PassesOverAnEndWhoseResultsAreDamaged) {

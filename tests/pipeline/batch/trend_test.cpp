@@ -95,18 +95,18 @@ TEST(Trend, OrdersRecordingsByTheirTimeAndDrawsThem) {
   EXPECT_THAT(trend_svg(trends), HasSubstr("l.tau [mm]"));
 }
 
-/// The centre of values of equal error is their median, and its scatter is what is said.
-TEST(Trend, SaysHowSureTheCentreIs) {
+/// The centre of values of equal error is their median, with the standard error of the median.
+TEST(Trend, HasTheStandardErrorOfItsCentre) {
   constexpr int kBatches = 400;
   double squares = 0;
-  double said = 0;
+  double printed = 0;
   for (int seed = 1; seed <= kBatches; ++seed) {
     const auto trends = batch_trend(alike(static_cast<unsigned>(seed), 60));
     squares += (trends[0].centre - 0.2) * (trends[0].centre - 0.2);
-    said = trends[0].centre_error;
+    printed = trends[0].centre_error;
   }
   // A standard deviation of 400 values is known to 3.5 %; the median is not yet at its asymptotic error.
-  EXPECT_NEAR(std::sqrt(squares / kBatches) / said, 1, 0.15);
+  EXPECT_NEAR(std::sqrt(squares / kBatches) / printed, 1, 0.15);
 }
 
 }  // namespace

@@ -4,18 +4,19 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/clocks/lower_hull.hpp"
+#include "tests/pipeline/clocks/linear_program.hpp"
 #include "tests/support/simulated_stamps.hpp"
 
 namespace crisp {
 namespace {
 
-using namespace testing;  // NOLINT(google-build-using-namespace)
+using namespace test;  // NOLINT(google-build-using-namespace)
 
 // (0, 1), (1, 0), (3, 1), (4, 3) make the lower hull of these; the mean of the times is 2.
 const std::vector<Stamp> kByHand = {{0, 1e-5}, {1, 0}, {2, 2e-5}, {3, 1e-5}, {4, 3e-5}};
 
 TEST(ClockLine, IsTheHullsEdgeAtTheMeanOfTheStamps) {
-  for (const auto& line : {line_by_convex_hull(kByHand, 2), line_by_linear_program(kByHand, 2)}) {
+  for (const auto& line : {line_by_convex_hull(kByHand, 2), test::line_by_linear_program(kByHand, 2)}) {
     EXPECT_NEAR(line.slope, 0.5e-5, 1e-18);
     EXPECT_NEAR(line.at_center, 0.5e-5, 1e-18);
     EXPECT_NEAR(line.lead(4), 1.5e-5, 1e-18);
@@ -30,7 +31,7 @@ TEST(ClockLine, OfTwoWaysToFindItIsTheSameToRounding) {
     const auto stamps = simulated_stamps(seed, 1 + static_cast<double>(seed % 20), 50, skew, delays);
     const double mean = mean_device_time(stamps);
     const auto hull = line_by_convex_hull(stamps, mean);
-    const auto programme = line_by_linear_program(stamps, mean);
+    const auto programme = test::line_by_linear_program(stamps, mean);
     EXPECT_NEAR(hull.at_center, programme.at_center, 1e-15) << "seed " << seed;
     EXPECT_NEAR(hull.slope, programme.slope, 1e-15) << "seed " << seed;
   }
@@ -74,7 +75,7 @@ TEST(ClockLine, IsNeverSteeperThanACrystalCanBe) {
   const std::vector<Stamp> stamps = {
       {0, 0}, {0.01, 1e-3}, {0.02, 0.5e-3}};  // two stamps would give 25000 ppm
   const auto hull = line_by_convex_hull(stamps, 0.01);
-  const auto programme = line_by_linear_program(stamps, 0.01);
+  const auto programme = test::line_by_linear_program(stamps, 0.01);
   EXPECT_DOUBLE_EQ(hull.slope, kMostSkew);
   EXPECT_DOUBLE_EQ(programme.slope, kMostSkew);
   EXPECT_NEAR(hull.at_center, 0.01 * kMostSkew, 1e-18);
@@ -83,7 +84,7 @@ TEST(ClockLine, IsNeverSteeperThanACrystalCanBe) {
 
 TEST(ClockLine, IsLevelWhereAllStampsAreOfOneInstant) {
   const std::vector<Stamp> stamps = {{5, 3e-3}, {5, 1e-3}, {5, 2e-3}};
-  for (const auto& line : {line_by_convex_hull(stamps, 5), line_by_linear_program(stamps, 5)}) {
+  for (const auto& line : {line_by_convex_hull(stamps, 5), test::line_by_linear_program(stamps, 5)}) {
     EXPECT_EQ(line.slope, 0);
     EXPECT_EQ(line.at_center, 1e-3);
   }

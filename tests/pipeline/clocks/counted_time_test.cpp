@@ -59,7 +59,7 @@ TEST(CountedTime, IsSureOnlyAfterSomeEvenIntervals) {
   ASSERT_TRUE(counted.confirmed());
   EXPECT_NEAR(*counted.confirmed(), 2e-3, 1e-12);
   counted.add(kPeriod, 1, kPeriod);
-  EXPECT_FALSE(counted.confirmed()) << "said once";
+  EXPECT_FALSE(counted.confirmed()) << "reported once";
 }
 
 TEST(CountedTime, TakesOneStampThatIsOffForNoJump) {
@@ -82,7 +82,7 @@ TEST(CountedTime, FollowsAMirrorThatWandersOrSpinsUp) {
 TEST(CountedTime, TakesWhatWasNeitherSentNorCountedForNoJump) {
   CountedTime counted;
   for (int i = 0; i < 20; ++i) counted.add(kPeriod, 1, kPeriod);
-  counted.add(3 * kPeriod, 1, 3 * kPeriod + 1e-3);  // two were left out, and the receipts say so
+  counted.add(3 * kPeriod, 1, 3 * kPeriod + 1e-3);  // two were left out, as the receipts show
   EXPECT_EQ(counted.jumped(), 0);
   counted.add(3 * kPeriod, 3, 3 * kPeriod);  // two were lost on the way
   EXPECT_EQ(counted.jumped(), 0);
@@ -99,7 +99,7 @@ TEST(CountedTime, TakesBurstsThatTheReceiptsConfirmForNoJump) {
   }
 }
 
-TEST(CountedTime, SaysNothingOfUnevenIntervals) {
+TEST(CountedTime, IgnoresUnevenIntervals) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<> any(0.001, 0.1);
   CountedTime counted;

@@ -12,9 +12,9 @@
 namespace crisp {
 namespace {
 
-using testing::Delays;
-using testing::exponential_delays;
-using testing::Random;
+using test::Delays;
+using test::exponential_delays;
+using test::Random;
 
 using Deviation = std::function<double(double)>;  // [s] of the hub's clock, at a true time
 
@@ -137,10 +137,10 @@ TEST(HubDeviation, IsNoneInUsualRecordings) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     auto devices = three_lasers_and_a_plate();
     if (seed % 3 == 1) {
-      for (auto& device : devices) device.delays = testing::gamma_delays(2, 1e-3);
+      for (auto& device : devices) device.delays = test::gamma_delays(2, 1e-3);
     }
     if (seed % 3 == 2) {
-      for (auto& device : devices) device.delays = testing::bursty_delays(3e-4, 20e-3, 40, 0.003);
+      for (auto& device : devices) device.delays = test::bursty_delays(3e-4, 20e-3, 40, 0.003);
     }
     if (seed % 2 == 0) devices.erase(devices.begin(), devices.begin() + 2);
     found += find_hub_deviation(received_of_all(devices, none, seed)) ? 1 : 0;

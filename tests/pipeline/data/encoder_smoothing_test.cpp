@@ -115,7 +115,7 @@ TEST(EncoderSmoothing, MovesNoAngleByMoreThanRoundingCouldHave) {
   }
 }
 
-TEST(EncoderSmoothing, LeavesAloneWhatHasNoNeighboursOrIsNotAskedFor) {
+TEST(EncoderSmoothing, LeavesAloneWhatHasNoNeighboursOrIsNotRequested) {
   const std::vector<double> times{0, 1, 2, 3, 4, 5, 6, 7, 8};
   const std::vector<double> angles{0, 1, 0, 1, 0, 1, 0, 1, 0};
   EXPECT_EQ(between_steps(times, angles, 1, kWidth), angles);

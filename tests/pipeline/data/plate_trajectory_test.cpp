@@ -46,8 +46,8 @@ TEST(PlateTrajectory, DoesNotInterpolateAcrossALongSilence) {
   EXPECT_TRUE(plate.at(3.5));
 }
 
-/// The reading with which the arc of t begins, by looking at all.
-std::optional<std::size_t> interval_by_looking(const PlateTrajectory& plate, double t) {
+/// The reading with which the arc of t begins, by exhaustive search.
+std::optional<std::size_t> interval_by_search(const PlateTrajectory& plate, double t) {
   const auto times = plate.times();
   for (std::size_t i = times.size() - 1; i-- > 0;) {
     if (t >= times[i] && t <= times.back()) {
@@ -59,12 +59,13 @@ std::optional<std::size_t> interval_by_looking(const PlateTrajectory& plate, dou
 
 void expect_intervals_as_by_looking(const std::vector<double>& times, double max_gap) {
   const PlateTrajectory plate(0, times, std::vector<double>(times.size(), 0.0), max_gap);
-  std::vector<double> asked = {times.front() - 1, times.back() + 1};
+  std::vector<double> requested = {times.front() - 1, times.back() + 1};
   for (std::size_t i = 0; i < times.size(); ++i) {
-    asked.insert(asked.end(), {times[i], std::nextafter(times[i], -1e9), std::nextafter(times[i], 1e9)});
-    if (i > 0) asked.push_back(0.3 * times[i - 1] + 0.7 * times[i]);
+    requested.insert(requested.end(),
+                     {times[i], std::nextafter(times[i], -1e9), std::nextafter(times[i], 1e9)});
+    if (i > 0) requested.push_back(0.3 * times[i - 1] + 0.7 * times[i]);
   }
-  for (const double t : asked) EXPECT_EQ(plate.interval(t), interval_by_looking(plate, t)) << t;
+  for (const double t : requested) EXPECT_EQ(plate.interval(t), interval_by_search(plate, t)) << t;
 }
 
 TEST(PlateTrajectory, FindsTheIntervalOfATimeAmongReadingsThatAreAboutEven) {

@@ -140,7 +140,7 @@ TEST(Bound, GrowsWithTheStepsOfTheEncoder) {
   for (const Eigen::Index eta : {2, 6, 10}) EXPECT_GT(coarse[eta], 1.2 * exact[eta]);
 }
 
-TEST(Bound, OfWhatIsNotToldIsInfinite) {
+TEST(Bound, OfAnUnidentifiableParameterIsInfinite) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   information(0, 0) = 4;
   information.bottomRightCorner<2, 2>() << 1e6, 1e6, 1e6, 1e6;  // only the sum of two is known

@@ -26,7 +26,7 @@ std::optional<CrossValidation> halves_with(const Error& error, double duration) 
 
 constexpr auto kNoError = [](double) { return 0.0; };
 
-TEST(CrossValidation, HalvesOfAGoodRecordingDifferByNoMoreThanTheirStandardErrorsSay) {
+TEST(CrossValidation, HalvesOfAGoodRecordingAgreeWithinTheirStandardErrors) {
   const auto halves = halves_with(kNoError, 6);
   ASSERT_TRUE(halves);
   EXPECT_GT(halves->ratio(), 0.05);

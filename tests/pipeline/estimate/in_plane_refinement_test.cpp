@@ -67,7 +67,7 @@ TEST(InPlaneRefinement, EndsAtTheSameOptimumFromOtherStarts) {
   EXPECT_LT((apart.array() / errors.array()).abs().maxCoeff(), 0.3);  // some beams in corners change walls
 }
 
-TEST(InPlaneRefinement, SaysThatAConstantSpeedDoesNotTellEtaFromLambda) {
+TEST(InPlaneRefinement, ReportsThatAConstantSpeedConfoundsEtaWithLambda) {
   ScannerSettings scanner = paper_scanner(1);
   scanner.motion = {.kind = MotionKind::constant, .max_rate = 0.91};  // no whole number of scans a turn
   const auto recording = simulate_measurements(scanner, paper_room());
@@ -78,7 +78,7 @@ TEST(InPlaneRefinement, SaysThatAConstantSpeedDoesNotTellEtaFromLambda) {
                                                   "laser3.lambda"));
 }
 
-TEST(InPlaneRefinement, SaysThatItSeesNoWalls) {
+TEST(InPlaneRefinement, ReportsThatItSeesNoWalls) {
   ScannerSettings scanner = paper_scanner(1);
   scanner.duration = 0.1;  // 30 beams
   const auto recording = simulate_measurements(scanner, paper_room());

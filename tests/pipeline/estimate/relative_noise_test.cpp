@@ -27,8 +27,8 @@ ScannerSettings unequal(std::uint64_t seed, double duration) {
   return scanner;
 }
 
-struct Told {
-  explicit Told(const ScannerSettings& scanner)
+struct Reported {
+  explicit Reported(const ScannerSettings& scanner)
       : recording(simulate_measurements(scanner, office())), sample(sample_of(recording)) {
     const PlacedBeams placed(SensorModel(recording.truth), sample);
     surfels = patches({})->update(placed.view(), std::numeric_limits<double>::infinity());
@@ -42,7 +42,7 @@ struct Told {
   std::vector<float> noise;
 };
 
-/// [m] Of a range, by equation: what unequal() asks for.
+/// [m] True standard deviation of a range in unequal().
 double truth_of(const Measurements& beams, std::size_t i) {
   if (beams.laser[i] < 2) return beams.laser[i] == 1 ? 0.024 : 0.012;
   const double cosine = std::max(0.05, double{beams.cos_incidence[i]});
@@ -50,44 +50,44 @@ double truth_of(const Measurements& beams, std::size_t i) {
   return std::hypot(0.012, 0.003 * beams.range[i], 0.010 * tangent);
 }
 
-TEST(RelativeNoise, OfLasersThatAreAlikeIsNotTold) {
-  for (const std::uint64_t seed : {1, 2}) EXPECT_TRUE(Told(misplaced_scanner(seed, 3)).noise.empty());
+TEST(RelativeNoise, OfEqualLasersIsEmpty) {
+  for (const std::uint64_t seed : {1, 2}) EXPECT_TRUE(Reported(misplaced_scanner(seed, 3)).noise.empty());
 }
 
 TEST(RelativeNoise, GoesByLaserRangeAndIncidence) {
-  const Told told(unequal(1, 4));
-  ASSERT_EQ(told.noise.size(), told.sample.beams.size());
+  const Reported reported(unequal(1, 4));
+  ASSERT_EQ(reported.noise.size(), reported.sample.beams.size());
   double inverse = 0;
   double off = 0;
   double common = 0;
-  for (const std::uint32_t i : told.surfels.members) {
-    inverse += 1 / std::pow(double{told.noise[i]}, 2);
-    common += std::log(told.noise[i] / truth_of(told.sample.beams, i));
+  for (const std::uint32_t i : reported.surfels.members) {
+    inverse += 1 / std::pow(double{reported.noise[i]}, 2);
+    common += std::log(reported.noise[i] / truth_of(reported.sample.beams, i));
   }
-  const auto count = static_cast<double>(told.surfels.members.size());
+  const auto count = static_cast<double>(reported.surfels.members.size());
   EXPECT_NEAR(inverse / count, 1, 0.03) << "but for beams that do not count";
-  for (const std::uint32_t i : told.surfels.members)
-    off += std::pow(std::log(told.noise[i] / truth_of(told.sample.beams, i)) - common / count, 2);
+  for (const std::uint32_t i : reported.surfels.members)
+    off += std::pow(std::log(reported.noise[i] / truth_of(reported.sample.beams, i)) - common / count, 2);
   EXPECT_LT(std::sqrt(off / count), 0.12) << "in steps of a twelfth of the beams";
 }
 
-TEST(RelativeNoise, DoesNotGoByWhatNoiseMadeOfTheRange) {
+TEST(RelativeNoise, WeightsDoNotDependOnARangesOwnNoise) {
   // Or else what came out longer would weigh less, and every wall would be nearer than it is.
   ScannerSettings noisy = misplaced_scanner(2, 4);
   ScannerSettings exact = noisy;
   noisy.laser_effects.resize(3);
   noisy.laser_effects[2].noise.slope = 0.01;
   exact.range.sigma = 1e-9;
-  const Told told(noisy);
+  const Reported reported(noisy);
   const auto without = simulate_measurements(exact, office());
-  ASSERT_EQ(without.beams.size(), told.noise.size());
+  ASSERT_EQ(without.beams.size(), reported.noise.size());
   double longer = 0;
   double scatter = 0;
-  for (std::size_t m = 0; m < told.surfels.members.size(); ++m) {
-    const std::uint32_t i = told.surfels.members[m];
-    if (told.sample.beams.laser[i] != 2) continue;
-    const double pull = (double{told.recording.beams.range[i]} - double{without.beams.range[i]}) /
-                        std::pow(double{told.noise[i]}, 2);
+  for (std::size_t m = 0; m < reported.surfels.members.size(); ++m) {
+    const std::uint32_t i = reported.surfels.members[m];
+    if (reported.sample.beams.laser[i] != 2) continue;
+    const double pull = (double{reported.recording.beams.range[i]} - double{without.beams.range[i]}) /
+                        std::pow(double{reported.noise[i]}, 2);
     longer += pull;
     scatter += pull * pull;
   }
@@ -95,21 +95,22 @@ TEST(RelativeNoise, DoesNotGoByWhatNoiseMadeOfTheRange) {
 }
 
 TEST(RelativeNoise, MakesEstimatesSurer) {
-  const Told told(unequal(3, 4));
-  const SensorModel model(told.recording.truth);
-  Division some(told.sample.beams.size());
+  const Reported reported(unequal(3, 4));
+  const SensorModel model(reported.recording.truth);
+  Division some(reported.sample.beams.size());
   for (std::size_t i = 0; i < some.size(); ++i) some[i] = static_cast<std::uint32_t>(i % 2000);
-  // By how the pulls of some beams each scatter, whatever noise is told.
+  // Standard errors by the empirical scatter of the block_scores of some beams, whatever the noise model.
   const auto errors_with = [&](const std::vector<float>& noise) {
-    const PlacedBeams placed(model, told.sample);
-    Surfels surfels = told.surfels;
+    const PlacedBeams placed(model, reported.sample);
+    Surfels surfels = reported.surfels;
     refine_all(surfels, placed.view(noise), {});
     const auto equations = normal_equations(surfels, placed.view(noise), all_free().size(),
-                                            surfel_rows(model, told.sample, all_free()), {}, {&some, 1});
+                                            surfel_rows(model, reported.sample, all_free()), {}, {&some, 1});
     const double factor = equations.weight / equations.stiffness;
-    return Eigen::VectorXd(factor * (equations.matrix.inverse() * equations.pulls[0]).rowwise().norm());
+    return Eigen::VectorXd(factor *
+                           (equations.matrix.inverse() * equations.block_scores[0]).rowwise().norm());
   };
-  const Eigen::VectorXd ratio = errors_with(told.noise).cwiseQuotient(errors_with({}));
+  const Eigen::VectorXd ratio = errors_with(reported.noise).cwiseQuotient(errors_with({}));
   EXPECT_LT(ratio.head<3>().maxCoeff(), 0.95) << "the quiet laser's";
   EXPECT_LT(ratio.maxCoeff(), 1.05) << "the noisy one's own noise is no less for it";
 }

@@ -34,7 +34,7 @@ TEST(Sample, ThinningByAreaIsRepeatableAndEvensOutTheDensityAtTheSpinAxis) {
   const SensorModel model(recording().truth);
   const auto all = sample_of(recording());
   const auto thin = thin_by_area(all, model, 5000, 7);
-  // A sum of independent draws: within five standard deviations of the count asked for.
+  // A sum of independent draws: within five standard deviations of the requested count.
   EXPECT_NEAR(static_cast<double>(thin.beams.size()), 5000, 5 * std::sqrt(5000.0));
   EXPECT_EQ(thin.beams.time, thin_by_area(all, model, 5000, 7).beams.time);
   EXPECT_NE(thin.beams.time, thin_by_area(all, model, 5000, 8).beams.time);

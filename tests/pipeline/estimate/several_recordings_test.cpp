@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "pipeline/data/recordings.hpp"
-#include "pipeline/estimate/base_slots.hpp"
+#include "pipeline/estimate/base_parameters.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
@@ -32,7 +32,7 @@ double chi2_of(const Refinement& refined, const Calibration& truth) {
   return error.dot(refined.outcome.covariance.inverse() * error);
 }
 
-TEST(SeveralRecordings, TellMoreTogetherThanOneAlone) {
+TEST(SeveralRecordings, DetermineMoreTogetherThanOneAlone) {
   const auto recordings = in_two_places();
   const test::Several all = test::several(recordings, true);
   const SensorModel truth(recordings[0].truth);

@@ -131,7 +131,7 @@ TEST(SharedErrors, OfDirectionsOfAMirrorAreInTheStandardErrors) {
     const LaserEffects noise{.noise = {.sigma = 0.005, .separation = 0.015}};
     scanner.laser_effects.assign(scanner.truth.lasers.size(), noise);
   };
-  // Of each recording two λ and three α. Were all twenty independent, their squares would sum up to 20 ± 6.3;
+  // Two λ and three α of each recording. Were all twenty independent, their squares would sum up to 20 ± 6.3;
   // they are correlated in pairs at worst. Without the blocks of scans it is thirty times as much.
   EXPECT_LT(squares_of({"lambda", "alpha"}, 2, two_peaks, [](SimulatedMeasurements&) {}),
             20 + 4 * 6.3 * std::numbers::sqrt2);

@@ -37,7 +37,7 @@ TEST_P(SurfelRefinement, FindsTheTruthWithinItsStandardErrors) {
   // In all: χ² with 11 degrees of freedom is below 40 in all but one case of 30 000.
   const double chi2 = error.dot(refined.outcome.covariance.inverse() * error);
   EXPECT_LT(chi2, 40);
-  // What the data can tell: a tenth of a millimetre or two.
+  // The data's resolution: a tenth of a millimetre or two.
   for (const Eigen::Index tau : {0, 4, 8}) EXPECT_LT(std::abs(error[tau]), 0.001);
 }
 
@@ -53,7 +53,7 @@ TEST(SurfelRefinement, KeepsEtasWithinTheLimitsOfThePrior) {
   for (const auto eta : {3, 7, 11}) EXPECT_LE(refined.outcome.model.values()[eta], settings.prior.latest_eta);
 }
 
-TEST(SurfelRefinement, KeepsWhatAConstantSpeedDoesNotTell) {
+TEST(SurfelRefinement, HoldsParametersThatAConstantSpeedDoesNotDetermine) {
   auto scanner = misplaced_scanner(1, 3.0);
   scanner.motion = {.kind = MotionKind::constant, .max_rate = 0.91};  // no whole number of scans a turn
   const auto recording = simulate_measurements(scanner, office());
@@ -72,22 +72,22 @@ TEST(SurfelRefinement, KeepsWhatAConstantSpeedDoesNotTell) {
   EXPECT_LT(error.dot(refined.outcome.covariance.inverse() * error), 40);
 }
 
-TEST(SurfelRefinement, DoubtsWhatOneLaserTellsOfASingleSweep) {
+TEST(SurfelRefinement, MarksOneLasersSingleSweepUntrusted) {
   const auto recording = simulate_measurements(misplaced_scanner(1, 4.0), office());
   const Calibration only = {.lasers = {recording.truth.lasers[0]}};
   const Sample own = of_laser(sample_of(recording), 0);
-  const auto doubts_up_to = [&](double angle) {
+  const auto caveats_up_to = [&](double angle) {
     const double first = own.plate->at(own.beams.time.front())->angle;
     const Sample part =
         select(own, [&](std::size_t i) { return own.plate->at(own.beams.time[i])->angle < first + angle; });
-    return refine_by_surfels(SensorModel(only), part, {}).outcome.doubts;
+    return refine_by_surfels(SensorModel(only), part, {}).outcome.caveats;
   };
-  EXPECT_THAT(doubts_up_to(1.5), testing::Contains(testing::HasSubstr("sees no surface twice")));
-  EXPECT_THAT(doubts_up_to(6.5),
+  EXPECT_THAT(caveats_up_to(1.5), testing::Contains(testing::HasSubstr("sees no surface twice")));
+  EXPECT_THAT(caveats_up_to(6.5),
               testing::Not(testing::Contains(testing::HasSubstr("sees no surface twice"))));
 }
 
-TEST(SurfelRefinement, TakesWhatTheRigSaysForOneMoreObservation) {
+TEST(SurfelRefinement, TakesTheRigsValuesAsObservations) {
   const auto recording = simulate_measurements(misplaced_scanner(1, 2.0), office());
   const SensorModel start = off_by(recording.truth, 0.002, 0.002, 0);
   const auto laser2_tau = [&](double value, double std_error) {
@@ -146,11 +146,11 @@ TEST(SurfelRefinement, AnAzimuthThatHangsOnAnUnknownLagIsNotFree) {
 TEST(SurfelRefinement, CountsBeamsAlongEdgesToo) {
   const auto recording = simulate_measurements(misplaced_scanner(1, 2.0), office());
   const Refinement refined = refine_by_surfels(SensorModel(recording.truth), sample_of(recording), {});
-  // Some 2 % met what is smaller than a surface is looked for; the rest ended on walls and furniture.
+  // Some 2 % are on surfaces below the smallest cell; the rest ended on walls and furniture.
   EXPECT_GT(static_cast<double>(refined.beams), 0.96 * static_cast<double>(recording.beams.size()));
 }
 
-TEST(SurfelRefinement, StopsWhenItIsTold) {
+TEST(SurfelRefinement, StopsOnRequest) {
   const auto recording = simulate_measurements(misplaced_scanner(1, 1.0), office());
   int rounds = 0;
   const Refinement refined = refine_by_surfels(off_by(recording.truth, 0.008, 0.01, 0.0005),

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-/// The period of a recording in the office whose encoder has `factor` times the counts that the rig says.
+/// The period of a recording in the office whose encoder has `factor` times the rig's counts.
 std::optional<TurnPeriod> period_with(double factor, double duration = 6) {
   const auto simulated = simulate_measurements(misplaced_scanner(3, duration), office());
   std::vector<double> angles;
@@ -39,7 +39,7 @@ TEST(TurnPeriod, IsFoundWhereTheCountsAreWrongByAFewPerCentOrByAFactor) {
   }
 }
 
-TEST(TurnPeriod, IsNotToldByLessThanATurn) { EXPECT_FALSE(period_with(1, 0.2)); }
+TEST(TurnPeriod, IsUndeterminedByLessThanATurn) { EXPECT_FALSE(period_with(1, 0.2)); }
 
 }  // namespace
 }  // namespace crisp

@@ -16,14 +16,14 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-/// Walls in the planes x = const, and what beams from the origin or from beside it met there.
+/// Walls in the planes x = const, and points on them of beams from the origin or from next to it.
 class Walls {
  public:
   struct Part {
     std::uint32_t view = 0;
     double off = 0;        ///< [m] behind the wall
     int beams = 0;         ///< a millimetre apart
-    double beside = 0;     ///< [m] in y of where they were measured from, and of where they end
+    double given = 0;      ///< [m] in y of where they were measured from, and of where they end
     bool is_on_it = true;  ///< whether they belong to the surfel
   };
 
@@ -35,7 +35,7 @@ class Walls {
         if (part.is_on_it) surfels.members.push_back(static_cast<std::uint32_t>(views.size()));
         if (part.is_on_it) surfels.weights.push_back(1);
         views.push_back(part.view);
-        add({distance + part.off, part.beside + 1e-3 * k, 0.05}, {0, part.beside, 0});
+        add({distance + part.off, part.given + 1e-3 * k, 0.05}, {0, part.given, 0});
       }
     }
     surfel.end = static_cast<std::uint32_t>(surfels.members.size());
@@ -80,21 +80,21 @@ TEST(ViewConsistency, CountsBeamsThatTheOtherViewMeetsAtTheSamePlace) {
               UnorderedElementsAre(pair_of("a", "b", 1200, 600), pair_of("b", "a", 1100, 600)));
 }
 
-TEST(ViewConsistency, AViewThatLooksThroughASurfaceContradictsIt) {
+TEST(ViewConsistency, AViewThatTestsThroughASurfaceContradictsIt) {
   Walls walls;
   walls.add(2, {{.view = 0, .beams = 600}, {.view = 1, .off = 1, .beams = 600, .is_on_it = false}});
   EXPECT_THAT(walls.consistency({"a", "b"}), UnorderedElementsAre(pair_of("a", "b", 600, 0)));
 }
 
-TEST(ViewConsistency, AViewThatEndsInFrontOrPassesBesideSaysNothing) {
+TEST(ViewConsistency, IgnoresAViewThatEndsInFrontOrPassesNextTo) {
   Walls in_front;
   in_front.add(2, {{.view = 0, .beams = 600}, {.view = 1, .off = -0.5, .beams = 600, .is_on_it = false}});
   EXPECT_THAT(in_front.consistency({"a", "b"}), IsEmpty());
   // In the same directions, but from a metre aside: they pass where nothing was seen.
-  Walls beside;
-  beside.add(
-      2, {{.view = 0, .beams = 600}, {.view = 1, .off = 1, .beams = 600, .beside = 0.9, .is_on_it = false}});
-  EXPECT_THAT(beside.consistency({"a", "b"}), IsEmpty());
+  Walls given;
+  given.add(
+      2, {{.view = 0, .beams = 600}, {.view = 1, .off = 1, .beams = 600, .given = 0.9, .is_on_it = false}});
+  EXPECT_THAT(given.consistency({"a", "b"}), IsEmpty());
 }
 
 TEST(ViewConsistency, EachPairOfThreeIsComparedSoThatTwoWhichAgreeHideNoThird) {
@@ -148,7 +148,7 @@ TEST(ViewPartitions, DivideByLaserHalfAndQuarterOfEachRecording) {
     ++quarters[partitions[2].of_beam[i]];
   }
   for (const std::size_t beams : quarters) {
-    // The plate's readings go on for a quarter of a second before and after the beams: the outer quarters are
+    // The encoder readings go on for a quarter of a second before and after the beams: the outer quarters are
     // short.
     EXPECT_GT(static_cast<double>(beams), 0.1 * static_cast<double>(sample.beams.size()));
   }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/estimate/wanted_terms.hpp"
-
 #include <gmock/gmock.h>
 
 #include <Eigen/LU>
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/requested_terms.hpp"
 #include "pipeline/estimate/search_range.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "tests/pipeline/estimate/support.hpp"
@@ -15,8 +14,8 @@
 namespace crisp {
 namespace {
 
-SensorModel with_terms(Calibration calibration, const std::vector<std::string>& wanted) {
-  add_wanted_terms(calibration, wanted, built_in_terms());
+SensorModel with_terms(Calibration calibration, const std::vector<std::string>& requested) {
+  add_requested_terms(calibration, requested, built_in_terms());
   return SensorModel(calibration, built_in_terms());
 }
 
@@ -26,21 +25,21 @@ std::vector<std::string> names_of(const SensorModel& model, const std::vector<st
   return names;
 }
 
-TEST(WantedTerms, AreAddedOnceToThePlateOrToTheLasersThatAreNamed) {
-  const std::vector<std::string> wanted = {"encoder.eccentricity", "laser2.mirror.cone"};
+TEST(RequestedTerms, AreAddedOnceToThePlateOrToTheLasersThatAreNamed) {
+  const std::vector<std::string> requested = {"encoder.eccentricity", "laser2.mirror.cone"};
   Calibration calibration = nominal_calibration(default_rig());
-  add_wanted_terms(calibration, wanted, built_in_terms());
+  add_requested_terms(calibration, requested, built_in_terms());
   calibration.plate_terms.at(0).parameters.at(0).value = 0.003;
-  add_wanted_terms(calibration, wanted, built_in_terms());
+  add_requested_terms(calibration, requested, built_in_terms());
   ASSERT_EQ(calibration.plate_terms.size(), 1U);
   EXPECT_EQ(calibration.plate_terms[0].parameters[0].value, 0.003) << "what is there is a start";
   EXPECT_TRUE(calibration.lasers[0].terms.empty());
   EXPECT_EQ(calibration.lasers[1].terms.size(), 1U);
 }
 
-TEST(WantedTerms, AreFreeButForTheirForms) {
-  const std::vector<std::string> wanted = {"range.cyclic", "laser3.mirror.cone"};
-  const SensorModel model = with_terms(nominal_calibration(default_rig()), wanted);
+TEST(RequestedTerms, AreFreeButForTheirForms) {
+  const std::vector<std::string> requested = {"range.cyclic", "laser3.mirror.cone"};
+  const SensorModel model = with_terms(nominal_calibration(default_rig()), requested);
   EXPECT_EQ(names_of(model, parameters_of(model, {"laser3.mirror.cone"})),
             std::vector<std::string>{"laser3.mirror.cone.kappa"});
   EXPECT_EQ(
@@ -50,23 +49,23 @@ TEST(WantedTerms, AreFreeButForTheirForms) {
   EXPECT_EQ(declared(model, 0), nullptr) << "λ";
 }
 
-TEST(WantedTerms, ThatAreNoneAreRefused) {
+TEST(RequestedTerms, ThatAreNoneAreRefused) {
   Calibration calibration = nominal_calibration(default_rig());
-  EXPECT_THROW(add_wanted_terms(calibration, {"mirror.coin"}, built_in_terms()), Error);
-  EXPECT_THROW(add_wanted_terms(calibration, {"laser1.plate.wobble"}, built_in_terms()), Error);
-  EXPECT_THROW(add_wanted_terms(calibration, {"laser9.mirror.cone"}, built_in_terms()), Error);
+  EXPECT_THROW(add_requested_terms(calibration, {"mirror.coin"}, built_in_terms()), Error);
+  EXPECT_THROW(add_requested_terms(calibration, {"laser1.plate.wobble"}, built_in_terms()), Error);
+  EXPECT_THROW(add_requested_terms(calibration, {"laser9.mirror.cone"}, built_in_terms()), Error);
 }
 
 TEST(SurfelRefinement, FindsTermsTogetherWithTheMounting) {
   ScannerSettings scanner = misplaced_scanner(1, 4.0);
-  const std::vector<std::string> wanted = {"encoder.eccentricity", "laser2.mirror.cone"};
-  const SensorModel start = with_terms(scanner.truth, wanted);
-  add_wanted_terms(scanner.truth, wanted, built_in_terms());
+  const std::vector<std::string> requested = {"encoder.eccentricity", "laser2.mirror.cone"};
+  const SensorModel start = with_terms(scanner.truth, requested);
+  add_requested_terms(scanner.truth, requested, built_in_terms());
   scanner.truth.plate_terms[0].parameters[0].value = 0.002;
   scanner.truth.plate_terms[0].parameters[1].value = -0.001;
   scanner.truth.lasers[1].terms[0].parameters[0].value = 0.003;
   const auto recording = simulate_measurements(scanner, office(), built_in_terms());
-  const Refinement refined = refine_by_surfels(start, sample_of(recording), {.terms = wanted});
+  const Refinement refined = refine_by_surfels(start, sample_of(recording), {.terms = requested});
   EXPECT_TRUE(refined.converged);
   EXPECT_TRUE(refined.outcome.unobservable.empty());
   const auto& free = refined.outcome.free;
@@ -81,7 +80,7 @@ TEST(SurfelRefinement, KeepsTermsWithinTheirBounds) {
   // Ranges settle at once: a step from a time constant of a second leads to one below zero, and from there
   // to infinity.
   ScannerSettings scanner = misplaced_scanner(1, 4.0);
-  add_wanted_terms(scanner.truth, {"laser2.range.warmup"}, built_in_terms());
+  add_requested_terms(scanner.truth, {"laser2.range.warmup"}, built_in_terms());
   std::vector<Parameter>& warmup = scanner.truth.lasers[1].terms[0].parameters;
   warmup[0].value = -0.01;  // c
   warmup[1].value = 0.02;   // T

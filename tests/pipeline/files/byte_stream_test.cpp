@@ -138,7 +138,7 @@ TEST_F(ByteStreamTest, GivesUpAPipeIntoWhichNobodyWrites) {
   EXPECT_THROW(text.get(), Interrupted);
 }
 
-TEST_F(ByteStreamTest, GivesUpAPipeWhoseWriterSaysNothing) {
+TEST_F(ByteStreamTest, GivesUpAPipeWithASilentWriter) {
   std::atomic<bool> stop = false;
   ByteStream stream(pipe(), [&] { return stop.load(); });
   const int writer = open(pipe().c_str(), O_WRONLY);
@@ -149,8 +149,8 @@ TEST_F(ByteStreamTest, GivesUpAPipeWhoseWriterSaysNothing) {
 }
 
 TEST_F(ByteStreamTest, GivesUpAStreamWithoutEnd) {
-  int asked = 0;
-  ByteStream stream("/dev/zero", [&] { return ++asked > 10; });
+  int requested = 0;
+  ByteStream stream("/dev/zero", [&] { return ++requested > 10; });
   std::array<char, 4096> block{};
   EXPECT_THROW(
       {

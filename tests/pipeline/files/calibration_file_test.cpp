@@ -73,13 +73,13 @@ std::string example_with(const std::string& old, const std::string& replacement)
 
 TEST(CalibrationFile, RefusesSizesThatCannotBeMeant) {
   EXPECT_THAT(errors_of_calibration(example_with("0.19914", "1000")),
-              ElementsAre(HasSubstr("c.yaml:5:13: error: laser 'laser1': 'tau': 1000 m cannot be meant")));
+              ElementsAre(HasSubstr("c.yaml:5:13: error: laser 'laser1': 'tau': 1000 m is implausible")));
   EXPECT_THAT(errors_of_calibration(example_with("value: 0.0, unit: rad", "value: 1e300, unit: rad")),
-              ElementsAre(HasSubstr("'lambda': 1e+300 rad cannot be meant")));
+              ElementsAre(HasSubstr("'lambda': 1e+300 rad is implausible")));
   EXPECT_THAT(errors_of_calibration(example_with("-0.03010", "20")), ElementsAre(HasSubstr("'eta': 20 s")));
 }
 
-TEST(CalibrationFile, NamesThePlaceOfWhatWhoKnowsTheTermsFindsWrong) {
+TEST(CalibrationFile, NamesThePlaceOfATermsFault) {
   const JudgeTerm judge = [](const TermParameters& term, TermOwner owner) -> std::vector<TermFault> {
     if (owner == TermOwner::plate) return {{"", "no such term", "leave it out"}};
     return {{"kappa", "too many " + term.parameters.at(0).unit, "take fewer"}};
@@ -96,15 +96,15 @@ TEST(CalibrationFile, WritesWhatItReads) {
   EXPECT_THAT(written, HasSubstr("  rqe: {before: 2.5, after: 1.25}\n"));
 }
 
-TEST(CalibrationFile, KeepsWhyItWasDoubted) {
-  EXPECT_THAT(parse(kExample).doubts, testing::IsEmpty());
+TEST(CalibrationFile, KeepsWhyItWasUntrusted) {
+  EXPECT_THAT(parse(kExample).caveats, testing::IsEmpty());
   Calibration c = parse(kExample);
-  c.doubts = {"laser1.tau: at its bound", "a \"second\" one"};
+  c.caveats = {"laser1.tau: at its bound", "a \"second\" one"};
   const std::string written = to_yaml(c);
-  EXPECT_THAT(written, testing::StartsWith("crisp: 1\ndoubts:\n  - \"laser1.tau: at its bound\"\n"));
-  EXPECT_EQ(parse(written).doubts, c.doubts);
-  EXPECT_THAT(errors_of_calibration(example_with("lasers:", "doubts: many\nlasers:")),
-              ElementsAre(HasSubstr("c.yaml:2:9: error: calibration: 'doubts': 'many' is not a list")));
+  EXPECT_THAT(written, testing::StartsWith("crisp: 1\ncaveats:\n  - \"laser1.tau: at its bound\"\n"));
+  EXPECT_EQ(parse(written).caveats, c.caveats);
+  EXPECT_THAT(errors_of_calibration(example_with("lasers:", "caveats: many\nlasers:")),
+              ElementsAre(HasSubstr("c.yaml:2:10: error: calibration: 'caveats': 'many' is not a list")));
 }
 
 TEST(CalibrationFile, KeepsEveryBitOfADouble) {
@@ -154,7 +154,7 @@ TEST(CalibrationFile, ReportsEveryMistakeWithItsPlace) {
                             "qualiti: {}\n"),
       ElementsAre(
           "c.yaml:4:30: error: laser 'a', lambda: 'deg' is not its unit; convert the value to rad",
-          "c.yaml:5:18: error: laser 'a', tau: 'value': '20cm' has a unit, but a plain number is wanted",
+          "c.yaml:5:18: error: laser 'a', tau: 'value': '20cm' has a unit, but a plain number is expected",
           "c.yaml:6:12: error: laser 'a', alpha: 'value' is missing",
           "c.yaml:6:13: error: laser 'a', alpha: there is no key 'valu'; did you mean 'value'?",
           "c.yaml:7:51: error: laser 'a', eta: 'free': 'yes' is neither true nor false",
@@ -166,11 +166,11 @@ TEST(CalibrationFile, ReportsEveryMistakeWithItsPlace) {
 TEST(CalibrationFile, RefusesALaterSchemaAndNamesBothVersions) {
   EXPECT_THAT(
       errors_of_calibration("crisp: 3\nlasers: {}\n"),
-      testing::Contains("c.yaml:1:8: error: calibration: it is of schema version 3, and this program reads "
-                        "up to version 1; use a newer crisp"));
+      testing::Contains(
+          "c.yaml:1:8: error: calibration: it has schema version 3, and this program reads up to version 1; use a newer crisp"));
 }
 
-TEST(CalibrationFile, DoesNotWriteWhatCouldNotBeRead) {
+TEST(CalibrationFile, DoesNotWriteUnreadableValues) {
   Calibration c;
   c.lasers.emplace_back().name = "a";
   c.lasers[0].tau.value = std::nan("");
@@ -180,7 +180,7 @@ TEST(CalibrationFile, DoesNotWriteWhatCouldNotBeRead) {
   EXPECT_THROW(to_yaml(c), Error);
 }
 
-TEST(CalibrationFile, SaysThatARigOrAPipelineIsNone) {
+TEST(CalibrationFile, ReportsThatARigOrAPipelineIsNone) {
   const auto complaint = [](const std::string& file) -> std::string {
     try {
       read_calibration(source_dir() + "/configs/" + file);

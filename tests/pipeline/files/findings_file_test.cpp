@@ -23,7 +23,7 @@ Findings some_findings() {
                                .log10_odds = 12,
                                .p_value = 1e-9,
                                .confounded_with = {"laser2.mount.tangential_offset"},
-                               .told_apart_by = {"surfaces near and far"},
+                               .resolvable_by = {"surfaces near and far"},
                                .alternatives = {{"range.offset", "laser3", 1.5}},
                                .gain = {{.metric = "cloud thickness",
                                          .unit = "m",
@@ -45,7 +45,7 @@ Findings some_findings() {
                                  .p_value = 1e-12,
                                  .amplitude_after = 2e-4});
   findings.unobservable.push_back({.parameter = "encoder.backlash", .reason = "no reversal"});
-  findings.artefacts.push_back({.name = "density",
+  findings.artifacts.push_back({.name = "density",
                                 .parameters = {{"laser2.tau", "m", 0.002, 1e-4, true}},
                                 .reason = "an entropy's optimum shifts"});
   findings.devices.push_back({.device = "laser1", .stamps = 172, .skew = 7e-6});
@@ -60,18 +60,18 @@ std::vector<std::string> keys_of(const nlohmann::json& object) {
   return keys;
 }
 
-TEST(FindingsFile, HoldsWhatProgramsAreToldToExpect) {
+TEST(FindingsFile, HasItsDocumentedSchema) {
   const auto json = nlohmann::json::parse(findings_json(some_findings()));
   EXPECT_THAT(keys_of(json),
               testing::UnorderedElementsAre("crisp", "findings", "unnamed", "departures", "unobservable",
-                                            "artefacts", "devices", "noise", "gain", "indistinguishable"));
+                                            "artefacts", "devices", "noise", "gain", "goodness_of_fit"));
   const auto& finding = json["findings"][0];
   EXPECT_THAT(keys_of(finding),
               testing::UnorderedElementsAre("cause", "scope", "parameters", "explained_fraction",
-                                            "log10_odds", "p_value", "confounded_with", "told_apart_by",
-                                            "alternatives", "gain", "accepted", "refused"));
+                                            "log10_bayes_factor", "p_value", "confounded_with",
+                                            "resolvable_by", "alternatives", "gain", "accepted", "refused"));
   EXPECT_THAT(keys_of(finding["alternatives"][0]),
-              testing::UnorderedElementsAre("cause", "scope", "log10_odds"));
+              testing::UnorderedElementsAre("cause", "scope", "log10_bayes_factor"));
   EXPECT_THAT(keys_of(json["departures"][0]),
               testing::UnorderedElementsAre("covariate", "quantity", "scope", "amplitude", "unit", "p_value",
                                             "amplitude_after", "p_value_after"));
@@ -84,10 +84,10 @@ TEST(FindingsFile, HoldsWhatProgramsAreToldToExpect) {
   EXPECT_EQ(json["unnamed"][0]["covariate"], "mirror angle");
   EXPECT_EQ(json["unobservable"][0]["cause"], "encoder.backlash");
   EXPECT_EQ(json["devices"][0]["skew"], 7e-6);
-  EXPECT_EQ(json["indistinguishable"]["before_p"], 0.005);
+  EXPECT_EQ(json["goodness_of_fit"]["before_p"], 0.005);
 }
 
-TEST(FindingsFile, HoldsWhatSeveralDiagnosesSay) {
+TEST(FindingsFile, HoldsSeveralDiagnoses) {
   Findings all = some_findings();
   all.append(some_findings());
   all.append({.before_p = 0.5, .after_p = 0.1});
@@ -97,12 +97,12 @@ TEST(FindingsFile, HoldsWhatSeveralDiagnosesSay) {
     EXPECT_EQ(json[list].size(), 2U) << list;
   }
   // The less of two: 1 - (1 - 0.005)^2 = 0.009975, then 1 - (1 - 0.009975)^2.
-  EXPECT_NEAR(json["indistinguishable"]["before_p"], 0.0198505, 1e-9);
-  EXPECT_NEAR(json["indistinguishable"]["after_p"], 0.19, 1e-9) << "some_findings() were not asked for it";
+  EXPECT_NEAR(json["goodness_of_fit"]["before_p"], 0.0198505, 1e-9);
+  EXPECT_NEAR(json["goodness_of_fit"]["after_p"], 0.19, 1e-9) << "some_findings() were not tested";
 }
 
 TEST(FindingsFile, IsDocumentedKeyByKey) {
-  std::ifstream page(source_dir() + "/docs/diagnosis.md");
+  std::ifstream page(source_dir() + "/docs/reference/diagnosis-json.md");
   std::ostringstream text;
   text << page.rdbuf();
   const auto json = nlohmann::json::parse(findings_json(some_findings()));
@@ -117,7 +117,7 @@ TEST(FindingsFile, IsDocumentedKeyByKey) {
                                          json["artefacts"][0],
                                          json["devices"][0],
                                          json["noise"][0],
-                                         json["indistinguishable"]};
+                                         json["goodness_of_fit"]};
   for (const auto& object : objects) {
     for (const auto& key : keys_of(object)) {
       EXPECT_THAT(text.str(), testing::HasSubstr("`" + key + "`"));
@@ -139,7 +139,7 @@ TEST(FindingsFile, IsReadAsItWasWritten) {
   EXPECT_EQ(finding.parameters[0].value, 0.003);
   EXPECT_EQ(finding.parameters[1].value, 0.1 + 0.2) << "every digit";
   EXPECT_TRUE(std::isnan(finding.parameters[1].std_error)) << "null";
-  EXPECT_TRUE(std::isnan(finding.parameters[2].std_error)) << "of which none was told: not 0";
+  EXPECT_TRUE(std::isnan(finding.parameters[2].std_error)) << "missing: not 0";
   EXPECT_EQ(finding.gain.at(0).ci95[0], -3e-4);
   EXPECT_TRUE(finding.accepted);
   EXPECT_EQ(finding.refusal(), "");
@@ -148,26 +148,26 @@ TEST(FindingsFile, IsReadAsItWasWritten) {
   EXPECT_EQ(read.departures.at(0).amplitude, 0.004);
   EXPECT_TRUE(std::isnan(read.departures.at(0).p_value_after)) << "null";
   EXPECT_EQ(read.unobservable.at(0).parameter, "encoder.backlash");
-  EXPECT_EQ(read.artefacts.at(0).parameters.at(0).value, 0.002);
+  EXPECT_EQ(read.artifacts.at(0).parameters.at(0).value, 0.002);
   EXPECT_EQ(read.devices.at(0).stamps, 172U);
   EXPECT_EQ(read.noise.at(0).sigma, 4.6e-3);
   EXPECT_EQ(read.before_p, 0.005);
 }
 
-TEST(FindingsFile, SaysWhyACauseWasRefused) {
+TEST(FindingsFile, ReportsWhyACauseWasRefused) {
   Findings written = some_findings();
   written.findings[0].accepted = false;
-  const auto said = [&] {
+  const auto printed = [&] {
     return nlohmann::json::parse(findings_json(written))["findings"][0]["refused"].get<std::string>();
   };
-  EXPECT_THAT(said(), testing::HasSubstr("does not pay"));
+  EXPECT_THAT(printed(), testing::HasSubstr("does not improve the fit"));
   written.findings[0].refused = "more is left than it takes";
-  EXPECT_EQ(said(), "more is left than it takes");
+  EXPECT_EQ(printed(), "more is left than it takes");
   const Findings read = parse_findings(parse_yaml(findings_json(written), "diagnosis.json"));
   EXPECT_EQ(read.findings.at(0).refusal(), "more is left than it takes");
 }
 
-TEST(FindingsFile, OfAnEarlierProgramIsReadWithoutWhatItDidNotTell) {
+TEST(FindingsFile, OfAnEarlierVersionIsReadWithoutMissingKeys) {
   auto json = nlohmann::ordered_json::parse(findings_json(some_findings()));
   json.erase("departures");
   json["findings"][0].erase("alternatives");
@@ -216,7 +216,7 @@ TEST(FindingsFile, ThatIsDamagedIsRefusedWithTheLine) {
   const std::filesystem::path cut = std::filesystem::temp_directory_path() / "crisp-cut-diagnosis.json";
   std::ofstream(cut) << whole.substr(0, whole.size() / 2);
   EXPECT_THAT(errors_of([&] { read_findings(cut); }),
-              ElementsAre(cut.string() + ": error: this is not JSON; it was cut short, or changed by hand"));
+              ElementsAre(cut.string() + ": error: this is not JSON; it was truncated, or edited"));
   std::filesystem::remove(cut);
   EXPECT_THAT(errors_of([] { read_findings("nowhere/diagnosis.json"); }),
               ElementsAre(HasSubstr("nowhere/diagnosis.json")));

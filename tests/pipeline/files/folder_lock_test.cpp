@@ -85,7 +85,7 @@ TEST(FolderLock, RefusesASecondOneAndNamesProcessHostAndSinceWhen) {
   const std::string text = refusal_in(folder.path());
   EXPECT_THAT(text, HasSubstr("the folder " + folder.path().string() + " is in use"));
   EXPECT_THAT(text, HasSubstr("process " + std::to_string(getpid()) + " on " + host.data() +
-                              " writes into it since " + owner->since));
+                              " has been writing into it since " + owner->since));
   EXPECT_THAT(text, HasSubstr("files_test"));  // the command
 }
 
@@ -111,7 +111,7 @@ TEST(FolderLock, IsTakenOverFromADeadProcess) {
   EXPECT_EQ(owner->process.number, getpid());
 }
 
-TEST(FolderLock, IsTakenOverFromADeadProcessWhoseParentHasNotAskedForItsStatus) {
+TEST(FolderLock, IsTakenOverFromADeadProcessWhoseParentHasNotRequestedItsStatus) {
   const test::TemporaryFolder folder;
   const pid_t child = start_process([&] {
     new FolderLock(folder.path());
@@ -140,7 +140,8 @@ TEST(FolderLock, OfAnotherMachineIsKeptWithinItsLease) {
   const fs::path file = put_lock_of_another_machine(folder.path(), hours(1));
   EXPECT_THAT(
       refusal_in(folder.path(), {.lease = hours(2)}),
-      HasSubstr("process 4711 on node7 writes into it since 2026-03-01T09:14:07Z (crisp record -o out)"));
+      HasSubstr(
+          "process 4711 on node7 has been writing into it since 2026-03-01T09:14:07Z (crisp record -o out)"));
   EXPECT_EQ(only_entry_of(folder.path()), file);
 }
 
@@ -155,7 +156,7 @@ TEST(FolderLock, ThatIsJustBeingMadeIsKeptWithinItsLease) {
   const test::TemporaryFolder folder;
   test::put_bytes(folder / ".crisp-lock.empty", "");
   fs::last_write_time(folder / ".crisp-lock.empty", fs::file_time_type::clock::now() - hours(3));
-  EXPECT_THAT(refusal_in(folder.path(), {.patience = milliseconds(1), .lease = hours(4)}),
+  EXPECT_THAT(refusal_in(folder.path(), {.plate_timeout = milliseconds(1), .lease = hours(4)}),
               HasSubstr("another process is about to lock it"));
   EXPECT_EQ(refusal_in(folder.path(), {.lease = hours(2)}), "");
 }
@@ -181,7 +182,7 @@ TEST(FolderLock, NamesAFolderThatCannotBeWritten) {
   EXPECT_THAT(refusal_in("/proc"), HasSubstr("cannot write into the folder /proc"));
 }
 
-/// Processes that all try to take one folder's lock at once. Those that got it keep it until all have tried.
+/// Processes that all try to take one folder's lock at once. The winners keep it until all have tried.
 class Race {
  public:
   explicit Race(const fs::path& folder) : folder_(folder) {

@@ -67,7 +67,7 @@ TEST(Quantity, ReadsFractions) {
 
 TEST(Quantity, RefusesUnitsInsteadOfStrippingThem) {
   EXPECT_EQ(refusal("5cm", "s"), "'5cm' cannot be converted to s");
-  EXPECT_EQ(refusal("5cm", ""), "'5cm' has a unit, but a plain number is wanted");
+  EXPECT_EQ(refusal("5cm", ""), "'5cm' has a unit, but a plain number is expected");
   EXPECT_THAT(refusal("5furlong", "m"), HasSubstr("unknown unit 'furlong'; understood are m, um"));
   EXPECT_EQ(refusal("5m", "1"), "'5m' cannot be converted to a number without dimension");
   EXPECT_THAT(refusal("5 m m", "m"), HasSubstr("unknown unit"));

@@ -71,18 +71,20 @@ TEST(Yaml, RefusesWhatCouldReferToSomethingElse) {
   EXPECT_THAT(errors_of_yaml("a: 1\n---\nb: 2\n"), ElementsAre(HasSubstr("more than one document")));
 }
 
-TEST(Yaml, SaysWhereATextIsNotYaml) {
-  EXPECT_THAT(errors_of_yaml("a: [1, 2\nb: 3\n"),
-              ElementsAre(AllOf(StartsWith("f.yaml:2:2: error: this is not YAML"),
-                                EndsWith("; the mistake may be on a line before it: look for a bracket or a "
-                                         "quotation mark that is not closed, or a missing colon"))));
-  EXPECT_THAT(errors_of_yaml("[1, 2"), ElementsAre(HasSubstr("; look for a bracket or a quotation mark")));
+TEST(Yaml, ReportsWhereATextIsNotYaml) {
+  EXPECT_THAT(
+      errors_of_yaml("a: [1, 2\nb: 3\n"),
+      ElementsAre(AllOf(
+          StartsWith("f.yaml:2:2: error: this is not YAML"),
+          EndsWith(
+              "; the mistake may be on a line before it: check for a bracket or a quotation mark that is not closed, or a missing colon"))));
+  EXPECT_THAT(errors_of_yaml("[1, 2"), ElementsAre(HasSubstr("; check for a bracket or a quotation mark")));
   EXPECT_THAT(errors_of_yaml("a: \"open\n"), ElementsAre(StartsWith("f.yaml:")));
   EXPECT_THAT(errors_of_yaml(std::string("a: b\n\0c", 7)),
               ElementsAre("f.yaml:2:1: error: there is a control character (0x00); is this a text file?"));
 }
 
-TEST(Yaml, SaysWhichLineIsIndentedByATab) {
+TEST(Yaml, ReportsWhichLineIsIndentedByATab) {
   EXPECT_THAT(
       errors_of_yaml("a: 1\nb:\n\t- c\n"),
       ElementsAre("f.yaml:3:1: error: a tab indents this line, which YAML does not allow; indent by blanks"));
@@ -102,10 +104,10 @@ TEST(Yaml, RefusesDepthThatCouldExhaustTheStack) {
 TEST(Yaml, ReadsAnEmptyFileAsNothing) {
   EXPECT_EQ(parse_yaml("", "f.yaml").kind, YamlNode::Kind::null);
   EXPECT_EQ(parse_yaml("# only a comment\n", "f.yaml").kind, YamlNode::Kind::null);
-  EXPECT_EQ(to_string(parse_yaml("", "f.yaml").place), "f.yaml:1:1") << "where readers say what is missing";
+  EXPECT_EQ(to_string(parse_yaml("", "f.yaml").place), "f.yaml:1:1") << "where readers report missing keys";
 }
 
-TEST(Yaml, SaysWhyAFileCannotBeRead) {
+TEST(Yaml, ReportsWhyAFileCannotBeRead) {
   const auto message = [](const std::filesystem::path& file) -> std::string {
     try {
       read_yaml(file);

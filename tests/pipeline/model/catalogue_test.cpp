@@ -88,9 +88,9 @@ TEST(Catalogue, HasEveryCauseThatAStageCanName) {
   std::set<std::string> catalogue;
   for (const auto& effect : effect_catalogue(built_in_terms())) catalogue.insert(effect.name);
   std::set<std::string> named;
-  for (const char* folder : {"plugins/diagnose", "plugins/scans"}) {
-    const auto path = std::filesystem::path(source_dir()) / folder;
-    for (const auto& file : std::filesystem::directory_iterator(path)) named.merge(names_in(file.path()));
+  const auto folder = std::filesystem::path(source_dir()) / "plugins/diagnose";
+  for (const auto& file : std::filesystem::recursive_directory_iterator(folder)) {
+    if (file.is_regular_file()) named.merge(names_in(file.path()));
   }
   for (const char* some : {"scene.moving", "mirror.interleave", "range.warmup", "noise.two_peaks"}) {
     EXPECT_TRUE(named.contains(some)) << some << ": the sources are not read as they are written";
@@ -104,7 +104,7 @@ TEST(Catalogue, KeepsShapesApartFromCauses) {
   }
 }
 
-TEST(Catalogue, SaysAllOfTheEffectsBeyondTheChain) {
+TEST(Catalogue, ReportsAllOfTheEffectsBeyondTheChain) {
   for (const auto& effect : effects_beyond_the_chain()) {
     EXPECT_FALSE(effect.summary.empty()) << effect.name;
     EXPECT_FALSE(effect.details.empty()) << effect.name;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is to be true of each term, whatever it does.
+// Properties of every term.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -135,7 +135,7 @@ TEST_P(EveryTerm, HasDerivativesThatAgreeWithFiniteDifferences) {
   expect_right_derivatives(SensorModel(calibration, built_in_terms()));
 }
 
-TEST_P(EveryTerm, SaysAllOfItsParameters) {
+TEST_P(EveryTerm, ReportsAllOfItsParameters) {
   EXPECT_FALSE(info().summary.empty());
   EXPECT_FALSE(info().details.empty());
   ASSERT_FALSE(info().parameters.empty());

@@ -25,7 +25,7 @@ TEST(Splines, HoldWhatIsLevelAndWhatIsStraight) {
   }
 }
 
-TEST(Splines, AreTwoThirdsInTheirMiddlesAndASixthBeside) {
+TEST(Splines, AreTwoThirdsInTheirMiddlesAndASixthNextTo) {
   const Shape shape = Shape::splines(kCount);
   std::vector<double> one(kCount, 0);
   one[4] = 1;

@@ -43,7 +43,7 @@ TEST_F(TermFaults, ThereAreNoneInWhatATermDeclares) {
     const TermOwner owner = info.scope == Scope::kLaser ? TermOwner::laser : TermOwner::plate;
     EXPECT_EQ(fault(neutral_parameters(info), owner), "") << name;
   }
-  EXPECT_EQ(fault(cone(0.1 + 1e-9)), "") << "on its bound, as an optimiser says it";
+  EXPECT_EQ(fault(cone(0.1 + 1e-9)), "") << "on its bound, to an optimizer's rounding";
 }
 
 TEST_F(TermFaults, AUnitIsNeverTakenForAnother) {
@@ -56,9 +56,9 @@ TEST_F(TermFaults, AUnitIsNeverTakenForAnother) {
 }
 
 TEST_F(TermFaults, ValuesOutOfBoundsCannotBeMeant) {
-  EXPECT_THAT(fault(cone(1e6)), HasSubstr("kappa: 1e+06 rad cannot be meant; kappa of mirror.cone is from"));
-  EXPECT_THAT(fault(with("range.cyclic", "P", 0)), HasSubstr("P: 0 m cannot be meant"));
-  EXPECT_THAT(fault(with("range.warmup", "T", -1)), HasSubstr("T: -1 s cannot be meant"));
+  EXPECT_THAT(fault(cone(1e6)), HasSubstr("kappa: 1e+06 rad is implausible; kappa of mirror.cone is from"));
+  EXPECT_THAT(fault(with("range.cyclic", "P", 0)), HasSubstr("P: 0 m is implausible"));
+  EXPECT_THAT(fault(with("range.warmup", "T", -1)), HasSubstr("T: -1 s is implausible"));
 }
 
 TEST_F(TermFaults, ATermStandsUnderWhatHasIt) {

@@ -51,7 +51,7 @@ struct Cone final : DifferentiableTerm<Cone> {
   }
 };
 
-/// What says something of itself, and does nothing.
+/// A term with declarations and no effect.
 struct Declared final : DifferentiableTerm<Declared> {
   explicit Declared(TermInfo info) : info_(std::move(info)) {}
   const TermInfo& info() const override { return info_; }

@@ -64,7 +64,7 @@ TEST_P(MeasurementFormats, NewZerosOfTheEncoderComeBack) {
 INSTANTIATE_TEST_SUITE_P(All, MeasurementFormats,
                          testing::Values(PcdFormat::ascii, PcdFormat::binary, PcdFormat::binary_compressed));
 
-TEST(MeasurementTables, ThePlatesAngleStandsBesideEachMeasurement) {
+TEST(MeasurementTables, ThePlatesAngleStandsNextToEachMeasurement) {
   Measurements beams = sample_measurements(2);
   beams.time = {0.5, 2.0};
   const auto angles = to_table(beams, sample_plate(1)).column<double>("plate_angle");

@@ -37,7 +37,7 @@ class Parts : public testing::Test {
   const test::TemporaryFolder folder_;
 };
 
-TEST_F(Parts, OneIsAFileOfTheNameAskedFor) {
+TEST_F(Parts, OneIsAFileOfTheNameRequested) {
   write(1);
   EXPECT_TRUE(fs::exists(folder_ / "x.pcd"));
   EXPECT_THAT(read("x.pcd"), ElementsAre(1));
@@ -68,7 +68,7 @@ TEST_F(Parts, OfTwoRunsAreNotTakenForOneRecording) {
       ADD_FAILURE() << "parts of two runs were read";
     } catch (const Error& error) {
       EXPECT_EQ(
-          error.message().find((folder_ / "x_0003.pcd").string() + " does not follow on the part before it"),
+          error.message().find((folder_ / "x_0003.pcd").string() + " does not continue the part before it"),
           0U)
           << error.what();
     }
@@ -85,7 +85,7 @@ TEST_F(Parts, OfAnEarlierRunAreRemovedWhenThisOnesAreComplete) {
     PartsWriter writer(folder_ / "c.pcd", PcdFormat::binary);
     for (int i = 1; i <= parts; ++i) {
       const auto file = writer.write(to_table(test::sample_cloud(3)), i < parts);
-      writer.write_beside(plate_path(file), to_table(test::sample_cloud(1)));
+      writer.write_next_to(plate_path(file), to_table(test::sample_cloud(1)));
     }
     writer.commit();
     return writer.remove_older();

@@ -21,7 +21,7 @@ std::string written(const PcdTable& table, PcdFormat format) {
   return test::bytes_of(out.path());
 }
 
-/// What parse_pcd says of a file; empty if it takes it.
+/// The error of parse_pcd for a file; empty if it is valid.
 std::string complaint(std::string_view bytes) {
   try {
     parse_pcd(bytes, "x.pcd");
@@ -97,8 +97,7 @@ TEST(PcdTable, PointsThatAreNotThereAreNotAllocated) {
 
 TEST(PcdTable, AnAsciiFileOfAnotherProgramIsRead) {
   const auto table = parse_pcd(
-      "VERSION .7\r\nCOLUMNS x flag n big\r\nSIZE 4 1 2 8\r\nTYPE F U I I\r\nCOUNT 1 1 2 1\r\nWIDTH "
-      "2\r\nDATA ascii\r\n"
+      "VERSION .7\r\nCOLUMNS x flag n big\r\nSIZE 4 1 2 8\r\nTYPE F U I I\r\nCOUNT 1 1 2 1\r\nWIDTH 2\r\nDATA ascii\r\n"
       "nan 255 -1 2 -9007199254740993\r\n 1e-60\t7 3 4 5",
       "x.pcd");
   EXPECT_TRUE(std::isnan(table.column<float>("x").at(0)));

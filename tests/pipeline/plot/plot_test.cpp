@@ -91,7 +91,7 @@ std::size_t times_in(const std::string& text, const std::string& what) {
   return times;
 }
 
-/// What is drawn within the frame of a picture of one plot.
+/// The drawing within the frame of a picture of one plot.
 std::string within_frame(const std::string& svg) { return svg.substr(svg.find("<rect x=")); }
 
 TEST(Plot, BreaksALineWhereThereIsNoNumber) {
@@ -160,7 +160,7 @@ TEST(Plot, OfSeveralStandTwoInARow) {
   }
 }
 
-TEST(Plot, IsWrittenAndTold) {
+TEST(Plot, IsWrittenAndReported) {
   const test::TemporaryFolder folder;
   RunSettings run;
   StageReport report;

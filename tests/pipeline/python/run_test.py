@@ -114,7 +114,7 @@ class RunTest(InAFolder):
                 set={"calibrate.refine.rounds": 1},
             )
         self.assertFalse(result.trusted)
-        self.assertIn(result.doubts[0], str(caught.warning))
+        self.assertIn(result.caveats[0], str(caught.warning))
 
     def test_lets_other_threads_run(self):
         ticks = []

@@ -22,16 +22,16 @@ TEST(Blocks, OfALoopThatIsGivenUpAreNotTakenForAll) {
   constexpr std::size_t kMany = 200;
   for (std::size_t bad = 0; bad < kMany; ++bad) {
     std::atomic<bool> is_whole = true;
-    std::string told;
+    std::string reported;
     try {
       for_each_index(kMany, [&](std::size_t i) {
         if (i == bad) throw std::runtime_error("the one that is bad");
         if (counted(kMany) != kMany) is_whole = false;
       });
     } catch (const std::exception& error) {
-      told = error.what();
+      reported = error.what();
     }
-    EXPECT_EQ(told, "the one that is bad");
+    EXPECT_EQ(reported, "the one that is bad");
     EXPECT_TRUE(is_whole);
   }
 }

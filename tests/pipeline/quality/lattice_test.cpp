@@ -21,14 +21,14 @@ double gaussian(double distance, double sigma) {
   return std::exp(-distance * distance / (4 * sigma * sigma));
 }
 
-TEST(SumOnLattice, ErrsByNoMoreThanItSaysWhereverTwoPointsLie) {
+TEST(SumOnLattice, ErrsWithinItsBoundWhereverTwoPointsLie) {
   const double sigma = 0.3;
   const TruncatedGaussian kernel(sigma, 7);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> place(-1, 1);
   std::uniform_real_distribution<double> apart(-2 * sigma, 2 * sigma);
   double worst = 0;
-  double worst_pull = 0;
+  double worst_gradient = 0;
   for (int trial = 0; trial < 500; ++trial) {
     const double x = place(random);
     const double y = place(random);
@@ -39,11 +39,11 @@ TEST(SumOnLattice, ErrsByNoMoreThanItSaysWhereverTwoPointsLie) {
     const auto sums = sum_on_lattice(cloud.view(), std::vector<double>{1, 1, 0}, kernel, true);
     const double g = gaussian(std::hypot(d[0], d[1], d[2]), sigma);
     worst = std::max(worst, std::abs(sums.kernel - 2 - 2 * g) / 4);  // of four ordered pairs
-    worst_pull = std::max(worst_pull, std::abs(sums.pull.y[1] - d[1] * g));
+    worst_gradient = std::max(worst_gradient, std::abs(sums.gradient.y[1] - d[1] * g));
   }
   EXPECT_LT(worst, kLatticeError);
-  EXPECT_GT(worst, 0.1 * kLatticeError);  // what is said is not far from what happens
-  EXPECT_LT(worst_pull, 20 * kLatticeError * sigma);
+  EXPECT_GT(worst, 0.1 * kLatticeError);  // the bound is not far above the actual error
+  EXPECT_LT(worst_gradient, 20 * kLatticeError * sigma);
 }
 
 TEST(SumOnLattice, AgreesWithTheSumOverAllPairs) {
@@ -56,9 +56,9 @@ TEST(SumOnLattice, AgreesWithTheSumOverAllPairs) {
     const auto truth = exact.sums(cloud.view(), weights, kernel, {});
     EXPECT_NEAR(sums.kernel, truth.kernel, kLatticeError * 500 * 500) << sigma;
     double size = 0;
-    for (const double pull : truth.pull.x) size = std::max(size, std::abs(pull));
+    for (const double gradient : truth.gradient.x) size = std::max(size, std::abs(gradient));
     for (std::size_t i = 0; i < 500; i += 7)
-      EXPECT_NEAR(sums.pull.x[i], truth.pull.x[i], 1e-4 * size) << sigma;
+      EXPECT_NEAR(sums.gradient.x[i], truth.gradient.x[i], 1e-4 * size) << sigma;
   }
 }
 
@@ -75,8 +75,8 @@ TEST(SumOnLattice, ItsGradientIsThatOfItsValue) {
     cloud.y[i] = at - step;
     const double below = sum_on_lattice(cloud.view(), weights, kernel, false).kernel;
     cloud.y[i] = at;
-    // The sum has xᵢ in both orders of its pairs, and pulls by −1/(2 exponent) of a derivative.
-    const double slope = -4 * kernel.exponent * sums.pull.y[i];
+    // The sum has xᵢ in both orders of its pairs, and block_scores by −1/(2 exponent) of a derivative.
+    const double slope = -4 * kernel.exponent * sums.gradient.y[i];
     EXPECT_NEAR(slope, (above - below) / (2 * step), 1e-5 * std::abs(slope) + 1e-5);
   }
 }
@@ -89,8 +89,8 @@ TEST(SumOnLattice, IsTheSameToTheLastBitOnAnyNumberOfThreads) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const auto one = sum_on_lattice(cloud.view(), weights, kernel, true);
   EXPECT_EQ(one.kernel, many.kernel);
-  EXPECT_EQ(one.pull.x, many.pull.x);
-  EXPECT_EQ(one.pull.z, many.pull.z);
+  EXPECT_EQ(one.gradient.x, many.gradient.x);
+  EXPECT_EQ(one.gradient.z, many.gradient.z);
 }
 
 TEST(SumOnLattice, IsChosenForWideKernelsAndAgreesWithPairsThere) {
@@ -107,7 +107,7 @@ TEST(SumOnLattice, IsChosenForWideKernelsAndAgreesWithPairsThere) {
   EXPECT_LT(wide.error_bound, 5e-4);
   const double scale = 4 * kernel.exponent / pairs.kernel;
   for (std::size_t i = 0; i < 20000; i += 999) {
-    EXPECT_NEAR(wide.gradient.x[i], scale * pairs.pull.x[i], 1e-4 * 2 / 20000.0 / 0.4);
+    EXPECT_NEAR(wide.gradient.x[i], scale * pairs.gradient.x[i], 1e-4 * 2 / 20000.0 / 0.4);
   }
 }
 

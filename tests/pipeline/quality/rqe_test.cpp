@@ -176,7 +176,7 @@ TEST(Rqe, StandsHugeCoordinatesAndFarOutliers) {
   EXPECT_NEAR(with_outlier, (here * 1000 * 1000 + self) / (1001.0 * 1001.0), 2e-5 * here);
 }
 
-TEST(Rqe, LeavesTheGradientOutWhenItIsNotWanted) {
+TEST(Rqe, LeavesTheGradientOutWhenItIsNotRequested) {
   const auto cloud = test::room_corner(1000, 2, 0.02, 16);
   const auto with = rqe(cloud.view(), {}, {.sigma = 0.05});
   const auto without = rqe(cloud.view(), {}, {.sigma = 0.05, .gradient = false});

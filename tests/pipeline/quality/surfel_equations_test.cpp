@@ -10,8 +10,8 @@
 #include <cmath>
 #include <random>
 
+#include "pipeline/quality/encoder_nuisance.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
-#include "pipeline/quality/surfel_turns.hpp"
 #include "tests/pipeline/quality/room.hpp"
 
 namespace crisp {
@@ -92,7 +92,7 @@ TEST(SurfelEquations, AreThoseOfAllPlanesAndParametersTogether) {
   EXPECT_NEAR(equations.chi2, distances.squaredNorm(), 1e-6 * equations.chi2);
 }
 
-TEST(SurfelEquations, SayByHowMuchEachParameterChangesRanges) {
+TEST(SurfelEquations, HoldEachParametersDerivativeOfRanges) {
   const auto scan = test::scan_room(3000, {{0, 0}, {0.004, 0}, {0, 0.003}}, 0.012, 1);
   const SurfelSettings settings;
   const auto surfels = find_surfels(scan.beams(), settings);
@@ -117,6 +117,45 @@ TEST(SurfelEquations, SayByHowMuchEachParameterChangesRanges) {
   }
   EXPECT_NEAR(equations.range_squares[0], expected, 1e-9 * expected);
   EXPECT_EQ(equations.changed[0], of_laser);
+}
+
+TEST(SurfelEquations, LeaveOutNothingWhereManyParametersAreOfSingleLasers) {
+  // Each parameter eight times, in units of their own: enough of them for zeros to be left out.
+  constexpr std::size_t kCopies = 8;
+  constexpr std::size_t kAll = kCopies * kParameters;
+  const auto scan = test::scan_room(3000, {{0, 0}, {0.004, 0}, {0, 0.003}}, 0.012, 1);
+  const auto surfels = find_surfels(scan.beams(), {});
+  Division halves(scan.points.size());
+  for (std::size_t i = 0; i < halves.size(); ++i) halves[i] = i % 7 < 3 ? 4 : 1;
+  const std::vector<Division> divisions = {halves};
+  const auto few = normal_equations(surfels, scan.beams(), kParameters, derivatives_of(scan), {}, divisions);
+  const DerivativeRows copied = [&](const Surfel& surfel, std::span<const std::uint32_t> beams,
+                                    std::span<const double> range_change, std::span<double> rows) {
+    std::vector<double> own(beams.size() * kParameters, 0);
+    derivatives_of(scan)(surfel, beams, range_change, own);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const std::size_t parameter = k % kAll;
+      rows[k] = static_cast<double>(1 + parameter / kParameters) *
+                own[k / kAll * kParameters + parameter % kParameters];
+    }
+  };
+  const auto many = normal_equations(surfels, scan.beams(), kAll, copied, {}, divisions);
+  Eigen::MatrixXd copies = Eigen::MatrixXd::Zero(kAll, kParameters);
+  for (Eigen::Index k = 0; k < copies.rows(); ++k) {
+    copies(k, k % Eigen::Index{kParameters}) = static_cast<double>(1 + k / Eigen::Index{kParameters});
+  }
+  const auto is_near = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+    return (a - b).norm() < 1e-10 * b.norm();
+  };
+  EXPECT_TRUE(is_near(many.matrix, copies * few.matrix * copies.transpose()));
+  EXPECT_TRUE(is_near(many.vector, copies * few.vector));
+  EXPECT_TRUE(is_near(many.squares, copies.cwiseAbs2() * few.squares));
+  EXPECT_TRUE(is_near(many.range_squares, copies.cwiseAbs2() * few.range_squares));
+  EXPECT_TRUE(is_near(many.changed, copies.cwiseSign() * few.changed));
+  EXPECT_TRUE(is_near(many.block_scores[0], copies * few.block_scores[0]));
+  EXPECT_EQ(many.block_scores[0].col(0).norm(), 0) << "a block without beams";
+  EXPECT_GT(many.block_scores[0].col(4).norm(), 0);
+  EXPECT_NEAR(many.chi2, few.chi2, 1e-9 * few.chi2);
 }
 
 TEST(SurfelEquations, FindWhereLasersAreWithinTheirStandardErrors) {
@@ -168,7 +207,7 @@ TEST(SurfelEquations, ReduceToWhatOtherParametersCannotExplain) {
   NormalEquations equations(3);
   equations.matrix << 4, 2, 1, 2, 3, 0.5, 1, 0.5, 2;
   equations.vector << 1, -1, 0.5;
-  equations.freedom = 10;
+  equations.degrees_of_freedom = 10;
   const auto reduced = equations.reduced({2}, {0, 1});
   // The inverse's corner is the inverse of what is left; and the solution stays the same.
   EXPECT_NEAR(reduced.matrix(0, 0), 1 / equations.matrix.inverse()(2, 2), 1e-12);
@@ -199,14 +238,14 @@ TEST(ScatterOfBlocks, IsThatOfTheirBeamsWhereErrorsAreTheirOwn) {
   const auto rows = derivatives_of(scan);
   const std::vector<Division> divisions{Division(scan.laser.size(), 0), pieces_of(scan)};
   const auto equations = normal_equations(surfels, scan.beams(), kParameters, rows, settings, divisions);
-  for (const Eigen::MatrixXd& pulls : equations.pulls) {
-    EXPECT_NEAR((pulls.rowwise().sum() - equations.vector).norm(), 0, 1e-9 * equations.vector.norm());
+  for (const Eigen::MatrixXd& block_scores : equations.block_scores) {
+    EXPECT_NEAR((block_scores.rowwise().sum() - equations.vector).norm(), 0, 1e-9 * equations.vector.norm());
   }
-  const Eigen::MatrixXd pulls =
-      equations.pulls_along(1, {0, 1, 2, 3, 4}, Eigen::MatrixXd::Identity(kParameters, kParameters));
-  const Eigen::MatrixXd scatter = pulls * pulls.transpose();
+  const Eigen::MatrixXd block_scores =
+      equations.scores_along(1, {0, 1, 2, 3, 4}, Eigen::MatrixXd::Identity(kParameters, kParameters));
+  const Eigen::MatrixXd scatter = block_scores * block_scores.transpose();
   const Eigen::MatrixXd expected = equations.covariance_factor() * equations.matrix;
-  // Of k independent pulls the sum of squares has a relative standard deviation of √(2/k); each of the
+  // The sum of squares of k independent block_scores has a relative standard deviation of √(2/k); each of the
   // lasers' own parameters has 50, the common one 150.
   for (Eigen::Index k = 0; k < 5; ++k) {
     EXPECT_NEAR(scatter(k, k) / expected(k, k), 1, 4 * std::sqrt(2.0 / (k < 4 ? 50 : 150))) << k;
@@ -236,7 +275,7 @@ TEST(ScatterOfBlocks, KnowsOfErrorsThatBeamsShare) {
     const auto equations = normal_equations(surfels, scan.beams(), kParameters, rows, settings, divisions);
     const Eigen::MatrixXd inverse = equations.matrix.inverse();
     const Eigen::VectorXd variance =
-        equations.pulls_along(0, {0, 1, 2, 3, 4}, inverse).rowwise().squaredNorm();
+        equations.scores_along(0, {0, 1, 2, 3, 4}, inverse).rowwise().squaredNorm();
     const auto found = estimate(equations);
     for (const Eigen::Index k : {1, 3}) {
       by_pieces += found.value[k] * found.value[k] / variance[k];
@@ -295,7 +334,7 @@ TEST(SharedTurns, AreUnknownsLikeOthersOfWhichSomethingIsKnown) {
   EXPECT_LT((information.inverse() - covariance).norm(), 1e-6 * covariance.norm());
 }
 
-TEST(SharedTurns, SayNothingWhereTheyAreNone) {
+TEST(SharedTurns, AreEmptyWithoutSharedErrors) {
   const auto scan = test::scan_room(3000, {{0, 0}, {0, 0}, {0, 0}}, 0.012, 2);
   const auto moments = pieces_of(scan);
   const std::vector<double> none(150, 1e-20);

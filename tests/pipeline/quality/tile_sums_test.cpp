@@ -21,7 +21,7 @@ class TileSums : public test::EachInstructionSet {};
 INSTANTIATE_TEST_SUITE_P(All, TileSums, testing::ValuesIn(test::instruction_sets()),
                          test::name_of_instruction_set);
 
-TEST_P(TileSums, AreMadeWithTheInstructionSetThatIsAskedFor) {
+TEST_P(TileSums, AreMadeWithTheInstructionSetThatIsRequested) {
   EXPECT_STREQ(simd::instruction_set(), hwy::TargetName(GetParam()));
 }
 
@@ -46,21 +46,21 @@ TEST_P(TileSums, AgreeWithAllPairsInDoublePrecision) {
   const Tiles tiles(cloud.view(), kernel.radius, spatial_order(cloud.view(), kernel.radius).index);
   const auto sums = sum_over_tiles(tiles, cloud.view(), weights, kernel, true);
   double truth = 0;
-  Vectors pull;
-  pull.assign(2500, 0);
+  Vectors gradient;
+  gradient.assign(2500, 0);
   for (std::size_t i = 0; i < 2500; ++i) {
     for (std::size_t j = 0; j < 2500; ++j) {
       const double distance2 = squared_distance(cloud.view(), i, j);
       if (distance2 >= kernel.radius * kernel.radius) continue;
       const double both = weights[i] * weights[j];
       truth += both * (std::exp(-kernel.exponent * distance2) - kernel.floor);
-      pull.y[i] += both * std::exp(-kernel.exponent * distance2) * (cloud.y[i] - cloud.y[j]);
+      gradient.y[i] += both * std::exp(-kernel.exponent * distance2) * (cloud.y[i] - cloud.y[j]);
     }
   }
   EXPECT_NEAR(sums.kernel / truth, 1, 1e-7);
   double size = 0;
-  for (const double p : pull.y) size = std::max(size, std::abs(p));
-  for (std::size_t i = 0; i < 2500; ++i) EXPECT_NEAR(sums.pull.y[i], pull.y[i], 2e-6 * size);
+  for (const double p : gradient.y) size = std::max(size, std::abs(p));
+  for (std::size_t i = 0; i < 2500; ++i) EXPECT_NEAR(sums.gradient.y[i], gradient.y[i], 2e-6 * size);
   EXPECT_EQ(sum_over_tiles(tiles, cloud.view(), weights, kernel, false).kernel, sums.kernel);
 }
 

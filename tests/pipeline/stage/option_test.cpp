@@ -61,7 +61,7 @@ TEST_F(Fixture, RefusesAPathOfAnotherFormat) {
   EXPECT_EQ(expectation(last()), "a path that ends in .pcd");
 }
 
-TEST_F(Fixture, RefusesAMapOfMapsWhereAListIsWanted) {
+TEST_F(Fixture, RefusesAMapOfMapsWhereAListIsRequested) {
   options.add("names", &Thing::names, "-");
   EXPECT_TRUE(complaint(last(), OptionGroups{}));
 }

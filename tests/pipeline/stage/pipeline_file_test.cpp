@@ -32,7 +32,7 @@ class EverythingStage final : public Stage {
         .choices({{"flann", Search::flann}, {"grid", Search::grid}, {"exact", Search::exact}});
     d.option("sigma", &EverythingStage::sigma, "how wide").unit("m").range(1e-4, 10).count(1, 9);
     d.option("names", &EverythingStage::names, "who");
-    d.option("window", &EverythingStage::window, "how long to look").unit("s").at_least(0);
+    d.option("window", &EverythingStage::window, "duration of the window").unit("s").at_least(0);
     d.option("file", &EverythingStage::file, "where").required();
   }
   void check(const RunSettings&) const override {
@@ -91,8 +91,8 @@ class PipelineFileTest : public testing::Test {
 
 TEST_F(PipelineFileTest, ReadsOptionsOfEveryTypeAndConvertsTheirUnits) {
   EXPECT_THAT(
-      errors_of(with("flag: true, count: 7, length: 5cm, ratio: 250ppm, word: two words, search: grid, "
-                     "sigma: [50cm, 1cm, 0.002], names: [a, b], window: 20ms, file: x/../y.txt")),
+      errors_of(with(
+          "flag: true, count: 7, length: 5cm, ratio: 250ppm, word: two words, search: grid, sigma: [50cm, 1cm, 0.002], names: [a, b], window: 20ms, file: x/../y.txt")),
       IsEmpty());
   const auto& e = everything();
   EXPECT_TRUE(e.flag);
@@ -115,7 +115,7 @@ TEST_F(PipelineFileTest, LeavesWhatIsNotGivenAtItsDefault) {
   EXPECT_THAT(everything().sigma, ElementsAre(0.03));
 }
 
-TEST_F(PipelineFileTest, RefusesEachWrongValueAtItsPlaceAndSaysWhatWasExpected) {
+TEST_F(PipelineFileTest, RefusesEachWrongValueAtItsPlaceAndReportsWhatWasExpected) {
   EXPECT_THAT(
       errors_of("crisp: 1\n"
                 "pipeline:\n"
@@ -132,44 +132,30 @@ TEST_F(PipelineFileTest, RefusesEachWrongValueAtItsPlaceAndSaysWhatWasExpected) 
                 "      window: -1s\n"
                 "      lenght: 5\n"),
       testing::UnorderedElementsAre(
-          "p.yaml:6:13: error: all: option 'flag': 'yes' is neither true nor false; expected is true or "
-          "false",
-          "p.yaml:7:14: error: all: option 'count': '010' begins with 0, which readers understand "
-          "differently; "
-          "expected is a whole number, 0 to 100",
-          "p.yaml:8:15: error: all: option 'length': '5kg' has the unknown unit 'kg'; understood are m, um, "
-          "µm, mm, "
-          "cm, km; expected is a number in m, 0.0001 to 10",
-          "p.yaml:9:14: error: all: option 'ratio': '5cm' cannot be converted to a number without dimension; "
-          "expected is a number",
+          "p.yaml:6:13: error: all: option 'flag': 'yes' is neither true nor false; expected is true or false",
+          "p.yaml:7:14: error: all: option 'count': '010' begins with 0, which is ambiguous; expected is a whole number, 0 to 100",
+          "p.yaml:8:15: error: all: option 'length': '5kg' has the unknown unit 'kg'; understood are m, um, µm, mm, cm, km; expected is a number in m, 0.0001 to 10",
+          "p.yaml:9:14: error: all: option 'ratio': '5cm' cannot be converted to a number without dimension; expected is a number",
           "p.yaml:10:13: error: all: option 'word': a list is not a text; expected is a text",
-          "p.yaml:11:15: error: all: option 'search': 'gird' is not one of its names; did you mean 'grid'? "
-          "expected "
-          "is one of flann, grid, exact",
-          "p.yaml:12:21: error: all: option 'sigma': 20m is out of range; expected is a list, each a number "
-          "in "
-          "m, 0.0001 to 10, 1 or more of them, 9 at most",
-          "p.yaml:12:26: error: all: option 'sigma': 'x' is not a number; expected is a list, each a number "
-          "in m, "
-          "0.0001 to 10, 1 or more of them, 9 at most",
-          "p.yaml:13:15: error: all: option 'window': -1s is out of range; expected is a number in s, at "
-          "least 0, "
-          "or auto",
+          "p.yaml:11:15: error: all: option 'search': 'gird' is not one of its names; did you mean 'grid'? expected is one of flann, grid, exact",
+          "p.yaml:12:21: error: all: option 'sigma': 20m is out of range; expected is a list, each a number in m, 0.0001 to 10, 1 or more of them, 9 at most",
+          "p.yaml:12:26: error: all: option 'sigma': 'x' is not a number; expected is a list, each a number in m, 0.0001 to 10, 1 or more of them, 9 at most",
+          "p.yaml:13:15: error: all: option 'window': -1s is out of range; expected is a number in s, at least 0, or auto",
           "p.yaml:14:7: error: all: there is no option 'lenght'; did you mean 'length'?",
           "p.yaml:3:12: error: all: option 'file' is missing (where); expected is a path"));
 }
 
-TEST_F(PipelineFileTest, SaysALimitInTheUnitInWhichTheValueWasWritten) {
+TEST_F(PipelineFileTest, ReportsALimitInTheUnitInWhichTheValueWasWritten) {
   EXPECT_THAT(errors_of(with("file: x, length: 2000cm, window: -20 ms")),
               ElementsAre(HasSubstr("2000cm is out of range; expected is a number in cm, 0.01 to 1000"),
                           HasSubstr("-20ms is out of range; expected is a number in ms, at least 0")));
 }
 
-TEST_F(PipelineFileTest, SaysOnceThatARequiredOptionIsWrong) {
+TEST_F(PipelineFileTest, ReportsOnceThatARequiredOptionIsWrong) {
   EXPECT_THAT(errors_of(with("file: [a]")), ElementsAre(HasSubstr("a list is not a text")));
 }
 
-TEST_F(PipelineFileTest, AsksStagesWhetherTheirOptionsAgree) {
+TEST_F(PipelineFileTest, RequestsStagesWhetherTheirOptionsAgree) {
   EXPECT_THAT(errors_of(with("file: x, count: 13")),
               ElementsAre("p.yaml:3:12: error: toy.everything: 13 is an unlucky count; take 12"));
 }
@@ -190,7 +176,7 @@ TEST_F(PipelineFileTest, SubstitutesVariables) {
   EXPECT_THAT(everything().names, ElementsAre("${n}"));
 }
 
-TEST_F(PipelineFileTest, SaysWhichVariableIsUnknownOrMissing) {
+TEST_F(PipelineFileTest, ReportsWhichVariableIsUnknownOrMissing) {
   EXPECT_THAT(errors_of("crisp: 1\nvars: {wide: 1, output: x, l: [1]}\n" +
                         with("file: ${input}, word: ${wied}, names: [\"${open\", \"a${l}\"]").substr(9)),
               ElementsAre(HasSubstr("p.yaml:2:17: error: vars: 'output' is set by the command line"),
@@ -199,12 +185,12 @@ TEST_F(PipelineFileTest, SaysWhichVariableIsUnknownOrMissing) {
                           HasSubstr("'${open' has no }"), HasSubstr("${l} is a list; let it stand alone")));
 }
 
-TEST_F(PipelineFileTest, SaysThatTheEnvironmentIsNotReadAndNamesEachVariableOnce) {
+TEST_F(PipelineFileTest, ReportsThatTheEnvironmentIsNotReadAndNamesEachVariableOnce) {
   setenv("CRISP_TEST_FOLDER", "/x", 1);
-  EXPECT_THAT(errors_of(with("file: \"${CRISP_TEST_FOLDER}/y\"")),
-              ElementsAre(HasSubstr(
-                  "there is no variable 'CRISP_TEST_FOLDER'; those of the environment are not read; "
-                  "declare it under vars")));
+  EXPECT_THAT(
+      errors_of(with("file: \"${CRISP_TEST_FOLDER}/y\"")),
+      ElementsAre(HasSubstr(
+          "there is no variable 'CRISP_TEST_FOLDER'; environment variables are not read; declare it under vars")));
   unsetenv("CRISP_TEST_FOLDER");
   EXPECT_THAT(errors_of(with("file: \"${qqqqqqqq}\""), {.input = "a", .output = "b"}),
               ElementsAre(HasSubstr("known are input, name, output, stem")));
@@ -257,18 +243,14 @@ TEST_F(PipelineFileTest, RefusesSettingsOfNoUse) {
                                                "toy.everything.sigma=[1"}};
   EXPECT_THAT(
       errors_of(with("file: y"), arguments),
-      testing::UnorderedElementsAre("--set toy.evrything.count=1: error: the pipeline has no stage with the "
-                                    "tag 'toy.evrything'; did you mean "
-                                    "'toy.everything'?",
-                                    "--set toy.everything.cuont=1: error: toy.everything: there is no option "
-                                    "'cuont'; did you mean 'count'?",
-                                    HasSubstr("--set toy.everything.count=x: error: toy.everything: option "
-                                              "'count': 'x' is not a whole number"),
-                                    HasSubstr("--set n=1: error: the pipeline has no variable 'n'"),
-                                    HasSubstr("the pipeline has no variable 'sigma'; did you mean "
-                                              "'toy.everything.sigma'?"),
-                                    HasSubstr("--set flag: error: a setting needs a name and a value"),
-                                    HasSubstr("this is not YAML")));
+      testing::UnorderedElementsAre(
+          "--set toy.evrything.count=1: error: the pipeline has no stage with the tag 'toy.evrything'; did you mean 'toy.everything'?",
+          "--set toy.everything.cuont=1: error: toy.everything: there is no option 'cuont'; did you mean 'count'?",
+          HasSubstr(
+              "--set toy.everything.count=x: error: toy.everything: option 'count': 'x' is not a whole number"),
+          HasSubstr("--set n=1: error: the pipeline has no variable 'n'"),
+          HasSubstr("the pipeline has no variable 'sigma'; did you mean 'toy.everything.sigma'?"),
+          HasSubstr("--set flag: error: a setting needs a name and a value"), HasSubstr("this is not YAML")));
 }
 
 TEST_F(PipelineFileTest, ConnectsByTagsAndNumbersStagesOfOneName) {
@@ -299,14 +281,14 @@ TEST_F(PipelineFileTest, FindsMistakesOfSchemaStagesAndWiringAtOnce) {
           HasSubstr("p.yaml:2:1: error: pipeline: there is no key 'pipelin'; did you mean 'pipeline'?"),
           HasSubstr("p.yaml:4:12: error: toy.sum: nothing above it gives the Number"),
           HasSubstr(
-              "p.yaml:5:12: error: there is no stage 'toy.cuont'; did you mean 'toy.count'? a plugin's"),
+              "p.yaml:5:12: error: there is no stage 'toy.cuont'; did you mean 'toy.count'? load a plugin's"),
           HasSubstr("p.yaml:6:5: error: stage: there is no key 'whit'; did you mean 'with'?"),
           HasSubstr("p.yaml:7:5: error: stage: 'stage' is missing"),
           HasSubstr("p.yaml:8:29: error: stage: 'a b' is not a tag"),
           HasSubstr("a map is not a list of tags")));
 }
 
-TEST_F(PipelineFileTest, ReadsTheRigBesideItOrTheOneOfTheCommandLine) {
+TEST_F(PipelineFileTest, ReadsTheRigNextToItOrTheOneOfTheCommandLine) {
   const std::string stages = "pipeline: [{stage: toy.count}]\n";
   EXPECT_THAT(errors_of("crisp: 1\nrig: nowhere.yaml\n" + stages),
               ElementsAre("p.yaml:2:6: error: cannot read /there/nowhere.yaml: No such file or directory"));
@@ -314,8 +296,7 @@ TEST_F(PipelineFileTest, ReadsTheRigBesideItOrTheOneOfTheCommandLine) {
   EXPECT_THAT(errors_of("crisp: 1\nrig: nowhere.yaml\n" + stages, arguments), IsEmpty());
   EXPECT_THAT(
       errors_of(
-          "crisp: 1\nrig: {crisp: 1, lasers: {only: {address: 10.0.0.1, nominal: {lambda: 0, tau: 0}}}, "
-          "plate: {address: 10.0.0.2}}\n" +
+          "crisp: 1\nrig: {crisp: 1, lasers: {only: {address: 10.0.0.1, nominal: {lambda: 0, tau: 0}}}, plate: {address: 10.0.0.2}}\n" +
           stages),
       IsEmpty());
   EXPECT_EQ(run_.rig.lasers.at(0).name, "only");

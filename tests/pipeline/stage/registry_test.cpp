@@ -59,7 +59,7 @@ TEST(StageRegistry, RefusesDescriptionsThatCannotBeRight) {
   EXPECT_THAT(refusal<TakesTwice>(), HasSubstr("takes Sum twice"));
 }
 
-TEST(StageRegistry, RefusesASecondStageOfTheSameNameAndSaysWhereBothComeFrom) {
+TEST(StageRegistry, RefusesASecondStageOfTheSameNameWithBothOrigins) {
   Registrar registrar;
   registrar.stage<toy::CountStage>();
   registrar.set_origin("other.so");

@@ -65,7 +65,7 @@ TEST_F(RunnerTest, KeepsWhatDrivesAStageUntilWhatItHoldsIsThere) {
 
 TEST_F(RunnerTest, WaitsForAnOptionalInputThatAStageAboveGives) {
   run({{.stage = "toy.count", .with = {{"n", number(2)}}},
-       {.stage = "toy.say", .with = {{"words", words({"aye"})}}},
+       {.stage = "toy.words", .with = {{"words", words({"aye"})}}},
        {.stage = "toy.sum"},
        {.stage = "toy.share"}});
   EXPECT_THAT(toy::log(), ElementsAre("count finishes", "1/3 aye", "2/3 aye"));
@@ -73,16 +73,16 @@ TEST_F(RunnerTest, WaitsForAnOptionalInputThatAStageAboveGives) {
 
 TEST_F(RunnerTest, GoesOnWithoutAnOptionalInputThatNeverCame) {
   run({{.stage = "toy.count", .with = {{"n", number(2)}}},
-       {.stage = "toy.say", .with = {{"words", words({})}}},
+       {.stage = "toy.words", .with = {{"words", words({})}}},
        {.stage = "toy.sum"},
        {.stage = "toy.share"}});
   EXPECT_THAT(toy::log(), ElementsAre("count finishes", "1/3", "2/3"));
 }
 
 TEST_F(RunnerTest, ReplaysUpdatesOfAHeldInputInTheirOrder) {
-  // Both words are said before the numbers come, as the source of words is only held: the last one holds.
+  // Both words are given before the numbers come, as the source of words is only held: the last one is kept.
   run({{.stage = "toy.count", .with = {{"n", number(1)}}},
-       {.stage = "toy.say", .with = {{"words", words({"first", "last"})}}},
+       {.stage = "toy.words", .with = {{"words", words({"first", "last"})}}},
        {.stage = "toy.sum"},
        {.stage = "toy.share"}});
   EXPECT_THAT(toy::log(), ElementsAre("count finishes", "1/1 last"));
@@ -104,47 +104,47 @@ TEST_F(RunnerTest, CountsWhatEachStageTookAndGave) {
   EXPECT_GE(results[0].seconds, 0);
 }
 
-TEST_F(RunnerTest, TurnsDoubtsAboutWhatWasReplacedIntoWarnings) {
+TEST_F(RunnerTest, TurnsCaveatsOfReplacedItemsIntoWarnings) {
   const auto results = run({{.stage = "toy.count"},
-                            {.stage = "toy.doubt", .tag = "first"},
-                            {.stage = "toy.doubt", .tag = "second"},
-                            {.stage = "toy.doubt", .tag = "last", .with = {{"lift", yes()}}}});
+                            {.stage = "toy.caveat", .tag = "first"},
+                            {.stage = "toy.caveat", .tag = "second"},
+                            {.stage = "toy.caveat", .tag = "last", .with = {{"lift", yes()}}}});
   for (const std::size_t i : {1U, 2U}) {
-    EXPECT_THAT(results[i].report.doubts, testing::IsEmpty());
+    EXPECT_THAT(results[i].report.caveats, testing::IsEmpty());
     EXPECT_THAT(results[i].report.warnings, ElementsAre("are these numbers?; last: they add up"));
   }
 }
 
-TEST_F(RunnerTest, KeepsDoubtsAboutWhatGoesElsewhereToo) {
+TEST_F(RunnerTest, KeepsCaveatsOfItemsThatGoElsewhereToo) {
   const auto results = run({{.stage = "toy.count"},
-                            {.stage = "toy.doubt", .tag = "first"},
-                            {.stage = "toy.doubt", .tag = "last", .with = {{"lift", yes()}}},
+                            {.stage = "toy.caveat", .tag = "first"},
+                            {.stage = "toy.caveat", .tag = "last", .with = {{"lift", yes()}}},
                             {.stage = "toy.log", .inputs = {{{"first", {}}}}}});
-  EXPECT_THAT(results[1].report.doubts, ElementsAre("are these numbers?"));
+  EXPECT_THAT(results[1].report.caveats, ElementsAre("are these numbers?"));
   EXPECT_THAT(results[1].report.warnings, testing::IsEmpty());
 }
 
-TEST_F(RunnerTest, TellsAStageWhatThoseAboveItDoubted) {
+TEST_F(RunnerTest, GivesAStageTheCaveatsOfThoseAbove) {
   const auto heard = [&](const std::vector<StageSpec>& specs) {
-    return run(specs).back().report.section.at("doubts").get<std::vector<std::string>>();
+    return run(specs).back().report.section.at("caveats").get<std::vector<std::string>>();
   };
-  const StageSpec doubt = {.stage = "toy.doubt"};
-  StageSpec lifts = doubt;
+  const StageSpec caveat = {.stage = "toy.caveat"};
+  StageSpec lifts = caveat;
   lifts.with = {{"lift", yes()}};
-  EXPECT_THAT(heard({{.stage = "toy.count"}, doubt, {.stage = "toy.sum"}, {.stage = "toy.hear"}}),
+  EXPECT_THAT(heard({{.stage = "toy.count"}, caveat, {.stage = "toy.sum"}, {.stage = "toy.hear"}}),
               ElementsAre("are these numbers?"));
-  EXPECT_THAT(heard({{.stage = "toy.count"}, doubt, lifts, {.stage = "toy.sum"}, {.stage = "toy.hear"}}),
+  EXPECT_THAT(heard({{.stage = "toy.count"}, caveat, lifts, {.stage = "toy.sum"}, {.stage = "toy.hear"}}),
               testing::IsEmpty());
   const StageSpec aside = {.stage = "toy.sum", .inputs = {{{"toy.count", {}}}}};
-  EXPECT_THAT(heard({{.stage = "toy.count"}, doubt, aside, {.stage = "toy.hear"}}), testing::IsEmpty());
+  EXPECT_THAT(heard({{.stage = "toy.count"}, caveat, aside, {.stage = "toy.hear"}}), testing::IsEmpty());
 }
 
-TEST_F(RunnerTest, TellsTheStageThatThrewAndNotTheOneThatFedIt) {
+TEST_F(RunnerTest, ReportsTheStageThatThrewAndNotTheOneThatFedIt) {
   const std::vector<StageSpec> specs = {{.stage = "toy.count"}, {.stage = "toy.throw", .tag = "culprit"}};
   EXPECT_EQ(message_of(specs), "culprit: it saw a three; avoid threes");
 }
 
-TEST_F(RunnerTest, TellsWhatHadBeenDoneWhenAStageThrew) {
+TEST_F(RunnerTest, ReportsTheStagesResultsWhenOneThrew) {
   std::vector<NodeResult> done;
   const RunHooks hooks{.failed = [&](std::vector<NodeResult> until_then) { done = std::move(until_then); }};
   EXPECT_THROW(run({{.stage = "toy.count"}, {.stage = "toy.log"}, {.stage = "toy.throw"}}, hooks), Error);
@@ -164,7 +164,7 @@ TEST_F(RunnerTest, TurnsAnyExceptionIntoAnErrorWithThePlaceOfTheStage) {
   EXPECT_THAT(message_of(specs), HasSubstr("it gives Word, which it does not declare"));
 }
 
-TEST_F(RunnerTest, SaysThatWhatAStageWaitedForNeverCame) {
+TEST_F(RunnerTest, ReportsAMissingInputOfAStage) {
   const OptionValue yes = OptionScalar(true);
   EXPECT_THAT(
       message_of(
@@ -172,18 +172,18 @@ TEST_F(RunnerTest, SaysThatWhatAStageWaitedForNeverCame) {
       HasSubstr("toy.share: it waited for a Sum, but the stages above gave none"));
 }
 
-TEST_F(RunnerTest, StopsWithoutFinishingWhenTold) {
+TEST_F(RunnerTest, StopsWithoutFinishingOnRequest) {
   std::atomic<bool> stop = true;
   const std::vector<StageSpec> specs = {{.stage = "toy.count"}, {.stage = "toy.log"}};
   EXPECT_THROW(run(specs, {.stop = &stop}), Interrupted);
   EXPECT_TRUE(toy::log().empty());
 }
 
-TEST_F(RunnerTest, FinishesWithWhatCameWhenAnEndlessSourceIsToldToStop) {
+TEST_F(RunnerTest, FinishesWhenAnEndlessSourceIsStopped) {
   std::atomic<bool> stop = false;
-  std::thread told([&] { stop = true; });
+  std::thread reported([&] { stop = true; });
   const auto results = run({{.stage = "toy.endless"}, {.stage = "toy.log"}}, {.stop = &stop});
-  told.join();
+  reported.join();
   EXPECT_THAT(toy::log().back(), "log finishes");
   EXPECT_EQ(results.at(0).given, results.at(1).taken) << "all that was given was taken";
 }
@@ -216,14 +216,14 @@ TEST_F(RunnerTest, EndsAllEndlessSourcesWhenAStageBelowOneFails) {
               HasSubstr("toy.throw"));
 }
 
-TEST_F(RunnerTest, PassesOnWhatAStageTellsOfItself) {
-  std::vector<std::string> told;
+TEST_F(RunnerTest, PassesOnAStagesStatus) {
+  std::vector<std::string> reported;
   RunHooks hooks;
   hooks.status = [&](const std::string& tag, const StageStatus& status) {
-    told.push_back(tag + " " + status.line + " " + status.gauges.at(0).name);
+    reported.push_back(tag + " " + status.line + " " + status.gauges.at(0).name);
   };
-  run({{.stage = "toy.tell"}}, hooks);
-  EXPECT_THAT(told, ElementsAre("toy.tell is well health"));
+  run({{.stage = "toy.status"}}, hooks);
+  EXPECT_THAT(reported, ElementsAre("toy.status is well health"));
 }
 
 }  // namespace

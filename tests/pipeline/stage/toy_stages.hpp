@@ -45,7 +45,7 @@ struct crisp::KindName<crisp::toy::Sum> {
 
 namespace crisp::toy {
 
-/// Gives 1, 2, … until it is told to stop.
+/// Gives 1, 2, … until the run is stopped.
 class EndlessStage final : public Stage {
  public:
   static void describe(StageDescription<EndlessStage>& d) {
@@ -56,14 +56,15 @@ class EndlessStage final : public Stage {
   }
 };
 
-/// Tells that it is well.
-class TellStage final : public Stage {
+/// Reports its status.
+class StatusStage final : public Stage {
  public:
-  static void describe(StageDescription<TellStage>& d) {
-    d.name("toy.tell").summary("tells of itself").gives<Word>();
+  static void describe(StageDescription<StatusStage>& d) {
+    d.name("toy.status").summary("reports its status").gives<Word>();
   }
   void process(const Inputs&, Outputs&, Context& context) override {
-    if (context.is_watched()) context.tell({.line = "is well", .gauges = {{.name = "health", .value = 1}}});
+    if (context.is_watched())
+      context.set_status({.line = "is well", .gauges = {{.name = "health", .value = 1}}});
   }
 };
 
@@ -86,11 +87,11 @@ class CountStage final : public Stage {
 };
 
 /// Gives a word at once, or only when it finishes, or never.
-class SayStage final : public Stage {
+class PrintStage final : public Stage {
  public:
-  static void describe(StageDescription<SayStage>& d) {
-    d.name("toy.say").summary("says words").gives<Word>();
-    d.option("words", &SayStage::words_, "what to say");
+  static void describe(StageDescription<PrintStage>& d) {
+    d.name("toy.words").summary("gives words").gives<Word>();
+    d.option("words", &PrintStage::words_, "words to give");
   }
   void process(const Inputs&, Outputs& out, Context&) override {
     for (const auto& word : words_) out.give(Word{word});
@@ -147,7 +148,7 @@ class LogStage final : public Stage {
   void finish(Outputs&, Context&) override { log().emplace_back("log finishes"); }
 };
 
-/// Throws what `how` says when it sees its third number.
+/// Throws the exception `how` when it sees its third number.
 class ThrowStage final : public Stage {
  public:
   enum class How { error, standard, memory, undeclared, integer };
@@ -180,43 +181,43 @@ class ThrowStage final : public Stage {
   How how_ = How::error;
 };
 
-/// Hands numbers on, and doubts them, or says that doubts about what it replaces are settled.
-class DoubtStage final : public Stage {
+/// Passes numbers on with a caveat, or resolves the caveats of the item that it replaces.
+class CaveatStage final : public Stage {
  public:
-  static void describe(StageDescription<DoubtStage>& d) {
-    d.name("toy.doubt").summary("doubts").takes<Number>().gives<Number>();
-    d.option("lift", &DoubtStage::lift_, "whether it settles the doubts of others");
+  static void describe(StageDescription<CaveatStage>& d) {
+    d.name("toy.caveat").summary("caveats").takes<Number>().gives<Number>();
+    d.option("lift", &CaveatStage::lift_, "whether it settles the caveats of others");
   }
   void process(const Inputs& in, Outputs& out, Context&) override { out.give(*in.find<Number>()); }
   void finish(Outputs&, Context& context) override {
-    if (lift_) return context.lift_doubts(KindName<Number>::value, "they add up");
-    context.distrust("are these numbers?");
+    if (lift_) return context.resolve_caveats(KindName<Number>::value, "they add up");
+    context.mark_untrusted("are these numbers?");
   }
 
  private:
   bool lift_ = false;
 };
 
-/// Reports what the stages above it doubted.
+/// Reports what the stages above it with_caveats.
 class HearStage final : public Stage {
  public:
   static void describe(StageDescription<HearStage>& d) {
-    d.name("toy.hear").summary("hears doubts").takes<Sum>();
+    d.name("toy.hear").summary("hears caveats").takes<Sum>();
   }
   void process(const Inputs&, Outputs&, Context&) override {}
-  void finish(Outputs&, Context& context) override { context.report({{"doubts", context.doubts_above()}}); }
+  void finish(Outputs&, Context& context) override { context.report({{"caveats", context.caveats_above()}}); }
 };
 
 inline void register_toys(Registrar& registrar) {
   registrar.stage<CountStage>();
   registrar.stage<EndlessStage>();
-  registrar.stage<TellStage>();
-  registrar.stage<SayStage>();
+  registrar.stage<StatusStage>();
+  registrar.stage<PrintStage>();
   registrar.stage<SumStage>();
   registrar.stage<ShareStage>();
   registrar.stage<LogStage>();
   registrar.stage<ThrowStage>();
-  registrar.stage<DoubtStage>();
+  registrar.stage<CaveatStage>();
   registrar.stage<HearStage>();
 }
 

@@ -91,11 +91,11 @@ TEST_F(DeskewStageTest, PlacesEachBatchByTheCalibrationThatIsHeldAndThePieceOfTr
   EXPECT_NEAR((clouds[1]->at(0).getVector3fMap() - Eigen::Vector3f(0, -2, 0)).norm(), 0, 1e-6);
   EXPECT_EQ(stage_.report().section["points"], 2);
   EXPECT_EQ(stage_.report().section["calibration"], "given");
-  EXPECT_EQ(stage_.report().counts.at("beams outside the plate's readings"), 0U);
+  EXPECT_EQ(stage_.report().counts.at("beams outside the encoder readings"), 0U);
   EXPECT_THAT(stage_.report().warnings, IsEmpty());
 }
 
-TEST_F(DeskewStageTest, SaysWhichTermsAreNotAppliedWhereNobodyHasFoundTheIncidence) {
+TEST_F(DeskewStageTest, NamesTermsNotAppliedForUnknownIncidence) {
   register_built_in(terms_);
   Calibration calibration = with_lambda(0);
   for (const auto* name : {"range.incidence", "range.offset"}) {
@@ -110,7 +110,8 @@ TEST_F(DeskewStageTest, SaysWhichTermsAreNotAppliedWhereNobodyHasFoundTheInciden
     stage.finish();
     EXPECT_EQ(stage.report().warnings.size(), is_known ? 0U : 1U);
     if (is_known) continue;
-    EXPECT_THAT(stage.report().warnings, ElementsAre(HasSubstr("without laser2.range.incidence: nobody")));
+    EXPECT_THAT(stage.report().warnings,
+                ElementsAre(HasSubstr("without laser2.range.incidence: the incidence angles")));
   }
 }
 
@@ -134,7 +135,7 @@ TEST_F(DeskewStageTest, DropsAndCountsBeamsBeforeBehindAndInGapsOfThePlatesReadi
   stage_.feed(beams_at({0.999, 1.002, 1.011, 1.109, 1.112, 1.121}), gap, with_lambda(0));
   stage_.finish();
   EXPECT_THAT(times_of(stage_.given<Cloud>()), ElementsAre(1.002, 1.112));
-  EXPECT_EQ(stage_.report().counts.at("beams outside the plate's readings"), 4U);
+  EXPECT_EQ(stage_.report().counts.at("beams outside the encoder readings"), 4U);
   EXPECT_THAT(stage_.report().warnings, ElementsAre(HasSubstr("66.7 % of the beams are not in the cloud")));
 }
 

@@ -23,7 +23,7 @@ PlateTrajectory once_a_second() {
   return {1'700'000'000'000'000'000, times, angles, 0.01};
 }
 
-/// Of a scan before which there was none.
+/// Deskews a scan without predecessors.
 Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model) {
   KnownMirrors none;
   return deskew(beams, plate, model, none);

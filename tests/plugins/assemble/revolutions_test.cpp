@@ -14,7 +14,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kScan = 0.02;  // [s]
 constexpr int kBeams = 10;
 
-/// A trajectory of 5 s that turns as a function of time says, read 500 times a second.
+/// A trajectory of 5 s whose angle is a function of time, read 500 times a second.
 template <class Angle>
 PlateTrajectory turning(const Angle& angle) {
   std::vector<double> times, angles;

@@ -38,7 +38,7 @@ TEST(LoadCalibration, RefusesTheCalibrationOfAnotherRig) {
   }
 }
 
-TEST(LoadCalibration, SaysWhichTermsHoldForOneRecordingAlone) {
+TEST(LoadCalibration, ReportsWhichTermsHoldForOneRecordingAlone) {
   const test::TemporaryFolder folder;
   TermRegistry terms;
   register_built_in(terms);
@@ -54,24 +54,26 @@ TEST(LoadCalibration, SaysWhichTermsHoldForOneRecordingAlone) {
       {{"file", OptionScalar((folder / "calibration.yaml").string())}});
   stage.run().registrar = &registrar;
   stage.feed();
-  EXPECT_THAT(stage.report().warnings, ElementsAre(HasSubstr("laser3.range.step: what goes by the time")));
-  EXPECT_THAT(stage.report().lines, ElementsAre(HasSubstr("encoder.eccentricity: what goes by the plate's")));
+  EXPECT_THAT(stage.report().warnings, ElementsAre(HasSubstr("laser3.range.step: a term of the time")));
+  EXPECT_THAT(stage.report().lines,
+              ElementsAre(HasSubstr("encoder.eccentricity: a term of the plate's angle")));
 }
 
-TEST(LoadCalibration, DoesNotTrustWhatWasDoubtedWhenItWasMade) {
+TEST(LoadCalibration, MarksAnUntrustedCalibrationUntrusted) {
   const test::TemporaryFolder folder;
   TermRegistry terms;
   Registrar registrar;
   registrar.attach(terms);
   Calibration calibration = nominal_calibration(default_rig());
-  calibration.doubts = {"the plate stood still"};
+  calibration.caveats = {"the plate stood still"};
   const std::string file = (folder / "calibration.yaml").string();
   write_calibration(file, calibration);
   auto stage = test::StageDriver::of<LoadCalibrationStage>({{"file", OptionScalar(file)}});
   stage.run().registrar = &registrar;
   stage.feed();
-  EXPECT_THAT(stage.report().doubts, ElementsAre("the calibration " + file +
-                                                 " was doubted when it was made: the plate stood still"));
+  EXPECT_THAT(stage.report().caveats,
+              ElementsAre("the calibration " + file +
+                          " was already untrusted when it was made: the plate stood still"));
 }
 
 }  // namespace

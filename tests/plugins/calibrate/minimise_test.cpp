@@ -11,7 +11,7 @@
 namespace crisp {
 namespace {
 
-/// Rosenbrock's valley: one minimum, of value 0, at (1, 1).
+/// Rosenbrock's function: one minimum, of value 0, at (1, 1).
 double rosenbrock(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
   const double a = 1 - x[0];
   const double b = x[1] - x[0] * x[0];
@@ -24,7 +24,7 @@ Box wide_box() {
       .lower = Eigen::Vector2d(-5, -5), .upper = Eigen::Vector2d(5, 5), .basis = Eigen::Matrix2d::Identity()};
 }
 
-TEST(Minimise, FindsTheEndOfACurvedValley) {
+TEST(Minimise, FindsTheEndOfACurvedMinimum) {
   const auto minimum =
       minimise(rosenbrock, Eigen::Vector2d(-1.2, 1), wide_box(), {.max_iterations = 200, .tolerance = 1e-10});
   EXPECT_TRUE(minimum.converged) << minimum.status;

@@ -46,7 +46,7 @@ TEST(RigCheck, MirroredPlacesTheMirrorImageOfTheSceneByNegatedCounts) {
   EXPECT_LT((image.points - expected).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-TEST(RigCheck, NothingIsSaidOfWhatAgreesWithTheRig) {
+TEST(RigCheck, AgreementWithTheRigGivesNoCaveat) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const RigCheck result = check(found(seed));
     EXPECT_THAT(result.caveats, IsEmpty());
@@ -66,7 +66,7 @@ TEST(RigCheck, NegatedCountsAreNamed) {
   EXPECT_THAT(check(mirrored(found(1, rig)), rig).caveats, ElementsAre(HasSubstr("direction: clockwise in")));
 }
 
-TEST(RigCheck, TheOrderOfTheLasersTellsTheDirectionOfRadialScanPlanes) {
+TEST(RigCheck, TheOrderOfTheLasersDeterminesTheDirectionOfRadialScanPlanes) {
   Rig rig = default_rig();
   for (auto& laser : rig.lasers) laser.nominal.alpha.value = 90 * kDegree;
   EXPECT_TRUE(check(found(4, rig), rig).knows_direction);
@@ -112,7 +112,7 @@ TEST(RigCheck, ALaserThatIsUpsideDownIsNamed) {
   EXPECT_THAT(check(calibration).caveats, ElementsAre(HasSubstr("all lasers are mounted upside down")));
 }
 
-TEST(RigCheck, WhatIsOutsideItsRangeIsReportedWithItsNominalValue) {
+TEST(RigCheck, AParameterOutsideItsRangeIsReportedWithItsNominalValue) {
   Calibration calibration = found(7);
   calibration.lasers[1].tau.value = 0.487;
   calibration.lasers[2].alpha.value = -0.61;
@@ -131,7 +131,7 @@ TEST(RigCheck, TheRigsStandardDeviationsAreItsLimits) {
   for (std::size_t k : {1, 2}) calibration.lasers[k].lambda.free = true;
   EXPECT_THAT(check(calibration, rig).caveats, IsEmpty());
   calibration.lasers[1].lambda.value += 4 * kDegree;
-  calibration.lasers[2].lambda.value += 4 * kDegree;  // of which the rig does not say how well it is known
+  calibration.lasers[2].lambda.value += 4 * kDegree;  // without a standard deviation in the rig
   calibration.lasers[2].tau.value += 0.007;
   EXPECT_THAT(check(calibration, rig).caveats,
               ElementsAre(HasSubstr("laser2.lambda is 124.0 deg, more than 3 standard deviations (3.0 deg)"),

@@ -16,9 +16,9 @@ TEST(CalibrateByRqe, FindsAScannerThatIsOffByCentimetresDegreesAndMilliseconds) 
   const auto recording = simulate_measurements(misplaced_scanner(2, 5.0), office());
   SensorModel start(nominal_calibration(default_rig()));
   const auto measure = rqe_measure();
-  std::vector<double> told;
+  std::vector<double> reported;
   const Outcome outcome = calibrate_by_rqe(start, sample_of(recording), *measure, quick(),
-                                           [&](double done, std::string_view) { told.push_back(done); });
+                                           [&](double done, std::string_view) { reported.push_back(done); });
   const Eigen::VectorXd error = outcome.model.values() - SensorModel(recording.truth).values();
   for (std::size_t laser = 0; laser < 3; ++laser) {
     // The bias of the optimum at σ = 5 cm, as far as it goes in the office.
@@ -30,13 +30,13 @@ TEST(CalibrateByRqe, FindsAScannerThatIsOffByCentimetresDegreesAndMilliseconds) 
   }
   EXPECT_EQ(outcome.free.size(), 11U);
   EXPECT_TRUE(outcome.unobservable.empty());
-  EXPECT_THAT(outcome.doubts, testing::IsEmpty());
+  EXPECT_THAT(outcome.caveats, testing::IsEmpty());
   EXPECT_GT(outcome.covariance.diagonal().minCoeff(), 0);
-  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
-  EXPECT_GT(told.size(), 3U);
+  EXPECT_TRUE(std::is_sorted(reported.begin(), reported.end()));
+  EXPECT_GT(reported.size(), 3U);
 }
 
-TEST(CalibrateByRqe, SaysThatAConstantSpeedDoesNotTellTheLags) {
+TEST(CalibrateByRqe, ReportsThatAConstantSpeedDoesNotDetermineTheLags) {
   auto scanner = misplaced_scanner(1, 3.0);
   scanner.motion = {.kind = MotionKind::constant, .max_rate = 0.91};  // no whole number of scans a turn
   for (auto& laser : scanner.truth.lasers) laser.eta.value = 0;
@@ -79,7 +79,7 @@ TEST(CalibrateByRqe, FindsTheLagsOfAPlateThatTurnsToAndFro) {
     const auto recording = simulate_measurements(scanner, hall());
     const Outcome outcome = calibrate_by_rqe(SensorModel(nominal_calibration(default_rig())),
                                              sample_of(recording), *measure, settings);
-    EXPECT_THAT(outcome.doubts, testing::IsEmpty()) << seed;
+    EXPECT_THAT(outcome.caveats, testing::IsEmpty()) << seed;
     const Eigen::VectorXd error = outcome.model.values() - SensorModel(recording.truth).values();
     for (const auto eta : {3, 7, 11}) EXPECT_LT(std::abs(error[eta]), 1e-3) << seed << ", " << eta;
   }
@@ -111,7 +111,7 @@ SimulatedMeasurements in_a_room_that_looks_the_same_from_behind() {
   return simulate_measurements(scanner, twin);
 }
 
-TEST(CalibrateByRqe, IsNotSureInARoomThatLooksTheSameFromBehind) {
+TEST(CalibrateByRqe, IsNotSureInARoomThatTestsTheSameFromBehind) {
   const auto recording = in_a_room_that_looks_the_same_from_behind();
   RqeCalibrationSettings settings = quick();
   settings.full_field = false;
@@ -120,10 +120,10 @@ TEST(CalibrateByRqe, IsNotSureInARoomThatLooksTheSameFromBehind) {
   start.lasers[1].lambda.value += 70 * kDegree;
   const Outcome outcome = calibrate_by_rqe(SensorModel(start), sample_of(recording), *measure, settings);
   ASSERT_EQ(outcome.other_minima.size(), 1U);
-  EXPECT_THAT(outcome.other_minima[0], testing::StartsWith("laser2.lambda has another minimum at "));
+  EXPECT_THAT(outcome.other_minima[0], testing::StartsWith("laser2.lambda has a competing minimum at "));
 }
 
-TEST(CalibrateByRqe, TheNominalLambdaTellsWhichOfTwoPlacesIsMeant) {
+TEST(CalibrateByRqe, TheNominalLambdaSelectsOneOfTwoMinima) {
   const auto recording = in_a_room_that_looks_the_same_from_behind();
   RqeCalibrationSettings settings = quick();
   settings.full_field = false;
@@ -143,16 +143,16 @@ TEST(CalibrateByRqe, RefusesARecordingThatIsTooShortForTheLagsAtOnce) {
   const auto recording = simulate_measurements(misplaced_scanner(2, 0.3), office());
   const auto measure = rqe_measure();
   const SensorModel start(nominal_calibration(default_rig()));
-  std::vector<double> told;
+  std::vector<double> reported;
   const auto calibrate = [&] {
     calibrate_by_rqe(start, sample_of(recording), *measure, quick(),
-                     [&](double done, std::string_view) { told.push_back(done); });
+                     [&](double done, std::string_view) { reported.push_back(done); });
   };
   EXPECT_THAT(calibrate, testing::ThrowsMessage<Error>(testing::HasSubstr("the recording is too short")));
-  EXPECT_THAT(told, testing::IsEmpty());
+  EXPECT_THAT(reported, testing::IsEmpty());
 }
 
-TEST(CalibrateByRqe, NeverLooksAtLagsAtWhichBeamsAreNotCovered) {
+TEST(CalibrateByRqe, NeverTestsAtLagsAtWhichBeamsAreNotCovered) {
   const auto recording = simulate_measurements(misplaced_scanner(2, 1.0), office());
   Calibration nominal = nominal_calibration(default_rig());
   for (auto& laser : nominal.lasers) laser.tau.value = 1.5;  // so that no cloud is crisp anywhere near
@@ -160,7 +160,7 @@ TEST(CalibrateByRqe, NeverLooksAtLagsAtWhichBeamsAreNotCovered) {
   try {
     calibrate_by_rqe(SensorModel(nominal), sample_of(recording), *measure, {.points = 3000, .probes = 4});
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("the end of its range"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("the end of its search range"));
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Of each laser a beam at each of these mirror angles [rad].
+/// A beam of each laser at each of these mirror angles [rad].
 Measurements beams_at(const std::vector<std::vector<float>>& angles) {
   Measurements beams;
   for (std::uint16_t laser = 0; laser < angles.size(); ++laser) {
@@ -38,9 +38,10 @@ std::string refusal(const Measurements& beams, const std::vector<std::string>& f
 
 TEST(SingleBeams, AreRefusedWithTheLasersThatHaveThem) {
   const std::string text = refusal(beams_at({{0.5F, 0.5F, 0.5F}, {-1.5F, 1.5F}, {0, 0}}));
-  EXPECT_THAT(text,
-              HasSubstr("all beams have one and the same mirror angle, of laser1 (3 beams at 28.648 deg), "
-                        "laser3 (2 beams at 0.000 deg)"));
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          "all beams of laser1 (3 beams at 28.648 deg), laser3 (2 beams at 0.000 deg) have the same mirror angle"));
   EXPECT_THAT(text, HasSubstr("fixed: [alpha, tau]"));
 }
 

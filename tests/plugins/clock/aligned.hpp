@@ -13,7 +13,7 @@
 #include "plugins/clock/online_aligner.hpp"
 #include "tests/plugins/clock/simulated_scanner.hpp"
 
-namespace crisp::testing {
+namespace crisp::test {
 
 /// What an aligner made of a recording.
 struct Aligned {
@@ -119,4 +119,4 @@ inline std::vector<SimulatedLaser> three_lasers(std::uint64_t seed) {
   return lasers;
 }
 
-}  // namespace crisp::testing
+}  // namespace crisp::test

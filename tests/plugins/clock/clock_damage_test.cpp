@@ -7,7 +7,7 @@
 namespace crisp {
 namespace {
 
-using namespace testing;  // NOLINT(google-build-using-namespace)
+using namespace test;  // NOLINT(google-build-using-namespace)
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -155,7 +155,7 @@ TEST(ClockDamage, CountsBeamsWithoutEchoAndNamesALaserThatSeesNothing) {
 
 TEST(ClockDamage, NamesADeviceThatIsMissing) {
   const auto aligned = align({SimulatedLaser{}.turns(1, 0, 2), {}}, SimulatedPlate{}.readings(1, 2));
-  EXPECT_THAT(aligned.report.warnings, Contains("laser2: nothing came from it"));
+  EXPECT_THAT(aligned.report.warnings, Contains("laser2: no data of it"));
   EXPECT_THROW(align({SimulatedLaser{}.turns(1, 0, 2)}, {}), Error);
   EXPECT_THROW(align({{}}, SimulatedPlate{}.readings(1, 2)), Error);
 }
@@ -205,7 +205,7 @@ TEST(ClockDamage, RefusesAPlateWhoseClockStandsStill) {
   }
 }
 
-TEST(ClockDamage, PlacesByReceiptsWhereAskedToAndAClockStandsStill) {
+TEST(ClockDamage, PlacesByReceiptsWhereRequestedToAndAClockStandsStill) {
   auto readings = SimulatedPlate{}.readings(4, 5);
   for (auto& reading : readings) reading.device_us = 77;
   auto turns = SimulatedLaser{}.turns(4, 0, 5);
@@ -216,14 +216,14 @@ TEST(ClockDamage, PlacesByReceiptsWhereAskedToAndAClockStandsStill) {
   EXPECT_THAT(aligned.report.warnings, Contains(HasSubstr("laser1: its clock stands still")));
   EXPECT_THAT(aligned.report.warnings, Contains(HasSubstr("plate: its clock stands still")));
   EXPECT_THAT(aligned.report.warnings, ::testing::Not(Contains(HasSubstr("reset"))));
-  EXPECT_THAT(aligned.report.doubts, ::testing::IsEmpty());
+  EXPECT_THAT(aligned.report.caveats, ::testing::IsEmpty());
 }
 
-TEST(ClockDamage, DoubtsALaserWhoseClockStandsStill) {
+TEST(ClockDamage, MarksALaserWithAStandingClockUntrusted) {
   auto lasers = std::vector{SimulatedLaser{}.turns(4, 0, 5), SimulatedLaser{}.turns(5, 1, 5)};
   for (auto& turn : lasers[1]) turn.scan.scan_time_us = turn.scan.transmission_time_us = 0;
   const auto aligned = align(lasers, SimulatedPlate{}.readings(4, 5));
-  EXPECT_THAT(aligned.report.doubts,
+  EXPECT_THAT(aligned.report.caveats,
               ::testing::ElementsAre(HasSubstr("laser2: its clock stands still (for 5.0 s): 248 of 249")));
   EXPECT_EQ(aligned.report.devices[1].standing, lasers[1].size() - 1);
   EXPECT_EQ(aligned.report.devices[1].repeated, 0U) << "none came twice";
@@ -241,15 +241,16 @@ TEST(ClockDamage, WarnsOfALaserOfWhichMoreThanAFewScansAreOfNoUse) {
   EXPECT_THAT(report_with(50).warnings, ::testing::IsEmpty());
   const auto report = report_with(10);
   EXPECT_THAT(report.warnings,
-              Contains(HasSubstr("laser1: 24 of 249 telegrams (9.6 %) have times that fit")));
-  EXPECT_THAT(report.doubts, ::testing::IsEmpty());
+              Contains(HasSubstr("laser1: 24 of 249 telegrams (9.6 %) have times inconsistent")));
+  EXPECT_THAT(report.caveats, ::testing::IsEmpty());
 }
 
 TEST(ClockDamage, NamesAClockThatTicksTooCoarsely) {
   auto readings = SimulatedPlate{}.readings(4, 5);
   for (auto& reading : readings) reading.device_us -= reading.device_us % 10'000;
   const auto report = align({SimulatedLaser{}.turns(4, 0, 5)}, readings).report;
-  EXPECT_THAT(report.warnings, Contains(HasSubstr("plate: its clock ticks too coarsely: 2000 of 2500")));
+  EXPECT_THAT(report.warnings,
+              Contains(HasSubstr("plate: its clock's resolution is too coarse: 2000 of 2500")));
 }
 
 TEST(ClockDamage, SurvivesNonsense) {

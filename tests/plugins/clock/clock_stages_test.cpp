@@ -25,13 +25,13 @@ class SimulatedHub final : public Stage {
   void process(const Inputs&, Outputs& out, Context&) override {
     std::multimap<std::int64_t, std::function<void()>> arrivals;
     for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(lasers_); ++i) {
-      testing::SimulatedLaser laser;
+      test::SimulatedLaser laser;
       laser.clock.skew = [=](double) { return (i + 1) * 50e-6; };
       for (const auto& turn : laser.turns(1, i, kSeconds)) {
         arrivals.emplace(turn.scan.receipt_ns, [&out, scan = turn.scan] { out.give(Scan(scan)); });
       }
     }
-    for (const auto& reading : testing::SimulatedPlate{}.readings(1, kSeconds)) {
+    for (const auto& reading : test::SimulatedPlate{}.readings(1, kSeconds)) {
       arrivals.emplace(reading.receipt_ns, [&out, reading] { out.give(PlateReading(reading)); });
     }
     for (const auto& [receipt, give] : arrivals) give();
@@ -103,12 +103,11 @@ TEST_P(ClockStages, GivesTheTrajectoryThenAllMeasurementsAndTheMaps) {
   EXPECT_THAT(report.lines.at(0), HasSubstr("skew/ppm"));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ClockStages,
-                         ::testing::Values("clock.convex_hull", "clock.linear_program", "clock.receipt"),
+INSTANTIATE_TEST_SUITE_P(All, ClockStages, ::testing::Values("clock.convex_hull", "clock.receipt"),
                          [](const auto& name) { return std::string(name.param).substr(6); });
 
 TEST_F(ClockStages, WarnsOfAMissingLaserAndRefusesToGoOnWithoutAny) {
-  EXPECT_THAT(run("clock.convex_hull", 2).warnings, ::testing::Contains("laser3: nothing came from it"));
+  EXPECT_THAT(run("clock.convex_hull", 2).warnings, ::testing::Contains("laser3: no data of it"));
   EXPECT_THROW(run("clock.convex_hull", 0), Error);
 }
 

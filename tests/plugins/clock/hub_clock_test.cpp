@@ -12,7 +12,7 @@
 namespace crisp {
 namespace {
 
-using namespace testing;  // NOLINT(google-build-using-namespace)
+using namespace test;  // NOLINT(google-build-using-namespace)
 using ::testing::HasSubstr;
 
 /// [s] By how much plate and beams are off one another in time, about the usual: from the plate's angle, of
@@ -49,7 +49,7 @@ TEST(HubClock, IsNamedOnceWhereAllDevicesDeviateAlike) {
     }
     for (auto& reading : readings) shifted(reading.receipt_ns);
     const auto aligned = align(lasers, readings);
-    EXPECT_THAT(aligned.report.doubts, ::testing::IsEmpty()) << hub(10);
+    EXPECT_THAT(aligned.report.caveats, ::testing::IsEmpty()) << hub(10);
     EXPECT_THAT(aligned.report.warnings,
                 ::testing::ElementsAre(HasSubstr("the hub's clock deviates by up to")))
         << hub(10);

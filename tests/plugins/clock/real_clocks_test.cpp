@@ -50,9 +50,9 @@ TEST(RealClocks, OfATiM781SRunFourPartsPerMillionSlow) {
                  << "sick_tim781_tcp.csv";
   const auto stamps = stamps_of(rows, 3, 5, 1000);
   ASSERT_EQ(stamps.size(), 766u);
-  const auto line = line_by_convex_hull(stamps, testing::mean_device_time(stamps));
+  const auto line = line_by_convex_hull(stamps, test::mean_device_time(stamps));
   const auto errors = errors_of_line(stamps, line);
-  // An independent look: 4.5 ± 0.25 ppm with the first packet, 4.1 with the last.
+  // An independent evaluation: 4.5 ± 0.25 ppm with the first packet, 4.1 with the last.
   EXPECT_NEAR(1e6 * line.slope, 4.1, 0.5);
   // Four stamps lie within 15 us of the line, the others 50 us and more above it: over 51 s some 0.3 to 2
   // ppm.
@@ -67,8 +67,8 @@ TEST(RealClocks, TwoStreamsOfOneDeviceGiveOneLine) {
                  << "sick_tim781_tcp.csv";
   const auto transmission = stamps_of(rows, 3, 5, 1000);
   const auto start = stamps_of(rows, 2, 5, 1000);
-  const auto a = line_by_convex_hull(transmission, testing::mean_device_time(transmission));
-  const auto b = line_by_convex_hull(start, testing::mean_device_time(start));
+  const auto a = line_by_convex_hull(transmission, test::mean_device_time(transmission));
+  const auto b = line_by_convex_hull(start, test::mean_device_time(start));
   const double error = std::hypot(errors_of_line(transmission, a).slope, errors_of_line(start, b).slope);
   EXPECT_NEAR(a.slope, b.slope, 3 * error);
   EXPECT_LT(error, 4e-6);
@@ -82,9 +82,9 @@ TEST(RealClocks, AcrossWirelessNetworksAgreeWithinTheirErrors) {
     const auto rows = read_rows(names[i]);
     if (rows.empty()) GTEST_SKIP() << "no shared data: " << names[i];
     const auto stamps = stamps_of(rows, 0, 1, 1);
-    lines[i] = line_by_convex_hull(stamps, testing::mean_device_time(stamps));
+    lines[i] = line_by_convex_hull(stamps, test::mean_device_time(stamps));
     errors[i] = errors_of_line(stamps, lines[i], 1e-3).slope;  // its clock counts milliseconds
-    EXPECT_NEAR(1e6 * lines[i].slope, -100, 20) << names[i];   // an independent look: −88, −117, −105
+    EXPECT_NEAR(1e6 * lines[i].slope, -100, 20) << names[i];  // an independent evaluation: −88, −117, −105
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;

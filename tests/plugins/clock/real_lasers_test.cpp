@@ -27,8 +27,7 @@ struct Timed {
 
 Timed align_dialogue(const std::string& name) {
   const RigLaser laser{.name = "real"};
-  LaserTrack track(laser, DeviceStamps("real", FittedClock("real", line_by_convex_hull, 5e-8), 0),
-                   TimeSource::clock, 0);
+  LaserTrack track(laser, DeviceStamps("real", FittedClock("real", 5e-8), 0), TimeSource::clock, 0);
   std::ifstream file(shared_data() / "sick" / name);
   for (const auto& entry : nlohmann::json::parse(file)) {
     const auto& tcp = entry.at("_source").at("layers").at("tcp");
@@ -66,7 +65,7 @@ TEST(RealLasers, AnLms111TurnsSlowlyAndStampsATurnLate) {
   EXPECT_EQ(timed.report.repeated, 3u);  // retransmitted
   EXPECT_EQ(timed.report.lost, 0u);
   EXPECT_EQ(timed.report.resets, 0u);
-  // Looked at independently: 11 +- 8 ppm; delays 68 us in the median, 345 us at 95 %; periods 20114.5 +- 34
+  // An independent evaluation: 11 +- 8 ppm; delays 68 us in the median, 345 us at 95 %; periods 20114.5 +- 34
   // us.
   EXPECT_NEAR(timed.report.clock->skew_ppm(), 11, 8);
   EXPECT_NEAR(timed.report.clock->residual_median, 68e-6, 15e-6);
@@ -87,7 +86,7 @@ TEST(RealLasers, AnLms511KeepsItsRateAndStampsInTime) {
     const auto timed = align_dialogue(name);
     EXPECT_NEAR(timed.mean_period, 40001e-6, 3e-6);
     EXPECT_EQ(timed.report.lost, 0u);
-    // Looked at independently: 3 +- 9 and 7 +- 4 ppm, delays of 44 to 63 us in the median, 127 to 190 at 95
+    // An independent evaluation: 3 +- 9 and 7 +- 4 ppm, delays of 44 to 63 us in the median, 127 to 190 at 95
     // %.
     const double error = 1e6 * timed.report.clock->skew_std_error;
     EXPECT_LT(error, 15);

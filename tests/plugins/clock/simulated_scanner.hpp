@@ -14,7 +14,7 @@
 #include "pipeline/data/scan.hpp"
 #include "tests/support/simulated_stamps.hpp"
 
-namespace crisp::testing {
+namespace crisp::test {
 
 /// A device's clock: what it shows at a true time [s].
 struct SimulatedClock {
@@ -131,4 +131,4 @@ struct SimulatedPlate {
   }
 };
 
-}  // namespace crisp::testing
+}  // namespace crisp::test

@@ -44,7 +44,7 @@ TEST(CellPlan, ListsEveryNeighbourOnce) {
   }
 }
 
-TEST(CellPlan, AsksForDoublePrecisionOnlyWhereACloudReachesVeryFar) {
+TEST(CellPlan, RequestsDoublePrecisionOnlyWhereACloudReachesVeryFar) {
   const auto clouds = test::awkward_clouds();
   EXPECT_FALSE(plan_cells(clouds.at("huge coordinates").view(), 0.1).needs_double);
   EXPECT_TRUE(plan_cells(clouds.at("outliers").view(), 0.1).needs_double);

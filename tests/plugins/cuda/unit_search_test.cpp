@@ -41,11 +41,11 @@ UnitSums sum_on_host(const CellPlan& plan, const PointsView& points, std::span<c
   UnitSums sums;
   sums.kernel.resize(plan.units.size());
   sums.pairs.resize(plan.units.size());
-  if (gradient) sums.pull.assign(points.size(), 0);
+  if (gradient) sums.gradient.assign(points.size(), 0);
   const PlanView view{points.x.data(),         points.y.data(),   points.z.data(),  weights.data(),
                       plan.order.index.data(), plan.units.data(), plan.near.data(), plan.near_begin.data()};
-  const Results results{gradient ? sums.pull.x.data() : nullptr, sums.pull.y.data(), sums.pull.z.data(),
-                        sums.kernel.data(), sums.pairs.data()};
+  const Results results{gradient ? sums.gradient.x.data() : nullptr, sums.gradient.y.data(),
+                        sums.gradient.z.data(), sums.kernel.data(), sums.pairs.data()};
   (plan.needs_double ? sum_all<double> : sum_all<float>)(plan, view, kernel, results);
   return sums;
 }
@@ -162,7 +162,7 @@ TEST_P(UnitSearchOn, PlansAnewForAnotherKernelAndAsManyOtherPoints) {
               rqe(other.view(), {}, {.sigma = 0.005}, exact).value, 2e-6);
 }
 
-TEST_P(UnitSearchOn, LeavesTheGradientOutWhenItIsNotWanted) {
+TEST_P(UnitSearchOn, LeavesTheGradientOutWhenItIsNotRequested) {
   const auto cloud = test::room_corner(1000, 2, 0.02, 4);
   auto units = search();
   const auto with = rqe(cloud.view(), {}, {.sigma = 0.05}, units);

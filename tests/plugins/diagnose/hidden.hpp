@@ -10,13 +10,13 @@
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/error.hpp"
-#include "pipeline/estimate/wanted_terms.hpp"
-#include "plugins/diagnose/diagnosis.hpp"
+#include "pipeline/estimate/requested_terms.hpp"
+#include "plugins/diagnose/model/diagnosis.hpp"
 #include "tests/support/built_in_terms.hpp"
 
 namespace crisp::test {
 
-/// A term of a calibration, found by "laser2.mirror.cone" or "encoder.eccentricity".
+/// Finds a term of a calibration by its name: "laser2.mirror.cone" or "encoder.eccentricity".
 inline TermParameters& term_of(Calibration& calibration, const std::string& name) {
   for (auto& term : calibration.plate_terms) {
     if (term.term == name) return term;
@@ -29,7 +29,7 @@ inline TermParameters& term_of(Calibration& calibration, const std::string& name
   throw Error("there is no term " + name);
 }
 
-/// A recording in whose truth something hides.
+/// A simulated recording with its truth.
 struct Recording {
   ScannerSettings scanner;
   SimulatedMeasurements made;
@@ -48,12 +48,12 @@ inline Recording recorded(const ScannerSettings& scanner, const Scene& scene) {
   return {.scanner = scanner, .made = simulate_measurements(scanner, scene, built_in_terms())};
 }
 
-/// Hides terms with the values of their first parameters.
+/// Simulates terms with the given values of their first parameters.
 inline Recording hidden(std::uint64_t seed, double duration, const Scene& scene,
                         const std::map<std::string, std::vector<double>>& effects) {
   ScannerSettings scanner = scanner_of(seed, duration);
   for (const auto& [name, values] : effects) {
-    add_wanted_terms(scanner.truth, {name}, built_in_terms());
+    add_requested_terms(scanner.truth, {name}, built_in_terms());
     auto& parameters = term_of(scanner.truth, name).parameters;
     for (std::size_t k = 0; k < values.size(); ++k) parameters.at(k).value = values[k];
   }
@@ -67,14 +67,14 @@ inline Diagnosis diagnosed(const Recording& recording, const DiagnosisSettings& 
 
 inline std::vector<std::string> names_in(const Diagnosis& diagnosis) {
   std::vector<std::string> names;
-  for (const auto& departure : diagnosis.departures) {
-    if (departure.accepted) names.push_back(departure.candidate.name);
+  for (const auto& hypothesis : diagnosis.hypotheses) {
+    if (hypothesis.accepted) names.push_back(hypothesis.candidate.name);
   }
   return names;
 }
 
-/// What became of one parameter of a term.
-struct Told {
+/// Estimate of one parameter compared with its truth.
+struct Reported {
   std::string name;
   double truth = 0;
   double estimate = 0;
@@ -82,11 +82,12 @@ struct Told {
   double error() const { return (estimate - truth) / std_error; }  ///< in standard errors
 };
 
-/// A term's estimated parameters.
-inline std::vector<Told> told_of(const Diagnosis& diagnosis, Calibration truth, const std::string& term) {
+/// Estimates of a term's parameters.
+inline std::vector<Reported> estimates_of(const Diagnosis& diagnosis, Calibration truth,
+                                          const std::string& term) {
   const crisp::Outcome& outcome = diagnosis.after.outcome;
   const auto& parameters = term_of(truth, term).parameters;
-  std::vector<Told> all;
+  std::vector<Reported> all;
   for (std::size_t k = 0; k < outcome.free.size(); ++k) {
     const std::string& full = outcome.model.names()[outcome.free[k]];
     const std::string owned = full.starts_with("plate.") ? full.substr(6) : full;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A term that is not built in, as a plugin adds it, takes part in the diagnosis.
+// A term that a plugin adds takes part in the diagnosis like built-in ones.
 #include <gmock/gmock.h>
 
 #include "pipeline/model/catalogue.hpp"
@@ -8,7 +8,7 @@
 namespace crisp {
 namespace {
 
-/// What no built-in cause does.
+/// An effect that no built-in cause describes.
 struct Ripple final : DifferentiableTerm<Ripple> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
@@ -26,20 +26,20 @@ struct Ripple final : DifferentiableTerm<Ripple> {
   }
 };
 
-TEST(AnOwnTerm, IsNamedLikeTheBuiltInOnes) {
+TEST(PluginTerm, IsNamedLikeTheBuiltInOnes) {
   TermRegistry terms;
   register_built_in(terms);
   terms.add(std::make_shared<Ripple>());
   ScannerSettings scanner = test::scanner_of(61, 4);
-  add_wanted_terms(scanner.truth, {"laser3.mine.ripple"}, terms);
+  add_requested_terms(scanner.truth, {"laser3.mine.ripple"}, terms);
   test::term_of(scanner.truth, "laser3.mine.ripple").parameters.at(0).value = 0.011;
   const auto made = simulate_measurements(scanner, office(), terms);
   const Diagnosis diagnosis = diagnose(SensorModel(nominal_calibration(default_rig()), terms),
                                        {.beams = made.beams, .plate = &made.plate}, terms, {});
   EXPECT_THAT(test::names_in(diagnosis), testing::ElementsAre("laser3.mine.ripple"));
-  const auto told = test::told_of(diagnosis, scanner.truth, "laser3.mine.ripple");
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_LT(std::abs(told[0].error()), 3.5);
+  const auto reported = test::estimates_of(diagnosis, scanner.truth, "laser3.mine.ripple");
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_LT(std::abs(reported[0].error()), 3.5);
 }
 
 }  // namespace

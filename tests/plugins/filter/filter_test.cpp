@@ -57,7 +57,7 @@ TEST(Voxel, TheFirstPointOfACellStaysWholeOverAllClouds) {
   EXPECT_EQ(clouds[0]->at(0).laser, 2);
   EXPECT_EQ(clouds[0]->at(0).beam, 77);
   EXPECT_EQ(clouds[0]->at(0).intensity, 9);
-  EXPECT_EQ(stage.report().counts.at("points in a cell that had one"), 2U);
+  EXPECT_EQ(stage.report().counts.at("points in occupied cells"), 2U);
 }
 
 TEST(Voxel, KeepsOnePointInEachCellOfADenseCube) {
@@ -84,9 +84,9 @@ TEST(Voxel, PointsBeyondTheGridAreALossOfTheirOwnAndWarnedOf) {
   stage.feed(cloud_of({point_at(0, 0, 1, 1), point_at(0, 0, 1, 2), point_at(0, 5e9F, 0, 3)}));
   stage.feed(cloud_of({point_at(1e30F, 0, 1, 4), point_at(0, 0, 2, 5), point_at(kNan, 0, 1, 6)}));
   stage.finish();
-  EXPECT_EQ(stage.report().counts.at("points whose place is no number"), 1U);
-  EXPECT_EQ(stage.report().counts.at("points in a cell that had one"), 1U);
-  EXPECT_EQ(stage.report().counts.at("points too far away for this grid"), 2U);
+  EXPECT_EQ(stage.report().counts.at("points with a coordinate that is no number"), 1U);
+  EXPECT_EQ(stage.report().counts.at("points in occupied cells"), 1U);
+  EXPECT_EQ(stage.report().counts.at("points outside of the grid"), 2U);
   ASSERT_EQ(stage.report().warnings.size(), 1U);
   EXPECT_THAT(stage.report().warnings[0], testing::HasSubstr("2 points are dropped that are 2.15e+03 km"));
 }

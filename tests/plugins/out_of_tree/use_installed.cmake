@@ -65,7 +65,7 @@ if(NOT cloud MATCHES "POINTS 2\n.*\n1 1 0 7 2 9 0.25\n0 -2 0 8 0 3 0.5\n$")
   message(FATAL_ERROR "the example's stage did not keep the two points that are near:\n${cloud}")
 endif()
 
-# An installed plugin is found by itself; its term bends a simulation by as much as it says.
+# An installed plugin is found by itself; its term bends a simulation by its parameter.
 run(${CMAKE_COMMAND} --install "${work}/build" --prefix "${prefix}")
 run(${crisp} stages example.near)
 expect_output("radius")

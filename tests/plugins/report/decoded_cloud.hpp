@@ -31,7 +31,7 @@ inline std::string decoded_base64(const std::string& text) {
   return bytes;
 }
 
-/// The columns of a page's cloud, as the header says that they are to be read.
+/// The columns of a page's cloud, decoded by its header.
 inline std::map<std::string, std::vector<double>> decoded_cloud(const EncodedCloud& cloud) {
   const std::string packed = decoded_base64(cloud.base64);
   const auto n = cloud.header.at("points").get<std::size_t>();

@@ -72,7 +72,7 @@ TEST(EncodedCloud, KeepsWhatIsKnownOfEachPoint) {
   }
 }
 
-TEST(EncodedCloud, TellsNoSurfaceFromADistance) {
+TEST(EncodedCloud, DistinguishesNoSurfaceFromADistance) {
   const auto columns = test::decoded_cloud(encode(random_cloud(10, 12)));
   EXPECT_TRUE(std::isnan(columns.at("distance")[0]));
   EXPECT_TRUE(std::isnan(columns.at("incidence")[0]));

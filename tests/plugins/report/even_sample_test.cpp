@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSide = 0.1;  // [m]
 
-/// As many points as told within a centimetre about a place on the x axis.
+/// Adds `count` points within a centimetre about a place on the x axis.
 void add_heap(double x, std::size_t count, Vectors& to) {
   for (std::size_t k = 0; k < count; ++k) {
     to.x.push_back(x + 0.01 * static_cast<double>(k) / static_cast<double>(count));

@@ -79,7 +79,7 @@ TEST_F(WriteReport, WritesThePageWhenTheRunIsRecorded) {
   EXPECT_EQ(data.at("motion").at("time").size(), 101U);
 }
 
-TEST_F(WriteReport, ShowsParametersInMillimetresAndDegreesBesideTheRigs) {
+TEST_F(WriteReport, ShowsParametersInMillimetresAndDegreesNextToTheRigs) {
   Calibration calibration = nominal_calibration(default_rig());
   calibration.lasers[1].tau = {"tau", "m", 0.2135, 0.0002, true};
   driver_.feed(beams(), turning(), calibration);
@@ -121,7 +121,7 @@ TEST_F(WriteReport, HoldsThePlotsThatStagesDrew) {
   test::put_bytes(folder_ / "laser1_noise.svg", "<svg/>");
   Json summary = kSummary;
   summary["stages"] = {
-      {{"tag", "diagnose.scatter"},
+      {{"tag", "diagnose.noise_model"},
        {"outputs", {(folder_ / "laser1_noise.svg").string(), (folder_ / "gone.svg").string()}}}};
   driver_.finish();
   driver_.report().when_recorded(summary);

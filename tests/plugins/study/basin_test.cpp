@@ -23,7 +23,7 @@ BasinSettings few_starts(std::size_t starts) {
   settings.trial.duration = 5;
   settings.trial.rqe.probes = 4;
   settings.starts = starts;
-  settings.starts_a_recording = 2;
+  settings.starts_per_recording = 2;
   return settings;
 }
 
@@ -48,7 +48,7 @@ TEST(Basin, DrawsStartsOverTheWholeRangeAndEndsInTheSameOptimum) {
   EXPECT_EQ(basin_csv(explore_basin(settings, make_rqe)), basin_csv(recordings)) << "on two threads";
 }
 
-TEST(Basin, SaysWhyARecordingHasNoStarts) {
+TEST(Basin, ReportsWhyARecordingHasNoStarts) {
   BasinSettings settings = few_starts(2);
   settings.trial.motion.max_rate = 0;
   const auto recordings = explore_basin(settings, make_rqe);
@@ -57,12 +57,12 @@ TEST(Basin, SaysWhyARecordingHasNoStarts) {
   EXPECT_EQ(tally_of(recordings).failed, 1U);
 }
 
-TEST(Basin, CountsEndsByWhatTheySaid) {
+TEST(Basin, CountsEndsByTheirCaveats) {
   BasinRecording recording{.seed = 7, .parameters = {"laser1.tau"}};
   recording.starts = {
       {.recording = 7, .start = {0.3}, .ending = Ending::kSame, .off = 0.1, .farthest = "laser1.tau"},
-      {.recording = 7, .start = {0.1}, .ending = Ending::kSame, .doubts = {"it is dark"}},
-      {.recording = 7, .start = {0.2}, .ending = Ending::kDoubted, .off = 9, .doubts = {"a \"wall\""}},
+      {.recording = 7, .start = {0.1}, .ending = Ending::kSame, .caveats = {"it is dark"}},
+      {.recording = 7, .start = {0.2}, .ending = Ending::kWithCaveats, .off = 9, .caveats = {"a \"wall\""}},
       {.recording = 7,
        .start = {0},
        .ending = Ending::kSilent,
@@ -72,14 +72,14 @@ TEST(Basin, CountsEndsByWhatTheySaid) {
   const BasinTally tally = tally_of({recording});
   EXPECT_EQ(tally.starts, 4U);
   EXPECT_EQ(tally.same, 2U);
-  EXPECT_EQ(tally.same_doubted, 1U);
-  EXPECT_EQ(tally.doubted, 1U);
+  EXPECT_EQ(tally.same_with_caveats, 1U);
+  EXPECT_EQ(tally.with_caveats, 1U);
   EXPECT_EQ(tally.silent, 1U);
   const std::string text = basin_text({recording});
   EXPECT_THAT(text,
-              HasSubstr("recording 7 start 3: laser1.tau off by 50 mm, 20 standard errors; it was sure"));
-  EXPECT_THAT(text, HasSubstr("elsewhere, and sure                                 1   25.00 %"));
-  EXPECT_THAT(basin_csv({recording}), HasSubstr("7,2,laser1.tau,m,0.2,doubted,9,,0,\"a 'wall'\"\n"));
+              HasSubstr("recording 7 start 3: laser1.tau off by 50 mm, 20 standard errors; without caveats"));
+  EXPECT_THAT(text, HasSubstr("elsewhere, without caveats                          1   25.00 %"));
+  EXPECT_THAT(basin_csv({recording}), HasSubstr("7,2,laser1.tau,m,0.2,with_caveats,9,,0,\"a 'wall'\"\n"));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ const Figures& figures() {
 }
 
 /// Steps at which a curve is lower than at both neighbours, ends included.
-std::vector<std::size_t> valleys(const std::vector<double>& curve) {
+std::vector<std::size_t> local_minima(const std::vector<double>& curve) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const bool from_left = i == 0 || curve[i] < curve[i - 1];
@@ -89,7 +89,7 @@ TEST(Figures, FiveHasOneMinimumAndThatNearTheTruth) {
   EXPECT_NEAR(settings().alpha.at(minima[0] % columns), 0, 1.01 * kDegree);
 }
 
-TEST(Figures, SixHasItsValleyAtTheTruthAndDeeperTheNarrowerTheKernel) {
+TEST(Figures, SixHasItsMinimumAtTheTruthAndDeeperTheNarrowerTheKernel) {
   ASSERT_EQ(settings().widths.front(), 0.1);
   for (const auto* curves : {&figures().over_tau.cost, &figures().over_alpha.cost}) {
     const Axis& axis = curves == &figures().over_tau.cost ? settings().tau : settings().alpha;
@@ -97,7 +97,7 @@ TEST(Figures, SixHasItsValleyAtTheTruthAndDeeperTheNarrowerTheKernel) {
     double depth_before = 1e9;
     for (std::size_t k = 0; k < 3; ++k) {  // up to 0.5 m; a wider kernel is wider than the bay of the room
       const auto& curve = (*curves)[k];
-      EXPECT_THAT(valleys(curve), testing::SizeIs(1)) << settings().widths[k];
+      EXPECT_THAT(local_minima(curve), testing::SizeIs(1)) << settings().widths[k];
       const double step = axis.at(1) - axis.at(0);
       EXPECT_NEAR(axis.at(lowest(curve)), truth, 1.01 * step) << settings().widths[k];
       const double depth = *std::ranges::max_element(curve) - *std::ranges::min_element(curve);
@@ -118,9 +118,9 @@ TEST(Figures, SevenHasItsMinimumNearTheTruthAndMoreOthersTheNarrowerTheKernel) {
   for (const std::size_t narrow : {1, 2}) {
     EXPECT_NEAR(settings().lag.at(lowest(curves[narrow])), settings().eta, 1.01e-3) << narrow;
   }
-  EXPECT_EQ(valleys(curves[0]).size(), 1U);
+  EXPECT_EQ(local_minima(curves[0]).size(), 1U);
   for (std::size_t k = 1; k < 4; ++k)
-    EXPECT_GT(valleys(curves[k]).size(), valleys(curves[k - 1]).size()) << k;
+    EXPECT_GT(local_minima(curves[k]).size(), local_minima(curves[k - 1]).size()) << k;
 }
 
 TEST(Figures, AreWrittenAsPlainColumnsUnderAHeader) {

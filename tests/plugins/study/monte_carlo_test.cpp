@@ -44,7 +44,7 @@ TEST(MonteCarlo, RefinesToTheBoundFromAnyLambda) {
   const auto trials = run_trials(small(6), make_rqe);
   double sum = 0;
   double n = 0;
-  for (const Trial& trial : trials) {
+  for (const MonteCarloTrial& trial : trials) {
     ASSERT_EQ(trial.refined.failure, "");
     EXPECT_EQ(trial.parameters[3], "laser2.lambda");
     sum += (trial.refined.error.array() / trial.bound.array()).square().sum();
@@ -67,9 +67,9 @@ TEST(MonteCarlo, CountsOnTheNoiseThatItsLasersHave) {
   const double ranges = static_cast<double>(record(settings, 3).simulated.beams.size());
   EXPECT_NEAR(noise, rms, 4 * rms / std::sqrt(2 * ranges));
   // The bound is of normal noise of that size: as many times smaller.
-  const Trial plain = run_trial(settings, 3, make_rqe);
+  const MonteCarloTrial plain = run_trial(settings, 3, make_rqe);
   settings.counted_noise = noise;
-  const Trial counted = run_trial(settings, 3, make_rqe);
+  const MonteCarloTrial counted = run_trial(settings, 3, make_rqe);
   for (Eigen::Index k = 0; k < plain.bound.size(); ++k) {
     EXPECT_NEAR(counted.bound[k] / plain.bound[k], noise / settings.noise, 1e-9);
   }
@@ -95,7 +95,7 @@ TEST(MonteCarlo, CountsOnTheNoiseThatEachOfItsEchoesHas) {
   EXPECT_NEAR(noise_in(settings, 3), rms, 4 * std::sqrt(fourths) / n / (2 * rms));
 }
 
-TEST(MonteCarlo, StrewsOutliersBeforeAndBehindWhatWasMet) {
+TEST(MonteCarlo, AddsOutliersBeforeAndBehindSurfaces) {
   TrialSettings settings = small(1).trial;
   const auto clean = record(settings, 3).simulated.beams;
   settings.outliers = 0.05;
@@ -143,13 +143,13 @@ TEST(MonteCarlo, StudiesTheWholeFieldOfViewFromWhereRqeWouldEnd) {
   settings.trial.duration = 2;
   settings.trial.lasers = 2;
   const MakeMeasure none = []() -> std::unique_ptr<Measure> { throw Error("RQE is left out"); };
-  for (const Trial& trial : run_trials(settings, none)) {
+  for (const MonteCarloTrial& trial : run_trials(settings, none)) {
     EXPECT_FALSE(trial.rqe);
     ASSERT_EQ(trial.refined.failure, "");
     ASSERT_EQ(trial.bound.size(), 7);
-    const Eigen::ArrayXd claimed = trial.refined.std_error.array() / trial.bound.array();
-    EXPECT_GT(claimed.minCoeff(), 1) << "better than the bound";
-    EXPECT_LT(claimed.maxCoeff(), 3);
+    const Eigen::ArrayXd estimated = trial.refined.std_error.array() / trial.bound.array();
+    EXPECT_GT(estimated.minCoeff(), 1) << "better than the bound";
+    EXPECT_LT(estimated.maxCoeff(), 3);
     // Within 5 standard errors that it claims: once in a hundred thousand without the encoder's steps.
     EXPECT_LT((trial.refined.error.array() / trial.refined.std_error.array()).abs().maxCoeff(), 5);
   }

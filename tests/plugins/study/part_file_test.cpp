@@ -22,15 +22,16 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 /// A run with numbers that no short text holds.
-Trial trial_of_seed(std::uint64_t seed) {
+MonteCarloTrial trial_of_seed(std::uint64_t seed) {
   const double third = static_cast<double>(seed) / 3;
   const Eigen::VectorXd numbers = Eigen::Vector3d(third, -0.0, 1e-300 * third);
-  Trial trial{.seed = seed,
-              .parameters = {"laser1.tau", "laser1.alpha", "laser1.eta"},
-              .bound = numbers,
-              .bound_with_steps = Eigen::Vector3d(third, std::numeric_limits<double>::quiet_NaN(), third),
-              .rqe = {},
-              .refined = {.error = numbers, .std_error = 2 * numbers, .failure = {}}};
+  MonteCarloTrial trial{
+      .seed = seed,
+      .parameters = {"laser1.tau", "laser1.alpha", "laser1.eta"},
+      .bound = numbers,
+      .bound_with_steps = Eigen::Vector3d(third, std::numeric_limits<double>::quiet_NaN(), third),
+      .rqe = {},
+      .refined = {.error = numbers, .std_error = 2 * numbers, .failure = {}}};
   if (seed % 2 == 0) trial.rqe = Estimate{.error = numbers, .std_error = {}, .failure = {}};
   if (seed % 3 == 0) trial.refined = {.error = {}, .std_error = {}, .failure = "it \"failed\"\nä"};
   return trial;
@@ -48,16 +49,17 @@ class PartFileTest : public testing::Test {
   }
 
   /// Does a part as a stage does, and counts the runs that are computed.
-  std::vector<Trial> do_part(std::size_t number, std::size_t count, const std::string& key = "abc") {
+  std::vector<MonteCarloTrial> do_part(std::size_t number, std::size_t count,
+                                       const std::string& key = "abc") {
     const Shard shard{number, count};
     const StudyPart part{.part = shard.text(), .merge = {}, .key = key};
     const fs::path output = folder_ / (std::to_string(number) + "-of-" + std::to_string(count));
     fs::create_directories(output);
     Context& own = context(output);
-    auto trials = run_or_read<Trial>(
+    auto trials = run_or_read<MonteCarloTrial>(
         own, part, kExtent,
         [&] {
-          std::vector<Trial> made;
+          std::vector<MonteCarloTrial> made;
           for (std::size_t k = 0; k < share_of(shard, kExtent.runs); ++k)
             made.push_back(trial_of_seed(kExtent.first_seed + run_of(shard, k)));
           computed_ += made.size();
@@ -68,11 +70,11 @@ class PartFileTest : public testing::Test {
     return trials;
   }
 
-  std::vector<Trial> merge(const std::string& key = "abc") {
+  std::vector<MonteCarloTrial> merge(const std::string& key = "abc") {
     const StudyPart part{.part = {}, .merge = folder_.path(), .key = key};
     Context& own = context(folder_.path());
-    const auto none = [] { return std::vector<Trial>(); };
-    auto trials = run_or_read<Trial>(own, part, kExtent, none, trial_of);
+    const auto none = [] { return std::vector<MonteCarloTrial>(); };
+    auto trials = run_or_read<MonteCarloTrial>(own, part, kExtent, none, trial_of);
     EXPECT_FALSE(write_if_part(own, part, kExtent, trials, trial_json));
     return trials;
   }
@@ -100,7 +102,7 @@ TEST(StudyPart, TakesEachRunOnce) {
 }
 
 TEST_F(PartFileTest, MergesToTheBytesOfOneMachine) {
-  std::vector<Trial> all;
+  std::vector<MonteCarloTrial> all;
   for (std::uint64_t seed = 11; seed < 19; ++seed) all.push_back(trial_of_seed(seed));
   for (std::size_t number = 1; number <= 3; ++number) do_part(number, 3);
   const auto merged = merge();
@@ -154,21 +156,21 @@ TEST_F(PartFileTest, KeepsABasinToTheBit) {
                                              .off = 1.0 / 3,
                                              .farthest = "laser1.tau",
                                              .error = -1.0 / 7,
-                                             .doubts = {}},
+                                             .caveats = {}},
                                             {.recording = 7,
                                              .start = {0.2},
-                                             .ending = Ending::kDoubted,
+                                             .ending = Ending::kWithCaveats,
                                              .off = std::numeric_limits<double>::infinity(),
                                              .farthest = {},
                                              .error = 0,
-                                             .doubts = {"a", "b"}}},
-                                 .doubts = {"c"},
+                                             .caveats = {"a", "b"}}},
+                                 .caveats = {"c"},
                                  .failure = {}};
   const auto again = basin_of(nlohmann::json::parse(basin_json(recording).dump()));
   EXPECT_EQ(basin_csv({again}), basin_csv({recording}));
   EXPECT_EQ(basin_text({again}), basin_text({recording}));
   EXPECT_EQ(again.starts[0].off, recording.starts[0].off);
-  EXPECT_EQ(again.doubts, recording.doubts);
+  EXPECT_EQ(again.caveats, recording.caveats);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 #include "plugins/study/bound_text.hpp"
-#include "plugins/study/reached.hpp"
+#include "plugins/study/refinement_accuracy.hpp"
 
 namespace crisp {
 namespace {
@@ -151,38 +151,40 @@ TEST(SceneBound, AtConstantSpeedKnowsEtaOnlyWithLambda) {
   EXPECT_TRUE(std::isinf(bound.std_errors[2])) << bound.parameters[2];
   EXPECT_TRUE(std::isfinite(bound.std_errors[3])) << bound.parameters[3];
   EXPECT_THAT(bound_text(bound),
-              AllOf(HasSubstr("\nlaser2.eta          not determined; what is known [SI] is laser2.lambda + "),
+              AllOf(HasSubstr("\nlaser2.eta          not determined; determined [SI] is laser2.lambda + "),
                     HasSubstr("\nlaser2.tau ")));
   EXPECT_THAT(bound_csv(bound), HasSubstr("\nlaser2.eta,s,,,,\"laser2.lambda + 9.425 * laser2.eta\"\n"));
 }
 
-TEST(Reached, IsNoBetterThanTheBoundAndNotFarFromIt) {
+TEST(RefinementAccuracy, IsNoBetterThanTheBoundAndNotFarFromIt) {
   ScannerSettings scanner;
   scanner.duration = 2;
   for (const BeamChoice beams : {BeamChoice::kAll, BeamChoice::kInPlane}) {
     const Motion motion = motion_of(MotionKind::varying, 2);
     const SceneBound bound = scene_bound(scanner, office(), motion, beams);
-    const Reached reached = reached_by_refinement(scanner, office(), motion, beams, bound.parameters);
-    ASSERT_EQ(reached.failure, "");
-    EXPECT_LT(reached.beams, bound.beams);
-    EXPECT_GT(reached.beams, bound.beams / 2);
-    const Eigen::ArrayXd ratio = reached.std_errors.array() / bound.std_errors.array();
+    const RefinementAccuracy refinement =
+        refinement_accuracy(scanner, office(), motion, beams, bound.parameters);
+    ASSERT_EQ(refinement.failure, "");
+    EXPECT_LT(refinement.beams, bound.beams);
+    EXPECT_GT(refinement.beams, bound.beams / 2);
+    const Eigen::ArrayXd ratio = refinement.std_errors.array() / bound.std_errors.array();
     // Its standard errors are estimated from the residuals, of which there are but 600 in the plane.
-    const double chance = 3 / std::sqrt(2.0 * static_cast<double>(reached.beams));
+    const double chance = 3 / std::sqrt(2.0 * static_cast<double>(refinement.beams));
     EXPECT_GT(ratio.minCoeff(), 1 - chance);
     EXPECT_LT(ratio.maxCoeff(), 3);
-    EXPECT_THAT(bound_text(bound, reached), HasSubstr("   calibrate.refine\nlaser1.tau "));
+    EXPECT_THAT(bound_text(bound, refinement), HasSubstr("   calibrate.refine\nlaser1.tau "));
   }
 }
 
-TEST(Reached, SaysWhyThereIsNothingToReach) {
+TEST(RefinementAccuracy, ReportsWhyThereIsNoResult) {
   ScannerSettings scanner;
   scanner.duration = 1;
   const Motion motion = motion_of(MotionKind::varying, 1);
   const std::vector<std::string> parameters = {"laser1.tau"};
   scanner.range.max_distance = 0.5;  // nothing is so near
-  const Reached reached = reached_by_refinement(scanner, office(), motion, BeamChoice::kAll, parameters);
-  EXPECT_NE(reached.failure, "");
+  const RefinementAccuracy refinement =
+      refinement_accuracy(scanner, office(), motion, BeamChoice::kAll, parameters);
+  EXPECT_NE(refinement.failure, "");
 }
 
 TEST(SceneBound, AFloorAloneDeterminesNothing) {
@@ -195,10 +197,10 @@ TEST(SceneBound, AFloorAloneDeterminesNothing) {
   EXPECT_EQ(bound.unobservable.size(), 11U);
   EXPECT_TRUE(bound.std_errors.array().isInf().all());
   EXPECT_EQ(bound.beams_on, std::vector<std::size_t>{bound.beams});
-  EXPECT_GT(bound.no_echo, bound.beams / 2);  // what looks up
+  EXPECT_GT(bound.no_echo, bound.beams / 2);  // upwards
 }
 
-TEST(SceneBound, SaysThatNothingIsMet) {
+TEST(SceneBound, ReportsASceneWithoutSurfaces) {
   ScannerSettings scanner;
   scanner.duration = 1;
   scanner.range.max_distance = 0.5;

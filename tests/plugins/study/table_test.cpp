@@ -16,7 +16,7 @@ using testing::AnyOf;
 using testing::HasSubstr;
 using testing::Not;
 
-Trial trial(double rqe_tau, double tau, double alpha_degrees) {
+MonteCarloTrial trial(double rqe_tau, double tau, double alpha_degrees) {
   return {.seed = 7,
           .parameters = {"laser1.tau", "laser1.alpha"},
           .bound = Eigen::Vector2d(0.003, 0.1 * kDegree),
@@ -42,7 +42,7 @@ TEST(Table, HoldsMeansAndStandardDeviationsInMillimetresAndDegrees) {
   EXPECT_NEAR(tau.bound_with_steps, 4, 1e-12);
   EXPECT_NEAR(tau.refined.one, 1.0 / 3, 1e-12);  // 1 of 1, 2 and 3 mm is within 1.5 mm
   EXPECT_NEAR(tau.refined.two, 2.0 / 3, 1e-12);  // and 2 within 2.94 mm
-  EXPECT_NEAR(tau.refined.claimed, 1.5, 1e-12);
+  EXPECT_NEAR(tau.refined.estimated, 1.5, 1e-12);
   ASSERT_TRUE(tau.paper);
   EXPECT_EQ(tau.paper->mean, 2.1);
   EXPECT_NEAR(table.rows[1].refined.mean, 0.1, 1e-12);
@@ -50,7 +50,7 @@ TEST(Table, HoldsMeansAndStandardDeviationsInMillimetresAndDegrees) {
 }
 
 TEST(Table, LeavesRunsOutThatEndedElsewhereAndCountsThem) {
-  Trial failed = trial(0, 0, 0);
+  MonteCarloTrial failed = trial(0, 0, 0);
   failed.refined = {.error = {}, .std_error = {}, .failure = "no walls"};
   const Table table =
       table_of({trial(0.3, 0.001, 0), trial(0.001, 0.001, 40), trial(0.001, 0.003, 0), failed});
@@ -60,14 +60,14 @@ TEST(Table, LeavesRunsOutThatEndedElsewhereAndCountsThem) {
   EXPECT_NEAR(table.rows[0].rqe->mean, 2.0 / 3, 1e-12);
   EXPECT_NEAR(table.rows[0].refined.mean, 2, 1e-12);
   const std::string text = table_text(table);
-  EXPECT_THAT(text, HasSubstr("4 runs; ended in another valley and left out: 1 (RQE), 1 (refined)"));
+  EXPECT_THAT(text, HasSubstr("4 runs; ended in another local minimum and left out: 1 (RQE), 1 (refined)"));
   EXPECT_THAT(text, HasSubstr("not refined: 1"));
 }
 
-TEST(Table, ComparesOnlyWithWhatWasRunAndWithThePaperWhereItTellsOfTheSame) {
-  std::vector<Trial> trials = {trial(-0.002, 0.001, 0.04), trial(-0.004, 0.002, 0.06)};
+TEST(Table, ComparesWithRunEstimatorsAndWithThePaperForItsScene) {
+  std::vector<MonteCarloTrial> trials = {trial(-0.002, 0.001, 0.04), trial(-0.004, 0.002, 0.06)};
   EXPECT_THAT(table_text(table_of(trials)), AllOf(HasSubstr("paper, Table 1"), HasSubstr("RQE")));
-  for (Trial& one : trials) one.rqe.reset();
+  for (MonteCarloTrial& one : trials) one.rqe.reset();
   const Table table = table_of(trials, false);
   EXPECT_FALSE(table.rows[0].rqe);
   EXPECT_FALSE(table.rows[0].paper);
@@ -76,7 +76,7 @@ TEST(Table, ComparesOnlyWithWhatWasRunAndWithThePaperWhereItTellsOfTheSame) {
 }
 
 TEST(Table, WritesEveryRunAsALineAParameter) {
-  Trial failed = trial(0.001, 0, 0);
+  MonteCarloTrial failed = trial(0.001, 0, 0);
   failed.refined = {.error = {}, .std_error = {}, .failure = "no walls"};
   const std::string csv = runs_csv({trial(-0.002, 0.001, 0), failed});
   EXPECT_THAT(csv, HasSubstr("seed,parameter,unit,bound,bound_with_steps,rqe_error,error,std_error,failure\n"
@@ -85,19 +85,19 @@ TEST(Table, WritesEveryRunAsALineAParameter) {
 }
 
 TEST(Table, WithoutAnEstimateHasNoFigures) {
-  Trial failed = trial(0.3, 0, 0);
+  MonteCarloTrial failed = trial(0.3, 0, 0);
   failed.refined = {.error = {}, .std_error = {}, .failure = "no walls"};
   const Table table = table_of({failed, trial(0.3, 0.3, 0)});
-  EXPECT_FALSE(tells_of_refinement(table));
+  EXPECT_FALSE(reports_refinement(table));
   EXPECT_EQ(table.rows[0].refined.estimates, 0U);
   const std::string text = table_text(table);
   EXPECT_THAT(text, HasSubstr("none"));
   EXPECT_THAT(text, Not(AnyOf(HasSubstr("0.000 ± 0.000"), HasSubstr("0.0  0.0 %"))));
-  EXPECT_TRUE(tells_of_refinement(table_of({failed, trial(0, 0.001, 0)})));
+  EXPECT_TRUE(reports_refinement(table_of({failed, trial(0, 0.001, 0)})));
 }
 
 TEST(Table, LeavesCellsEmptyWhereThereIsNoNumber) {
-  Trial one = trial(0, 0.001, 0);
+  MonteCarloTrial one = trial(0, 0.001, 0);
   one.bound[0] = one.refined.std_error[0] = std::numeric_limits<double>::infinity();
   one.bound_with_steps[0] = std::nan("");
   one.rqe->error.resize(0);

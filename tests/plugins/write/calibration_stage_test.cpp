@@ -18,7 +18,7 @@ class WriteCalibrationTest : public testing::Test {
   WriteCalibrationTest() { fs::remove(file_); }
   ~WriteCalibrationTest() override { fs::remove(file_); }
 
-  /// The stage, told to write to file_.
+  /// The stage, which writes to file_.
   std::unique_ptr<Stage> make() const {
     const StageType type = describe_stage<WriteCalibrationStage>();
     auto stage = type.make();
@@ -54,16 +54,16 @@ TEST_F(WriteCalibrationTest, WritesTheLastCalibrationWhenTheRunIsOver) {
   EXPECT_THAT(report_.written, ElementsAre(file_));
 }
 
-TEST_F(WriteCalibrationTest, WritesWhatTheStagesAboveDoubted) {
-  context_.ask_for_doubts([] { return std::vector<std::string>{"the plate stood still"}; });
+TEST_F(WriteCalibrationTest, WritesWhatTheStagesAboveUntrusted) {
+  context_.set_caveats_above([] { return std::vector<std::string>{"the plate stood still"}; });
   const auto stage = make();
   const std::vector<Item> items = {Item::of(std::make_shared<const Calibration>(with_tau(0.2)))};
   stage->process(Inputs(items), nowhere_, context_);
   stage->finish(nowhere_, context_);
-  EXPECT_THAT(read_calibration(file_).doubts, ElementsAre("the plate stood still"));
+  EXPECT_THAT(read_calibration(file_).caveats, ElementsAre("the plate stood still"));
 }
 
-TEST_F(WriteCalibrationTest, SaysThatNoCalibrationCame) {
+TEST_F(WriteCalibrationTest, ReportsThatNoCalibrationCame) {
   EXPECT_THROW(make()->finish(nowhere_, context_), Error);
   EXPECT_FALSE(fs::exists(file_));
 }

@@ -127,7 +127,7 @@ TEST_F(WritePly, GivesPclEveryNumberExactly) {
   EXPECT_EQ(column<double>(read_back, "time"), expected<double>(cloud, &Point::time));
 }
 
-TEST_F(WritePly, TellsTheEpochInAComment) {
+TEST_F(WritePly, ReportsTheEpochInAComment) {
   auto stage = writer();
   stage.feed(room(1));
   stage.finish();
@@ -141,7 +141,7 @@ TEST_F(WritePly, LeavesOutPointsThatAreNotNumbers) {
   stage.feed(cloud);
   stage.finish();
   EXPECT_THAT(column<float>(read(), "x"), ElementsAre(cloud[0].x, cloud[2].x));
-  EXPECT_EQ(stage.report().counts.at("points that are not numbers"), 1U);
+  EXPECT_EQ(stage.report().counts.at("points with coordinates that are no numbers"), 1U);
 }
 
 class WriteLas : public WriteCloudFile<LasWriter> {

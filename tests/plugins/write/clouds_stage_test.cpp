@@ -40,7 +40,7 @@ TEST(WriteClouds, PutsEachCloudInAFileOfItsOwnSoon) {
   EXPECT_THAT(stage.report().written, testing::ElementsAre(folder / "c_0001.pcd", folder / "c_0002.pcd"));
 }
 
-TEST(WriteClouds, KeepsAsManyOfTheLastAsItIsTold) {
+TEST(WriteClouds, KeepsTheRequestedNumberOfLastClouds) {
   const test::TemporaryFolder folder;
   auto stage = test::StageDriver::of<WriteCloudsStage>(
       {{"file", text(folder / "c.pcd")}, {"keep", OptionScalar(std::int64_t{2})}});
@@ -74,9 +74,9 @@ TEST(WriteClouds, EndsWithoutThePipelineWhereItCannotWrite) {
   stage.feed(cloud_of(1));
   stage.feed(cloud_of(1));
   stage.finish();
-  EXPECT_EQ(stage.report().counts.at("clouds that were not written"), 2U);
-  ASSERT_EQ(stage.report().doubts.size(), 1U);
-  EXPECT_THAT(stage.report().doubts[0], testing::StartsWith("no more clouds were written: "));
+  EXPECT_EQ(stage.report().counts.at("lost clouds (not written)"), 2U);
+  ASSERT_EQ(stage.report().caveats.size(), 1U);
+  EXPECT_THAT(stage.report().caveats[0], testing::StartsWith("no more clouds were written: "));
 }
 
 }  // namespace

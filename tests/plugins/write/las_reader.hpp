@@ -21,7 +21,7 @@ struct LasPoint {
 
 struct LasFile {
   bool has_standard_gps_time = false;
-  std::array<double, 3> least{}, most{};  ///< [m] as the header says
+  std::array<double, 3> least{}, most{};  ///< [m] by the header
   std::vector<LasPoint> points;
 };
 

@@ -155,7 +155,7 @@ TEST_F(WritePcd, PointsThatAreNotNumbersAreCounted) {
   stage.feed(cloud);
   stage.finish();
   EXPECT_EQ(read("cloud.pcd").at(0).size(), 2U);
-  EXPECT_EQ(stage.report().counts.at("points that are not numbers"), 1U);
+  EXPECT_EQ(stage.report().counts.at("points with coordinates that are no numbers"), 1U);
 }
 
 TEST_F(WritePcd, NoPointsAreAnErrorAndNoFile) {

@@ -95,7 +95,7 @@ TEST(Picture, ThatWouldBeEmptyIsNotWritten) {
   driver.finish();
   EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nor is one left that shows something else";
   EXPECT_TRUE(driver.report().written.empty());
-  EXPECT_THAT(driver.report().warnings, testing::ElementsAre(testing::HasSubstr("no point lies in")));
+  EXPECT_THAT(driver.report().warnings, testing::ElementsAre(testing::HasSubstr("no point is in")));
 }
 
 TEST(Picture, OfNothingIsAnError) {

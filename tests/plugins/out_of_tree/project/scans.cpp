@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// scans HUB.pcap: how many scans of lasers and readings of the plate a capture holds.
+// scans HUB.pcap: how many scans of lasers and encoder readings a capture holds.
 #include <exception>
 #include <functional>
 #include <iostream>

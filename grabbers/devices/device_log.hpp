@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "grabbers/devices/capture_statistics.hpp"
+#include "grabbers/devices/pauses.hpp"
+#include "grabbers/devices/rough_clock.hpp"
+#include "grabbers/devices/running_median.hpp"
+#include "grabbers/devices/sequence_tracker.hpp"
+#include "grabbers/wire/cola_framer.hpp"
+#include "grabbers/wire/scan_conversion.hpp"
+#include "pipeline/data/pool.hpp"
+#include "pipeline/data/scan.hpp"
+
+namespace crisp {
+
+/// Follows what one device sends: turns its telegrams into scans or readings, each given once, and keeps
+/// count.
+class DeviceLog {
+ public:
+  /// @param laser  index of the laser in the rig
+  /// @param pauses of all devices of a capture, if there may be several recordings in it; outlives this
+  DeviceLog(DeviceKind kind, std::string name, Address address, std::uint16_t laser = 0,
+            Pauses* pauses = nullptr);
+
+  /// A telegram of a laser; gives a scan if it holds one that did not come before, otherwise nullptr.
+  std::shared_ptr<const Scan> take(const ColaFrame& frame, EncoderWidths widths);
+  /// A reading of a plate; gives it if it did not come before.
+  std::optional<PlateReading> take(const PlateReading& reading);
+  /// A telegram that TCP sent again after it had come.
+  void note_repeated(const ColaFrame& frame);
+
+  void lose(std::string_view what, std::uint64_t n = 1) { statistics_.losses.add(what, n); }
+  void note(std::string_view what, std::uint64_t n = 1) { statistics_.notes.add(what, n); }
+
+  DeviceStatistics statistics() const;
+
+ private:
+  std::shared_ptr<const Scan> take_scan(const ColaTelegram& telegram, std::int64_t time_ns,
+                                        EncoderWidths widths);
+  bool is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns, bool polled = false);
+  void lose_scan(std::string_view why);
+  void note_pause(std::uint32_t device_us, std::int64_t time_ns);
+  void count_telegram(std::string_view kind);
+  void note_time(std::uint32_t device_us, std::int64_t time_ns);
+  void note_scan(const Scan& scan);
+
+  DeviceStatistics statistics_;
+  std::uint16_t laser_ = 0;
+  Pauses* pauses_ = nullptr;
+  ScanData data_;
+  Pool<Scan> scans_;
+  std::string kind_;  ///< of a telegram: here to keep its memory
+  SequenceTracker tracker_;
+  std::int64_t unrequested_ = 0;  ///< among the tracker's gaps: scans that a polling client did not request
+  std::optional<std::uint32_t> last_stamp_us_;
+  RoughClock clock_;
+  RunningMedian handover_, period_;
+  std::optional<std::pair<std::uint16_t, std::uint32_t>> last_scan_;  ///< its counter and time
+  std::optional<std::uint32_t> last_serial_number_;
+  std::optional<std::uint32_t> last_count_;  ///< of a plate's encoder
+};
+
+}  // namespace crisp

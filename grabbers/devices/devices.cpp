@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/devices/devices.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+bool is_sick_port(std::uint16_t port) { return port == 2111 || port == 2112; }
+
+Devices::Devices(const Rig& rig) {
+  for (std::size_t i = 0; i < rig.lasers.size(); ++i) {
+    add(DeviceKind::Laser, rig.lasers[i].name, rig.lasers[i].address, static_cast<std::uint16_t>(i));
+  }
+  if (!rig.plate.address.ip.empty()) add(DeviceKind::Plate, rig.plate.name, rig.plate.address, 0);
+}
+
+void Devices::add(DeviceKind kind, const std::string& name, const Address& address, std::uint16_t index) {
+  if (address.ip.empty()) {
+    throw Error(name + " has no address in the rig", "give the address that its packets come from");
+  }
+  const auto ip = parse_ip(address.ip);
+  if (!ip) {
+    throw Error(fmt::format("the address \"{}\" of {} in the rig is no IP address", address.ip, name),
+                "write it like 192.168.0.1");
+  }
+  for (const auto& other : known_) {
+    const bool same_port = other->port == address.port || other->port == 0 || address.port == 0;
+    if (other->kind == kind && other->ip == *ip && same_port) {
+      throw Error(fmt::format("{} has the same address in the rig as another device", name),
+                  "give each device its own, or its own port");
+    }
+  }
+  known_.push_back(std::make_unique<Device>(
+      Device{DeviceLog(kind, name, address, index, pauses_.get()), index, kind, *ip, address.port}));
+}
+
+Devices::Device* Devices::known(const FlowKey& key) {
+  for (const auto& device : known_) {
+    const bool laser = device->kind == DeviceKind::Laser;
+    if (device->ip != key.from.ip || (laser && key.transport != Transport::Tcp)) continue;
+    const bool sends_to = !laser && device->port == key.to.port;
+    if (device->port == 0 || device->port == key.from.port || sends_to) return device.get();
+  }
+  return nullptr;
+}
+
+Devices::Device* Devices::other(const FlowKey& key, DeviceKind kind) {
+  constexpr std::size_t kMost = 256;
+  const auto place = std::pair(key.from, kind);
+  const auto found = others_.find(place);
+  if (found != others_.end()) return found->second.get();
+  if (others_.size() >= kMost) return nullptr;
+  auto device = std::make_unique<Device>(Device{DeviceLog(kind, "", to_address(key.from), 0, pauses_.get()),
+                                                std::nullopt, kind, key.from.ip, key.from.port});
+  return others_.emplace(place, std::move(device)).first->second.get();
+}
+
+std::vector<DeviceStatistics> Devices::statistics() const {
+  std::vector<DeviceStatistics> all;
+  for (const auto& device : known_) all.push_back(device->log.statistics());
+  for (const auto& [place, device] : others_) all.push_back(device->log.statistics());
+  return all;
+}
+
+}  // namespace crisp

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "grabbers/devices/device_log.hpp"
+#include "grabbers/devices/network.hpp"
+
+namespace crisp {
+
+/// Ports of SICK's devices.
+bool is_sick_port(std::uint16_t port);
+
+/// The devices of a capture: those of the rig, by their addresses, and unknown ones, by their telegrams.
+class Devices {
+ public:
+  struct Device {
+    DeviceLog log;
+    std::optional<std::uint16_t> rig_index;  ///< nothing for a device that the rig does not know
+    DeviceKind kind = DeviceKind::Laser;
+    IpAddress ip{};
+    std::uint16_t port = 0;  ///< 0: any
+  };
+
+  /// @throws Error if an address of the rig is none, or two devices have the same
+  explicit Devices(const Rig& rig);
+  Devices() = default;  ///< without a rig: all devices are others
+
+  /// The rig's device from which a flow's packets come, or nullptr. A plate is known by its own port or by
+  /// the one that it sends to.
+  Device* known(const FlowKey& key);
+  /// The device at this address that the rig does not know; made when it is new. nullptr when there are
+  /// already more than any network has.
+  Device* other(const FlowKey& key, DeviceKind kind);
+
+  std::vector<DeviceStatistics> statistics() const;
+  const Pauses& pauses() const { return *pauses_; }
+
+ private:
+  void add(DeviceKind kind, const std::string& name, const Address& address, std::uint16_t index);
+
+  std::unique_ptr<Pauses> pauses_ = std::make_unique<Pauses>();
+  std::vector<std::unique_ptr<Device>> known_;
+  std::map<std::pair<Endpoint, DeviceKind>, std::unique_ptr<Device>> others_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/sandwich_covariance.hpp"
+
+#include <algorithm>
+#include <random>
+
+#include "pipeline/statistics/dense_solvers.hpp"
+#include "plugins/calibrate/cloud_objective.hpp"
+
+namespace crisp {
+namespace {
+
+/// The measure's gradient in the coordinates of a basis.
+class Gradient {
+ public:
+  Gradient(const SensorModel& model, const std::vector<std::size_t>& free, Measure& measure, double scale,
+           const Eigen::MatrixXd& basis)
+      : model_(model), free_(free), measure_(measure), scale_(scale), basis_(basis) {}
+
+  Eigen::VectorXd at(const Eigen::VectorXd& step, const Sample& sample) {
+    const SensorModel moved = with(model_, free_, picked(model_, free_) + basis_ * step);
+    return basis_.transpose() * model_quality(moved, sample, free_, measure_, scale_).gradient;
+  }
+
+ private:
+  const SensorModel& model_;
+  const std::vector<std::size_t>& free_;
+  Measure& measure_;
+  double scale_;
+  const Eigen::MatrixXd& basis_;
+};
+
+Eigen::MatrixXd hessian(Gradient& gradient, Eigen::Index m, const Sample& sample) {
+  constexpr double kStep = 0.1;  // of the scale, in the points' motion
+  Eigen::MatrixXd result(m, m);
+  for (Eigen::Index k = 0; k < m; ++k) {
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(m, k);
+    result.col(k) = (gradient.at(step, sample) - gradient.at(-step, sample)) / (2 * kStep);
+  }
+  return (result + result.transpose()) / 2;
+}
+
+/// B = noise² Σᵢ (∂g/∂rᵢ)(∂g/∂rᵢ)ᵀ, as the mean over random signs of all ranges' changes.
+Eigen::MatrixXd gradient_covariance(Gradient& gradient, Eigen::Index m, const Sample& sample,
+                                    const ScatterSettings& settings) {
+  constexpr float kChange = 0.002F;  // [m] small against the scale, large against rounding
+  std::mt19937_64 bits(settings.seed);
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(m, m);
+  const Eigen::VectorXd here = Eigen::VectorXd::Zero(m);
+  const std::size_t probes = std::max(settings.probes, static_cast<std::size_t>(2 * m));  // B must be regular
+  for (std::size_t probe = 0; probe < probes; ++probe) {
+    Sample longer = sample;
+    Sample shorter = sample;
+    for (std::size_t i = 0; i < sample.beams.size(); ++i) {
+      const float change = (bits() >> 63U) != 0 ? kChange : -kChange;
+      longer.beams.range[i] += change;
+      shorter.beams.range[i] -= change;
+    }
+    const Eigen::VectorXd slope = (gradient.at(here, longer) - gradient.at(here, shorter)) / (2 * kChange);
+    sum.selfadjointView<Eigen::Upper>().rankUpdate(slope);
+  }
+  sum = sum.selfadjointView<Eigen::Upper>();
+  return sum * (settings.noise * settings.noise / static_cast<double>(probes));
+}
+
+}  // namespace
+
+Eigen::MatrixXd sandwich_covariance(const SensorModel& model, const Sample& sample,
+                                    const std::vector<std::size_t>& free, Measure& measure,
+                                    const ScatterSettings& settings) {
+  const auto m = static_cast<Eigen::Index>(free.size());
+  const Eigen::MatrixXd basis = search_basis(model, sample, free, settings.range, settings.scale);
+  Gradient gradient(model, free, measure, settings.scale, basis);
+  const SymmetricEigen curvature = eigendecomposition(hessian(gradient, m, sample));
+  // A flat measure, or no minimum, determines nothing: an error far beyond the range.
+  const double flat = 1e-9 * std::max(1e-300, curvature.values.cwiseAbs().maxCoeff());
+  const Eigen::VectorXd inverse = curvature.values.cwiseMax(flat).cwiseInverse();
+  const Eigen::MatrixXd influence = curvature.vectors * inverse.asDiagonal() * curvature.vectors.transpose();
+  const Eigen::MatrixXd spread = gradient_covariance(gradient, m, sample, settings);
+  const Eigen::MatrixXd scatter = basis * influence * spread * influence * basis.transpose();
+  const Eigen::VectorXd least = 1e-12 * ranges_of(settings.range, model, free).cwiseAbs2();
+  return (scatter + scatter.transpose()) / 2 + Eigen::MatrixXd(least.asDiagonal());
+}
+
+}  // namespace crisp

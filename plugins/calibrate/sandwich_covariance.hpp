@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "plugins/calibrate/rqe_minimizer.hpp"
+
+namespace crisp {
+
+struct ScatterSettings {
+  double scale = 0.05;      ///< [m] the measure's
+  double noise = 0.012;     ///< [m] standard deviation of a range
+  std::size_t probes = 32;  ///< the standard errors are known to 1/√(2 · probes) of themselves
+  std::uint64_t seed = 1;
+  SearchRange range;  ///< a parameter's standard error is at most of this size
+};
+
+/// Sandwich covariance of a measure's optimum under the noise of the ranges: H⁻¹ B H⁻¹, where H is the
+/// measure's Hessian and B the covariance of its gradient (Huber 1967). H is computed from differences of the
+/// gradient, B from gradients after random changes of all ranges.
+///
+/// @param model  at the optimum
+/// @return m × m, positive definite, in the order of `free`
+Eigen::MatrixXd sandwich_covariance(const SensorModel& model, const Sample& sample,
+                                    const std::vector<std::size_t>& free, Measure& measure,
+                                    const ScatterSettings& settings);
+
+}  // namespace crisp

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/calibrate/watch/register.hpp"
+
+#include "plugins/calibrate/watch/watch_stage.hpp"
+
+namespace crisp {
+
+void register_watch(Registrar& registrar) { registrar.stage<WatchStage>(); }
+
+}  // namespace crisp

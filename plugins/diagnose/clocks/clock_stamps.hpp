@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pipeline/clocks/clock_line.hpp"
+#include "pipeline/data/findings.hpp"
+
+namespace crisp {
+
+inline constexpr double kStampQuantum = 1e-6;  ///< [s] resolution of device times
+
+/// Device time, receipt time and counter of one telegram.
+struct CountedStamp {
+  std::int64_t count = 0;  ///< device's counter, unwrapped
+  Stamp stamp;             ///< device time since the first stamp, and the receipt's lead over it
+};
+
+/// Stamps of one device in order of receipt, with counter and clock unwrapped. A jump of the clock appears as
+/// a jump of the lead.
+class StampTrack {
+ public:
+  /// @param counter    wraps at 65536
+  /// @param device_us  [µs] wraps at 2³²
+  /// @param receipt_ns [ns]
+  void add(std::uint16_t counter, std::uint32_t device_us, std::int64_t receipt_ns);
+  std::span<const CountedStamp> stamps() const { return stamps_; }
+  std::int64_t first_ns() const { return first_ns_; }  ///< [ns] receipt time of the first stamp
+
+ private:
+  std::vector<CountedStamp> stamps_;
+  std::uint16_t last_counter_ = 0;
+  std::uint32_t last_us_ = 0;
+  std::int64_t first_ns_ = 0, last_ns_ = 0;
+  std::int64_t device_us_ = 0;  // since the first
+};
+
+/// Deviation of a clock or its link from the clock model: a constant rate and a constant minimum delay.
+struct ClockDeparture {
+  /// backlog: queued telegrams arrive late, ever less so until the queue is empty.
+  enum class Kind { drift, clock_step, latency_step, backlog };
+  Kind kind = Kind::drift;
+  double size = 0;       ///< drift: [1/s] of the skew; steps: [s] forward, or later; backlog: [s] RMS
+  double std_error = 0;  ///< of the size
+  double skew = 0;       ///< at the first stamp
+  double skew_std_error = 0;
+  double at =
+      0;  ///< [s since the first stamp] time of a step: receipt of the next stamp less its excess delay
+  double at_std_error = 0;  ///< [s]
+  double p_value = 1;       ///< permutation test of the minimum delays
+  Gain gain;                ///< RMS of held-out minimum delays about the clock model
+
+  struct Competitor {
+    std::optional<Kind> kind;  ///< empty: no deviation
+    double log10_odds = 0;     ///< log10 of the Bayes factor against it
+  };
+  /// Other deviations that could explain the minimum delays, the most likely first. The Bayes factors come
+  /// from the BIC (normal errors of the minimum delays). Steps of clock and link compare by the device's own
+  /// time, see log10_odds_of_jump(). A backlog has no cause in the catalogue and no competitors.
+  std::vector<Competitor> competitors = {};
+
+  bool is_step() const { return kind == Kind::clock_step || kind == Kind::latency_step; }
+};
+
+/// Clock and link of a device without deviations; kNotTested where there are too few stamps.
+struct ClockFacts {
+  double skew = kNotTested;  ///< hub seconds per device second − 1
+  double skew_std_error = kNotTested;
+  double delay_median = kNotTested;  ///< [s] beyond the minimum delay
+  double delay_95 = kNotTested;      ///< [s]
+};
+
+inline constexpr std::size_t kFewestOfClock = 10;  ///< minimum number of stamps for a clock
+
+/// Estimates skew and delays of a device.
+ClockFacts clock_facts(std::span<const CountedStamp> stamps);
+
+/// Tests the lower envelope of receipt less device time: the minimum delay in each of up to 64 windows. A
+/// step is attributed to the device's clock if the time between two counts jumps with it, and otherwise to
+/// the link.
+///
+/// @param tests  number of devices tested, for the correction of the p-value
+/// @return  the most significant deviation with p < 0.002, if there is one
+std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stamps, std::size_t tests,
+                                              std::uint64_t seed);
+
+/// Removes a step of the clock or of the link from the stamps. A drift stays.
+///
+/// @param departure  its time counts from the first stamp
+std::vector<CountedStamp> without_step(std::span<const CountedStamp> stamps, const ClockDeparture& departure);
+
+/// Clock line: the best straight line below all stamps (lower convex hull), in any order.
+ClockLine line_of(std::vector<Stamp> stamps);
+
+/// The stamps without their counts.
+std::vector<Stamp> without_counts(std::span<const CountedStamp> stamps);
+
+inline constexpr std::size_t kTurnsOfPiece = 8;  ///< turns over which a mirror's period is averaged
+
+/// Rotation of a mirror by its index stamps.
+struct MirrorFacts {
+  double period = 0;  ///< [s] mean, on the device's clock
+  double period_std_error = 0;
+  double wander = 0;            ///< relative RMS of slow changes of the period
+  std::vector<double> periods;  ///< [s] of segments of eight turns
+  std::vector<double> begin;    ///< [s since the first telegram] of the segments
+};
+
+/// Splits index passes into segments without a break: none spans a restart or a step of the device's clock.
+///
+/// @param step_interval  [s] interval of receipt times that contains the step of the clock
+std::vector<std::span<const CountedStamp>> unbroken_segments(
+    std::span<const CountedStamp> passes, const std::optional<std::array<double, 2>>& step_interval = {});
+
+/// Interval that contains the step of the device's clock; empty without a step.
+std::optional<std::array<double, 2>> clock_step_interval(const std::optional<ClockDeparture>& departure);
+
+/// Estimates a mirror's period from its index passes.
+///
+/// @param passes  stamps of the mirror's index with the number of the turn; intervals across a break are
+/// skipped
+/// @return  empty for fewer than eight segments, which give no variance
+std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes,
+                                        const std::optional<std::array<double, 2>>& step_interval = {});
+
+/// Converts the period to the hub's clock: the skew may be as large as the mirror's deviation.
+MirrorFacts on_hubs_clock(MirrorFacts facts, const ClockFacts& clock);
+
+/// Held-out gain of the estimated period over the nominal one [s]: every other segment is predicted by the
+/// rest.
+Gain gain_over_nominal(const MirrorFacts& facts, double nominal, std::uint64_t seed);
+
+}  // namespace crisp

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/estimate/sample.hpp"
+#include "pipeline/quality/surfel_equations.hpp"
+#include "plugins/diagnose/model/candidates.hpp"
+
+namespace crisp {
+
+/// Jacobian of the ranges with respect to the base parameters (λ, τ, α, η) and the size parameters of every
+/// candidate, whether the model has the candidate's term or not.
+class CandidateJacobian {
+ public:
+  /// @param model  the current model with its terms
+  /// @param base   indices of the estimated base parameters (λ, τ, α, η) in the model's values
+  CandidateJacobian(const SensorModel& model, std::vector<std::size_t> base,
+                    std::vector<Candidate> candidates, const TermRegistry& terms);
+
+  std::size_t parameters() const { return parameters_; }  ///< columns; the base comes first: 0, 1, …
+  std::size_t base() const { return base_; }              ///< number of base parameters
+  const std::vector<std::string>& names() const {
+    return names_;
+  }  ///< per column: "laser2.mirror.cone.kappa"
+  const std::vector<Candidate>& candidates() const { return candidates_; }
+  /// Columns of one candidate's size parameters. Shape parameters (forms) have no column.
+  const std::vector<std::size_t>& of(std::size_t candidate) const { return of_[candidate]; }
+  /// Size parameters of the candidate less their neutral values, in the current model.
+  Eigen::VectorXd sizes_of(std::size_t candidate) const;
+
+  /// Rows of the Jacobian: range changes normal to the surfels. They refer to `sample` and to this object,
+  /// which must outlive them.
+  DerivativeRows rows(const Sample& sample) const;
+
+ private:
+  /// A group of candidates in a model of their own: one pass of automatic differentiation (Jet).
+  struct Page {
+    SensorModel model;
+    std::vector<std::size_t> free;     // parameters of the model
+    std::vector<std::size_t> columns;  // of the Jacobian, for each of `free`
+  };
+  void add_page(const SensorModel& model, const std::vector<std::size_t>& some);
+  std::vector<std::vector<std::size_t>> pages_of(std::size_t owner) const;
+
+  std::vector<Candidate> candidates_;
+  const TermRegistry& terms_;
+  std::vector<std::vector<std::size_t>> of_;
+  std::vector<std::string> names_;
+  std::size_t base_ = 0;
+  std::size_t parameters_ = 0;
+  std::vector<Page> pages_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/model/cross_validation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "pipeline/data/recordings.hpp"
+#include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/quality/rqe.hpp"
+#include "pipeline/quality/surfel_residuals.hpp"
+#include "pipeline/statistics/weighted_mean.hpp"
+#include "plugins/diagnose/model/surface_observations.hpp"
+
+namespace crisp {
+namespace {
+
+using Turn = CrossValidator::Score::Turn;
+
+constexpr std::size_t kLeastTurns = 4;
+
+/// Turn of the plate and recording of each beam.
+struct Pieces {
+  std::vector<std::uint32_t> turn;  ///< from 0, in order of time; no turn spans two recordings
+  std::vector<std::uint32_t> recording;
+  bool are_several = false;  ///< more than one recording
+
+  bool is_held_out(std::size_t i) const { return (are_several ? recording[i] : turn[i]) % 2 == 1; }
+};
+
+Pieces pieces_of(const Sample& sample) {
+  const RecordingNumbers number(*sample.plate);
+  Pieces pieces{.turn = {}, .recording = {}, .are_several = number.count() > 1};
+  std::vector<double> turned;
+  double way = 0;
+  double last = 0;
+  for (const double time : sample.beams.time) {
+    const auto recording = static_cast<std::uint32_t>(number.of(time));
+    const auto state = sample.plate->at(time);
+    const double angle = state ? state->angle : last;
+    const bool goes_on = !turned.empty() && recording == pieces.recording.back();
+    if (goes_on) way += std::abs(angle - last);
+    last = angle;
+    turned.push_back(way);
+    pieces.recording.push_back(recording);
+  }
+  double piece = 2 * std::numbers::pi;
+  if (way < static_cast<double>(kLeastTurns) * piece) piece = way / (2 * kLeastTurns) * (1 + 1e-9);
+  std::uint32_t before = 0;  // recording borders so far; each ends a turn
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    if (i > 0 && pieces.recording[i] != pieces.recording[i - 1]) ++before;
+    pieces.turn.push_back(before + (piece > 0 ? static_cast<std::uint32_t>(turned[i] / piece) : 0));
+  }
+  return pieces;
+}
+
+/// Mean residual of each surface by laser, and by laser and side (front, back).
+class ViewMeans {
+ public:
+  ViewMeans(std::span<const std::uint32_t> members, const std::vector<SurfelResidual>& residuals,
+            const BeamsView& beams) {
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const std::uint32_t view = beams.views[members[k]];
+      const double weight = residuals[k].weight / std::pow(residuals[k].spread, 2);
+      lasers_[view / 2].add(residuals[k].distance, weight);
+      sides_[view].add(residuals[k].distance, weight);
+    }
+  }
+
+  /// Adds one beam's contribution to its turn's score.
+  void add(const SurfelResidual& r, std::uint32_t view, double noise, Turn& turn) const {
+    const double laser = lasers_.at(view / 2).value();
+    const double spread = r.spread * noise;
+    turn.weight += r.weight;
+    turn.squares += r.weight * r.distance * r.distance;
+    turn.likelihood -= r.weight * (std::pow(r.distance / spread, 2) / 2 +
+                                   std::log(spread * std::sqrt(2 * std::numbers::pi)));
+    turn.lasers += r.weight * laser * laser;
+    turn.sides += r.weight * std::pow(sides_.at(view).value() - laser, 2);
+  }
+
+ private:
+  std::map<std::uint32_t, Mean> lasers_;
+  std::map<std::uint32_t, Mean> sides_;
+};
+
+double ratio(const std::vector<Turn>& turns, const std::vector<std::size_t>& drawn, double Turn::*part) {
+  double sum = 0;
+  double weight = 0;
+  for (const std::size_t t : drawn) {
+    sum += turns[t].*part;
+    weight += turns[t].weight;
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+struct Metric {
+  const char* name;
+  const char* unit;
+  double Turn::*part;
+  bool is_square;
+};
+constexpr std::array kMetrics = {
+    Metric{"cloud thickness", "m", &Turn::squares, true},
+    Metric{"disagreement of lasers", "m", &Turn::lasers, true},
+    Metric{"disagreement of front and back", "m", &Turn::sides, true},
+    Metric{CrossValidator::kLikelihood, "nat", &Turn::likelihood, false},
+    Metric{"RQE", "nat", &Turn::entropy, false},
+};
+
+double value_of(const Metric& metric, const std::vector<Turn>& turns, const std::vector<std::size_t>& drawn) {
+  const double mean = ratio(turns, drawn, metric.part);
+  return metric.is_square ? std::sqrt(std::max(0.0, mean)) : mean;
+}
+
+}  // namespace
+
+Halves halves_of(const Sample& sample) {
+  const Pieces pieces = pieces_of(sample);
+  Halves halves;
+  halves.fitted = select(sample, [&](std::size_t i) { return !pieces.is_held_out(i); });
+  halves.held_out = select(sample, [&](std::size_t i) { return pieces.is_held_out(i); });
+  for (std::size_t i = 0; i < pieces.turn.size(); ++i) {
+    if (pieces.is_held_out(i)) halves.turn.push_back(pieces.turn[i]);
+  }
+  return halves;
+}
+
+CrossValidator::CrossValidator(Halves halves, const SensorModel& chooser, const SurfelSettings& settings)
+    : halves_(std::move(halves)), settings_(settings) {
+  constexpr std::size_t kBeams = 200'000;
+  const SurfaceObservations observations(chooser, halves_.held_out, settings, kBeams);
+  surfels_ = observations.surfels();
+  halves_.held_out.beams.cos_incidence = observations.sample().beams.cos_incidence;
+  const auto reported = observations.beams().noise;
+  given_noise_.assign(reported.begin(), reported.end());
+  double squares = 0;
+  double weight = 0;
+  for (const Surfel& surfel : surfels_.surfels) {
+    for (const SurfelResidual& r : residuals_of(surfel, surfels_, observations.beams(), settings_)) {
+      squares += r.weight * std::pow(r.distance / r.spread, 2);
+      weight += r.weight;
+    }
+  }
+  noise_ = std::sqrt(squares / std::max(1.0, weight));
+}
+
+CrossValidator::Score CrossValidator::score(const SensorModel& model) const {
+  const PlacedBeams placed(model, halves_.held_out);
+  const BeamsView beams = placed.view(given_noise_);
+  Score score;
+  score.turns.resize(halves_.turn.empty() ? 0 : std::ranges::max(halves_.turn) + std::size_t{1});
+  std::vector<Vectors> clouds(score.turns.size());
+  for (const Surfel& surfel : surfels_.surfels) {
+    const auto members = surfels_.beams_of(surfel);
+    const auto residuals = residuals_of(surfel, surfels_, beams, settings_);
+    const ViewMeans views(members, residuals, beams);
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const std::size_t i = members[k];
+      if (residuals[k].weight == 0) continue;
+      views.add(residuals[k], beams.views[i], noise_, score.turns[halves_.turn[i]]);
+      Vectors& cloud = clouds[halves_.turn[i]];
+      cloud.x.push_back(beams.points.x[i]);
+      cloud.y.push_back(beams.points.y[i]);
+      cloud.z.push_back(beams.points.z[i]);
+    }
+  }
+  for (std::size_t t = 0; t < clouds.size(); ++t) {
+    if (clouds[t].x.empty()) continue;
+    const Rqe entropy = rqe(clouds[t].view(), {}, {.sigma = 0.02, .cutoff = 5, .gradient = false});
+    score.turns[t].entropy = score.turns[t].weight * entropy.value;
+  }
+  return score;
+}
+
+std::vector<Gain> CrossValidator::gains(const Score& before, const Score& after) {
+  constexpr std::size_t kDraws = 1000;
+  const std::size_t n = before.turns.size();
+  std::vector<std::size_t> all;
+  for (std::size_t t = 0; t < n; ++t) {
+    if (before.turns[t].weight > 0) all.push_back(t);
+  }
+  std::vector<Gain> gains;
+  if (all.size() < 2) return gains;
+  // A fixed seed: every metric gets the same bootstrap samples.
+  std::mt19937_64 random(all.size());
+  std::vector<std::vector<std::size_t>> draws(kDraws, std::vector<std::size_t>(all.size()));
+  for (auto& drawn : draws) {
+    for (auto& turn : drawn) turn = all[random() % all.size()];
+  }
+  const auto count = static_cast<double>(all.size());
+  const double wider = quantile(boost::math::students_t(count - 1), 0.975) * std::sqrt(count / (count - 1));
+  for (const Metric& metric : kMetrics) {
+    const double first = value_of(metric, before.turns, all);
+    const double second = value_of(metric, after.turns, all);
+    double squares = 0;
+    for (const auto& drawn : draws) {
+      const double change = value_of(metric, after.turns, drawn) - value_of(metric, before.turns, drawn);
+      squares += std::pow(change - (second - first), 2);
+    }
+    const double half = wider * std::sqrt(squares / kDraws);
+    gains.push_back({.metric = metric.name,
+                     .unit = metric.unit,
+                     .before = first,
+                     .after = second,
+                     .ci95 = {second - first - half, second - first + half}});
+  }
+  return gains;
+}
+
+}  // namespace crisp

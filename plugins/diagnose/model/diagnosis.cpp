@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/model/diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "pipeline/data/interrupted.hpp"
+#include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/model/terms_in.hpp"
+#include "plugins/diagnose/model/cross_validation.hpp"
+#include "plugins/diagnose/model/generalization.hpp"
+#include "plugins/diagnose/model/nonlinear_parameters.hpp"
+#include "plugins/diagnose/model/residual_variance.hpp"
+#include "plugins/diagnose/model/significance.hpp"
+#include "plugins/diagnose/model/surface_observations.hpp"
+
+namespace crisp {
+namespace {
+
+std::set<std::string> names_of(const std::vector<Candidate>& candidates) {
+  std::set<std::string> names;
+  for (const auto& candidate : candidates) names.insert(candidate.name);
+  return names;
+}
+
+std::set<std::string> names_of(const std::vector<Hypothesis>& hypotheses) {
+  std::set<std::string> names;
+  for (const auto& hypothesis : hypotheses) names.insert(hypothesis.candidate.name);
+  return names;
+}
+
+bool is_new(const Hypothesis& hypothesis) { return !hypothesis.candidate.in_model; }
+
+class Diagnoser {
+ public:
+  Diagnoser(const SensorModel& start, const Sample& sample, const TermRegistry& terms,
+            const DiagnosisSettings& settings, const DiagnosisReporter& report)
+      : sample_(sample), terms_(terms), settings_(settings), report_(report), start_(start.calibration()) {}
+
+  Diagnosis run() {
+    report(0, "refining without any terms");
+    const Refinement plain = refined(with_terms(start_, {}), sample_);
+    limit_lags(plain.outcome.model);
+    Diagnosis result{.before = plain, .after = plain};
+    extend(result);
+    if (!result.hypotheses.empty()) {
+      report(0.8, "cross-validating on held-out turns");
+      const CrossValidator held_out(halves_of(inside_), result.before.outcome.model,
+                                    settings_.refinement.surfels);
+      const CrossValidator::Score plain_score = score_on(held_out, result.before);
+      judge(held_out, plain_score, result);
+      compare(result);
+      reject_causes_below_residual(result);
+      if (std::ranges::any_of(result.hypotheses, &Hypothesis::accepted))
+        result.gains = CrossValidator::gains(plain_score, score_on(held_out, result.after));
+    } else {
+      compare(result);
+    }
+    add_form_errors(result);
+    return result;
+  }
+
+ private:
+  Refinement refined(const Calibration& calibration, const Sample& sample) const {
+    RefinementSettings settings = settings_.refinement;
+    settings.terms = terms_in(calibration, terms_);
+    settings.forms = true;
+    settings.prior.earliest_eta = lags_.earliest;
+    settings.prior.latest_eta = lags_.latest;
+    return refine_by_surfels(SensorModel(calibration, terms_), sample, settings, [this](int) {
+      stop_if_requested();
+      return true;
+    });
+  }
+
+  /// Keeps the beams that the encoder readings cover at each η near the plain model's, and limits η to that
+  /// neighbourhood in further refinements. A distant start may have moved by more than its prior.
+  void limit_lags(const SensorModel& plain) {
+    lags_ = lag_range(plain, settings_.refinement.prior.eta);
+    inside_ = covered(sample_, lags_.earliest, lags_.latest);
+  }
+
+  void stop_if_requested() const {
+    if (settings_.interrupted && settings_.interrupted()) throw Interrupted();
+  }
+  void report(double fraction, const std::string& what) const {
+    stop_if_requested();
+    if (report_) report_(fraction, what);
+  }
+
+  /// Whether smaller causes are resolvable: not next to an unexplained deviation, of which each would absorb
+  /// a part.
+  bool needs_refinement(const std::vector<Hypothesis>& found, const ProfileComparison& left) const {
+    return settings_.refine_beams > settings_.beams &&
+           std::ranges::all_of(found, [](const Hypothesis& one) { return one.candidate.is_cause(); }) &&
+           left.p_value > settings_.selection.p_value;
+  }
+
+  /// State of the stepwise search.
+  struct SearchState {
+    std::vector<Candidate> chosen = {};   ///< candidates of the current model
+    std::set<std::string> rejected = {};  ///< candidates that an earlier model had and did not need
+    bool is_close = false;                ///< whether the refined search (more beams, causes only) runs
+    std::function<void(double, const char*)> report = {};
+  };
+
+  /// Selects the candidates that the current model needs. If some were rejected, or if none is needed, the
+  /// refined search follows.
+  CandidateSearch test(const SurfaceObservations& observations, SearchState& state, Diagnosis& result) const {
+    const bool may_be_fine = !state.rejected.empty() && !state.is_close;
+    ProfileComparison left;
+    if (may_be_fine) left = compare_with_simulation(observations, settings_.refinement.surfels, 1);
+    CandidateSearch search(observations, result.after, terms_, settings_, left);
+    if (!state.is_close) {
+      result.hypotheses = search.needs(state.rejected);
+      if (names_of(result.hypotheses) != names_of(state.chosen)) return search;
+      if (!may_be_fine) left = compare_with_simulation(observations, settings_.refinement.surfels, 1);
+      state.is_close = needs_refinement(result.hypotheses, left);
+      if (!state.is_close) {
+        if (may_be_fine) return search;
+        CandidateSearch finer(observations, result.after, terms_, settings_, left);
+        result.hypotheses = finer.needs(state.rejected);
+        return finer;
+      }
+    }
+    state.report(0.4, "refining the search with more beams");
+    result.hypotheses = search.refine_search(state.rejected);
+    return search;
+  }
+
+  /// Extends the model by the selected candidates until the selection adds nothing.
+  void extend(Diagnosis& result) const {
+    SearchState state;
+    for (int round = 0; round <= settings_.rounds; ++round) {
+      state.report = [this, round](double of_round, const char* what) {
+        const double fraction = 0.8 * (round + 0.25 + of_round) / (round + 2.25);
+        report(fraction, fmt::format("round {}: {}", round + 1, what));
+      };
+      state.report(0, "testing all candidates");
+      const SurfaceObservations observations(result.after.outcome.model, inside_,
+                                             settings_.refinement.surfels, settings_.beams,
+                                             settings_.interrupted);
+      result.unshared = unshared_causes(terms_, observations.coverage());
+      const CandidateSearch search = test(observations, state, result);
+      result.settled = names_of(result.hypotheses) == names_of(state.chosen);
+      // A candidate selected in the last round would never be tested in a model that has it.
+      if (round == settings_.rounds) std::erase_if(result.hypotheses, is_new);
+      result.unobservable = search.unobservable(result.hypotheses);
+      result.tests = search.tests();
+      std::vector<Candidate> next;
+      for (const Hypothesis& hypothesis : result.hypotheses) next.push_back(hypothesis.candidate);
+      // Without this, a candidate rejected once would be selected again in every round.
+      for (const std::string& name : names_of(state.chosen)) {
+        if (!names_of(next).contains(name)) state.rejected.insert(name);
+      }
+      if (names_of(next) == names_of(state.chosen)) return;
+      state.report(0.7, "refining the extended model");
+      state.chosen = refine_nonlinear(next, result.after.outcome.model, search.base(), observations,
+                                      state.is_close ? settings_.refine_beams : settings_.beams, terms_);
+      for (const Candidate& candidate : state.chosen) {
+        if (!candidate.other_forms.empty()) result.other_forms[candidate.name] = candidate.other_forms;
+      }
+      result.after = refined(with_terms(result.after.outcome.model.calibration(), state.chosen), sample_);
+    }
+  }
+
+  /// Adds the covariance over forms: the refinement gives only the curvature at the best form.
+  static void add_form_errors(Diagnosis& result) {
+    Outcome& outcome = result.after.outcome;
+    for (const Hypothesis& hypothesis : result.hypotheses) {
+      const auto others = result.other_forms.find(hypothesis.candidate.name);
+      if (others == result.other_forms.end()) continue;
+      const Eigen::MatrixXd added = form_covariance(others->second, hypothesis.test.design_effect());
+      const auto places = parameter_indices(hypothesis.candidate, outcome);
+      for (std::size_t p = 0; p < places.size(); ++p) {
+        for (std::size_t q = 0; q < places.size(); ++q) {
+          if (!places[p] || !places[q]) continue;
+          outcome.covariance(*places[p], *places[q]) +=
+              added(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q));
+        }
+      }
+    }
+  }
+
+  /// Cross-validates each hypothesis on held-out turns, then tests the accepted ones in the joint fit.
+  void judge(const CrossValidator& held_out, const CrossValidator::Score& plain, Diagnosis& result) const {
+    reject_scene_artifacts(result.hypotheses);
+    accept_if_it_generalizes(held_out, result.hypotheses, plain, result.after.outcome.model.calibration(),
+                             [this](const Calibration& start, const Sample& sample) {
+                               return refined(start, sample).outcome.model;
+                             });
+    if (!std::ranges::all_of(result.hypotheses, &Hypothesis::accepted)) refine_with_accepted(result);
+    while (
+        reject_insignificant(result.hypotheses, result.after.outcome, terms_, settings_.selection.p_value)) {
+      refine_with_accepted(result);
+    }
+  }
+
+  void refine_with_accepted(Diagnosis& result) const {
+    std::vector<Candidate> kept;
+    for (const Hypothesis& hypothesis : result.hypotheses) {
+      if (hypothesis.accepted) kept.push_back(hypothesis.candidate);
+    }
+    const Calibration found = result.after.outcome.model.calibration();
+    result.after = refined(with_terms(found, with_values_of(found, kept)), sample_);
+  }
+
+  /// Held-out score of a model with the same terms, fitted to the training turns alone.
+  CrossValidator::Score score_on(const CrossValidator& held_out, const Refinement& all) const {
+    return held_out.score(refined(all.outcome.model.calibration(), held_out.fitted()).outcome.model);
+  }
+
+  ProfileComparison left_by(const Refinement& refinement) const {
+    const SurfaceObservations observations(refinement.outcome.model, inside_, settings_.refinement.surfels,
+                                           settings_.beams);
+    return compare_with_simulation(observations, settings_.refinement.surfels, 1);
+  }
+
+  void compare(Diagnosis& result) const {
+    report(0.9, "simulating the scanner");
+    result.left_before = left_by(result.before);
+    result.left_after = result.hypotheses.empty() ? result.left_before : left_by(result.after);
+  }
+
+  void reject_causes_below_residual(Diagnosis& result) const {
+    const double noise = settings_.refinement.surfels.noise;
+    while (reject_if_residual_exceeds(result.hypotheses, result.left_after, noise)) {
+      refine_with_accepted(result);
+      result.left_after = left_by(result.after);
+    }
+  }
+
+  const Sample& sample_;
+  const TermRegistry& terms_;
+  const DiagnosisSettings& settings_;
+  const DiagnosisReporter& report_;
+  Calibration start_;
+  LagRange lags_{.earliest = -std::numeric_limits<double>::infinity(),
+                 .latest = std::numeric_limits<double>::infinity()};
+  Sample inside_;
+};
+
+}  // namespace
+
+Diagnosis diagnose(const SensorModel& start, const Sample& sample, const TermRegistry& terms,
+                   const DiagnosisSettings& settings, const DiagnosisReporter& report) {
+  return Diagnoser(start, sample, terms, settings, report).run();
+}
+
+}  // namespace crisp

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/model/generalization.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace crisp {
+namespace {
+
+/// Whether the held-out likelihood rises. Its confidence interval is reported, but is no criterion: the
+/// training half already showed significance.
+bool generalizes(const std::vector<Gain>& gains) {
+  const auto likelihood = std::ranges::find(gains, CrossValidator::kLikelihood, &Gain::metric);
+  return likelihood != gains.end() && likelihood->after > likelihood->before;
+}
+
+/// Set of accepted hypotheses, extended one test at a time.
+class ForwardSelection {
+ public:
+  ForwardSelection(const CrossValidator& held_out, CrossValidator::Score plain, const Calibration& found,
+                   const RefinedOn& refined)
+      : held_out_(held_out), found_(found), refined_(refined), score_(std::move(plain)) {}
+
+  /// Tests whether some hypotheses jointly raise the held-out likelihood, and accepts them if so.
+  bool accepts(const std::vector<Hypothesis*>& some) {
+    auto tried = accepted_;
+    for (const Hypothesis* hypothesis : some) tried.push_back(hypothesis->candidate);
+    tried = with_values_of(found_, tried);
+    auto score = held_out_.score(refined_(with_terms(found_, tried), held_out_.fitted()));
+    const auto gains = CrossValidator::gains(score_, score);
+    const bool does_generalize = generalizes(gains);
+    for (Hypothesis* hypothesis : some) {
+      if (some.size() > 1 && !does_generalize) continue;  // each keeps the gains of its own test
+      hypothesis->gains = gains;
+      hypothesis->accepted = does_generalize;
+    }
+    if (!does_generalize) return false;
+    accepted_ = std::move(tried);
+    score_ = std::move(score);
+    return true;
+  }
+
+ private:
+  const CrossValidator& held_out_;
+  const Calibration& found_;
+  const RefinedOn& refined_;
+  std::vector<Candidate> accepted_;
+  CrossValidator::Score score_;
+};
+
+}  // namespace
+
+void accept_if_it_generalizes(const CrossValidator& held_out, std::vector<Hypothesis>& hypotheses,
+                              const CrossValidator::Score& plain, const Calibration& found,
+                              const RefinedOn& refined) {
+  ForwardSelection selection(held_out, plain, found, refined);
+  std::vector<Hypothesis*> open;
+  for (Hypothesis& hypothesis : hypotheses) {
+    if (hypothesis.accepted) open.push_back(&hypothesis);
+  }
+  while (!open.empty()) {
+    std::vector<Hypothesis*> alike;
+    std::ranges::copy_if(open, std::back_inserter(alike), [&](const Hypothesis* other) {
+      return other->candidate.term.term == open.front()->candidate.term.term;
+    });
+    std::vector<Hypothesis*> judged = {open.front()};
+    if (!selection.accepts(judged) && alike.size() > 1 && selection.accepts(alike)) judged = alike;
+    std::erase_if(open, [&](Hypothesis* one) { return std::ranges::find(judged, one) != judged.end(); });
+  }
+}
+
+}  // namespace crisp

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "plugins/diagnose/model/cross_validation.hpp"
+#include "plugins/diagnose/model/hypothesis.hpp"
+
+namespace crisp {
+
+/// Fits a calibration with its terms to all beams of a sample.
+using RefinedOn = std::function<SensorModel(const Calibration& start, const Sample& sample)>;
+
+/// Accepts hypotheses that generalize to held-out turns (forward cross-validation): adds them one by one,
+/// fits each model to the training turns and compares the held-out likelihood. If a cause of several lasers
+/// fails for one laser, it is tested for all of them jointly: corrected in one alone, the lasers disagree.
+///
+/// @param hypotheses  their gains and acceptance are set, except of those already rejected
+/// @param plain       score of the model without hypotheses
+/// @param found       calibration with all hypotheses; start of the other fits
+void accept_if_it_generalizes(const CrossValidator& held_out, std::vector<Hypothesis>& hypotheses,
+                              const CrossValidator::Score& plain, const Calibration& found,
+                              const RefinedOn& refined);
+
+}  // namespace crisp

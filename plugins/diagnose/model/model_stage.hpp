@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "pipeline/data/findings.hpp"
+#include "pipeline/data/oriented_plate.hpp"
+#include "pipeline/estimate/measurement_buffer.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/diagnose/model/diagnosis.hpp"
+
+namespace crisp {
+
+/// Stage diagnose.model: identifies terms that the sensor model lacks, and extends the calibration by them.
+class DiagnoseModelStage final : public Stage {
+ public:
+  static void describe(StageDescription<DiagnoseModelStage>& d);
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  DiagnosisSettings settings_;
+  std::optional<std::filesystem::path> folder_;
+  double noise_ = SurfelSettings{}.noise;
+  OrientedPlate oriented_;
+  MeasurementBuffer collected_;
+  std::shared_ptr<const Calibration> start_;
+  Findings all_;  // including those of earlier stages
+};
+
+}  // namespace crisp

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/model/surface_observations.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "pipeline/data/error.hpp"
+#include "pipeline/data/interrupted.hpp"
+#include "pipeline/data/recordings.hpp"
+#include "pipeline/estimate/flat_surfaces.hpp"
+#include "pipeline/estimate/incidence.hpp"
+#include "pipeline/estimate/relative_noise.hpp"
+#include "pipeline/estimate/shared_errors.hpp"
+#include "pipeline/estimate/static_surfaces.hpp"
+#include "pipeline/quality/surfel_residuals.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
+
+namespace crisp {
+namespace {
+
+Surfels surfaces(const BeamsView& beams, const SurfelSettings& settings) {
+  const Surfels found = patches(settings)->update(beams, std::numeric_limits<double>::infinity());
+  if (found.surfels.empty()) {
+    throw Error("no beam meets a flat surface, so the sensor model cannot be tested",
+                "reduce `min_cell`, or record in a place with walls");
+  }
+  return kept(found, static_surfaces(found, beams, settings.noise));
+}
+
+bool are_elsewhere(const BeamsView& beams, const BeamsView& before) {
+  return !std::ranges::equal(beams.points.x, before.points.x) ||
+         !std::ranges::equal(beams.points.y, before.points.y) ||
+         !std::ranges::equal(beams.points.z, before.points.z);
+}
+
+/// Systematic subsample of each surface's beams, with at most about `most` in total.
+Surfels thinned(const Surfels& surfels, std::size_t most) {
+  std::size_t all = 0;
+  for (const Surfel& surfel : surfels.surfels) all += surfel.end - surfel.begin;
+  const std::size_t stride = std::max<std::size_t>(1, (all + most - 1) / most);
+  Surfels some;
+  for (Surfel surfel : surfels.surfels) {
+    const auto begin = static_cast<std::uint32_t>(some.members.size());
+    for (std::size_t k = surfel.begin; k < surfel.end; k += stride) {
+      some.members.push_back(surfels.members[k]);
+      some.weights.push_back(surfels.weights[k]);
+    }
+    surfel.begin = begin;
+    surfel.end = static_cast<std::uint32_t>(some.members.size());
+    some.surfels.push_back(surfel);
+  }
+  return some;
+}
+
+}  // namespace
+
+SurfaceObservations::SurfaceObservations(const SensorModel& model, Sample sample,
+                                         const SurfelSettings& settings, std::size_t most,
+                                         std::function<bool()> interrupted)
+    : sample_(std::move(sample)),
+      placed_(model, sample_),
+      settings_(settings),
+      interrupted_(std::move(interrupted)) {
+  all_ = surfaces(placed_.view(), settings_);
+  sample_.beams.cos_incidence = incidences(all_, placed_.view());
+  // Terms of the incidence angle move beams, mostly those of grazing incidence, and thereby the surfaces.
+  if (PlacedBeams moved(model, sample_); are_elsewhere(moved.view(), placed_.view())) {
+    all_ = surfaces(moved.view(), settings_);
+    sample_.beams.cos_incidence = incidences(all_, moved.view());
+    placed_ = PlacedBeams(model, sample_);
+  }
+  noise_ = relative_noise(all_, placed_.view(), sample_.beams, settings_);
+  if (!noise_.empty()) refine_all(all_, beams(), settings_);
+  surfels_ = thinned(all_, most);
+  constexpr double kNearlyAll = 0.99;
+  auto ranges = sample_.beams.range;
+  const auto [first, last] = std::ranges::minmax(sample_.beams.time);
+  const auto recordings = recordings_of(*sample_.plate);
+  coverage_ = {.first = first,
+               .last = last,
+               .farthest = quantile_in_place(ranges, kNearlyAll),
+               .one_begin = recordings.size() < 2,
+               .one_zero = recordings.empty() || recordings.front().zero == recordings.back().zero};
+  shared_ = shared_errors(sample_.beams, all_, beams());
+}
+
+NormalEquations SurfaceObservations::equations(const CandidateJacobian& jacobian, std::size_t most) const {
+  const auto rows = [this, all = jacobian.rows(sample_)](const auto&... of_surfel) {
+    if (interrupted_ && interrupted_()) throw Interrupted();
+    all(of_surfel...);
+  };
+  return normal_equations(thinned(all_, most), beams(), jacobian.parameters(), rows, settings_, shared_);
+}
+
+}  // namespace crisp

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "pipeline/estimate/placed_beams.hpp"
+#include "plugins/diagnose/model/candidate_jacobian.hpp"
+
+namespace crisp {
+
+/// Flat surfaces in the beams of a sample, with the normal equations at a model. Surfaces are selected
+/// without regard to the agreement of the views on them.
+class SurfaceObservations {
+ public:
+  /// @param sample  all beams, covered by the encoder readings; their incidence angles are set here
+  /// @param most    number of beams on surfels(), evenly subsampled
+  /// @param interrupted  cancellation query of equations(), called from several threads
+  SurfaceObservations(const SensorModel& model, Sample sample, const SurfelSettings& settings,
+                      std::size_t most, std::function<bool()> interrupted = {});
+
+  const Sample& sample() const { return sample_; }
+  const Surfels& surfels() const { return surfels_; }  ///< with `most` beams
+  BeamsView beams() const { return placed_.view(noise_); }
+  Coverage coverage() const { return coverage_; }
+
+  /// Normal equations at the model, in the Jacobian's columns, with divisions into blocks of correlated
+  /// errors.
+  ///
+  /// @param most  number of beams used, evenly subsampled
+  /// @throws Interrupted
+  NormalEquations equations(const CandidateJacobian& jacobian, std::size_t most) const;
+
+ private:
+  Sample sample_;
+  PlacedBeams placed_;
+  std::vector<float> noise_;  ///< relative noise of the beams; empty: equal
+  SurfelSettings settings_;
+  Surfels all_;      ///< with all beams
+  Surfels surfels_;  ///< with `most` of them
+  Coverage coverage_;
+  std::vector<Division> shared_;
+  std::function<bool()> interrupted_;
+};
+
+}  // namespace crisp

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/noise/expectation_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crisp {
+namespace {
+
+constexpr std::size_t kBlock = 512;  // ranges: their arrays stay in the cache
+
+using Array = std::array<double, kBlock>;
+
+/// Scale, peak and tail of a mixture component.
+struct ComponentKind {
+  double scale = 1;
+  bool far = false;
+  bool tail = false;
+};
+
+std::vector<ComponentKind> components_of(const NoiseModel& model) {
+  std::vector<ComponentKind> kinds;
+  for (const bool far : {false, true}) {
+    if (far && !model.has_peaks()) break;
+    kinds.push_back({.far = far});
+    if (model.has_tail) kinds.push_back({.scale = model.tail_scale, .far = far, .tail = true});
+  }
+  return kinds;
+}
+
+}  // namespace
+
+/// A block of ranges with the results of its E-step.
+struct ExpectationStep::Block {
+  std::size_t first = 0;
+  std::size_t size = 0;
+  const std::vector<ComponentKind>* kinds = nullptr;
+  Array value, weight, relative, deviation, log_density;
+  std::array<Array, MixtureBlock::kMostComponents> share, mean, probability;
+
+  /// Evaluates the mixture for the ranges of the block.
+  void compute(const NoiseModel& model, const RangeErrors& errors,
+               const std::array<std::vector<double>, kVarianceParts>& unit_variances) {
+    deviation.fill(0);
+    for (std::size_t part = 0; part < kVarianceParts; ++part) {
+      const double square = model.size[part] * model.size[part];
+      if (square == 0) continue;
+      const double* unit = unit_variances[part].data() + first;
+      for (std::size_t k = 0; k < size; ++k) deviation[k] += square * unit[k];
+    }
+    for (std::size_t k = 0; k < size; ++k) {
+      const std::uint16_t beam = errors.beam[first + k];
+      value[k] = double{errors.value[first + k]};
+      weight[k] = model.has_peaks() ? model.weight[beam] : 0;
+      relative[k] = model.has_relative() ? model.relative[beam] : 1;
+      deviation[k] = relative[k] * std::sqrt(deviation[k]);
+    }
+    const double in_tail = model.has_tail ? model.tail_share : 0;
+    MixtureBlock mixture{.size = size,
+                         .value = value.data(),
+                         .deviation = deviation.data(),
+                         .components = kinds->size(),
+                         .component = {},
+                         .log_density = log_density.data()};
+    for (std::size_t c = 0; c < kinds->size(); ++c) {
+      const ComponentKind& kind = (*kinds)[c];
+      const double of_peak = kind.tail ? in_tail : 1 - in_tail;
+      for (std::size_t k = 0; k < size; ++k) {
+        share[c][k] = of_peak * (kind.far ? weight[k] : 1 - weight[k]);
+        mean[c][k] = model.separation * ((kind.far ? 1 : 0) - weight[k]);
+      }
+      mixture.component[c] = {.share = share[c].data(),
+                              .mean = mean[c].data(),
+                              .scale = kind.scale,
+                              .probability = probability[c].data()};
+    }
+    simd::expect(mixture);
+  }
+};
+
+ExpectationStep::ExpectationStep(const RangeErrors& errors) : errors_(errors) {
+  for (auto& part : unit_variances_) part.resize(errors.size());
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const ByPart units = unit_variances(errors.echo(i));
+    for (std::size_t part = 0; part < kVarianceParts; ++part) unit_variances_[part][i] = units[part];
+  }
+}
+
+void ExpectationStep::for_each_block(const NoiseModel& model,
+                                     const std::function<void(const Block&)>& use) const {
+  const auto kinds = components_of(model);
+  Block block;
+  block.kinds = &kinds;
+  for (block.first = 0; block.first < errors_.size(); block.first += kBlock) {
+    block.size = std::min(kBlock, errors_.size() - block.first);
+    block.compute(model, errors_, unit_variances_);
+    use(block);
+  }
+}
+
+ExpectationSums ExpectationStep::sums(const NoiseModel& model, std::size_t beams) const {
+  ExpectationSums sums;
+  for (auto* by_beam : {&sums.far, &sums.of_beam, &sums.squares}) by_beam->resize(beams);
+  for_each_block(model, [&](const Block& block) {
+    for (std::size_t k = 0; k < block.size; ++k) {
+      const std::uint16_t beam = errors_.beam[block.first + k];
+      const double relative = block.relative[k];
+      const double deviation = block.deviation[k];
+      sums.ranges += 1;
+      sums.log_likelihood += block.log_density[k];
+      sums.of_beam[beam] += 1;
+      double square = 0;  // expected square relative to the scales of component and beam
+      double weight = 0;
+      for (std::size_t c = 0; c < block.kinds->size(); ++c) {
+        const ComponentKind& kind = (*block.kinds)[c];
+        const double p = block.probability[c][k];
+        const double off = block.value[k] - block.mean[c][k];
+        const double usual = off / (kind.scale * relative);
+        square += p * usual * usual;
+        weight += p;
+        if (kind.tail) {
+          sums.tail += p;
+          sums.tail_squares += p * (off / deviation) * (off / deviation);
+        }
+        if (!model.has_peaks()) continue;
+        const double lever = (kind.far ? 1 : 0) - block.weight[k];
+        const double precision = p / ((kind.scale * deviation) * (kind.scale * deviation));
+        sums.separation += precision * block.value[k] * lever;
+        sums.separation_weight += precision * lever * lever;
+        if (kind.far) sums.far[beam] += p;
+      }
+      if (!(weight > 0)) continue;  // underflow: an extreme outlier
+      const double variance = (deviation / relative) * (deviation / relative);
+      ByPart units;
+      for (std::size_t part = 0; part < kVarianceParts; ++part) {
+        units[part] = model.parts[part] ? unit_variances_[part][block.first + k] : 0;
+      }
+      sums.variance.add(units, square / weight, weight / (variance * variance));
+      sums.squares[beam] += square / variance * relative * relative;
+    }
+  });
+  return sums;
+}
+
+std::vector<double> ExpectationStep::log_densities(const NoiseModel& model) const {
+  std::vector<double> all;
+  all.reserve(errors_.size());
+  for_each_block(model, [&](const Block& block) {
+    all.insert(all.end(), block.log_density.begin(),
+               block.log_density.begin() + static_cast<std::ptrdiff_t>(block.size));
+  });
+  return all;
+}
+
+}  // namespace crisp

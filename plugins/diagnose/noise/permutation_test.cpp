@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/noise/permutation_test.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "pipeline/clocks/series.hpp"
+#include "pipeline/statistics/bootstrap.hpp"
+#include "pipeline/statistics/dense_solvers.hpp"
+
+namespace crisp {
+namespace {
+
+Eigen::MatrixXd given(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd both(columns.rows(), base.cols() + columns.cols());
+  both.leftCols(base.cols()) = base;
+  both.rightCols(columns.cols()) = columns;
+  return both;
+}
+
+/// Residuals of every other value about a fit to the rest.
+std::vector<double> left_of_others(const Eigen::MatrixXd& design, const Eigen::VectorXd& values) {
+  std::vector<Eigen::Index> fitted;
+  std::vector<Eigen::Index> rest;
+  for (Eigen::Index w = 0; w < values.size(); ++w) (w % 2 == 0 ? fitted : rest).push_back(w);
+  Eigen::VectorXd left = values(rest);
+  if (design.cols() > 0) {
+    const Eigen::MatrixXd some = design(fitted, Eigen::all);
+    left -= design(rest, Eigen::all) * least_squares(some, values(fitted));
+  }
+  return {left.begin(), left.end()};
+}
+
+}  // namespace
+
+double bic_of_series(double squares, Eigen::Index n, double parameters) {
+  const auto values = static_cast<double>(n);
+  return values * std::log(std::max(squares, std::numeric_limits<double>::min()) / values) +
+         parameters * std::log(values);
+}
+
+Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
+                    const Eigen::VectorXd& values, std::uint64_t seed) {
+  constexpr std::size_t kDraws = 999;
+  const auto before = left_of_others(base, values);
+  const auto after = left_of_others(given(base, columns), values);
+  const auto rms = [](const std::vector<double>& all, const std::vector<std::size_t>& drawn) {
+    double squares = 0;
+    for (const std::size_t i : drawn) squares += all[i] * all[i];
+    return std::sqrt(squares / static_cast<double>(drawn.size()));
+  };
+  std::vector<std::size_t> all(before.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const auto change = [&](const std::vector<std::size_t>& drawn) {
+    return rms(after, drawn) - rms(before, drawn);
+  };
+  return {.metric = {},
+          .unit = {},
+          .before = rms(before, all),
+          .after = rms(after, all),
+          .ci95 = bootstrap(before.size(), 1, seed, kDraws, change).ci95};
+}
+
+PermutationTest test_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
+                            const Eigen::VectorXd& values, std::uint64_t seed) {
+  constexpr int kShuffles = 4999;
+  const SeriesFit fit = best_in_series(base, columns, values);
+  PermutationTest test{.column = fit.column,
+                       .values = fit.values,
+                       .errors = fit.errors,
+                       .gain = gain_in_series(base, columns.col(fit.column), values, seed)};
+  // All permutations have the same sum of squares, so the largest inner product decides.
+  const Eigen::MatrixXd unit = off_base(base, columns).colwise().normalized();
+  Eigen::VectorXd left = off_base(base, values);
+  std::mt19937_64 random(seed);
+  int above = 0;
+  for (int s = 0; s < kShuffles; ++s) {
+    std::ranges::shuffle(left, random);
+    above += (unit.transpose() * left).cwiseAbs().maxCoeff() >= fit.product ? 1 : 0;
+  }
+  test.p_value = (1.0 + above) / (1.0 + kShuffles);
+  return test;
+}
+
+}  // namespace crisp

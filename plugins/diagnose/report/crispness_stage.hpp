@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/quality/points.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// Stage diagnose.crispness: measures a cloud's Rényi quadratic entropy (RQE) at given kernel widths.
+class CrispnessStage final : public Stage {
+ public:
+  static void describe(StageDescription<CrispnessStage>& d);
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  std::vector<double> sigmas_{0.03};
+  double cutoff_ = 7;
+  std::string search_ = "grid";
+  Vectors points_;
+};
+
+}  // namespace crisp

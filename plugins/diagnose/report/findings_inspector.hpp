@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pipeline/stage/inspector.hpp"
+
+namespace crisp {
+
+/// Inspector of a diagnosis.json.
+Inspector findings_inspector();
+
+}  // namespace crisp

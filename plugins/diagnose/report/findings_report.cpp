@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/report/findings_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+namespace crisp {
+namespace {
+
+/// Estimates of the candidate's parameters, as far as they were estimated.
+std::vector<Parameter> parameters_of(const Hypothesis& hypothesis, const Calibration& calibration) {
+  const Candidate& candidate = hypothesis.candidate;
+  const TermParameters* found = find_term(terms_of(calibration, candidate.owner), candidate.term.term);
+  return found ? found->parameters : candidate.term.parameters;
+}
+
+std::string name_of(std::size_t owner, const Calibration& calibration) {
+  return owner < calibration.lasers.size() ? calibration.lasers[owner].name : "plate";
+}
+
+/// Data that make a candidate ("laser2.mirror.cone") resolvable from similar causes.
+std::string resolvable_by(const std::string& candidate, const TermRegistry& terms) {
+  for (const std::string& name : terms.names()) {
+    if (candidate == name || candidate.ends_with("." + name)) return terms.get(name)->info().resolvable_by;
+  }
+  return {};
+}
+
+/// Data that make a finding resolvable from its confounded causes.
+std::vector<std::string> resolvable_by(const Finding& finding, const TermRegistry& terms) {
+  std::vector<std::string> needs;
+  if (finding.confounded_with.empty()) return needs;
+  std::vector<std::string> names = finding.confounded_with;
+  names.insert(names.begin(), finding.cause);
+  for (const std::string& name : names) {
+    std::istringstream all(resolvable_by(name, terms));
+    for (std::string need; std::getline(all >> std::ws, need, ';');) {
+      if (std::ranges::find(needs, need) == needs.end()) needs.push_back(need);
+    }
+  }
+  return needs;
+}
+
+/// Share of the initial residuals' squares beyond noise that this hypothesis alone explains. The total is at
+/// least the sum over all hypotheses.
+double explained_by(const Hypothesis& hypothesis, const Diagnosis& diagnosis, double noise) {
+  double all = 0;
+  for (const Hypothesis& other : diagnosis.hypotheses) all += other.square(noise);
+  const double whole = std::max(all, diagnosis.left_before.excess);
+  return whole > 0 ? hypothesis.square(noise) / whole : 0;
+}
+
+/// p-value, corrected for multiple testing. For a fine shape it is that of the incoming model's profile over
+/// its covariate, since the block-based test has too few blocks for it.
+double p_value_of(const Hypothesis& hypothesis, const Diagnosis& diagnosis) {
+  if (!hypothesis.candidate.is_fine)
+    return std::min(1.0, hypothesis.test.p_value * static_cast<double>(diagnosis.tests));
+  const auto profile = std::ranges::find_if(diagnosis.left_before.profiles, [&](const Profile& one) {
+    return one.laser == hypothesis.candidate.owner && one.covariate == hypothesis.candidate.covariate;
+  });
+  return profile != diagnosis.left_before.profiles.end() ? profile->p_value : 1;
+}
+
+Finding finding_of(const Hypothesis& hypothesis, const Calibration& calibration, const Diagnosis& diagnosis,
+                   const TermRegistry& terms, double odds, double noise) {
+  Finding finding{.cause = hypothesis.candidate.term.term,
+                  .scope = name_of(hypothesis.candidate.owner, calibration),
+                  .parameters = parameters_of(hypothesis, calibration),
+                  .explained_fraction = explained_by(hypothesis, diagnosis, noise),
+                  .p_value = p_value_of(hypothesis, diagnosis),
+                  .confounded_with = {},
+                  .resolvable_by = {},
+                  .gain = hypothesis.gains,
+                  .accepted = hypothesis.accepted,
+                  .refused = hypothesis.rejected};
+  const double behind =
+      hypothesis.competitors.empty() ? hypothesis.test.bic : hypothesis.competitors.front().behind;
+  finding.log10_odds = behind / 2 / std::numbers::ln10;
+  for (const auto& competitor : hypothesis.competitors) {
+    if (competitor.behind < odds) finding.confounded_with.push_back(competitor.name);
+    finding.alternatives.push_back({.cause = competitor.term,
+                                    .scope = name_of(competitor.owner, calibration),
+                                    .log10_odds = competitor.behind / 2 / std::numbers::ln10});
+  }
+  finding.resolvable_by = resolvable_by(finding, terms);
+  return finding;
+}
+
+UnnamedFinding unnamed_of(const Hypothesis& hypothesis, const Calibration& calibration,
+                          const Diagnosis& diagnosis, double noise) {
+  const std::string& term = hypothesis.candidate.term.term;  // "empirical.range_by_mirror_angle"
+  const auto dot = term.find('.') + 1;
+  std::string quantity = term.substr(dot, term.find("_by_") - dot);
+  std::ranges::replace(quantity, '_', ' ');
+  return {.covariate = hypothesis.candidate.covariate,
+          .quantity = quantity,
+          .scope = name_of(hypothesis.candidate.owner, calibration),
+          .amplitude = hypothesis.test.visible * noise,
+          .unit = "m",
+          .p_value = p_value_of(hypothesis, diagnosis),
+          .gain = hypothesis.gains,
+          .accepted = hypothesis.accepted};
+}
+
+std::string reason_of(const Limit& limit, const std::string& resolvable_by) {
+  const std::string needs = resolvable_by.empty() ? "" : "; resolvable by: " + resolvable_by;
+  if (!std::isfinite(limit.size))
+    return "in these data its effect is fully absorbed by the other parameters" + needs;
+  return fmt::format(
+      "jointly with the other parameters, an effect below {:.0f} mm (RMS of ranges) is not detectable{}",
+      1e3 * limit.size, needs);
+}
+
+/// Adds the systematic residuals of the extended model over covariates without an unnamed finding.
+void add_left_over(const ProfileComparison& left, const Calibration& calibration, double visible,
+                   Findings& all) {
+  for (const Profile& profile : left.profiles) {
+    if (!profile.is_significant() || profile.rms < visible) continue;
+    const std::string laser = scope_of(profile, calibration);
+    const bool is_known = std::ranges::any_of(all.unnamed, [&](const UnnamedFinding& known) {
+      return known.covariate == profile.covariate && (known.scope == laser || known.scope == "plate");
+    });
+    if (is_known) continue;
+    all.unnamed.push_back({.covariate = profile.covariate,
+                           .quantity = "range",
+                           .scope = laser,
+                           .amplitude = profile.rms,
+                           .unit = "m",
+                           .p_value = profile.p_value,
+                           .gain = {}});
+  }
+}
+
+/// Significant deviations from the simulation, of the incoming or the extended model.
+std::vector<ResidualDeparture> departures_of(const Diagnosis& diagnosis, const Calibration& calibration) {
+  std::vector<ResidualDeparture> all;
+  for (const Profile& before : diagnosis.left_before.profiles) {
+    const auto after = std::ranges::find_if(diagnosis.left_after.profiles, [&](const Profile& other) {
+      return other.laser == before.laser && other.covariate == before.covariate;
+    });
+    const bool is_there = after != diagnosis.left_after.profiles.end();
+    if (!before.is_significant() && !(is_there && after->is_significant())) continue;
+    all.push_back({.covariate = before.covariate,
+                   .quantity = "range",
+                   .scope = scope_of(before, calibration),
+                   .amplitude = before.rms,
+                   .unit = "m",
+                   .p_value = before.p_value});
+    if (!is_there) continue;
+    all.back().amplitude_after = after->rms;
+    all.back().p_value_after = after->p_value;
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string scope_of(const Profile& profile, const Calibration& calibration) {
+  return profile.laser == kAllLasers ? "scanner" : calibration.lasers[profile.laser].name;
+}
+
+Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration, const TermRegistry& terms,
+                     const SelectionSettings& settings, double noise) {
+  Findings all{.findings = {},
+               .unnamed = {},
+               .departures = departures_of(diagnosis, calibration),
+               .unobservable = {},
+               .gain = diagnosis.gains,
+               .before_p = diagnosis.left_before.p_value,
+               .after_p = diagnosis.left_after.p_value};
+  for (const Hypothesis& hypothesis : diagnosis.hypotheses) {
+    if (hypothesis.candidate.is_cause()) {
+      all.findings.push_back(finding_of(hypothesis, calibration, diagnosis, terms, settings.odds, noise));
+    } else {
+      all.unnamed.push_back(unnamed_of(hypothesis, calibration, diagnosis, noise));
+    }
+  }
+  add_left_over(diagnosis.left_after, calibration, settings.visible * noise, all);
+  for (const Limit& limit : diagnosis.unobservable) {
+    all.unobservable.push_back({.parameter = limit.name,
+                                .reason = reason_of(limit, resolvable_by(limit.name, terms)),
+                                .combination = limit.combination});
+  }
+  for (const std::string& cause : diagnosis.unshared) {
+    all.unobservable.push_back(
+        {.parameter = cause,
+         .reason =
+             terms.get(cause)->info().counts_from == CountsFrom::kRunsEpoch
+                 ? "it depends on the time since the recording began: diagnose one recording by itself"
+                 : "it depends on the plate's angle, whose zero was lost between the recordings: diagnose one recording by itself",
+         .combination = {}});
+  }
+  return all;
+}
+
+}  // namespace crisp

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/scans/bursts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace crisp {
+namespace {
+
+/// Share of times within a quarter interval after the previous one.
+double share_together(std::vector<double> times, double interval) {
+  constexpr double kTogether = 0.25;
+  std::ranges::sort(times);
+  double together = 0;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] - times[i - 1] < kTogether * interval) together += 1;
+  }
+  return together / static_cast<double>(times.size() - 1);
+}
+
+}  // namespace
+
+Bursts find_bursts(const std::vector<double>& receipts, const std::vector<double>& stamps,
+                   std::uint64_t seed) {
+  Bursts bursts;
+  constexpr std::size_t kFewest = 10;
+  if (receipts.size() < kFewest) return bursts;
+  const auto n = static_cast<double>(receipts.size());
+  bursts.interval = (stamps.back() - stamps.front()) / (n - 1);
+  bursts.together = share_together(receipts, bursts.interval);
+  bursts.together_error = std::sqrt(bursts.together * (1 - bursts.together) / (n - 1));
+
+  std::vector<double> delays;
+  double mean = 0;
+  for (std::size_t i = 0; i < receipts.size(); ++i) delays.push_back(receipts[i] - stamps[i]);
+  for (const double delay : delays) mean += delay / n;
+  for (const double delay : delays) bursts.wait += (delay - mean) * (delay - mean) / n;
+  bursts.wait = std::sqrt(bursts.wait);
+  const auto [least, most] = std::minmax_element(delays.begin(), delays.end());
+  bursts.longest = *most - *least;
+
+  constexpr int kShuffles = 999;
+  std::mt19937_64 random(seed);
+  int as_much = 0;
+  for (int i = 0; i < kShuffles; ++i) {
+    std::shuffle(delays.begin(), delays.end(), random);
+    std::vector<double> times;
+    for (std::size_t k = 0; k < stamps.size(); ++k) times.push_back(stamps[k] + delays[k]);
+    if (share_together(std::move(times), bursts.interval) >= bursts.together) ++as_much;
+  }
+  bursts.p_value = (as_much + 1.0) / (kShuffles + 1.0);
+  return bursts;
+}
+
+}  // namespace crisp

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pipeline/stage/registry.hpp"
+
+namespace crisp {
+
+/// diagnose.stationary, diagnose.sweep, diagnose.passes and diagnose.mounting.
+void register_scans(Registrar& registrar);
+
+}  // namespace crisp

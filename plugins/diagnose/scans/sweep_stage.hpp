@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/data/fit_statistics.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+#include "plugins/diagnose/scans/neighbour_errors.hpp"
+
+namespace crisp {
+
+/// Stage `diagnose.sweep`: compares receipt times and device stamps of a sweep's scans.
+class DiagnoseSweepStage final : public Stage {
+ public:
+  static void describe(StageDescription<DiagnoseSweepStage>& d);
+
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  void diagnose(std::size_t index, Findings& findings, Context& context);
+
+  std::optional<std::filesystem::path> folder_;
+  std::vector<ScanSeries> lasers_;
+  std::map<std::string, ClockMap> clocks_;
+  std::vector<GoodnessOfFit> reported_;
+  Findings findings_;  // including those of earlier stages
+};
+
+}  // namespace crisp

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/model/cross_validation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/plugins/diagnose/hidden.hpp"
+#include "tests/support/several_recordings.hpp"
+
+namespace crisp {
+namespace {
+
+TEST(CrossValidator, HalvesShareNoTurnAndNoBeamIsLost) {
+  const auto recording = test::hidden(1, 6, office(), {});
+  const Sample all = recording.sample();
+  const Halves halves = halves_of(all);
+  EXPECT_EQ(halves.fitted.beams.size() + halves.held_out.beams.size(), all.beams.size());
+  EXPECT_GT(halves.fitted.beams.size(), all.beams.size() / 4);
+  EXPECT_GT(halves.held_out.beams.size(), all.beams.size() / 4);
+  EXPECT_EQ(halves.turn.size(), halves.held_out.beams.size());
+  EXPECT_GE(*std::ranges::max_element(halves.turn), 1U);
+}
+
+TEST(CrossValidator, HoldsOutEveryOtherOfSeveralRecordings) {
+  const auto recording = test::hidden(1, 6, office(), {}).made;
+  const test::Several three = test::several({recording, recording, recording});
+  const Halves halves = halves_of(three.sample());
+  EXPECT_EQ(halves.fitted.beams.size(), 2 * recording.beams.size());
+  EXPECT_EQ(halves.held_out.beams.range, recording.beams.range) << "the second recording";
+  const std::set<std::uint32_t> turns(halves.turn.begin(), halves.turn.end());
+  EXPECT_GE(turns.size(), 4U);
+}
+
+TEST(CrossValidator, EstimatesTheGainOfAnInjectedChange) {
+  const auto recording = test::hidden(2, 6, office(), {{"laser2.range.offset", {0.01}}});
+  const SensorModel truth(recording.scanner.truth, built_in_terms());
+  const SensorModel plain(nominal_calibration(default_rig()), built_in_terms());
+  const CrossValidator held_out(halves_of(recording.sample()), plain, {});
+  const auto gains = CrossValidator::gains(held_out.score(plain), held_out.score(truth));
+  const auto thickness = std::ranges::find(gains, "cloud thickness", &Gain::metric);
+  ASSERT_NE(thickness, gains.end());
+  EXPECT_LT(thickness->ci95[1], 0);
+  EXPECT_LT(thickness->after, thickness->before);
+  const auto likelihood = std::ranges::find(gains, CrossValidator::kLikelihood, &Gain::metric);
+  EXPECT_GT(likelihood->ci95[0], 0);
+  const auto lasers = std::ranges::find(gains, "disagreement of lasers", &Gain::metric);
+  EXPECT_GT(lasers->before, 5 * lasers->after) << "10 mm of one laser against two";
+}
+
+TEST(CrossValidator, EstimatesNoGainWithoutAChange) {
+  const auto recording = test::hidden(3, 6, office(), {});
+  const SensorModel truth(recording.scanner.truth, built_in_terms());
+  const CrossValidator held_out(halves_of(recording.sample()), truth, {});
+  const auto score = held_out.score(truth);
+  for (const Gain& gain : CrossValidator::gains(score, score)) {
+    EXPECT_EQ(gain.before, gain.after) << gain.metric;
+    EXPECT_EQ(gain.ci95[0], 0) << gain.metric;
+    EXPECT_EQ(gain.ci95[1], 0) << gain.metric;
+  }
+}
+
+}  // namespace
+}  // namespace crisp

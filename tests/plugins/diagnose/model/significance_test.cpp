@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/diagnose/model/significance.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/built_in_terms.hpp"
+
+namespace crisp {
+namespace {
+
+/// A fit with range.offset and range.intensity of the first laser, at these estimates.
+Outcome outcome(double offset, double a, double b) {
+  Calibration calibration = nominal_calibration(default_rig());
+  const auto add = [&](const std::string& name, const std::vector<double>& values) {
+    TermParameters term = neutral_parameters(built_in_terms().get(name)->info());
+    for (std::size_t p = 0; p < values.size(); ++p) term.parameters[p].value = values[p];
+    calibration.lasers[0].terms.push_back(term);
+  };
+  add("range.offset", {offset});
+  add("range.intensity", {a, b});
+  Outcome result{
+      .model = SensorModel(calibration, built_in_terms()), .free = {}, .covariance = {}, .unobservable = {}};
+  const auto& names = result.model.names();
+  for (const std::string name :
+       {"laser1.tau", "laser1.range.offset.c", "laser1.range.intensity.a", "laser1.range.intensity.b"}) {
+    result.free.push_back(static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()));
+  }
+  result.covariance = 1e-6 * Eigen::MatrixXd::Identity(4, 4);
+  result.covariance(2, 3) = result.covariance(3, 2) = 0.98e-6;
+  return result;
+}
+
+Hypothesis of_first_laser(const std::string& term) {
+  Hypothesis one;
+  one.candidate.owner = 0;
+  one.candidate.name = "laser1." + term;
+  one.candidate.term = neutral_parameters(built_in_terms().get(term)->info());
+  return one;
+}
+
+TEST(Significance, RejectsAnInsignificantTerm) {
+  std::vector<Hypothesis> found = {of_first_laser("range.offset"), of_first_laser("range.intensity")};
+  EXPECT_FALSE(reject_insignificant(found, outcome(0.004, 0.005, 0), built_in_terms(), 1e-3));
+  EXPECT_TRUE(reject_insignificant(found, outcome(0.003, 0.005, 0), built_in_terms(), 1e-3))
+      << "three standard errors";
+  EXPECT_FALSE(found[0].accepted);
+  EXPECT_NE(found[0].rejected, "");
+  EXPECT_TRUE(found[1].accepted);
+}
+
+TEST(Significance, RejectsASmallCauseThatSeveralLasersShare) {
+  const auto seen = [](const std::string& term, std::size_t laser, double visible) {
+    Hypothesis one = of_first_laser(term);
+    one.candidate.owner = laser;
+    one.candidate.name = "laser" + std::to_string(laser + 1) + "." + term;
+    one.test.visible = visible;
+    return one;
+  };
+  std::vector<Hypothesis> found = {seen("range.intensity", 0, 0.03), seen("range.intensity", 2, 0.04),
+                                   seen("range.offset", 0, 0.03), seen("range.offset", 1, 0.11),
+                                   seen("range.scale", 1, 0.01)};
+  reject_scene_artifacts(found);
+  const auto accepted = [&](std::size_t k) { return found.at(k).accepted; };
+  EXPECT_FALSE(accepted(0) || accepted(1));
+  EXPECT_NE(found[0].rejected, "");
+  EXPECT_TRUE(accepted(2) && accepted(3)) << "one of them is large";
+  EXPECT_TRUE(accepted(4)) << "a cause of one laser only";
+}
+
+TEST(Significance, TestsTheParametersOfATermJointly) {
+  std::vector<Hypothesis> alike = {of_first_laser("range.intensity")};
+  EXPECT_TRUE(reject_insignificant(alike, outcome(0, 0.003, 0.003), built_in_terms(), 1e-3));
+  std::vector<Hypothesis> opposed = {of_first_laser("range.intensity")};
+  EXPECT_FALSE(reject_insignificant(opposed, outcome(0, 0.001, -0.001), built_in_terms(), 1e-3))
+      << "they are correlated";
+}
+
+}  // namespace
+}  // namespace crisp
