@@ -79,7 +79,7 @@ TEST(Basin, CountsEndsByTheirCaveats) {
   EXPECT_THAT(text,
               HasSubstr("recording 7 start 3: laser1.tau off by 50 mm, 20 standard errors; without caveats"));
   EXPECT_THAT(text, HasSubstr("elsewhere, without caveats                          1   25.00 %"));
-  EXPECT_THAT(basin_csv({recording}), HasSubstr("7,2,laser1.tau,m,0.2,with_caveats,9,,0,\"a 'wall'\"\n"));
+  EXPECT_THAT(basin_csv({recording}), HasSubstr("7,2,laser1.tau,m,0.2,caveats,9,,0,\"a 'wall'\"\n"));
 }
 
 }  // namespace
