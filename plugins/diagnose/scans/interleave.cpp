@@ -27,7 +27,7 @@ std::size_t period_of(const std::vector<double>& difference) {
 
 }  // namespace
 
-Interleave find_interleave(const std::vector<SeriesScan>& scans, std::uint64_t seed) {
+ScanInterleave find_interleave(const std::vector<SeriesScan>& scans, std::uint64_t seed) {
   std::vector<std::vector<double>> rows;
   std::vector<std::int64_t> counts;
   for (const auto& scan : std::span(scans).first(std::min(kEnoughStationary, scans.size()))) {
@@ -36,10 +36,10 @@ Interleave find_interleave(const std::vector<SeriesScan>& scans, std::uint64_t s
   }
   const LagContrast lags(std::move(rows), counts);
   const auto chance = lags.shuffled(seed);
-  Interleave found{.difference = lags.difference(),
-                   .period = period_of(lags.difference()),
-                   .p_value = chance.p_value,
-                   .beyond_chance = std::max(0.0, lags.contrast() - chance.contrast)};
+  ScanInterleave found{.difference = lags.difference(),
+                       .period = period_of(lags.difference()),
+                       .p_value = chance.p_value,
+                       .beyond_chance = std::max(0.0, lags.contrast() - chance.contrast)};
   constexpr double kSure = 0.01;
   if (found.p_value > kSure) found.period = 1;
   return found;

@@ -10,7 +10,7 @@
 namespace crisp {
 
 /// Period of the scan classes of a stationary laser.
-struct Interleave {
+struct ScanInterleave {
   std::vector<double> difference;  ///< [m] element l − 1: mean absolute difference of scans at lag l
   std::size_t period = 1;          ///< lag at which scans are alike; 1: all scans are
   double p_value = 1;              ///< permutation test of the contrast between lags
@@ -23,7 +23,7 @@ inline constexpr std::size_t kEnoughStationary = 400;
 /// Finds the lag at which scans are most alike (LagContrast).
 ///
 /// @param scans  of a stationary laser in a static scene
-Interleave find_interleave(const std::vector<SeriesScan>& scans, std::uint64_t seed);
+ScanInterleave find_interleave(const std::vector<SeriesScan>& scans, std::uint64_t seed);
 
 /// Offset of one scan class from the reference class, for a stationary laser.
 struct ClassOffset {

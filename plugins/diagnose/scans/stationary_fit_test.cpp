@@ -259,7 +259,7 @@ FitStatistics with_interleave(const std::vector<StationaryPhase>& phases, std::s
 
 std::optional<GoodnessOfFit> stationary_fit_test(const std::string& laser,
                                                  const std::vector<SeriesScan>& scans,
-                                                 const Interleave& interleave,
+                                                 const ScanInterleave& interleave,
                                                  const std::vector<bool>& is_moved, std::uint64_t seed) {
   if (std::ranges::find(is_moved, true) == is_moved.end()) {
     const FitStatistics alike = test(interleave.beyond_chance, interleave.p_value);

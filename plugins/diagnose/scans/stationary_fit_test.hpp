@@ -27,7 +27,7 @@ namespace crisp {
 /// @return empty with too few beams or scans for the test
 std::optional<GoodnessOfFit> stationary_fit_test(const std::string& laser,
                                                  const std::vector<SeriesScan>& scans,
-                                                 const Interleave& interleave,
+                                                 const ScanInterleave& interleave,
                                                  const std::vector<bool>& is_moved, std::uint64_t seed);
 
 }  // namespace crisp

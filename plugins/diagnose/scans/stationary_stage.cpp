@@ -38,8 +38,8 @@ Gain gain_in_sweep(const ScanSeries& series, const std::vector<double>& shifts, 
                         neighbour_errors(series.scans(), times, found, plate), seed);
 }
 
-Finding finding_of(const std::string& laser, const ClassOffset& class_offset, const Interleave& interleave,
-                   double angle_step) {
+Finding finding_of(const std::string& laser, const ClassOffset& class_offset,
+                   const ScanInterleave& interleave, double angle_step) {
   Finding finding{.cause = "mirror.interleave", .scope = laser};
   finding.parameters = {{"shift", "rad", class_offset.shift * angle_step,
                          class_offset.shift_error * std::abs(angle_step), true},
@@ -54,7 +54,7 @@ Finding finding_of(const std::string& laser, const ClassOffset& class_offset, co
 }
 
 UnnamedFinding unnamed_of(const std::string& laser, const ClassOffset& class_offset,
-                          const Interleave& interleave) {
+                          const ScanInterleave& interleave) {
   return {.covariate = fmt::format("count of scans modulo {}", interleave.period),
           .quantity = "range",
           .scope = laser,
@@ -101,7 +101,7 @@ void DiagnoseStationaryStage::process(const Inputs& in, Outputs&, Context& conte
   }
 }
 
-void DiagnoseStationaryStage::report(const std::string& name, const Interleave& interleave,
+void DiagnoseStationaryStage::report(const std::string& name, const ScanInterleave& interleave,
                                      const std::vector<ClassOffset>& class_offsets, Context& context) {
   std::string lags;
   for (const double d : interleave.difference) lags += fmt::format(" {:.1f}", 1e3 * d);

@@ -23,7 +23,7 @@ class DiagnoseStationaryStage final : public Stage {
 
  private:
   void diagnose(std::size_t index, Findings& findings, Context& context);
-  static void report(const std::string& name, const Interleave& interleave,
+  static void report(const std::string& name, const ScanInterleave& interleave,
                      const std::vector<ClassOffset>& class_offsets, Context& context);
   void draw(const std::string& name, const std::vector<ClassOffset>& class_offsets, Context& context) const;
   std::shared_ptr<const Scan> corrected(const std::shared_ptr<const Scan>& scan);
