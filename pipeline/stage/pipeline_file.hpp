@@ -31,8 +31,8 @@ struct PipelinePlan {
   std::vector<PipelineWarning> warnings;  ///< names of an earlier release
 };
 
-/// Reads a pipeline's YAML (docs/reference/pipelines.md), the rig that it names included. Adds all mistakes to
-/// `errors`; the plan is of use only to find further ones if there are any.
+/// Reads a pipeline's YAML (docs/reference/pipelines.md), the rig that it names included. Adds all mistakes
+/// to `errors`; the plan is of use only to find further ones if there are any.
 PipelinePlan parse_plan(const YamlNode& root, const std::filesystem::path& folder,
                         const PipelineArguments& arguments, const StageRegistry& stages,
                         std::vector<Error>& errors);

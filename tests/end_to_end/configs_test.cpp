@@ -183,8 +183,8 @@ struct Emulation {
   std::thread thread;
 };
 
-/// Where the machine is too busy to send telegrams at their pace, their stamps fit no clock of constant rate, which is
-/// reported.
+/// Where the machine is too busy to send telegrams at their pace, their stamps fit no clock of constant rate,
+/// which is reported.
 testing::Matcher<ExitStatus> done_as_well_as_may_be() {
   return testing::AnyOf(ExitStatus::done, ExitStatus::not_trusted);
 }

@@ -39,8 +39,8 @@ INSTANTIATE_TEST_SUITE_P(OfMountings, Urdf,
                                          Mounted{0, 0, 0, 0}, Mounted{30 * kDegree, 0.1, 90 * kDegree, 0},
                                          Mounted{-50 * kDegree, 0.3, -7 * kDegree, -90 * kDegree}));
 
-/// By docs/concepts/frames.md: in the scan plane θ = 0 points down, θ = 90° along the laser's circle (turned by α), θ =
-/// reported angle less mount; the laser is at τ from the axis in the direction λ.
+/// By docs/concepts/frames.md: in the scan plane θ = 0 points down, θ = 90° along the laser's circle (turned
+/// by α), θ = reported angle less mount; the laser is at τ from the axis in the direction λ.
 TEST_P(Urdf, PutsABeamWhereTheFramesPageDefines) {
   const auto& [lambda, tau, alpha, mount] = GetParam();
   Calibration calibration;
