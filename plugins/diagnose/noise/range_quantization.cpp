@@ -141,7 +141,7 @@ std::optional<Finding> range_quantization(const std::string& scope, std::span<co
   const double slope_error = rounding / std::sqrt(static_cast<double>(std::min(ranges.size(), kMost)) *
                                                   std::max(1e-6, squares - mean * mean));
   Finding finding{
-      .cause = "noise.range_quantization",
+      .cause = "noise.quantisation",
       .scope = scope,
       .parameters = {{.name = "step",
                       .unit = "m",

@@ -10,7 +10,7 @@
 
 namespace crisp {
 
-/// Detects range quantization coarser than the telegram's millimetre (noise.range_quantization): a line in
+/// Detects range quantization coarser than the telegram's millimetre (noise.quantisation): a line in
 /// the spectrum of the ranges' distribution.
 ///
 /// @param ranges  [m] as reported by the laser, over some metres
