@@ -30,7 +30,7 @@ class AnyRig : public testing::Test {
     }
   }
 
-  void has_valid_options(std::uint64_t seed, const std::vector<std::string>& fixed, const std::string& what) {
+  void is_untrusted_with(std::uint64_t seed, const std::vector<std::string>& fixed, const std::string& what) {
     const auto outcome = calibrate(seed, fixed);
     EXPECT_EQ(outcome.status, ExitStatus::not_trusted) << drawn_->words();
     EXPECT_THAT(outcome.console, HasSubstr(what)) << drawn_->words();
@@ -68,16 +68,16 @@ TEST_F(AnyRig, ALagAtWhichLinesFitByChanceIsNotTaken) {
 TEST_F(AnyRig, DelaysThatThinOutTowardsTheLeastLeaveEtaHonest) { is_right_and_trusted(25, {}); }
 
 TEST_F(AnyRig, ADirectionThatNothingShowsIsNotGuessed) {
-  has_valid_options(11, {}, "the encoder's sense of rotation is undetermined");
+  is_untrusted_with(11, {}, "the encoder's sense of rotation is undetermined");
 }
 
 TEST_F(AnyRig, AMountThatIsOffByDegreesIsFound) {
-  has_valid_options(12, {}, "the rig has 3.283 deg");
-  has_valid_options(301, {"fault=mount"}, "front's mount is off: 44.99");
+  is_untrusted_with(12, {}, "the rig has 3.283 deg");
+  is_untrusted_with(301, {"fault=mount"}, "front's mount is off: 44.99");
 }
 
 TEST_F(AnyRig, MountsThatAreOffByARightAngleAreFound) {
-  has_valid_options(302, {"fault=mount"}, "with mount: 45.1deg of front (the rig has -44.9)");
+  is_untrusted_with(302, {"fault=mount"}, "with mount: 45.1deg of front (the rig has -44.9)");
 }
 
 TEST_F(AnyRig, ALaserThatSendsNothingIsNamed) {
