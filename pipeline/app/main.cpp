@@ -171,15 +171,28 @@ ExitStatus run_program(const CommandLine& line) {
   return ExitStatus::done;
 }
 
-/// Whether the first word is one of the commands, if it is no option.
-bool is_known_command(const CommandLine& line, int count, char** words) {
-  if (count < 2 || words[1][0] == '-') return true;
-  std::vector<std::string> known;
-  for (const CLI::App* sub : line.app.get_subcommands({})) known.push_back(sub->get_name());
-  if (std::ranges::find(known, words[1]) != known.end()) return true;
-  print_errors(Error("there is no command '" + std::string(words[1]) + "'",
-                     did_you_mean(words[1], known, "crisp --help lists them")));
+std::vector<std::string> names_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
+  return names;
+}
+
+/// Whether `word`, if it is no option, is one of the commands of `app`; prints an error otherwise.
+bool is_command_of(const CLI::App& app, const std::string& word, const std::vector<std::string>& further,
+                   const std::string& name) {
+  auto known = names_of(app);
+  if (word.starts_with("-") || std::ranges::find(known, word) != known.end()) return true;
+  known.insert(known.end(), further.begin(), further.end());
+  print_errors(Error("there is no command '" + name.substr(name.find(' ') + 1) + word + "'",
+                     did_you_mean(word, known, name + "--help lists them")));
   return false;
+}
+
+/// Whether the first words name a command.
+bool is_known_command(const CommandLine& line, int count, char** words) {
+  if (count > 1 && !is_command_of(line.app, words[1], names_of(*line.study_app), "crisp ")) return false;
+  const bool is_study = count > 2 && words[1] == line.study_app->get_name();
+  return !is_study || is_command_of(*line.study_app, words[2], {}, "crisp study ");
 }
 
 /// Empty arguments, mostly by an unset variable of the shell; empty if there are none.

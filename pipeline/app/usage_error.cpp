@@ -32,11 +32,14 @@ std::string not_expected(const CLI::App& command) {
 }  // namespace
 
 std::string usage_error(const CLI::App& app, const CLI::Error& error) {
-  const auto requested = app.get_subcommands();
-  const CLI::App& command = requested.empty() ? app : *requested.front();
+  const CLI::App* command = &app;  // the innermost that was named
+  std::string name = app.get_name();
+  while (!command->get_subcommands().empty()) {
+    command = command->get_subcommands().front();
+    name += " " + command->get_name();
+  }
   const bool extras = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-  const std::string what = extras ? not_expected(command) : error.what();
-  const std::string name = app.get_name() + (requested.empty() ? "" : " " + command.get_name());
+  const std::string what = extras ? not_expected(*command) : error.what();
   return "error: " + what + "; see " + name + " --help\n";
 }
 

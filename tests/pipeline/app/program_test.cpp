@@ -247,6 +247,11 @@ TEST_F(ProgramTest, RefusesWhatCannotBeRun) {
   const auto unknown = crisp({"rnu"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_EQ(unknown.error, "error: there is no command 'rnu'; did you mean 'run'?\n");
+  EXPECT_THAT(crisp({"study", "bond"}).error,
+              HasSubstr("there is no command 'study bond'; did you mean 'bound'?"));
+  EXPECT_THAT(crisp({"basn"}).error, HasSubstr("did you mean 'basin'?"));
+  EXPECT_THAT(crisp({"bound", "--durration", "3s"}).error,
+              HasSubstr("did you mean '--duration'?; see crisp study bound --help"));
   EXPECT_THAT(crisp({"monte-carlo", "-n", "four"}).error,
               HasSubstr("'four' is not a whole number, 1 to 1000000"));
   EXPECT_THAT(crisp({"monte-carlo", "-n", "0"}).error, HasSubstr("0 is not from 1 to 1000000"));
