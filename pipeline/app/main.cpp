@@ -202,7 +202,7 @@ std::string given_empty(const CLI::App& app) {
       const auto& given = option->results();
       if (std::ranges::find(given, "") != given.end()) return option->get_name();
     }
-    if (const auto empty = given_empty(*sub); !empty.empty()) return empty;
+    if (auto empty = given_empty(*sub); !empty.empty()) return empty;
   }
   return {};
 }

@@ -179,8 +179,8 @@ class SurfelSummer {
     }
   }
 
-  void add_ranges(const CompactRows& some, std::span<const SurfelResidual> residuals,
-                  SurfelSums& sums) const {
+  static void add_ranges(const CompactRows& some, std::span<const SurfelResidual> residuals,
+                         SurfelSums& sums) {
     const auto derivatives = some.rows.rightCols(some.rows.cols() - kOwn);
     const Eigen::VectorXd squares = derivatives.cwiseAbs2().transpose() * per_weight(residuals);
     const Eigen::VectorXd changed =
