@@ -120,7 +120,7 @@ void FittedClock::forget_before(Segment& segment, double device) {
   if (kept - stamps.begin() > stamps.end() - kept) stamps.erase(stamps.begin(), kept);
 }
 
-ClockLine FittedClock::line_of(const Segment& segment) const {
+ClockLine FittedClock::line_of(const Segment& segment) {
   const auto vertices = segment.hull.vertices();
   return line_by_convex_hull(vertices, 0.5 * (vertices.front().device + segment.last_device));
 }

@@ -110,7 +110,7 @@ class FittedClock {
     LineErrors errors;
   };
 
-  ClockLine line_of(const Segment& segment) const;
+  static ClockLine line_of(const Segment& segment);
   static void forget_before(Segment& segment, double device);
   void take_out(Segment& segment, const DelayStep& step);
   void make_hull_anew(Segment& segment, double first) const;

@@ -7,15 +7,21 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kBlock = 512;  // ranges: their arrays stay in the cache
+constexpr std::size_t kRangesAtOnce = 512;  // ranges: their arrays stay in the cache
 
-using Array = std::array<double, kBlock>;
+using RangeArray = std::array<double, kRangesAtOnce>;
 
 /// Scale, peak and tail of a mixture component.
 struct ComponentKind {
   double scale = 1;
   bool far = false;
   bool tail = false;
+};
+
+/// Expected square of a range, relative to the scales of its component and beam.
+struct ExpectedSquare {
+  double square = 0;
+  double weight = 0;  ///< sum of the components' posterior probabilities
 };
 
 std::vector<ComponentKind> components_of(const NoiseModel& model) {
@@ -35,8 +41,8 @@ struct ExpectationStep::Block {
   std::size_t first = 0;
   std::size_t size = 0;
   const std::vector<ComponentKind>* kinds = nullptr;
-  Array value, weight, relative, deviation, log_density;
-  std::array<Array, MixtureBlock::kMostComponents> share, mean, probability;
+  RangeArray value{}, weight{}, relative{}, deviation{}, log_density{};
+  std::array<RangeArray, MixtureBlock::kMostComponents> share{}, mean{}, probability{};
 
   /// Evaluates the mixture for the ranges of the block.
   void compute(const NoiseModel& model, const RangeErrors& errors,
@@ -76,6 +82,31 @@ struct ExpectationStep::Block {
     }
     simd::expect(mixture);
   }
+
+  /// Adds the range's share in the tail and in the peaks to the sums.
+  ExpectedSquare add_components(std::size_t k, const NoiseModel& model, std::uint16_t beam,
+                                ExpectationSums& sums) const {
+    ExpectedSquare expected;
+    for (std::size_t c = 0; c < kinds->size(); ++c) {
+      const ComponentKind& kind = (*kinds)[c];
+      const double p = probability[c][k];
+      const double off = value[k] - mean[c][k];
+      const double usual = off / (kind.scale * relative[k]);
+      expected.square += p * usual * usual;
+      expected.weight += p;
+      if (kind.tail) {
+        sums.tail += p;
+        sums.tail_squares += p * (off / deviation[k]) * (off / deviation[k]);
+      }
+      if (!model.has_peaks()) continue;
+      const double lever = (kind.far ? 1 : 0) - weight[k];
+      const double precision = p / ((kind.scale * deviation[k]) * (kind.scale * deviation[k]));
+      sums.separation += precision * value[k] * lever;
+      sums.separation_weight += precision * lever * lever;
+      if (kind.far) sums.far[beam] += p;
+    }
+    return expected;
+  }
 };
 
 ExpectationStep::ExpectationStep(const RangeErrors& errors) : errors_(errors) {
@@ -91,8 +122,8 @@ void ExpectationStep::for_each_block(const NoiseModel& model,
   const auto kinds = components_of(model);
   Block block;
   block.kinds = &kinds;
-  for (block.first = 0; block.first < errors_.size(); block.first += kBlock) {
-    block.size = std::min(kBlock, errors_.size() - block.first);
+  for (block.first = 0; block.first < errors_.size(); block.first += kRangesAtOnce) {
+    block.size = std::min(kRangesAtOnce, errors_.size() - block.first);
     block.compute(model, errors_, unit_variances_);
     use(block);
   }
@@ -104,39 +135,19 @@ ExpectationSums ExpectationStep::sums(const NoiseModel& model, std::size_t beams
   for_each_block(model, [&](const Block& block) {
     for (std::size_t k = 0; k < block.size; ++k) {
       const std::uint16_t beam = errors_.beam[block.first + k];
-      const double relative = block.relative[k];
-      const double deviation = block.deviation[k];
       sums.ranges += 1;
       sums.log_likelihood += block.log_density[k];
       sums.of_beam[beam] += 1;
-      double square = 0;  // expected square relative to the scales of component and beam
-      double weight = 0;
-      for (std::size_t c = 0; c < block.kinds->size(); ++c) {
-        const ComponentKind& kind = (*block.kinds)[c];
-        const double p = block.probability[c][k];
-        const double off = block.value[k] - block.mean[c][k];
-        const double usual = off / (kind.scale * relative);
-        square += p * usual * usual;
-        weight += p;
-        if (kind.tail) {
-          sums.tail += p;
-          sums.tail_squares += p * (off / deviation) * (off / deviation);
-        }
-        if (!model.has_peaks()) continue;
-        const double lever = (kind.far ? 1 : 0) - block.weight[k];
-        const double precision = p / ((kind.scale * deviation) * (kind.scale * deviation));
-        sums.separation += precision * block.value[k] * lever;
-        sums.separation_weight += precision * lever * lever;
-        if (kind.far) sums.far[beam] += p;
-      }
-      if (!(weight > 0)) continue;  // underflow: an extreme outlier
-      const double variance = (deviation / relative) * (deviation / relative);
+      const ExpectedSquare expected = block.add_components(k, model, beam, sums);
+      if (!(expected.weight > 0)) continue;  // underflow: an extreme outlier
+      const double relative = block.relative[k];
+      const double variance = (block.deviation[k] / relative) * (block.deviation[k] / relative);
       ByPart units;
       for (std::size_t part = 0; part < kVarianceParts; ++part) {
         units[part] = model.parts[part] ? unit_variances_[part][block.first + k] : 0;
       }
-      sums.variance.add(units, square / weight, weight / (variance * variance));
-      sums.squares[beam] += square / variance * relative * relative;
+      sums.variance.add(units, expected.square / expected.weight, expected.weight / (variance * variance));
+      sums.squares[beam] += expected.square / variance * relative * relative;
     }
   });
   return sums;
