@@ -131,7 +131,7 @@ void add_findings(const std::string& laser, const PassOffset& found, Findings& f
 }
 
 /// Removes half of the shift from the angles of either direction.
-PlateTrajectory corrected(const PlateTrajectory& plate, double shift) {
+PlateTrajectory without_offset(const PlateTrajectory& plate, double shift) {
   const auto angles = plate.angles();
   std::vector<double> moved(angles.begin(), angles.end());
   double direction = 0;
@@ -249,7 +249,7 @@ void DiagnosePassesStage::finish(Outputs& out, Context& context) {
   const double shift = diagnose(own, context);
   findings_.append(own);
   out.give(std::move(findings_));
-  out.give(corrected(*plate_, shift));
+  out.give(without_offset(*plate_, shift));
   for (const auto& beams : beams_) out.give(beams);
 }
 
