@@ -10,7 +10,6 @@
 #include "pipeline/data/all_errors.hpp"
 #include "pipeline/files/file_kind.hpp"
 #include "pipeline/files/nearest.hpp"
-#include "pipeline/files/renamed_names.hpp"
 #include "pipeline/files/rig_file.hpp"
 #include "pipeline/files/yaml_map.hpp"
 #include "pipeline/stage/files_written.hpp"
@@ -160,12 +159,9 @@ class PlanReader {
     if (!spec.stage.empty()) plan_.stages.push_back(std::move(spec));
   }
 
-  /// Today's name of what an earlier release called otherwise, with a warning.
   std::string current(RenamedName::Kind kind, std::string_view owner, const std::string& name,
                       const Place& place) {
-    std::string today = current_name(kind, owner, name);
-    if (today != name) plan_.warnings.push_back({old_name_warning(name, today).what(), place});
-    return today;
+    return accept_old_name(kind, owner, name, place, plan_.warnings);
   }
 
   /// The stage's name where the colon behind `stage` is missing, or the blank behind that.

@@ -5,7 +5,6 @@
 
 #include "pipeline/files/control_characters.hpp"
 #include "pipeline/files/nearest.hpp"
-#include "pipeline/files/renamed_names.hpp"
 #include "pipeline/stage/option_yaml.hpp"
 #include "pipeline/stage/unknown_names.hpp"
 
@@ -90,9 +89,7 @@ void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const Stag
                      std::vector<Error>& errors, std::vector<PipelineWarning>& warnings) {
   const Place place = place_of(setting.text);
   const auto current = [&](RenamedName::Kind kind, std::string_view owner, const std::string& given) {
-    std::string today = current_name(kind, owner, given);
-    if (today != given) warnings.push_back({old_name_warning(given, today).what(), place});
-    return today;
+    return accept_old_name(kind, owner, given, place, warnings);
   };
   const auto dot = setting.target.rfind('.');
   const std::string tag = current(RenamedName::Kind::stage, "", setting.target.substr(0, dot));

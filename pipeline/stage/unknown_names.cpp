@@ -47,4 +47,11 @@ std::string no_such_option(const StageType& type, const std::string& name) {
                       known.empty() ? "it has none" : "crisp stages " + type.name + " lists them");
 }
 
+std::string accept_old_name(RenamedName::Kind kind, std::string_view owner, const std::string& name,
+                            const Place& place, std::vector<PipelineWarning>& warnings) {
+  std::string today = current_name(kind, owner, name);
+  if (today != name) warnings.push_back({old_name_warning(name, today).what(), place});
+  return today;
+}
+
 }  // namespace crisp

@@ -16,8 +16,6 @@ struct Part {
   double share = 1;
   double mean = 0;
   double scale = 1;  // relative standard deviation
-  bool far = false;
-  bool tail = false;
 };
 
 struct Parts {
@@ -33,10 +31,9 @@ Parts parts_of(const NoiseModel& model, std::uint16_t beam) {
     if (far && !model.has_peaks()) break;
     const double mean = model.separation * ((far ? 1 : 0) - weight);
     const double share = far ? weight : 1 - weight;
-    parts.all[parts.count++] = {.share = share * (1 - tail), .mean = mean, .far = far};
+    parts.all[parts.count++] = {.share = share * (1 - tail), .mean = mean};
     if (!model.has_tail) continue;
-    parts.all[parts.count++] = {
-        .share = share * tail, .mean = mean, .scale = model.tail_scale, .far = far, .tail = true};
+    parts.all[parts.count++] = {.share = share * tail, .mean = mean, .scale = model.tail_scale};
   }
   return parts;
 }
