@@ -125,7 +125,7 @@ std::string found_by(const Diagnosis& diagnosis) {
   for (const Hypothesis& hypothesis : diagnosis.hypotheses) {
     words +=
         fmt::format(" {} ({:.2f} mm)", hypothesis.candidate.name, 1e3 * std::sqrt(hypothesis.square(noise)));
-    if (!hypothesis.refused.empty()) {
+    if (!hypothesis.rejected.empty()) {
       words += fmt::format("(refused: {:.2f} mm are unexplained)", 1e3 * std::sqrt(hypothesis.unexplained));
     } else if (!hypothesis.accepted && !hypothesis.gains.empty()) {
       const Gain& gain = *std::ranges::find(hypothesis.gains, "log-likelihood a measurement", &Gain::metric);

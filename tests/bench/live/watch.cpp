@@ -73,10 +73,10 @@ void Watch::given(const std::string& tag, const Item& item) {
   } else if (const auto cloud = item.as<Cloud>(); cloud && tag == "assemble.deskew") {
     arrive(*cloud);
   }
-  if (scans + readings > 0) sample();  // and not before the devices are there
+  if (scans + readings > 0) measure_memory();  // and not before the devices are there
 }
 
-void Watch::sample() {
+void Watch::measure_memory() {
   const double now = monotonic();
   if (begun_ == 0) {
     begun_ = now;

@@ -60,7 +60,7 @@ class Watch {
 
  private:
   void arrive(const Cloud& cloud);
-  void sample();
+  void measure_memory();
 
   std::map<std::uint16_t, std::deque<std::int64_t>> waiting_;  ///< by laser: [ns] receipts of its scans
   std::vector<double> latencies_;
