@@ -8,7 +8,7 @@
 #include "plugins/write/las_writer.hpp"
 #include "plugins/write/measurements_stage.hpp"
 #include "plugins/write/pcd_stage.hpp"
-#include "plugins/write/picture_stage.hpp"
+#include "plugins/write/picture/picture_stage.hpp"
 #include "plugins/write/ply_writer.hpp"
 #include "plugins/write/trajectory_stage.hpp"
 

@@ -7,7 +7,8 @@
 
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
-#include "plugins/write/picture.hpp"
+#include "plugins/write/picture/points.hpp"
+#include "plugins/write/picture/settings.hpp"
 
 namespace crisp {
 
@@ -20,12 +21,13 @@ class WritePictureStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
+  PictureSettings effective_settings() const;
+
   std::filesystem::path file_;
   PictureSettings settings_;
   std::vector<double> depth_;
-  std::vector<double> centre_{0, 0};
-  std::optional<PicturePainter> painter_;
-  std::size_t drawn_ = 0;
+  std::vector<double> centre_;
+  std::optional<PicturePoints> points_;
 };
 
 }  // namespace crisp
