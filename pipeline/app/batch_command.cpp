@@ -95,7 +95,7 @@ ExitStatus status_of_stop() {
 }
 
 ExitStatus run_prepared(const BatchRequest& request, const PreparedBatch& batch, JobLauncher& launcher,
-                        ManifestWriter& manifest, const FolderLock& lock) {
+                        ManifestWriter& manifest, const FolderLock& lock, const Registrar& registrar) {
   const StopOnSignal stop;
   BatchOutcome outcome;
   {
@@ -130,7 +130,7 @@ ExitStatus run_prepared(const BatchRequest& request, const PreparedBatch& batch,
                    .failed = outcome.progress.failed};
   tally.add(batch.plan.kept);
   if (batch.shard.is_whole())
-    write_tables(request.output, request.run.quiet ? nullptr : &std::cout);
+    write_results(request.output, registrar, request.run.quiet ? nullptr : &std::cout);
   else if (!request.run.quiet)
     std::cout << fmt::format("shard {}: {}\n", batch.shard.text(), in_words(tally));
   return tally.exit_status();
@@ -162,7 +162,7 @@ ExitStatus batch_command(const BatchRequest& request, const Registrar& registrar
     print_errors(error);
     return ExitStatus::misused;
   }
-  return run_prepared(request, *batch, launcher, *manifest, *lock);
+  return run_prepared(request, *batch, launcher, *manifest, *lock, registrar);
 }
 
 }  // namespace crisp

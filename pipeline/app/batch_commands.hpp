@@ -27,9 +27,9 @@ struct BatchTableRequest {
   std::filesystem::path folder;
   bool json = false;
 };
-/// Writes table.csv, batch.json and trend.svg from the manifests, and prints the table. The exit status is
-/// the one of a batch with these results.
-ExitStatus batch_table_command(const BatchTableRequest& request);
+/// Writes table.csv, batch.json, report.html and trend.svg from the manifests, and prints the table. The exit
+/// status is the one of a batch with these results.
+ExitStatus batch_table_command(const BatchTableRequest& request, const Registrar& registrar);
 
 /// `crisp batch retry`.
 struct BatchRetryRequest {

@@ -7,6 +7,7 @@
 #include <ostream>
 #include <system_error>
 
+#include "pipeline/app/own_pipelines.hpp"
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/batch/trend.hpp"
 #include "pipeline/files/atomic_file.hpp"
@@ -20,6 +21,14 @@ nlohmann::ordered_json batch_summary(const BatchRows& rows, const std::vector<Pa
   auto json = head_json(rows);
   json["trend"] = trend_json(trends);
   return json;
+}
+
+/// As `crisp report` does. What goes wrong is printed; the batch's tables are complete without the report.
+void write_report(const fs::path& output, const Registrar& registrar) {
+  RunRequest request{
+      .file = "report.yaml", .text = kReportPipeline, .arguments = {}, .quiet = true, .metrics = {}};
+  request.arguments.input = output;
+  run_command(request, registrar);
 }
 
 }  // namespace
@@ -98,7 +107,7 @@ std::string trend_text(const BatchRows& rows) {
   return text;
 }
 
-BatchRows write_tables(const fs::path& output, std::ostream* out) {
+BatchRows write_results(const fs::path& output, const Registrar& registrar, std::ostream* out) {
   auto rows = read_rows(output);
   const auto trends = batch_trend(rows.rows);
   mark_outstanding(trends, rows.rows);
@@ -113,9 +122,10 @@ BatchRows write_tables(const fs::path& output, std::ostream* out) {
   AtomicFile summary(output / kBatchSummary);
   print_json(rows, batch_summary(rows, trends), [&](std::string_view piece) { summary.write(piece); });
   summary.commit();
+  write_report(output, registrar);
   if (out) {
-    *out << fmt::format("{}\n{}{}wrote {}\n", in_words(tally_of(rows)), trouble_text(rows), trend_text(rows),
-                        (output / kBatchTable).string());
+    *out << fmt::format("{}\n{}{}wrote {} and report.html\n", in_words(tally_of(rows)), trouble_text(rows),
+                        trend_text(rows), (output / kBatchTable).string());
   }
   return rows;
 }

@@ -39,8 +39,10 @@ std::string trend_text(const BatchRows& rows);
 /// Whether the tables were written after the last event of every manifest.
 bool are_tables_current(const std::filesystem::path& output);
 
-/// Reads the manifests and writes table.csv, batch.json and, where there are calibrations, trend.svg.
+/// Reads the manifests and writes table.csv, batch.json, report.html and, where there are calibrations,
+/// trend.svg.
+/// @param registrar  of the stage that writes the report
 /// @param out  where a summary is printed; nullptr: nowhere
-BatchRows write_tables(const std::filesystem::path& output, std::ostream* out);
+BatchRows write_results(const std::filesystem::path& output, const Registrar& registrar, std::ostream* out);
 
 }  // namespace crisp

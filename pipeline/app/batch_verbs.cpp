@@ -65,8 +65,8 @@ ExitStatus batch_status_command(const BatchStatusRequest& request) {
   }
 }
 
-ExitStatus batch_table_command(const BatchTableRequest& request) {
-  const auto rows = write_tables(request.folder, nullptr);
+ExitStatus batch_table_command(const BatchTableRequest& request, const Registrar& registrar) {
+  const auto rows = write_results(request.folder, registrar, nullptr);
   const auto sink = [](std::string_view piece) { std::cout << piece; };
   if (request.json)
     print_json(rows, head_json(rows), sink);

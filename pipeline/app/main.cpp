@@ -131,7 +131,7 @@ std::string missing_of(const BatchRequest& batch) {
 
 ExitStatus run_batch_command(const CommandLine& line, const Registrar& registrar) {
   if (line.batch_status_app->parsed()) return batch_status_command(line.batch_status);
-  if (line.batch_table_app->parsed()) return batch_table_command(line.batch_table);
+  if (line.batch_table_app->parsed()) return batch_table_command(line.batch_table, registrar);
   if (line.batch_retry_app->parsed()) return batch_retry_command(line.batch_retry, line.batch, registrar);
   if (const auto missing = missing_of(line.batch); !missing.empty()) {
     print_errors(Error("crisp batch: " + missing + " is missing",

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "pipeline/plot/axis.hpp"
+#include "pipeline/plot/plot_json.hpp"
 
 namespace crisp {
 namespace {
@@ -209,8 +210,9 @@ std::string as_svg(const std::vector<Plot>& plots) {
   for (std::size_t i = 0; i < plots.size(); ++i) {
     const std::size_t row = i / kInARow;
     const std::size_t column = i % kInARow;
-    svg += fmt::format("<g transform=\"translate({},{})\">\n{}</g>\n", kWidth * static_cast<double>(column),
-                       kHeight * static_cast<double>(row), drawn(plots[i]));
+    svg += fmt::format("<g transform=\"translate({},{})\">\n<metadata>{}</metadata>\n{}</g>\n",
+                       kWidth * static_cast<double>(column), kHeight * static_cast<double>(row),
+                       escaped(plot_json(plots[i])), drawn(plots[i]));
   }
   return svg + "</svg>\n";
 }

@@ -43,7 +43,8 @@ struct Plot {
 };
 
 /// The plots as one SVG picture, two in a row, with axes, a few kilobytes each. The series' names are above
-/// the frame, where they hide nothing.
+/// the frame, where they hide nothing. Each plot has its data with it, as plot_json() in a <metadata>
+/// element.
 std::string as_svg(const std::vector<Plot>& plots);
 
 }  // namespace crisp

@@ -26,7 +26,7 @@ std::string in_words(const Unobservable& u) {
 
 void report_correlations(const Calibration& calibration, Context& context) {
   constexpr std::size_t kMost = 3;
-  constexpr double kLeast = 0.8;
+  constexpr double kLeast = 0.7;
   auto section = nlohmann::json::array();
   std::vector<std::string> words;
   for (const Correlation& pair : strongest_correlations(calibration, kMost, kLeast)) {

@@ -217,6 +217,73 @@ class Report(unittest.TestCase):
             facts = self.click(self.at(k))
         self.assertAlmostEqual(float(facts["measured"].split()[0]), math.dist(self.at(i), self.at(j)), delta=0.006)
 
+    def touch(self, kind, points):
+        self.browser.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]})
+
+    def test_one_finger_turns_and_two_fingers_zoom(self):
+        self.open_cloud()
+        self.browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
+        try:
+            x, y = self.js("(() => { const r = crispViewer.stage.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
+            view = lambda: self.js("[crispViewer.camera.yaw, crispViewer.camera.distance]")
+            yaw, distance = view()
+            self.touch("touchStart", [(x, y)])
+            for step in range(1, 6):
+                self.touch("touchMove", [(x + 20 * step, y)])
+            self.touch("touchEnd", [])
+            turned = view()
+            self.assertGreater(abs(turned[0] - yaw), 0.2)
+            self.assertAlmostEqual(turned[1], distance)
+            self.touch("touchStart", [(x - 40, y), (x + 40, y)])
+            for step in range(1, 6):
+                self.touch("touchMove", [(x - 40 - 8 * step, y), (x + 40 + 8 * step, y)])
+            self.touch("touchEnd", [])
+            self.assertAlmostEqual(view()[1], distance / 2, delta=0.1 * distance)
+        finally:
+            self.browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": False})
+
+    def open_panels(self):
+        self.open("untrusted")
+        fold = next(e for e in self.browser.find_elements(By.CSS_SELECTOR, "#findings details") if "without a significant" in e.text)
+        self.js("arguments[0].open = true", fold)
+        panels = fold.find_elements(By.CSS_SELECTOR, "figure.panel")
+        self.assertEqual(len(panels), 2)
+        self.js("arguments[0].scrollIntoView({block: 'center'})", panels[0])
+        return fold, panels
+
+    def marks(self, panel):
+        """Numbers along the axes of a plot, those along y and those along x."""
+        texts = self.js("[...arguments[0].querySelectorAll('svg.plot text')].map((t) => [t.getAttribute('text-anchor'), t.textContent])", panel)
+        number = lambda t: float(t.replace("\u2212", "-"))
+        along = lambda anchor: [number(t) for a, t in texts if a == anchor and t.replace(".", "").replace("-", "").isdigit()]
+        return along("end"), along("middle")
+
+    def test_plots_of_a_quantity_have_one_scale_unless_switched_off(self):
+        fold, (small, large) = self.open_panels()
+        self.assertEqual(self.marks(small)[0], self.marks(large)[0])
+        self.assertEqual(max(self.marks(small)[0]), 10)
+        fold.find_element(By.CSS_SELECTOR, "input.common-scale").click()
+        self.assertLess(max(self.marks(small)[0]), 2)
+        self.assertEqual(max(self.marks(large)[0]), 10)
+
+    def test_a_plot_zooms_by_a_drag_and_by_keys(self):
+        _, (_, panel) = self.open_panels()
+        plot = panel.find_element(By.CSS_SELECTOR, "svg.plot")
+        whole = self.marks(panel)
+        width, height = plot.size["width"], plot.size["height"]
+        ActionChains(self.browser).move_to_element_with_offset(plot, round(0.1 * width), round(-0.2 * height)).click_and_hold() \
+            .move_by_offset(round(0.2 * width), round(0.3 * height)).release().perform()
+        zoomed = self.marks(panel)
+        self.assertLess(max(zoomed[1]) - min(zoomed[1]), max(whole[1]) - min(whole[1]))
+        self.assertGreater(min(zoomed[1]), 2)
+        self.shoot("zoomed")
+        panel.send_keys("0")
+        self.assertEqual(self.marks(panel), whole)
+        panel.send_keys("+")
+        self.assertEqual(min(self.marks(panel)[1]), 1)
+        ActionChains(self.browser).double_click(panel.find_element(By.CSS_SELECTOR, "svg.plot")).perform()
+        self.assertEqual(self.marks(panel), whole)
+
     def test_the_address_keeps_the_view(self):
         self.open_cloud("#view&yaw=0.5&pitch=0.25&distance=7&target=1,2,3&mix=0&colour=height&size=3")
         self.assertEqual(self.js("[crispViewer.camera.yaw, crispViewer.camera.pitch, crispViewer.camera.distance, ...crispViewer.camera.target, crispViewer.mix, crispViewer.size]"),

@@ -2,6 +2,7 @@
 """The pages that the browser test opens: made by the program, of a simulated recording and of results in a folder."""
 
 import base64
+import html
 import json
 import pathlib
 import re
@@ -25,6 +26,14 @@ def calibrated(program, source, folder):
     (folder / "rig.yaml").write_text(rig)
     run(program, "run", source / "configs/calibrate.yaml", "-i", made / "hub.pcap", "-o", out, "--quiet", "--rig", folder / "rig.yaml")
     return out / "report.html"
+
+
+def panel_of(covariate, size):
+    """The data of a plot, as pipeline/plot/plot_json.hpp has them: y runs from 0 to `size`, and has a gap."""
+    return {"title": f"laser2 against {covariate} " + ATTACK, "x_label": f"{covariate} [m]", "y_label": "residual [mm]", "logarithmic": False,
+            "series": [{"name": "measured " + ATTACK, "x": [0, 1, 2, 3, 4], "y": [0, size, None, size, size / 2], "joined": True, "error": [0, 0.1, 0, 0, 0]},
+                       {"name": "simulated", "x": [0, 4], "y": [0, 0], "joined": True}],
+            "kinds": [], "marks": []}
 
 
 def untrusted(program, folder):
@@ -53,6 +62,12 @@ def untrusted(program, folder):
         '<svg xmlns="http://www.w3.org/2000/svg" width="1280" height="400" onload="window.attacked=1"><script>window.attacked=1</script>'
         '<g transform="translate(0,0)"><text font-size="14">laser1 against mirror angle: 1 mm</text></g>'
         '<g transform="translate(640,0)"><text font-size="14">laser1 against range: 0 mm</text></g></svg>')
+    (folder / "laser2_residuals.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="1280" height="400">' +
+        "".join(f'<g transform="translate({640 * k},0)"><metadata>{html.escape(json.dumps(panel), quote=False)}</metadata></g>'
+                for k, panel in enumerate((panel_of("range", 1), panel_of("time", 10)))) + "</svg>")
+    stage["outputs"].append(str(folder / "laser2_residuals.svg"))
+    (folder / "summary.json").write_text(json.dumps(summary))
     run(program, "report", folder, "--quiet")
     return folder / "report.html"
 

@@ -78,7 +78,8 @@ bool is_record(const std::string& name) {
 }
 
 bool is_account(const std::string& name) {
-  return name == "batch.json" || name == "table.csv" || name == "trend.svg" || name.starts_with("manifest/");
+  return name == "batch.json" || name == "table.csv" || name == "trend.svg" || name == "report.html" ||
+         name.starts_with("manifest/");
 }
 
 bool is_whole(const std::string& name, const std::string& bytes, bool may_be_cut) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** @typedef {{name: string, svg: string}} ShownPlot  svg: a data URI */
-/** @typedef {{title: string, source: string}} Panel */
+/** @typedef {{title: string, source: string, data: PanelData | null}} Panel  source: a picture, for what has no data */
 
 /**
  * @param {any} data
@@ -21,37 +21,73 @@ function textOfUri(uri) {
 }
 
 /**
- * The panels of a picture that crisp drew (pipeline/plot), each as a picture of its own. The picture is cut as text and
- * shown as images, in which no script runs: nothing in it becomes an element of the page. Another picture stays whole.
+ * The text of an element in a piece of SVG, without its entities; empty without such an element.
+ * @param {string} svgText
+ * @param {RegExp} element  whose first group is the text
+ */
+function textIn(svgText, element) {
+  const found = svgText.match(element);
+  return found ? found[1].replace(/&lt;/g, '<').replace(/&gt;/g, '>').replace(/&amp;/g, '&') : '';
+}
+
+/**
+ * The data of a panel, of which the page draws it; null if the picture has none.
+ * @param {string} piece
+ * @returns {PanelData | null}
+ */
+function dataIn(piece) {
+  try {
+    const data = JSON.parse(textIn(piece, /<metadata>([^<]*)</));
+    return data.series.length > 0 && data.series.every((/** @type {any} */ one) => Array.isArray(one.x) && Array.isArray(one.y)) ?
+      {...data, kinds: data.kinds || [], marks: data.marks || []} : null;
+  } catch {
+    return null;
+  }
+}
+
+/**
+ * The panels of a picture that crisp drew (pipeline/plot), each as its data, or as a picture of its own. The picture is
+ * cut as text and shown as images, in which no script runs: nothing in it becomes an element of the page. Another
+ * picture stays whole.
  * @param {ShownPlot} plot
  * @returns {Panel[]}
  */
 function panelsOf(plot) {
   const begin = '<g transform="translate(';
   const pieces = textOfUri(plot.svg).split(begin).slice(1);
-  if (pieces.length === 0) return [{title: plot.name, source: plot.svg}];
+  if (pieces.length === 0) return [{title: plot.name, source: plot.svg, data: null}];
   return pieces.map((piece) => {
     const [x, y] = piece.split(')')[0].split(',').map(Number);
     const group = begin + piece.slice(0, piece.lastIndexOf('</g>') + 4);
     const picture = `<svg xmlns="http://www.w3.org/2000/svg" width="640" height="400" viewBox="${x} ${y} 640 400" font-family="sans-serif" font-size="11">` +
       `<rect x="${x}" y="${y}" width="640" height="400" fill="white"/>${group}</svg>`;
-    return {title: titleIn(piece) || plot.name, source: 'data:image/svg+xml;charset=utf-8,' + encodeURIComponent(picture)};
+    return {title: textIn(piece, /font-size="14">([^<]*)</) || plot.name, source: 'data:image/svg+xml;charset=utf-8,' + encodeURIComponent(picture),
+            data: dataIn(piece)};
   });
 }
 
-/**
- * The title of a panel: the text of size 14.
- * @param {string} svgText
- */
-function titleIn(svgText) {
-  const found = svgText.match(/font-size="14">([^<]*)</);
-  return found ? found[1].replace(/&lt;/g, '<').replace(/&gt;/g, '>').replace(/&amp;/g, '&') : '';
+/** @param {Panel} panel */
+function panelPicture({title, source}) {
+  return el('a', {href: source, onclick: (/** @type {Event} */ event) => enlarge(event, title, source)}, el('img', {src: source, alt: title, loading: 'lazy', width: 640, height: 400}));
 }
 
-/** @param {Panel[]} panels */
+/**
+ * Panels beside one another, those of one quantity on one scale unless a switch says otherwise.
+ * @param {Panel[]} panels
+ */
 function panelGrid(panels) {
-  return el('div', {class: 'panels'}, ...panels.map(({title, source}) =>
-    el('a', {href: source, onclick: (/** @type {Event} */ event) => enlarge(event, title, source)}, el('img', {src: source, alt: title, loading: 'lazy', width: 640, height: 400}))));
+  const data = panels.flatMap((panel) => (panel.data ? [panel.data] : []));
+  /** @type {PanelPlot[]} */
+  const plots = [];
+  const shown = panels.map((panel) => {
+    if (!panel.data) return panelPicture(panel);
+    const plot = new PanelPlot(panel.data, commonScale(data, panel.data));
+    plots.push(plot);
+    return plot.element;
+  });
+  const setScales = (/** @type {boolean} */ isCommon) => plots.forEach((plot) => plot.setScale(isCommon ? commonScale(data, plot.data) : undefined));
+  const choice = plots.length > 1 && el('label', {class: 'hint'}, el('input', {type: 'checkbox', checked: true, class: 'common-scale', onchange: (/** @type {any} */ event) => setScales(event.target.checked)}), ' one scale for all');
+  return el('div', {}, choice, el('div', {class: 'panels'}, ...shown));
 }
 
 /**

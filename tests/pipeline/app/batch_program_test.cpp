@@ -31,6 +31,7 @@ TEST_F(BatchTest, ProcessesEachRecordingIntoAFolderOfItsName) {
   EXPECT_THAT(run.out, HasSubstr("2 done, 0 untrusted, 0 failed\n"));
   EXPECT_EQ(field("site/b", "status"), "done");
   EXPECT_EQ(json("out/batch.json")["counts"]["done"], 2);
+  EXPECT_TRUE(std::filesystem::exists(path("out/report.html")));
 }
 
 TEST_F(BatchTest, GoesOnWithTheOthersWhereOneFailsOrIsUntrusted) {
