@@ -8,7 +8,7 @@
 #include "grabbers/bag/rosbag1_reader.hpp"
 #include "grabbers/bag/sqlite_reader.hpp"
 #include "pipeline/data/error.hpp"
-#include "pipeline/files/folder.hpp"
+#include "pipeline/files/list_files.hpp"
 
 namespace crisp {
 namespace {
@@ -37,7 +37,7 @@ bool is_bag(std::string_view head) {
 std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path)) return {path};
   std::vector<std::filesystem::path> files;
-  for (const auto& file : files_in(path)) {
+  for (const auto& file : list_files(path)) {
     if (has_extension(file, {".mcap", ".db3", ".bag"})) files.push_back(file);
   }
   if (files.empty())

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "grabbers/bag/bag_messages.hpp"
+#include "grabbers/bag/ros_sensor_messages.hpp"
 #include "grabbers/table/actuator_angles.hpp"
 #include "pipeline/data/measurements.hpp"
 #include "pipeline/data/plate_trajectory.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "grabbers/bag/bag_messages.hpp"
+#include "grabbers/bag/ros_sensor_messages.hpp"
 
 namespace crisp {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "grabbers/bag/byte_cursor.hpp"
-#include "grabbers/bag/ros_layout.hpp"
+#include "grabbers/bag/ros_message_schema.hpp"
 
 namespace crisp {
 namespace {
@@ -67,7 +67,7 @@ class TopicWatch {
   }
 
   RosEncoding encoding_;
-  std::optional<RosLayout> layout_;
+  std::optional<RosMessageSchema> layout_;
   std::optional<std::size_t> sec_, nanosec_, joints_;
   TopicSummary summary_;
 };

@@ -3,7 +3,7 @@
 
 #include "grabbers/bag/bag_reader.hpp"
 #include "grabbers/bag/byte_cursor.hpp"
-#include "grabbers/bag/record_stream.hpp"
+#include "grabbers/bag/exact_reader.hpp"
 
 namespace crisp {
 
@@ -29,7 +29,7 @@ class ChunkedBagReader : public BagReader {
   }
   void give(const BagMessage& message) { message_ = message; }
 
-  RecordStream in_;
+  ExactReader in_;
 
  private:
   std::string chunk_;

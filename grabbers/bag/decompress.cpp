@@ -23,8 +23,8 @@ std::string room_for(std::uint64_t size, std::size_t compressed, std::uint64_t b
 
 std::string from_bz2(std::string_view bytes, std::uint64_t size) {
   constexpr std::uint64_t kBestRatio = 100'000;  // 45 bytes of bzip2 can be 900 kB of zeros, and more of them
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 31;
-  if (size > kMost || bytes.size() > kMost) throw BagDamage{kDamaged};
+  constexpr std::uint64_t kMax = std::uint64_t{1} << 31;
+  if (size > kMax || bytes.size() > kMax) throw BagDamage{kDamaged};
   std::string out = room_for(size, bytes.size(), kBestRatio);
   auto written = static_cast<unsigned>(size);
   // bzip2's interface takes what it does not change without const

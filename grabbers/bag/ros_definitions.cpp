@@ -3,7 +3,7 @@
 // a number more, always come with one.
 #include <array>
 
-#include "grabbers/bag/ros_layout.hpp"
+#include "grabbers/bag/ros_message_schema.hpp"
 
 namespace crisp {
 namespace {

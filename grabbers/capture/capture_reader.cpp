@@ -16,7 +16,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kMostFlows = 4096;
+constexpr std::size_t kMaxFlows = 4096;
 constexpr std::string_view kPlateMark = "$PPLT,";
 
 }  // namespace
@@ -93,7 +93,7 @@ Flow* CaptureReader::Traffic::find_flow(const TransportPacket& packet) {
   const bool like_a_plate = as_text(packet.payload).find(kPlateMark) != std::string_view::npos;
   if (known == nullptr && (!has_content || (packet.key.transport == Transport::Udp && !like_a_plate)))
     return nullptr;
-  if (flows.size() >= kMostFlows) forget_flows();
+  if (flows.size() >= kMaxFlows) forget_flows();
   auto flow = std::make_unique<Flow>(packet.key, devices, known, settings, give);
   if (known != nullptr) rig_flows.push_back(flow.get());
   return flows.emplace(packet.key, std::move(flow)).first->second.get();
@@ -114,7 +114,7 @@ void CaptureReader::Traffic::forget_flows() {
 
 /// Items received before this are complete and in order.
 std::int64_t CaptureReader::Traffic::limit_ns() {
-  auto limit = newest_ns - kDisorder;
+  auto limit = newest_ns - kMaxReordering;
   const auto longest = static_cast<std::int64_t>(1e9 * settings.max_wait);
   for (auto* flow : rig_flows) {
     flow->expire(newest_ns);
@@ -138,7 +138,7 @@ void CaptureReader::Traffic::finish() {
 
 std::optional<HubItem> CaptureReader::Traffic::next() {
   while (!interrupted) {
-    if (ended ? !merge.empty() : merge.has(newest_ns - kDisorder)) {  // no limit is later than this
+    if (ended ? !merge.empty() : merge.has(newest_ns - kMaxReordering)) {  // no limit is later than this
       auto item = ended ? merge.pop() : merge.pop(limit_ns());
       if (item) {
         if (receipt_ns(*item) < given_ns)

@@ -7,7 +7,7 @@
 
 #include "grabbers/capture/capture_file.hpp"
 #include "pipeline/data/error.hpp"
-#include "pipeline/files/folder.hpp"
+#include "pipeline/files/list_files.hpp"
 
 namespace crisp {
 namespace {
@@ -42,7 +42,7 @@ Captures captures_in(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path, none)) return {.files = {path}};
   std::vector<std::pair<std::int64_t, std::filesystem::path>> found;
   Captures captures;
-  for (const auto& file : files_in(path)) {
+  for (const auto& file : list_files(path)) {
     try {
       found.emplace_back(first_packet(file), file);
     } catch (const Error& error) {  // notes, rigs and results may lie next to captures

@@ -45,8 +45,8 @@ bool Flow::trust(const TransportPacket& packet, std::int64_t time_ns) {
   }
   if (packet.checksum != ChecksumVerdict::Wrong) return true;
   ++wrong_checksums_;
-  constexpr std::uint64_t kMostDoubtful = 3, kFew = 40, kUsually = 20;
-  if (right_checksums_ == 0 && wrong_checksums_ <= kMostDoubtful) {
+  constexpr std::uint64_t kMaxDoubtful = 3, kFew = 40, kUsually = 20;
+  if (right_checksums_ == 0 && wrong_checksums_ <= kMaxDoubtful) {
     doubtful_.push_back({packet, Bytes(packet.payload.begin(), packet.payload.end()), time_ns});
     return false;
   }

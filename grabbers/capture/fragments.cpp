@@ -6,7 +6,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kMostPackets = 64, kMostPieces = 8192;  // 65535 bytes in pieces of 8
+constexpr std::size_t kMaxPackets = 64, kMaxPieces = 8192;  // 65535 bytes in pieces of 8
 constexpr std::uint32_t kLargestPayload = 65535;
 constexpr std::int64_t kLongest = 30'000'000'000;
 
@@ -22,7 +22,7 @@ std::optional<IpPacket> FragmentAssembler::take(const IpPacket& fragment, std::i
   const Key key{fragment.from, fragment.to, fragment.id, fragment.protocol};
   auto& partial = partials_[key];
   if (partial.pieces.empty()) partial.begun_ns = time_ns;
-  if (partial.pieces.size() < kMostPieces) {
+  if (partial.pieces.size() < kMaxPieces) {
     partial.pieces.try_emplace(fragment.fragment_offset, fragment.payload.begin(), fragment.payload.end());
   }
   if (!fragment.more_fragments) partial.size = static_cast<std::uint32_t>(end);
@@ -54,7 +54,7 @@ void FragmentAssembler::forget_old(std::int64_t now_ns) {
   const auto lost =
       std::erase_if(partials_, [&](const auto& p) { return now_ns - p.second.begun_ns > kLongest; });
   losses_.add(kIncomplete, lost);
-  if (partials_.size() < kMostPackets) return;
+  if (partials_.size() < kMaxPackets) return;
   const auto older = [](const auto& a, const auto& b) { return a.second.begun_ns < b.second.begun_ns; };
   partials_.erase(std::min_element(partials_.begin(), partials_.end(), older));
   losses_.add(kIncomplete);

@@ -17,19 +17,19 @@ bool is_regular(const std::filesystem::path& path) {
 OrderedCapture::OrderedCapture(const std::filesystem::path& path, std::function<bool()> interrupted)
     : path_(path),
       interrupted_(std::move(interrupted)),
-      order_(is_regular(path) ? scan_capture(path, interrupted_) : CaptureOrder{}) {
+      order_(is_regular(path) ? determine_packet_order(path, interrupted_) : PacketOrder{}) {
   open_what_is_due();
   if (is_regular(path)) size_ = std::filesystem::file_size(path);
 }
 
 /// Opens stretches until the next one begins after what is to be given next.
 void OrderedCapture::open_what_is_due() {
-  const auto is_later = [this](const CaptureStretch& stretch) {
+  const auto is_later = [this](const OrderedSegment& stretch) {
     return std::ranges::any_of(
         parts_, [&](const Part& part) { return !part.is_over && part.packet.time_ns < stretch.first_ns; });
   };
   while (opened_ < order_.stretches.size() && !is_later(order_.stretches[opened_])) {
-    const CaptureStretch& stretch = order_.stretches[opened_++];
+    const OrderedSegment& stretch = order_.stretches[opened_++];
     parts_.push_back({.file = std::make_unique<CaptureFile>(path_, stretch.begin, stretch.end, interrupted_),
                       .begin = stretch.begin.offset,
                       .shift_ns = stretch.shift_ns});

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "grabbers/capture/capture_file.hpp"
-#include "grabbers/capture/capture_order.hpp"
+#include "grabbers/capture/packet_order.hpp"
 
 namespace crisp {
 
@@ -49,7 +49,7 @@ class OrderedCapture {
   std::filesystem::path path_;
   std::function<bool()> interrupted_;
   std::uint64_t size_ = 0;
-  CaptureOrder order_;
+  PacketOrder order_;
   std::size_t opened_ = 0;            // of the order's stretches
   std::vector<Part> parts_;           // that are open
   std::optional<std::size_t> given_;  // the part whose packet was given last

@@ -223,11 +223,11 @@ std::optional<std::int64_t> PcapngBlocks::to_ns(std::uint64_t ticks, const Inter
     for (unsigned i = 9; i < n; ++i) fraction /= 10;
     ns = fraction;
   }
-  constexpr std::int64_t kMostSeconds = 9'223'372'034;  // a second more still fits
-  const bool fits = seconds <= static_cast<std::uint64_t>(kMostSeconds) &&
-                    interface.offset_s <= kMostSeconds && interface.offset_s >= -kMostSeconds;
+  constexpr std::int64_t kMaxSeconds = 9'223'372'034;  // a second more still fits
+  const bool fits = seconds <= static_cast<std::uint64_t>(kMaxSeconds) && interface.offset_s <= kMaxSeconds &&
+                    interface.offset_s >= -kMaxSeconds;
   const auto total = fits ? static_cast<std::int64_t>(seconds) + interface.offset_s : -1;
-  if (total < 0 || total > kMostSeconds) return {};
+  if (total < 0 || total > kMaxSeconds) return {};
   return total * static_cast<std::int64_t>(kSecond) + static_cast<std::int64_t>(ns);
 }
 

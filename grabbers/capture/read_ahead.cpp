@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kBatch = 256;  // items
 // A clock's window of three lasers: while its measurements are assembled, the next is read.
-constexpr std::size_t kMostAhead = std::size_t{64} << 20;  // [bytes]
+constexpr std::size_t kMaxAhead = std::size_t{64} << 20;  // [bytes]
 
 std::size_t bytes_of(const ReadBatch& batch) {
   std::size_t bytes = batch.items.size() * sizeof(ReadBatch::Received);
@@ -71,7 +71,7 @@ bool ReadAhead::put(ReadBatch batch) {
   const auto bytes = bytes_of(batch);
   {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return stopped_ || ready_.empty() || ready_bytes_ + bytes <= kMostAhead; });
+    changed_.wait(lock, [&] { return stopped_ || ready_.empty() || ready_bytes_ + bytes <= kMaxAhead; });
     if (stopped_) return false;
     ready_.push_back(std::move(batch));
     ready_bytes_ += bytes;

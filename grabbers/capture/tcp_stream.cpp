@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kWindow = 1 << 20;  // [bytes] largest plausible distance of a segment from its stream
 constexpr std::int64_t kLastTry = 130'000'000'000;  // [ns] an unanswered handshake is repeated for 127 s
-constexpr std::size_t kMostHeld = 4 << 20, kMostSegments = 4096;
+constexpr std::size_t kMaxHeld = 4 << 20, kMaxSegments = 4096;
 
 }  // namespace
 
@@ -64,7 +64,7 @@ void TcpStream::place(std::uint32_t sequence, ByteView bytes, std::uint32_t miss
     const auto before = held_bytes_;
     hold(position_ + static_cast<std::uint64_t>(distance), bytes, time_ns);
     ++(held_bytes_ > before ? counts_.late_segments : counts_.repeated_segments);
-    while (held_bytes_ > kMostHeld || held_.size() > kMostSegments) skip_hole();
+    while (held_bytes_ > kMaxHeld || held_.size() > kMaxSegments) skip_hole();
     return;
   }
   const auto end = position_ + static_cast<std::uint64_t>(distance + size + missing);

@@ -45,8 +45,8 @@ DeviceStatistics DeviceLog::statistics() const {
 }
 
 void DeviceLog::count_telegram(std::string_view kind) {
-  constexpr std::size_t kMostKinds = 256;  // what garbage can cost
-  const bool full = statistics_.telegrams.all().size() >= kMostKinds && statistics_.telegrams.of(kind) == 0;
+  constexpr std::size_t kMaxKinds = 256;  // what garbage can cost
+  const bool full = statistics_.telegrams.all().size() >= kMaxKinds && statistics_.telegrams.of(kind) == 0;
   statistics_.telegrams.add(full ? "others" : kind);
 }
 
@@ -148,10 +148,10 @@ std::shared_ptr<const Scan> DeviceLog::take_scan(const ColaTelegram& telegram, s
 
 void DeviceLog::note_scan(const Scan& scan) {
   auto& s = statistics_;
-  constexpr std::size_t kMostSerialNumbers = 16;
+  constexpr std::size_t kMaxSerialNumbers = 16;
   const bool known = std::find(s.serial_numbers.begin(), s.serial_numbers.end(), scan.serial_number) !=
                      s.serial_numbers.end();
-  if (!known && s.serial_numbers.size() < kMostSerialNumbers) s.serial_numbers.push_back(scan.serial_number);
+  if (!known && s.serial_numbers.size() < kMaxSerialNumbers) s.serial_numbers.push_back(scan.serial_number);
   if (scan.serial_number != last_serial_number_.value_or(scan.serial_number)) ++s.serial_changes;
   last_serial_number_ = scan.serial_number;
   if (scan.device_status != 0) note("scans whose device reported an error or pollution");

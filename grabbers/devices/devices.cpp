@@ -49,11 +49,11 @@ Devices::Device* Devices::known(const FlowKey& key) {
 }
 
 Devices::Device* Devices::other(const FlowKey& key, DeviceKind kind) {
-  constexpr std::size_t kMost = 256;
+  constexpr std::size_t kMax = 256;
   const auto place = std::pair(key.from, kind);
   const auto found = others_.find(place);
   if (found != others_.end()) return found->second.get();
-  if (others_.size() >= kMost) return nullptr;
+  if (others_.size() >= kMax) return nullptr;
   auto device = std::make_unique<Device>(Device{DeviceLog(kind, "", to_address(key.from), 0, pauses_.get()),
                                                 std::nullopt, kind, key.from.ip, key.from.port});
   return others_.emplace(place, std::move(device)).first->second.get();

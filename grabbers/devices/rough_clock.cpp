@@ -36,7 +36,7 @@ bool RoughClock::take(std::uint32_t device_us, std::int64_t receipt_ns) {
 }
 
 void RoughClock::keep(const Stamp& stamp) {
-  constexpr std::size_t kMost = 1024;
+  constexpr std::size_t kMax = 1024;
   const auto bin = [this](const Stamp& s) { return std::floor(s.device / width_); };
   auto& last = lowest_.back();
   if (bin(stamp) <= bin(last)) {
@@ -44,7 +44,7 @@ void RoughClock::keep(const Stamp& stamp) {
     return;
   }
   lowest_.push_back(stamp);
-  if (lowest_.size() < kMost) return;
+  if (lowest_.size() < kMax) return;
   width_ *= 2;
   std::vector<Stamp> coarser;
   for (const auto& s : lowest_) {

@@ -15,9 +15,9 @@ class RunningMedian {
  public:
   void add(double value) {
     if (count_++ % stride_ != 0) return;
-    if (values_.size() == kMost) {
-      for (std::size_t i = 0; 2 * i < kMost; ++i) values_[i] = values_[2 * i];
-      values_.resize(kMost / 2);
+    if (values_.size() == kMax) {
+      for (std::size_t i = 0; 2 * i < kMax; ++i) values_[i] = values_[2 * i];
+      values_.resize(kMax / 2);
       stride_ *= 2;
       if ((count_ - 1) % stride_ != 0) return;
     }
@@ -31,7 +31,7 @@ class RunningMedian {
   }
 
  private:
-  static constexpr std::size_t kMost = 4096;
+  static constexpr std::size_t kMax = 4096;
 
   std::vector<double> values_;
   std::size_t count_ = 0, stride_ = 1;

@@ -21,8 +21,8 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::size_t kMostWaiting = 4 << 20;  // [bytes] for a client that does not read
-constexpr std::size_t kMostSessions = 16;
+constexpr std::size_t kMaxWaiting = 4 << 20;  // [bytes] for a client that does not read
+constexpr std::size_t kMaxSessions = 16;
 
 }  // namespace
 
@@ -141,8 +141,8 @@ void EmulatedLaser::accept() {
   acceptor_.async_accept([this](const error_code& failure, tcp::socket socket) {
     if (failure == asio::error::operation_aborted) return;
     std::erase_if(sessions_, [](const auto& session) { return !session->open(); });
-    if (sessions_.size() == kMostSessions) close_idle();
-    if (!failure && sessions_.size() < kMostSessions) {
+    if (sessions_.size() == kMaxSessions) close_idle();
+    if (!failure && sessions_.size() < kMaxSessions) {
       error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
       sessions_.push_back(std::make_shared<Session>(std::move(socket), device_, dice_, ledger_));
@@ -192,7 +192,7 @@ void EmulatedLaser::send(ScanData scan) {
 }
 
 void EmulatedLaser::send(Session& session, const ScanData& scan) {
-  if (session.waiting_bytes() > kMostWaiting) {
+  if (session.waiting_bytes() > kMaxWaiting) {
     ++ledger_.missed;
     return;
   }

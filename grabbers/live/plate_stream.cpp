@@ -6,7 +6,7 @@
 #include <boost/asio/serial_port.hpp>
 #include <utility>
 
-#include "grabbers/live/alarm.hpp"
+#include "grabbers/live/restartable_timer.hpp"
 
 namespace crisp {
 namespace {
@@ -90,7 +90,7 @@ class PlateStream final : public PlateReceiver {
   Open open_;
   Link link_;
   std::uint64_t link_number_ = 0;  ///< callbacks of an earlier one are ignored
-  Alarm alarm_;
+  RestartableTimer alarm_;
   BackOff back_off_;
   Bytes buffer_;
   bool stopped_ = false;

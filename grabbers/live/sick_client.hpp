@@ -8,8 +8,8 @@
 #include <string>
 
 #include "grabbers/devices/device_log.hpp"
-#include "grabbers/live/alarm.hpp"
 #include "grabbers/live/endpoints.hpp"
+#include "grabbers/live/restartable_timer.hpp"
 #include "grabbers/live/sick_dialogue.hpp"
 
 namespace crisp {
@@ -63,7 +63,7 @@ class SickClient {
   HubClock clock_;
 
   boost::asio::ip::tcp::socket socket_;
-  Alarm alarm_;
+  RestartableTimer alarm_;
   BackOff back_off_;
   std::uint64_t connection_ = 0;  ///< callbacks of an earlier one are ignored
   Bytes buffer_;

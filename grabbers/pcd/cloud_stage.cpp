@@ -8,7 +8,7 @@
 #include <array>
 
 #include "grabbers/pcd/surplus.hpp"
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "pipeline/pcd/parts.hpp"
 
 namespace crisp {
@@ -48,7 +48,7 @@ void GrabCloudStage::process(const Inputs&, Outputs& out, Context& context) {
     auto [cloud, not_finite, change] = about(file, [&] {
       return cloud_of(table, {shift_[0], shift_[1], shift_[2]});
     });
-    if (const auto lost = not_kept(table); !lost.empty())
+    if (const auto lost = dropped_fields(table); !lost.empty())
       context.warn(fmt::format("{}: not kept are {}", file.string(), fmt::join(lost, "; ")));
     if (rounding == 0 && change > 0) shift = suggested_shift(table);
     rounding = std::max(rounding, change);

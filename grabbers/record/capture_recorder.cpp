@@ -22,7 +22,7 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kHold = 20 * kMillisecond;  // longer than any frame lies before or behind its item
 constexpr std::int64_t kHandshake = 5 * kMillisecond;
 constexpr std::size_t kAtOnce = 4096;  // items that are written before the pause is over
-constexpr std::size_t kMostWaiting =
+constexpr std::size_t kMaxWaiting =
     40000;  // items: a minute's of three lasers at 50 Hz and a plate at 500 Hz
 
 /// @throws Error  if the file cannot be read
@@ -113,7 +113,7 @@ struct CaptureRecorder::File {
 CaptureRecorder::CaptureRecorder(std::filesystem::path file, Rig rig, const RecorderSettings& settings)
     : first_(std::move(file)), rig_(std::move(rig)), settings_(settings) {
   open();
-  BatchSettings batches{.enough = kAtOnce, .most = kMostWaiting, .pause = settings_.safe_after / 2};
+  BatchSettings batches{.enough = kAtOnce, .most = kMaxWaiting, .pause = settings_.safe_after / 2};
   if (settings_.safe_after == 0) batches = {};
   writer_.emplace(batches, [this](const std::vector<HubItem>& items) { record(items); });
 }

@@ -24,11 +24,11 @@ struct Found {
 /// Weibull distribution of delays with this median and 95th percentile [s]; exponential where no Weibull
 /// distribution has them.
 std::vector<Parameter> delay_distribution(double median, double high) {
-  constexpr double kLeast = 0.2, kMost = 5;
+  constexpr double kMin = 0.2, kMax = 5;
   const double in_20 = std::log(20.0);  // −ln of the share that is later than the percentile
   const double in_2 = std::numbers::ln2;
   const double ratio = median > 0 ? high / median : 0;
-  const double shape = ratio > 1 ? std::clamp(std::log(in_20 / in_2) / std::log(ratio), kLeast, kMost) : 1;
+  const double shape = ratio > 1 ? std::clamp(std::log(in_20 / in_2) / std::log(ratio), kMin, kMax) : 1;
   const double mean = median * std::pow(in_2, -1 / shape) * std::tgamma(1 + 1 / shape);
   return {{.name = "mean", .unit = "s", .value = mean}, {.name = "shape", .unit = "1", .value = shape}};
 }

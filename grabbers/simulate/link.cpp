@@ -21,9 +21,9 @@ LinkSettings with_bursts(LinkSettings link, const BurstSettings& bursts) {
   // is held was not the first to be.
   const auto duration = [&](double held) { return bursts.wait / std::sqrt(held * (2 - held)); };
   const auto together = [&](double held) { return held * std::exp(-bursts.interval / duration(held)); };
-  constexpr double kMostHeld = 0.999;
+  constexpr double kMaxHeld = 0.999;
   double least = 0;
-  double most = kMostHeld;
+  double most = kMaxHeld;
   if (together(most) < bursts.together) {
     throw Error(fmt::format("no link holds back a share of {:.3g} of its telegrams together by {:.3g} s only",
                             bursts.together, bursts.wait),

@@ -19,10 +19,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostSurfaces = 200'000;  // of all shapes together, so that memory stays bounded
-constexpr std::int64_t kMostCopies = 10'000;
-constexpr double kMostSpeed = 1000;  // [m/s]
-constexpr double kMostTimes = 1e4;   // largest size factor of scattered copies, or its inverse
+constexpr std::size_t kMaxSurfaces = 200'000;  // of all shapes together, so that memory stays bounded
+constexpr std::int64_t kMaxCopies = 10'000;
+constexpr double kMaxSpeed = 1000;  // [m/s]
+constexpr double kMaxTimes = 1e4;   // largest size factor of scattered copies, or its inverse
 
 struct Stand {
   Vector3d position;
@@ -57,7 +57,7 @@ class SceneReader {
   Stand read_stand(const YamlNode& node) {
     YamlMap map(node, "scanner", errors_);
     Stand stand{.position = require_vector(map, "position", errors_),
-                .yaw = read_bounded(map, "yaw", "rad", 0, kMostYaw)};
+                .yaw = read_bounded(map, "yaw", "rad", 0, kMaxYaw)};
     map.refuse_others();
     return stand;
   }
@@ -69,7 +69,7 @@ class SceneReader {
     }
     for (const auto& item : node.items) {
       add(scene, read_item(item, what));
-      if (total_ > kMostSurfaces) break;
+      if (total_ > kMaxSurfaces) break;
     }
     return scene;
   }
@@ -82,13 +82,13 @@ class SceneReader {
     read_look(map, scene);
     read_body(map, scene);
     check(scene, node.place);
-    place(scene, read_bounded(map, "yaw", "rad", 0, kMostYaw), Vector3d::Zero());
+    place(scene, read_bounded(map, "yaw", "rad", 0, kMaxYaw), Vector3d::Zero());
     place(scene, 0, read_vector(map, "at", Vector3d::Zero(), errors_));
     if (const YamlNode* repetition = map.find("repeat")) scene = repeated(*repetition, scene);
     if (const YamlNode* strewing = map.find("strew")) scene = mixed(*strewing, scene);
     map.refuse_others();
     total_ += scene.things();
-    if (total_ > kMostSurfaces) map.fail(node.place, fmt::format("more than {} surfaces", kMostSurfaces));
+    if (total_ > kMaxSurfaces) map.fail(node.place, fmt::format("more than {} surfaces", kMaxSurfaces));
     return scene;
   }
 
@@ -116,7 +116,7 @@ class SceneReader {
       map.fail((depth ? depth : walk)->place, "flat surfaces can have neither depth nor a walk",
                "set them on each box, cylinder, sphere or ellipsoid of the shape");
     }
-    const double reach = read_bounded(map, "depth", "m", 0, kMostLength);
+    const double reach = read_bounded(map, "depth", "m", 0, kMaxLength);
     if (depth && !(reach > 0)) map.fail(depth->place, "'depth' is not above 0");
     const Walk way = walk ? read_walk(*walk) : Walk{};
     for (auto& body : scene.bodies) {
@@ -129,7 +129,7 @@ class SceneReader {
     YamlMap map(node, "walk", errors_);
     Walk walk;
     if (const YamlNode* along = map.require("along")) walk.along = read_points(*along, "along", 3, errors_);
-    walk.speed = read_bounded(map, "speed", "m/s", 1.4, kMostSpeed);
+    walk.speed = read_bounded(map, "speed", "m/s", 1.4, kMaxSpeed);
     map.refuse_others();
     double length = 0;
     for (std::size_t i = 1; i < walk.along.size(); ++i) length += (walk.along[i] - walk.along[i - 1]).norm();
@@ -160,11 +160,11 @@ class SceneReader {
     const Vector3d from = require_vector(map, "from", errors_);
     const Vector3d to = require_vector(map, "to", errors_);
     const auto seed = static_cast<std::uint64_t>(map.integer("seed", 1, 0, 1'000'000'000));
-    const double smallest = read_bounded(map, "smallest", "", 1, kMostTimes);
-    const double largest = read_bounded(map, "largest", "", 1, kMostTimes);
-    const double clear = read_bounded(map, "clear", "m", 0, kMostLength);
+    const double smallest = read_bounded(map, "smallest", "", 1, kMaxTimes);
+    const double largest = read_bounded(map, "largest", "", 1, kMaxTimes);
+    const double clear = read_bounded(map, "clear", "m", 0, kMaxLength);
     map.refuse_others();
-    if (!(smallest >= 1 / kMostTimes && largest >= smallest)) {
+    if (!(smallest >= 1 / kMaxTimes && largest >= smallest)) {
       fail(node.place,
            "sizes of scattered copies need 0.0001 <= smallest <= largest, as multiples of the original's");
       return scene;
@@ -201,9 +201,9 @@ class SceneReader {
   /// Requested number of copies of a scene; 1 if it is too large.
   static std::size_t copies(YamlMap& map, const YamlNode& node, const Scene& scene) {
     map.require("count");
-    const auto count = static_cast<std::size_t>(map.integer("count", 1, 1, kMostCopies));
-    if (scene.things() * count <= kMostSurfaces) return count;
-    map.fail(node.place, fmt::format("more than {} surfaces", kMostSurfaces));
+    const auto count = static_cast<std::size_t>(map.integer("count", 1, 1, kMaxCopies));
+    if (scene.things() * count <= kMaxSurfaces) return count;
+    map.fail(node.place, fmt::format("more than {} surfaces", kMaxSurfaces));
     return 1;
   }
 

@@ -50,8 +50,8 @@ Scene read_walls(const YamlNode& node, bool, ErrorList& errors) {
       outline.emplace_back(point.x(), point.y());
     }
   }
-  const double from = read_bounded(map, "from", "m", 0, kMostLength);
-  const double to = read_bounded(map, "to", "m", 3, kMostLength);
+  const double from = read_bounded(map, "from", "m", 0, kMaxLength);
+  const double to = read_bounded(map, "to", "m", 3, kMaxLength);
   map.refuse_others();
   return flat(walls("wall", outline, from, to, 0.5));
 }
@@ -60,7 +60,7 @@ Scene read_cylinder(const YamlNode& node, bool, ErrorList& errors) {
   YamlMap map(node, "cylinder", errors);
   Cylinder cylinder{.from = require_vector(map, "from", errors), .to = require_vector(map, "to", errors)};
   map.require("radius");
-  cylinder.radius = read_bounded(map, "radius", "m", 1, kMostLength);
+  cylinder.radius = read_bounded(map, "radius", "m", 1, kMaxLength);
   map.refuse_others();
   return one({.name = "cylinder", .shape = cylinder});
 }
@@ -69,7 +69,7 @@ Scene read_sphere(const YamlNode& node, bool, ErrorList& errors) {
   YamlMap map(node, "sphere", errors);
   const Vector3d middle = require_vector(map, "middle", errors);
   map.require("radius");
-  const double radius = read_bounded(map, "radius", "m", 1, kMostLength);
+  const double radius = read_bounded(map, "radius", "m", 1, kMaxLength);
   map.refuse_others();
   return one({.name = "sphere", .shape = Ellipsoid{.middle = middle, .radii = Vector3d::Constant(radius)}});
 }

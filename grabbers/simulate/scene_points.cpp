@@ -21,7 +21,7 @@ Vector3d read_point(const YamlNode& node, const std::string& what, std::size_t d
   for (std::size_t i = 0; i < dimensions; ++i) {
     std::string wrong;
     const auto value = read_number(node.items[i], "m", wrong);
-    if (value && std::abs(*value) > kMostLength) wrong = fmt::format("{:g} m is implausible", *value);
+    if (value && std::abs(*value) > kMaxLength) wrong = fmt::format("{:g} m is implausible", *value);
     if (!wrong.empty()) {
       errors.emplace_back(fmt::format("{}: {}", what, wrong), "", node.items[i].place);
     } else {

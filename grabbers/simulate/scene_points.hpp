@@ -29,7 +29,7 @@ Eigen::Vector3d require_vector(YamlMap& map, const std::string& key, std::vector
 double read_bounded(YamlMap& map, const std::string& key, const std::string& unit, double fallback,
                     double most);
 
-inline constexpr double kMostLength = 1e5;  ///< [m] nothing stands farther off
-inline constexpr double kMostYaw = 1000;    ///< [rad]
+inline constexpr double kMaxLength = 1e5;  ///< [m] nothing stands farther off
+inline constexpr double kMaxYaw = 1000;    ///< [rad]
 
 }  // namespace crisp

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <variant>
 
-#include "grabbers/simulate/put_in_stage.hpp"
+#include "grabbers/simulate/inject_stage.hpp"
 #include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/truth_file.hpp"
 #include "pipeline/data/all_errors.hpp"
@@ -127,7 +127,7 @@ void SimulateStage::finish(Outputs&, Context& context) {
 
 void register_simulate(Registrar& registrar) {
   registrar.stage<SimulateStage>();
-  registrar.stage<PutInStage>();
+  registrar.stage<InjectStage>();
 }
 
 }  // namespace crisp

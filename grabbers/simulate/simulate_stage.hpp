@@ -45,9 +45,10 @@ class SimulateStage final : public Stage {
   RecordingSettings settings(const RunSettings& run) const;  ///< for this run, without a truth and effects
 
   RecordingSettings settings_;
-  TruthChoice hidden_{.departures = {.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04},
-                      .calibration_file = {},
-                      .effects = {}};
+  TruthChoice hidden_{
+      .nominal_errors = {.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04},
+      .calibration_file = {},
+      .effects = {}};
   RealismChoice realism_;
   KindChoice kinds_;
   WireFaults wire_faults_;

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kLeast = 1e-6;  // [m] the smallest radius and side
+constexpr double kMin = 1e-6;  // [m] the smallest radius and side
 
 template <class... Acts>
 struct Overloaded : Acts... {
@@ -217,7 +217,7 @@ void check(const Solid& solid, const std::string& name) {
   const Overloaded least{[](const Cylinder& c) { return std::min(c.radius, (c.to - c.from).norm()); },
                          [](const Ellipsoid& e) { return e.radii.minCoeff(); },
                          [](const Block& b) { return b.half.minCoeff(); }};
-  if (!(std::visit(least, solid) >= kLeast)) {
+  if (!(std::visit(least, solid) >= kMin)) {
     throw Error("the body " + name + " has no volume", "its radii and sides must be more than a micrometre");
   }
 }

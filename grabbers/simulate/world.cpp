@@ -40,7 +40,7 @@ Scene SceneChoice::load(Context& context) const {
 }
 
 Calibration TruthChoice::drawn(const RunSettings& run, std::uint64_t seed) const {
-  return draw_truth(nominal_calibration(run.rig), departures, seed);
+  return draw_truth(nominal_calibration(run.rig), nominal_errors, seed);
 }
 
 Calibration TruthChoice::load(Context& context, std::uint64_t seed) const {

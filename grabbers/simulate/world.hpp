@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "grabbers/simulate/departures.hpp"
 #include "grabbers/simulate/effects.hpp"
+#include "grabbers/simulate/nominal_errors.hpp"
 #include "grabbers/simulate/scene.hpp"
 #include "grabbers/simulate/settings.hpp"
 #include "pipeline/stage/context.hpp"
@@ -25,7 +25,7 @@ struct SceneChoice {
 
 /// The truth of the scanner that a stage simulates.
 struct TruthChoice {
-  Departures departures;
+  NominalErrors nominal_errors;
   std::filesystem::path calibration_file;  ///< in place of one that is drawn around nominal, unless empty
   OptionGroups effects;                    ///< put on top: see read_effects()
 

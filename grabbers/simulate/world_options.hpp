@@ -38,18 +38,18 @@ template <class S, class Way>
 void describe_truth(StageDescription<S>& d, Way way) {
   d.option("calibration", way, &TruthChoice::calibration_file,
            "true calibration; by default it is drawn around nominal");
-  const auto off = &TruthChoice::departures;
-  d.option("tau_off", way, off, &Departures::tau, "largest departure of a drawn τ from nominal")
+  const auto off = &TruthChoice::nominal_errors;
+  d.option("tau_off", way, off, &NominalErrors::tau, "largest departure of a drawn τ from nominal")
       .unit("m")
       .range(0, 1);
-  d.option("alpha_off", way, off, &Departures::alpha, "largest departure of a drawn α from nominal")
+  d.option("alpha_off", way, off, &NominalErrors::alpha, "largest departure of a drawn α from nominal")
       .unit("rad")
       .range(0, 3.2);
-  d.option("lambda_off", way, off, &Departures::lambda,
+  d.option("lambda_off", way, off, &NominalErrors::lambda,
            "largest departure of a drawn λ from nominal; the first laser's is the gauge and stays")
       .unit("rad")
       .range(0, 3.2);
-  d.option("eta_off", way, off, &Departures::eta, "largest departure of a drawn η from nominal")
+  d.option("eta_off", way, off, &NominalErrors::eta, "largest departure of a drawn η from nominal")
       .unit("s")
       .range(0, 1);
   d.option(

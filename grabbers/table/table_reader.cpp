@@ -11,9 +11,9 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kMostRanges = 65536;  // beams that a measurement's index can number
-constexpr double kLargestAngle = 1e6;       // [rad]
-constexpr double kLargestRange = 1e5;       // [m]
+constexpr std::size_t kMaxRanges = 65536;  // beams that a measurement's index can number
+constexpr double kLargestAngle = 1e6;      // [rad]
+constexpr double kLargestRange = 1e5;      // [m]
 
 bool separates(char c) { return c == ',' || c == ';' || c == '\t' || c == ' '; }
 
@@ -117,7 +117,7 @@ std::size_t count_of(const Fields& fields, const TableFormat& format) {
     }
     left = static_cast<std::size_t>(counted);
   }
-  if (left > kMostRanges) throw Fault{"rows with more than 65536 ranges", fields.start(first - 1)};
+  if (left > kMaxRanges) throw Fault{"rows with more than 65536 ranges", fields.start(first - 1)};
   return left;
 }
 
@@ -177,7 +177,7 @@ std::optional<TableRow> TableReader::parse(std::string_view text) {
     if (format_.counter_column) row.counter = fields.decimal(column(*format_.counter_column), 0);
     if (format_.laser_column) {
       const auto laser = fields.decimal(column(*format_.laser_column), 0);
-      if (laser < 0 || laser >= static_cast<std::int64_t>(kMostRanges)) {
+      if (laser < 0 || laser >= static_cast<std::int64_t>(kMaxRanges)) {
         throw Fault{"rows of an impossible laser", fields.start(column(*format_.laser_column) - 1)};
       }
       row.laser = static_cast<std::uint16_t>(laser);

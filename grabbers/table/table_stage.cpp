@@ -16,13 +16,13 @@
 namespace crisp {
 namespace {
 
-constexpr int kMostColumns = 1'000'000;
+constexpr int kMaxColumns = 1'000'000;
 constexpr std::uint64_t kPiece = 1'000'000;  // beams that are held at most, about
 constexpr double kMargin = 1;  // [s] by which pieces of the plate's trajectory overlap, for lags
 
 void describe_columns(StageDescription<TableStage>& d, TableFormat TableStage::*format) {
   const auto column = [&](const char* name, auto member, const char* help) {
-    d.option(name, format, member, help).range(1, kMostColumns);
+    d.option(name, format, member, help).range(1, kMaxColumns);
   };
   const auto time_unit = [&](const char* name, auto member, const char* help) {
     d.option(name, format, member, help)

@@ -9,7 +9,7 @@
 #include "grabbers/capture/loss_warnings.hpp"
 #include "grabbers/devices/device_log.hpp"
 #include "grabbers/devices/framing_losses.hpp"
-#include "grabbers/telegrams/telegram_list.hpp"
+#include "grabbers/telegrams/sick_scan_xd_json.hpp"
 #include "pipeline/files/byte_stream.hpp"
 
 namespace crisp {

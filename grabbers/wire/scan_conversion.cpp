@@ -10,14 +10,14 @@ namespace crisp {
 namespace {
 
 constexpr double kMillimetre = 1e-3;
-constexpr std::size_t kMostEchoes = 5;
+constexpr std::size_t kMaxEchoes = 5;
 
 /// The n of DISTn or RSSIn, 0 for every other name.
 std::size_t echo_number(const ChannelBlock& channel, std::string_view kind) {
   const std::string_view name = channel.name;
   if (!name.starts_with(kind) || name.size() != kind.size() + 1) return 0;
   const auto n = static_cast<std::size_t>(name.back() - '0');
-  return n >= 1 && n <= kMostEchoes ? n : 0;
+  return n >= 1 && n <= kMaxEchoes ? n : 0;
 }
 
 /// Merges the channels of one telegram into one scan.
@@ -88,7 +88,7 @@ class Gathering {
   Scan& scan_;
   const ChannelBlock* first_ = nullptr;
   std::size_t echoes_ = 0;
-  std::array<bool, kMostEchoes> has_ranges_{}, has_remissions_{};
+  std::array<bool, kMaxEchoes> has_ranges_{}, has_remissions_{};
   ScanFailure failure_ = ScanFailure::None;
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kChannelName = 5;
 constexpr std::size_t kEventKind = 4;
-constexpr std::size_t kMostBlocks = 64;  // more than any device sends; bounds what a damaged count can cost
+constexpr std::size_t kMaxBlocks = 64;  // more than any device sends; bounds what a damaged count can cost
 
 template <class Wire>
 bool flag(Wire& wire, bool present) {
@@ -46,7 +46,7 @@ void list(Wire& wire, Blocks& blocks, Fields fields) {
   auto count = static_cast<std::uint16_t>(blocks.size());
   wire.number(count);
   if constexpr (Wire::kReads) {
-    if (count > kMostBlocks) wire.fail(FieldFailure::TooMany);
+    if (count > kMaxBlocks) wire.fail(FieldFailure::TooMany);
     blocks.resize(wire.ok() ? count : 0);
   }
   for (auto& block : blocks) fields(block);
@@ -153,8 +153,8 @@ void check(const ChannelBlock& block, std::uint16_t largest) {
 }
 
 void check(const ScanData& data, EncoderWidths widths) {
-  require(std::max({data.encoders.size(), data.channels16.size(), data.channels8.size()}) <= kMostBlocks,
-          fmt::format("more than {} encoders or channels", kMostBlocks));
+  require(std::max({data.encoders.size(), data.channels16.size(), data.channels8.size()}) <= kMaxBlocks,
+          fmt::format("more than {} encoders or channels", kMaxBlocks));
   const bool narrow = widths == EncoderWidths::Position16;
   for (const auto& block : data.encoders) {
     require(!narrow || block.position <= 0xFFFF, "an encoder position above 65535 in 16 bits");

@@ -15,7 +15,7 @@ namespace crisp {
 namespace {
 
 constexpr double kMillimetres = 1e3;
-constexpr double kMostRaw = std::numeric_limits<std::uint16_t>::max();
+constexpr double kMaxRaw = std::numeric_limits<std::uint16_t>::max();
 
 /// The least whole scale under which all values fit into `most`.
 float scale_for(const std::vector<float>& values, double factor, double most) {
@@ -26,7 +26,7 @@ float scale_for(const std::vector<float>& values, double factor, double most) {
     largest = std::max(largest, value);
   }
   const double scale = std::max(1.0, std::ceil(largest * factor / most - 1e-6));
-  if (!(scale <= kMostRaw)) {
+  if (!(scale <= kMaxRaw)) {
     throw Error(fmt::format("a scan has a value of {}, which a telegram cannot encode", largest));
   }
   return static_cast<float>(scale);
@@ -45,9 +45,9 @@ ChannelBlock channel(const Scan& scan, std::string name, const std::vector<float
 }
 
 void check_angles(const Scan& scan) {
-  constexpr double kMost = 720 * kDegree;
-  const bool start = std::abs(scan.start_angle) <= kMost;
-  const bool step = scan.angle_step >= 0 && scan.angle_step * kUnitsPerDegree / kDegree < kMostRaw;
+  constexpr double kMax = 720 * kDegree;
+  const bool start = std::abs(scan.start_angle) <= kMax;
+  const bool step = scan.angle_step >= 0 && scan.angle_step * kUnitsPerDegree / kDegree < kMaxRaw;
   if (!start || !step) throw Error("a scan has angles that a telegram cannot encode");
 }
 
@@ -77,11 +77,11 @@ ScanData to_scan_data(const Scan& scan) {
   for (std::size_t i = 0; i < scan.echoes.size(); ++i) {
     const Echo& echo = scan.echoes[i];
     const std::string number = std::to_string(i + 1);
-    data.channels16.push_back(channel(scan, "DIST" + number, echo.ranges, kMillimetres, kMostRaw));
+    data.channels16.push_back(channel(scan, "DIST" + number, echo.ranges, kMillimetres, kMaxRaw));
     if (echo.remissions.empty()) continue;
     const bool narrow = std::ranges::max(echo.remissions) <= 255;
     auto& remissions = narrow ? data.channels8 : data.channels16;
-    remissions.push_back(channel(scan, "RSSI" + number, echo.remissions, 1, kMostRaw));
+    remissions.push_back(channel(scan, "RSSI" + number, echo.remissions, 1, kMaxRaw));
   }
   return data;
 }

@@ -20,7 +20,7 @@ constexpr auto kDigits = [] {
   return table;
 }();
 
-constexpr std::size_t kMostDigits = 8;  // of 32 bits
+constexpr std::size_t kMaxDigits = 8;  // of 32 bits
 
 }  // namespace
 
@@ -39,8 +39,8 @@ std::string_view TextReader::token() {
 
 std::uint32_t TextReader::hexadecimal(std::string_view token, std::uint32_t largest) {
   if (token.empty()) fail(FieldFailure::NotANumber);
-  while (token.size() > kMostDigits && token.front() == '0') token.remove_prefix(1);
-  if (token.size() > kMostDigits) fail(FieldFailure::OutOfRange);
+  while (token.size() > kMaxDigits && token.front() == '0') token.remove_prefix(1);
+  if (token.size() > kMaxDigits) fail(FieldFailure::OutOfRange);
   if (!ok()) return 0;
   std::uint32_t value = 0;
   std::int8_t worst = 0;

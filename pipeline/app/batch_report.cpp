@@ -67,15 +67,15 @@ std::string in_words(const BatchTally& tally) {
 }
 
 std::string trouble_text(const BatchRows& rows) {
-  constexpr std::size_t kMost = 20;
+  constexpr std::size_t kMax = 20;
   std::string text;
   std::size_t count = 0;
   for (const auto& row : rows.rows) {
     const bool is_fine = row.status == "done" || row.status == "running" || row.status == "due";
-    if (is_fine || ++count > kMost) continue;
+    if (is_fine || ++count > kMax) continue;
     text += fmt::format("  {} {}: {}\n", row.status, row.name, fmt::join(row.reasons, "; "));
   }
-  if (count > kMost) text += fmt::format("  and {} more, see {}\n", count - kMost, kBatchTable);
+  if (count > kMax) text += fmt::format("  and {} more, see {}\n", count - kMax, kBatchTable);
   return text;
 }
 
@@ -92,18 +92,18 @@ bool are_tables_current(const fs::path& output) {
 }
 
 std::string trend_text(const BatchRows& rows) {
-  constexpr std::size_t kMost = 20;
+  constexpr std::size_t kMax = 20;
   std::string text;
   std::size_t count = 0;
   for (const auto& row : rows.rows) {
-    if (row.stands_out.empty() || ++count > kMost) continue;
+    if (row.stands_out.empty() || ++count > kMax) continue;
     text += fmt::format("  {} is an outlier in {}\n", row.name, fmt::join(row.stands_out, ", "));
   }
   if (2 * count > rows.count("done"))
     return fmt::format(
         "  {} calibrations differ by more than their standard errors: they are of several scanners, or the standard errors are too small\n",
         count);
-  if (count > kMost) text += fmt::format("  and {} more, see {}\n", count - kMost, kBatchTable);
+  if (count > kMax) text += fmt::format("  and {} more, see {}\n", count - kMax, kBatchTable);
   return text;
 }
 

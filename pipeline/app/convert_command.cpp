@@ -6,7 +6,7 @@
 
 #include "pipeline/app/own_pipelines.hpp"
 #include "pipeline/data/error.hpp"
-#include "pipeline/files/folder.hpp"
+#include "pipeline/files/list_files.hpp"
 #include "pipeline/pcd/parts.hpp"
 
 namespace crisp {
@@ -26,7 +26,7 @@ std::string format_of(const fs::path& file) {
 /// The clouds of a folder, each by the name that grabber.cloud reads all of its parts by.
 std::set<fs::path> clouds_in(const fs::path& folder) {
   std::set<fs::path> clouds;
-  for (const auto& file : files_in(folder)) {
+  for (const auto& file : list_files(folder)) {
     if (!has_extension(file, {".pcd"}) || file.stem().extension() == ".plate") continue;
     clouds.insert(whole_of_part(file).value_or(file));
   }

@@ -9,8 +9,8 @@
 
 #include "pipeline/app/commands.hpp"
 #include "pipeline/files/byte_stream.hpp"
-#include "pipeline/files/folder.hpp"
 #include "pipeline/files/json_text.hpp"
+#include "pipeline/files/list_files.hpp"
 #include "pipeline/files/rig_file.hpp"
 
 namespace crisp {
@@ -107,7 +107,7 @@ std::vector<Entry> entries_of(const Inspectors& inspectors, const fs::path& path
   if (!fs::is_directory(path, none)) return {entry_of(inspectors, path, rig)};
   std::vector<Entry> entries;
   try {
-    for (const auto& file : files_in(path)) {
+    for (const auto& file : list_files(path)) {
       if (is_of_interest(inspectors, file)) entries.push_back(entry_of(inspectors, file, rig));
     }
     if (entries.empty()) throw none_known(path, inspectors);

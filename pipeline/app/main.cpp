@@ -13,7 +13,7 @@
 #include "pipeline/app/completion.hpp"
 #include "pipeline/app/exhaustion.hpp"
 #include "pipeline/app/own_process.hpp"
-#include "pipeline/data/want_of_resources.hpp"
+#include "pipeline/data/resource_exhaustion.hpp"
 #include "pipeline/files/nearest.hpp"
 
 namespace crisp {
@@ -268,7 +268,7 @@ int main(int count, char** words) {
     crisp::print_errors(crisp::Error(error.path1().string() + ": " + error.code().message(),
                                      "check the path and its permissions"));
   } catch (const std::exception& error) {
-    crisp::print_errors(crisp::want_of_resources(error).value_or(crisp::Error(error.what())));
+    crisp::print_errors(crisp::resource_exhaustion(error).value_or(crisp::Error(error.what())));
   } catch (...) {
     std::cerr << "error: a plugin threw something that is no std::exception\n";
   }

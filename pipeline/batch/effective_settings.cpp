@@ -96,7 +96,7 @@ std::string digest_of_settings(const Json& settings) {
 }
 
 std::vector<std::string> changes_of_settings(const Json& before, const Json& now) {
-  constexpr std::size_t kMost = 5;
+  constexpr std::size_t kMax = 5;
   std::vector<std::string> changes;
   add_changes({}, before, now, changes);
   for (auto& change : changes) {
@@ -105,9 +105,9 @@ std::vector<std::string> changes_of_settings(const Json& before, const Json& now
       if (at != std::string::npos && at < change.find(':')) change.erase(at, level.size());
     }
   }
-  if (changes.size() > kMost) {
-    const std::size_t others = changes.size() - kMost;
-    changes.resize(kMost);
+  if (changes.size() > kMax) {
+    const std::size_t others = changes.size() - kMax;
+    changes.resize(kMax);
     changes.push_back(fmt::format("and {} more", others));
   }
   return changes;

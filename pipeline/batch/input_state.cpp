@@ -9,7 +9,7 @@
 
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/data/error.hpp"
-#include "pipeline/files/folder.hpp"
+#include "pipeline/files/list_files.hpp"
 #include "pipeline/files/sha256.hpp"
 
 namespace crisp {
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 std::vector<fs::path> paths_of(const BatchInput& input, const fs::path& rig) {
   std::vector<fs::path> paths;
   if (input.is_folder)
-    paths = files_in(input.path);
+    paths = list_files(input.path);
   else
     paths = {input.path};
   std::erase_if(paths, [](const fs::path& path) { return path.filename().string().starts_with("."); });

@@ -14,12 +14,12 @@
 #include <cstring>
 #include <iostream>
 
-#include "pipeline/data/want_of_resources.hpp"
+#include "pipeline/data/resource_exhaustion.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr std::size_t kMostPrinted = 16 * 1024;  // [bytes] that are kept of what a job prints
+constexpr std::size_t kMaxPrinted = 16 * 1024;  // [bytes] that are kept of what a job prints
 
 double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
@@ -27,9 +27,9 @@ double seconds_of(const timeval& time) {
 
 /// The end of the text, from the beginning of a line.
 std::string last_lines(const std::string& text) {
-  constexpr std::size_t kMost = 4096;
-  if (text.size() <= kMost) return text;
-  const std::string end = text.substr(text.size() - kMost);
+  constexpr std::size_t kMax = 4096;
+  if (text.size() <= kMax) return text;
+  const std::string end = text.substr(text.size() - kMax);
   const std::size_t line = end.find('\n');
   return line == std::string::npos ? end : end.substr(line + 1);
 }
@@ -65,7 +65,7 @@ void JobTable::become(const Job& job, int error) const {
   try {
     status = run_(job);
   } catch (const std::exception& failure) {
-    const Error error = want_of_resources(failure).value_or(Error(failure.what()));
+    const Error error = resource_exhaustion(failure).value_or(Error(failure.what()));
     std::cerr << "error: " << error.what() << "\n";
   } catch (...) {
     std::cerr << "error: a plugin threw something that is no std::exception\n";
@@ -120,7 +120,7 @@ void JobTable::read_error(Running& job) {
     const ssize_t count = read(job.error, block.data(), block.size());
     if (count > 0) {
       job.printed.append(block.data(), static_cast<std::size_t>(count));
-      if (job.printed.size() > kMostPrinted) job.printed.erase(0, job.printed.size() - kMostPrinted / 2);
+      if (job.printed.size() > kMaxPrinted) job.printed.erase(0, job.printed.size() - kMaxPrinted / 2);
     } else if (count == 0) {
       close(job.error);
       job.error = -1;

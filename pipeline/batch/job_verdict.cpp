@@ -77,7 +77,7 @@ void judge(const JobEnd& end, const JobCircumstances& circumstances, const Json&
 void judge_disk(const Json& results, JobVerdict& verdict) {
   std::vector<std::string> messages = {verdict.failure};
   for (const auto& reason : results.value("reasons", Json::array())) messages.push_back(reason);
-  const auto full = std::ranges::find_if(messages, speaks_of_full_disk);
+  const auto full = std::ranges::find_if(messages, is_disk_full_error);
   if (verdict.status == JobStatus::done || full == messages.end()) return;
   verdict.full_disk = *full;
   verdict.failure = *full;
@@ -112,7 +112,7 @@ Json input_json(const DueRecording& recording, std::vector<InputFile> files,
 
 }  // namespace
 
-bool speaks_of_full_disk(std::string_view message) {
+bool is_disk_full_error(std::string_view message) {
   return std::ranges::any_of(std::array{ENOSPC, EDQUOT}, [&](int code) {
     return message.find(std::strerror(code)) != std::string_view::npos;
   });

@@ -40,6 +40,6 @@ JobVerdict judge_job(const JobEnd& end, const JobCircumstances& circumstances, c
 JobVerdict refused_input(const Error& error);
 
 /// Whether a message reports that a file could not be written for lack of disk space.
-bool speaks_of_full_disk(std::string_view message);
+bool is_disk_full_error(std::string_view message);
 
 }  // namespace crisp

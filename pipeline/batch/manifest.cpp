@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 [[noreturn]] void fail(const fs::path& file, int code) {
-  const char* advice = is_for_want_of_room(code)
+  const char* advice = is_disk_full(code)
                            ? "make room on the disk and run the batch again: it continues where it stopped"
                            : "check the folder's permissions";
   throw Error("cannot write " + file.string() + ": " + std::strerror(code), advice);

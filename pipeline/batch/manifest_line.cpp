@@ -59,8 +59,8 @@ class EventReader : public nlohmann::json_sax<nlohmann::json> {
   }
   bool number_integer(number_integer_t number) override { return set_number(number); }
   bool number_unsigned(number_unsigned_t number) override {
-    constexpr number_unsigned_t kMost = std::numeric_limits<std::int64_t>::max();
-    return set_number(static_cast<std::int64_t>(std::min(number, kMost)));
+    constexpr number_unsigned_t kMax = std::numeric_limits<std::int64_t>::max();
+    return set_number(static_cast<std::int64_t>(std::min(number, kMax)));
   }
   bool start_object(std::size_t) override {
     ++depth_;

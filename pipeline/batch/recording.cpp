@@ -12,7 +12,7 @@
 #include "pipeline/batch/glob.hpp"
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/data/all_errors.hpp"
-#include "pipeline/files/folder.hpp"
+#include "pipeline/files/list_files.hpp"
 
 namespace crisp {
 namespace {
@@ -171,10 +171,10 @@ Error shared_output(const BatchInput& one, const BatchInput& other) {
 
 /// @param sorted  by name
 void refuse_shared_outputs(const std::vector<BatchInput>& sorted) {
-  constexpr std::size_t kMost = 10;  // that are named
+  constexpr std::size_t kMax = 10;  // that are named
   std::vector<Error> errors;
   std::string_view folder;  // of the recording before, which has no recording above it
-  for (std::size_t i = 0; i < sorted.size() && errors.size() < kMost; ++i) {
+  for (std::size_t i = 0; i < sorted.size() && errors.size() < kMax; ++i) {
     const BatchInput& recording = sorted[i];
     const std::string_view name = recording.name;
     const std::string_view own_folder = name.substr(0, name.find_last_of('/') + 1);

@@ -133,7 +133,7 @@ class Batch {
       action();
       return true;
     } catch (const Error& error) {
-      if (!speaks_of_full_disk(error.what())) throw;
+      if (!is_disk_full_error(error.what())) throw;
       if (outcome_.full_disk.empty()) outcome_.full_disk = error.what();
       return false;
     }

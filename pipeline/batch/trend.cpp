@@ -13,7 +13,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kFewest = 3;  // recordings that make a trend
+constexpr std::size_t kMin = 3;  // recordings that make a trend
 
 double difference(double value, double from, const std::string& unit) {
   return unit == "rad" ? std::remainder(value - from, 2 * std::numbers::pi) : value - from;
@@ -83,7 +83,7 @@ std::vector<ParameterTrend> batch_trend(const std::vector<BatchRow>& rows) {
       trend.points.push_back({.recording = row->name, .value = parameter.value, .std_error = error});
     }
   }
-  std::erase_if(by_name, [](const auto& each) { return each.second.points.size() < kFewest; });
+  std::erase_if(by_name, [](const auto& each) { return each.second.points.size() < kMin; });
   std::size_t tests = 0;
   for (const auto& [name, trend] : by_name) tests += trend.points.size();
   std::vector<ParameterTrend> trends;

@@ -9,8 +9,8 @@ namespace crisp {
 namespace {
 
 Plot plot_of(const ParameterTrend& trend) {
-  constexpr std::size_t kMost = 5000;  // points that are drawn of those that do not stand out
-  const std::size_t every = 1 + trend.points.size() / kMost;
+  constexpr std::size_t kMax = 5000;  // points that are drawn of those that do not stand out
+  const std::size_t every = 1 + trend.points.size() / kMax;
   const auto [scale, unit] = shown_unit(trend.unit);
   PlotSeries alike{.name = "recordings", .joined = false};
   PlotSeries apart{.name = "stands out", .joined = false};

@@ -33,8 +33,8 @@ ClockLine line_by_convex_hull(std::span<const Stamp> stamps, double center) {
   const auto right = std::upper_bound(vertices.begin() + 1, vertices.end() - 1, center,
                                       [](double t, const Stamp& vertex) { return t < vertex.device; });
   const double slope = slope_between(right[-1], *right);
-  if (std::abs(slope) <= kMostSkew) return line_through(right[-1], slope, center);
-  const double bound = std::copysign(kMostSkew, slope);
+  if (std::abs(slope) <= kMaxSkew) return line_through(right[-1], slope, center);
+  const double bound = std::copysign(kMaxSkew, slope);
   return line_through(vertices[support(vertices, bound)], bound, center);
 }
 

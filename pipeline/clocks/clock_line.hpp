@@ -22,7 +22,7 @@ struct ClockLine {
 };
 
 /// The skew beyond which no crystal goes; an edge between two stamps that are close can be any steep.
-inline constexpr double kMostSkew = 1e-3;
+inline constexpr double kMaxSkew = 1e-3;
 
 /// The line that lies below all stamps and passes as high as possible at `center`. With the mean of the
 /// stamps' device times as `center` it is the line whose summed distance to them is least.
@@ -32,7 +32,7 @@ inline constexpr double kMostSkew = 1e-3;
 ///
 /// @param stamps at least one, ascending in device time; equal times are allowed
 /// @param center [s] device time, within the stamps' times
-/// @return |slope| ≤ kMostSkew
+/// @return |slope| ≤ kMaxSkew
 ClockLine line_by_convex_hull(std::span<const Stamp> stamps, double center);
 
 /// The errors of a line below stamps.

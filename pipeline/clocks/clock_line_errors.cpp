@@ -85,7 +85,7 @@ struct Moments {
 double slope_spread(std::span<const Stamp> vertices, const ClockLine& line, double scale) {
   const auto slope_before = [&](std::size_t i) {
     const double rise = vertices[i].lead - vertices[i - 1].lead;
-    return std::clamp(rise / (vertices[i].device - vertices[i - 1].device), -kMostSkew, kMostSkew);
+    return std::clamp(rise / (vertices[i].device - vertices[i - 1].device), -kMaxSkew, kMaxSkew);
   };
   struct Piece {
     double height;
@@ -96,8 +96,8 @@ double slope_spread(std::span<const Stamp> vertices, const ClockLine& line, doub
   };
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const double low = i == 0 ? -kMostSkew : slope_before(i);
-    const double high = i + 1 == vertices.size() ? kMostSkew : slope_before(i + 1);
+    const double low = i == 0 ? -kMaxSkew : slope_before(i);
+    const double high = i + 1 == vertices.size() ? kMaxSkew : slope_before(i + 1);
     if (low >= high) continue;
     const double ahead = line.center - vertices[i].device;
     const double edge = ahead > 0 ? high : low;
@@ -114,7 +114,7 @@ double slope_spread(std::span<const Stamp> vertices, const ClockLine& line, doub
     moments.add_falling(std::exp((piece.height - highest) / scale), piece.edge, piece.away, piece.rate,
                         piece.length);
   }
-  if (!(moments.mass > 0)) return kMostSkew;
+  if (!(moments.mass > 0)) return kMaxSkew;
   return std::sqrt(moments.second / moments.mass);
 }
 

@@ -9,12 +9,12 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kKept = 16;   // intervals that predict the next one
-constexpr std::size_t kEnough = 8;  // of them for an estimate of their scatter
-constexpr std::size_t kMany = 128;  // intervals for a sure estimate: sixteen may be even by chance
-constexpr std::size_t kSure = 4;    // even intervals after a jump
-constexpr double kLeast = 0.25e-3;  // [s] real mirrors' stamps are up to 0.17 ms off their prediction
-constexpr double kManyTimes = 12;   // what intervals differ by (median)
+constexpr std::size_t kKept = 16;     // intervals that predict the next one
+constexpr std::size_t kEnough = 8;    // of them for an estimate of their scatter
+constexpr std::size_t kMany = 128;    // intervals for a sure estimate: sixteen may be even by chance
+constexpr std::size_t kSure = 4;      // even intervals after a jump
+constexpr double kMinJump = 0.25e-3;  // [s] real mirrors' stamps are up to 0.17 ms off their prediction
+constexpr double kManyTimes = 12;     // what intervals differ by (median)
 
 }  // namespace
 
@@ -41,7 +41,7 @@ void CountedTime::judge_trial(std::optional<double> jump) {
   if (jump) {
     // Back where it was, a stamp was off. Anything else, and the intervals are not what they were.
     jumped_ -= trial_->by;
-    if (std::abs(trial_->by + *jump) > std::max(kLeast, 0.1 * std::abs(*jump))) latest_.clear();
+    if (std::abs(trial_->by + *jump) > std::max(kMinJump, 0.1 * std::abs(*jump))) latest_.clear();
     trial_.reset();
   } else if (++trial_->even == kSure) {
     confirmed_ = trial_->by;
@@ -52,11 +52,11 @@ void CountedTime::judge_trial(std::optional<double> jump) {
 std::optional<double> CountedTime::excess(double seconds, std::int64_t steps, double hub) const {
   if (latest_.size() < kEnough) return std::nullopt;
   const auto n = static_cast<double>(steps);
-  if (std::abs(seconds - n * usual_) < n * kLeast / 2) return std::nullopt;  // as nearly all
+  if (std::abs(seconds - n * usual_) < n * kMinJump / 2) return std::nullopt;  // as nearly all
   std::vector<double> values = latest_;
   const double usual = median_in_place(values);
   const double excess = seconds - n * usual;
-  if (std::abs(excess) < n * std::max(kLeast, kManyTimes * usual_deviation(usual))) return std::nullopt;
+  if (std::abs(excess) < n * std::max(kMinJump, kManyTimes * usual_deviation(usual))) return std::nullopt;
   // Where receipts confirm the device's clock, the interval was real: nothing was sent for a while, and not
   // counted either, or the counted events are uneven.
   constexpr double kAgree = 0.25;

@@ -12,8 +12,8 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kFewest = 96;   // stamps: eight stretches of the envelope
-constexpr Eigen::Index kMargin = 2;   // stretches that a level rests on at least
+constexpr std::size_t kMinStampsOfAStep = 96;  // stamps: eight stretches of the envelope
+constexpr Eigen::Index kMargin = 2;            // stretches that a level rests on at least
 constexpr double kSmallest = 0.1e-3;  // [s] what is less bends no line by as much as lags are known to
 constexpr double kStandsOut = 8;      // standard errors
 constexpr double kAboveScatter = 4;   // times the envelope's own
@@ -50,8 +50,8 @@ class Side {
 /// The slope of parallel lines whose heights at the stamps have the greatest sum. It is concave in the slope:
 /// where it is greatest, the pull changes sign.
 double common_slope(const Side& before, const Side& after) {
-  double low = -kMostSkew;
-  double high = kMostSkew;
+  double low = -kMaxSkew;
+  double high = kMaxSkew;
   constexpr int kHalvings = 50;
   for (int i = 0; i < kHalvings; ++i) {
     const double slope = 0.5 * (low + high);
@@ -63,7 +63,7 @@ double common_slope(const Side& before, const Side& after) {
 }  // namespace
 
 std::optional<DelayStep> step_of_delay(std::span<const Stamp> stamps) {
-  if (stamps.size() < kFewest) return std::nullopt;
+  if (stamps.size() < kMinStampsOfAStep) return std::nullopt;
   const Envelope envelope = envelope_of(stamps);
   const Eigen::MatrixXd base = envelope.straight();
   const Eigen::MatrixXd tried = bend_and_steps(envelope.time, kMargin);

@@ -11,10 +11,10 @@ namespace crisp {
 namespace {
 
 constexpr double kSmallestDeviation = 50e-6;  // [s] of a deviation that is worth taking out
-constexpr std::size_t kFewestStamps = 64;     // of a device
+constexpr std::size_t kMinStamps = 64;        // of a device
 constexpr std::size_t kOfStretch = 8;         // stamps of the slowest device, about
-constexpr std::size_t kFewestStretches = 8;
-constexpr std::size_t kMostStretches = 1200;
+constexpr std::size_t kMinStretches = 8;
+constexpr std::size_t kMaxStretches = 1200;
 constexpr double kAgree = 0.35;  // what the others' deviation leaves of a device's, over what it was
 constexpr double kNoises = 2.5;  // delays are skewed: their scatter is larger than it mostly is
 const double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -84,7 +84,7 @@ double noise_of(const Series& series) {
     const double bend = series[i] - 2 * series[i - 1] + series[i - 2];
     if (std::isfinite(bend)) bends.push_back(std::abs(bend) / std::sqrt(6.0));
   }
-  return bends.empty() ? HUGE_VAL : std::max(1e-6, kSigmaByMedian * median_in_place(bends));
+  return bends.empty() ? HUGE_VAL : std::max(1e-6, kMadToSigma * median_in_place(bends));
 }
 
 Series medians(const std::vector<Series>& all, std::size_t without) {
@@ -137,7 +137,7 @@ class DeviationSeries {
   explicit DeviationSeries(std::span<const std::vector<ReceivedStamp>> devices) {
     double first = HUGE_VAL, last = -HUGE_VAL, width = 0.05;
     for (const auto& stamps : devices) {
-      if (stamps.size() < kFewestStamps) continue;
+      if (stamps.size() < kMinStamps) continue;
       devices_.push_back(&stamps);
       const double span = stamps.back().hub - stamps.front().hub;
       first = std::min(first, stamps.front().hub);
@@ -146,11 +146,11 @@ class DeviationSeries {
     }
     if (devices_.size() < 2) return;
     begin_ = first;
-    count_ = static_cast<std::size_t>(std::clamp((last - first) / width, 0.0, double{kMostStretches}));
+    count_ = static_cast<std::size_t>(std::clamp((last - first) / width, 0.0, double{kMaxStretches}));
     width_ = (last - first) / static_cast<double>(std::max<std::size_t>(1, count_));
   }
 
-  bool is_enough() const { return devices_.size() >= 2 && count_ >= kFewestStretches; }
+  bool is_enough() const { return devices_.size() >= 2 && count_ >= kMinStretches; }
 
   /// The least leads, less what is known of the deviation, without each device's line.
   std::vector<Series> least_leads(const HubDeviation& known) const {
@@ -203,17 +203,17 @@ class DeviationSeries {
       steps.push_back(
           {.at = begin_ + 0.5 * static_cast<double>(known[i] + known[i + 1] + 1) * width_, .by = by});
     }
-    constexpr std::size_t kMost = 32;  // a clock that is set so often is none
-    return steps.size() > kMost ? std::vector<HubDeviation::Step>() : steps;
+    constexpr std::size_t kMax = 32;  // a clock that is set so often is none
+    return steps.size() > kMax ? std::vector<HubDeviation::Step>() : steps;
   }
 
   /// A steady rate of the hub's clock is the devices' skew: the deviation is left with none that it mostly
   /// has, unless the devices would all be off by more than clocks are.
   void take_out_rate(HubDeviation& deviation) const {
-    constexpr double kMostCommonSkew = 300e-6;
+    constexpr double kMaxCommonSkew = 300e-6;
     add_rate(-usual_change(deviation.values_) / width_, deviation);
     const double common = common_skew(deviation);
-    if (std::abs(common) > kMostCommonSkew) add_rate(common, deviation);
+    if (std::abs(common) > kMaxCommonSkew) add_rate(common, deviation);
   }
 
   HubDeviation with_steps(std::vector<HubDeviation::Step> steps) const {

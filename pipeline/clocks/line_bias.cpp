@@ -36,7 +36,7 @@ LineBias estimate_line_bias(std::span<const Stamp> stamps, const ClockLine& line
   constexpr double kUsualDelay = 1e-3;  // [s] assumed where there are too few stamps
   constexpr double kRoots = 2.5;        // of the stamps: few enough to be near the least one
   constexpr double kBeforehand = 2;     // stamps that speak for a shape of 1
-  constexpr double kMostOfFourth = 3;   // a few stamps may be faster than all others: the law is theirs then
+  constexpr double kMaxOfFourth = 3;    // a few stamps may be faster than all others: the law is theirs then
   constexpr int kTurns = 60;
   if (stamps.size() < 4) return {.mean = 0, .std_error = kUsualDelay};
   const std::vector<double> above = delays_above(stamps, line);
@@ -58,7 +58,7 @@ LineBias estimate_line_bias(std::span<const Stamp> stamps, const ClockLine& line
   const double mean = law.mean_power(kOrder, 1);
   const double scatter = std::sqrt(std::max(0.0, law.mean_power(kOrder, 2) - mean * mean));
   const double of_shape = mean * std::log(m) / std::sqrt(m) * law.shape;
-  const double most = std::max(quantum, kMostOfFourth * above[3]);
+  const double most = std::max(quantum, kMaxOfFourth * above[3]);
   return {.mean = std::min(mean, most),
           .std_error = std::max({quantum, std::hypot(scatter, of_shape), mean - most})};
 }

@@ -40,7 +40,7 @@ ClockLine HullClock::line() const {
   const auto vertices = hull_.vertices();
   const auto line =
       line_by_convex_hull(vertices.subspan(edge_, std::min<std::size_t>(2, vertices.size())), mean_);
-  return std::abs(line.slope) < kMostSkew ? line : line_by_convex_hull(vertices, mean_);
+  return std::abs(line.slope) < kMaxSkew ? line : line_by_convex_hull(vertices, mean_);
 }
 
 }  // namespace crisp

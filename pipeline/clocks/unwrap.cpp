@@ -11,10 +11,10 @@ namespace crisp {
 namespace {
 
 constexpr std::int64_t kTimeModulus = std::int64_t{1} << 32;
-constexpr double kMostDelay = 30;      // [s] a stalled TCP connection hands out its scans that late,
-constexpr double kOddDelay = 1;        // [s] but with their counters in order: if not, it is no stall
-constexpr double kMostDisorder = 0.5;  // [s] datagrams overtake each other, but not by more
-constexpr double kLeastStep = 0.25;    // [s] a clock that two others contradict by this much has jumped
+constexpr double kMaxDelay = 30;      // [s] a stalled TCP connection hands out its scans that late,
+constexpr double kOddDelay = 1;       // [s] but with their counters in order: if not, it is no stall
+constexpr double kMaxDisorder = 0.5;  // [s] datagrams overtake each other, but not by more
+constexpr double kMinStep = 0.25;     // [s] a clock that two others contradict by this much has jumped
 constexpr std::uint32_t kSecond_us = 1'000'000;
 
 }  // namespace
@@ -67,15 +67,15 @@ TimeUnwrapper::Step TimeUnwrapper::step_from(const State& state, std::uint32_t r
 
 StampKind TimeUnwrapper::judge(const Step& step, std::optional<double> counted_s) {
   const double device_s = 1e-6 * static_cast<double>(step.device_us);
-  if (device_s <= 0) return device_s >= -kMostDisorder ? StampKind::repeated : StampKind::reset;
+  if (device_s <= 0) return device_s >= -kMaxDisorder ? StampKind::repeated : StampKind::reset;
   const double off_hub = std::abs(device_s - step.hub_s);
   if (counted_s) {
     const double off_count = std::abs(device_s - *counted_s);
     const double others = std::abs(step.hub_s - *counted_s);
-    if (std::min(off_hub, off_count) > std::max(kLeastStep, 2 * others)) return StampKind::reset;
+    if (std::min(off_hub, off_count) > std::max(kMinStep, 2 * others)) return StampKind::reset;
   }
-  const double most_delay = counted_s ? kOddDelay : kMostDelay;
-  const bool as_hub = off_hub <= most_delay + kMostSkew * std::abs(step.hub_s);
+  const double most_delay = counted_s ? kOddDelay : kMaxDelay;
+  const bool as_hub = off_hub <= most_delay + kMaxSkew * std::abs(step.hub_s);
   const bool as_count = counted_s && std::abs(device_s - *counted_s) <= 0.1 + 0.01 * *counted_s;
   return as_hub || as_count ? StampKind::next : StampKind::reset;
 }

@@ -13,9 +13,9 @@ namespace crisp {
 namespace {
 
 constexpr int kTerms = 5;             // of a polynomial of the fourth degree
-constexpr Eigen::Index kFewest = 15;  // readings: fewer add little to the middle one
-constexpr double kMostOff = 0.55;     // steps: half a step of rounding, and a little for the stamps
-constexpr double kMostChange = 0.6;   // steps, likewise
+constexpr Eigen::Index kMin = 15;     // readings: fewer add little to the middle one
+constexpr double kMaxOff = 0.55;      // steps: half a step of rounding, and a little for the stamps
+constexpr double kMaxChange = 0.6;    // steps, likewise
 constexpr double kMomentsAWidth = 4;  // that polynomials are found for
 
 using Coefficients = Eigen::Matrix<double, kTerms, 1>;
@@ -70,12 +70,12 @@ class Window {
   std::optional<Arc> within_steps() const {
     Coefficients found = solution();
     Eigen::VectorXd left = read_ - basis_ * found;
-    if (left.norm() > kMostOff * std::sqrt(static_cast<double>(size()))) return std::nullopt;
+    if (left.norm() > kMaxOff * std::sqrt(static_cast<double>(size()))) return std::nullopt;
     for (const int power : {4, 8, 16}) {  // each from where the one before it led
       found += step_towards_least(power, left);
       left = read_ - basis_ * found;
     }
-    if (!(left.lpNorm<Eigen::Infinity>() <= kMostOff)) return std::nullopt;
+    if (!(left.lpNorm<Eigen::Infinity>() <= kMaxOff)) return std::nullopt;
     return arc(found);
   }
 
@@ -95,8 +95,8 @@ class Window {
   /// Newton's step towards the least sum of powers (4, 8 or 16) of what is left [steps]. Its direction
   /// need not be known to more than a float holds.
   Coefficients step_towards_least(int power, const Eigen::VectorXd& left) const {
-    constexpr float kLeastCurvature = 0.02F;  // where one reading stands out, the others still count
-    constexpr double kNothing = 1e-9;         // steps
+    constexpr float kMinCurvature = 0.02F;  // where one reading stands out, the others still count
+    constexpr double kNothing = 1e-9;       // steps
     const double most = left.lpNorm<Eigen::Infinity>();
     if (most < kNothing) return Coefficients::Zero();
     const Eigen::ArrayXf share = (left / most).cast<float>();
@@ -106,7 +106,7 @@ class Window {
       square = square.square();
       curvature *= square;
     }
-    const Rough weighted = rough_.array().colwise() * (curvature + kLeastCurvature);
+    const Rough weighted = rough_.array().colwise() * (curvature + kMinCurvature);
     Squares squares;
     for (int i = 0; i < kTerms; ++i) {
       for (int j = 0; j <= i; ++j) squares(i, j) = double{weighted.col(i).dot(rough_.col(j))};
@@ -129,11 +129,11 @@ std::optional<Arc> arc_about(double moment, std::span<const double> times, std::
                              double step, double half_width) {
   for (const double share : {1.0, 0.5}) {
     const Window window(moment, share * half_width, times, angles, step);
-    if (window.size() < kFewest) return std::nullopt;
+    if (window.size() < kMin) return std::nullopt;
     if (auto arc = window.within_steps()) return arc;
   }
   const Window narrowest(moment, 0.25 * half_width, times, angles, step);
-  if (narrowest.size() < kFewest) return std::nullopt;
+  if (narrowest.size() < kMin) return std::nullopt;
   const auto arc = narrowest.within_steps();
   return arc ? arc : narrowest.least_squares();
 }
@@ -144,7 +144,7 @@ std::vector<double> between_steps(std::span<const double> times, std::span<const
                                   double half_width) {
   std::vector<double> smooth(angles.begin(), angles.end());
   if (times.empty() || !(half_width > 0)) return smooth;
-  const double most = kMostChange * step;
+  const double most = kMaxChange * step;
   // Moments are parts of time itself, so that a recording has the same ones in however many pieces it comes.
   const double apart = half_width / kMomentsAWidth;
   const auto arc_of = [&](double moment) {

@@ -9,16 +9,16 @@ namespace crisp {
 namespace {
 
 /// Šidák-corrected p-value of the smaller of two independent p-values; a missing one does not count.
-double less_sure(double one, double other) {
+double combined_p_value(double one, double other) {
   const double least = std::fmin(one, other);
   return std::isnan(one) || std::isnan(other) ? least : sidak_p_value(2, least);
 }
 
 }  // namespace
 
-std::string Finding::refusal() const {
+std::string Finding::rejection_reason() const {
   if (accepted) return {};
-  return refused.empty() ? "it does not improve the fit on held-out data (cross-validation)" : refused;
+  return rejection.empty() ? "it does not improve the fit on held-out data (cross-validation)" : rejection;
 }
 
 void Findings::append(const Findings& other) {
@@ -31,8 +31,8 @@ void Findings::append(const Findings& other) {
   add(devices, other.devices);
   add(noise, other.noise);
   add(gain, other.gain);
-  before_p = less_sure(before_p, other.before_p);
-  after_p = less_sure(after_p, other.after_p);
+  before_p = combined_p_value(before_p, other.before_p);
+  after_p = combined_p_value(after_p, other.after_p);
 }
 
 }  // namespace crisp

@@ -19,7 +19,7 @@ struct Gain {
   std::array<double, 2> ci95{};  ///< of after − before
 
   bool significant_decrease() const { return ci95[1] < 0; }
-  bool surely_rises() const { return ci95[0] > 0; }
+  bool significant_increase() const { return ci95[0] > 0; }
   /// For an RMS: the fraction of the mean square that is explained; 0 where there was nothing.
   double explained() const { return before > 0 ? 1 - after * after / (before * before) : 0; }
 };
@@ -31,7 +31,7 @@ inline constexpr double kNotTested = std::numeric_limits<double>::quiet_NaN();
 struct OtherCause {
   std::string cause;
   std::string scope;
-  double log10_odds = 0;  ///< against it
+  double log10_bayes_factor = 0;  ///< against it
 };
 
 /// A departure of the measured data from the model, with its physical cause.
@@ -40,18 +40,18 @@ struct Finding {
   std::string scope;                            ///< "plate", "laser3"
   std::vector<Parameter> parameters;            ///< in SI, with standard errors
   double explained_fraction = 0;                ///< share of the whole departure (in squared residuals)
-  double log10_odds = kNotTested;               ///< against the likeliest other cause
+  double log10_bayes_factor = kNotTested;       ///< against the likeliest other cause
   double p_value = 1;                           ///< under noise alone, corrected for the number of tests
   std::vector<std::string> confounded_with;     ///< causes that these data do not distinguish from it
   std::vector<std::string> resolvable_by = {};  ///< what a recording needs to distinguish them
   std::vector<OtherCause> alternatives = {};    ///< a few, the likeliest first; empty: none were compared
   std::vector<Gain> gain;
   bool accepted = false;  ///< whether it is part of the model from now on
-  std::string refused =
+  std::string rejection =
       {};  ///< why it is not; empty: it does not improve the fit on held-out data (cross-validation)
 
   /// Why it is no part of the model; empty: it is.
-  std::string refusal() const;
+  std::string rejection_reason() const;
 };
 
 /// A departure that no cause in the catalogue explains.

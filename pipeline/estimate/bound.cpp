@@ -9,7 +9,7 @@
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/encoder_error_blocks.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
-#include "pipeline/estimate/surfel_rows.hpp"
+#include "pipeline/estimate/surfel_jacobian.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
 

@@ -44,7 +44,7 @@ class Patches final : public FlatSurfaces {
     refine_all(surfels_, beams, settings_);
     for_each_index(surfels_.surfels.size(),
                    [&](std::size_t s) { cut_strange_ends(surfels_.surfels[s], surfels_, beams, settings_); });
-    leave_out_odd_ones(surfels_, beams, settings_, kMore);
+    reject_inconsistent(surfels_, beams, settings_, kMore);
   }
 
   SurfelSettings settings_;

@@ -9,9 +9,9 @@
 namespace crisp {
 namespace {
 
-constexpr double kLeastMotion = 0.005;  // [m]
-constexpr double kSpacing = 0.05;       // [s]
-constexpr std::size_t kBeams = 20000;   // enough to see how points move
+constexpr double kMinMotion = 0.005;   // [m]
+constexpr double kSpacing = 0.05;      // [s]
+constexpr std::size_t kBeams = 20000;  // enough to see how points move
 
 PlateTrajectory thinned(const PlateTrajectory& plate, double spacing) {
   std::vector<double> times;
@@ -29,7 +29,7 @@ PlateTrajectory thinned(const PlateTrajectory& plate, double spacing) {
 
 /// The model with every free τ off by as much as it may be.
 SensorModel farther_out(const SensorModel& model, const std::vector<std::size_t>& free,
-                        const SearchRange& range) {
+                        const ParameterPrior& range) {
   Eigen::VectorXd values = model.values();
   for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
     const std::size_t tau = slot(model, laser, kTau);
@@ -43,7 +43,7 @@ SensorModel farther_out(const SensorModel& model, const std::vector<std::size_t>
 }  // namespace
 
 FreeParameters identifiable_parameters(FreeParameters parameters, const SensorModel& model,
-                                       const Sample& sample, const SearchRange& range) {
+                                       const Sample& sample, const ParameterPrior& range) {
   std::vector<std::size_t> base = parameters.free;
   std::erase_if(base, [&](std::size_t parameter) { return declared(model, parameter) != nullptr; });
   if (base.empty()) return parameters;
@@ -51,7 +51,7 @@ FreeParameters identifiable_parameters(FreeParameters parameters, const SensorMo
   Sample some = thin_evenly(sample, kBeams, 1);
   some.plate = &plate;
   const auto identified_at = [&](const SensorModel& place) {
-    const Eigen::MatrixXd motion = displacement(place, some, base) / (kLeastMotion * kLeastMotion);
+    const Eigen::MatrixXd motion = displacement(place, some, base) / (kMinMotion * kMinMotion);
     return observability(motion, base, model.names(), ranges_of(range, model, base));
   };
   auto reported = identified_at(model);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/parameter_prior.hpp"
 #include "pipeline/estimate/sample.hpp"
-#include "pipeline/estimate/search_range.hpp"
 
 namespace crisp {
 
@@ -16,6 +16,6 @@ namespace crisp {
 ///
 /// Parameters of terms stay: their effects are small, and the data decide on their identifiability.
 FreeParameters identifiable_parameters(FreeParameters parameters, const SensorModel& model,
-                                       const Sample& sample, const SearchRange& range);
+                                       const Sample& sample, const ParameterPrior& range);
 
 }  // namespace crisp

@@ -23,10 +23,10 @@ std::string remark(const Parameter& parameter, const std::string& name, const Ca
 
 /// Number of decimals that show two digits of the error; four without an error, or for a large one.
 int decimals_for(double error) {
-  constexpr int kLeast = 4;
-  constexpr int kMost = 12;
-  if (!(error > 0)) return kLeast;
-  return std::clamp(decimals_that_show(error), kLeast, kMost);
+  constexpr int kMin = 4;
+  constexpr int kMax = 12;
+  if (!(error > 0)) return kMin;
+  return std::clamp(decimals_that_show(error), kMin, kMax);
 }
 
 }  // namespace

@@ -12,9 +12,9 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kMostPairs = 120'000;
-constexpr std::size_t kLeastPairs = 1000;  // of a bin: they determine its factor to 4 %
-constexpr std::size_t kMostBins = 12;
+constexpr std::size_t kMaxPairs = 120'000;
+constexpr std::size_t kMinPairs = 1000;  // of a bin: they determine its factor to 4 %
+constexpr std::size_t kMaxBins = 12;
 
 /// Two neighbours, the second and the one before it.
 struct Pair {
@@ -64,7 +64,7 @@ std::vector<std::vector<Pair>> pairs_by_laser(const Surfels& surfels, const Beam
   });
   std::size_t count = 0;
   for (const auto& pairs : of_surfel) count += pairs.size();
-  const std::size_t stride = count / kMostPairs + 1;
+  const std::size_t stride = count / kMaxPairs + 1;
   std::vector<std::vector<Pair>> by_laser;
   for (const auto& pairs : of_surfel) {
     for (std::size_t k = 0; k < pairs.size(); k += stride) {
@@ -96,7 +96,7 @@ struct Steps {
 /// Steps of equally many pairs, with the factor 1.
 Steps even_steps(const std::vector<float>& of, const std::vector<Pair>& pairs) {
   Steps steps{.of = &of, .ends = {}, .factor = {}};
-  const std::size_t count = std::clamp<std::size_t>(pairs.size() / kLeastPairs, 1, kMostBins);
+  const std::size_t count = std::clamp<std::size_t>(pairs.size() / kMinPairs, 1, kMaxBins);
   std::vector<float> values;
   for (const Pair& pair : pairs) values.push_back(of[pair.beam]);
   std::ranges::sort(values);
@@ -113,7 +113,7 @@ Steps even_steps(const std::vector<float>& of, const std::vector<Pair>& pairs) {
 class OfLaser {
  public:
   OfLaser(const std::vector<Pair>& pairs, const Quantities& by) {
-    if (pairs.size() < kLeastPairs) return;
+    if (pairs.size() < kMinPairs) return;
     for (const auto* of : {&by.range, &by.incidence, &by.remission}) steps_.push_back(even_steps(*of, pairs));
     constexpr int kRounds = 3;  // quantities go with one another, so that one's factor changes another's
     for (int round = 0; round < kRounds; ++round) {
@@ -121,7 +121,7 @@ class OfLaser {
     }
     std::vector<double> sizes;
     for (const Pair& pair : pairs) sizes.push_back(pair.size / by_steps(pair));
-    size_ = kSigmaByMedian * median_in_place(sizes);
+    size_ = kMadToSigma * median_in_place(sizes);
   }
 
   /// [m] 0 where there are too few neighbours.
@@ -144,7 +144,7 @@ class OfLaser {
     }
     for (std::size_t s = 0; s < sizes.size(); ++s) {
       const double middle = sizes[s].empty() ? 0 : median_in_place(sizes[s]);
-      if (middle > 0) steps.factor[s] = kSigmaByMedian * middle;
+      if (middle > 0) steps.factor[s] = kMadToSigma * middle;
     }
     double mean = 0;
     for (const double factor : steps.factor) mean += factor / static_cast<double>(steps.factor.size());
@@ -200,15 +200,15 @@ double neighbour_noise(const Surfels& surfels, const BeamsView& placed, const Me
 
 std::vector<float> relative_noise(const Surfels& surfels, const BeamsView& placed, const Measurements& beams,
                                   const SurfelSettings& settings) {
-  constexpr double kLeastGain = 0.05;
-  constexpr double kMost = 4;  // times more or less: beyond, it is what few beams of a step have by chance
+  constexpr double kMinGain = 0.05;
+  constexpr double kMax = 4;  // times more or less: beyond, it is what few beams of a step have by chance
   const std::vector<double> sizes = noise_by_neighbours(surfels, placed, beams, settings);
   const NoiseSums sums = sums_of(surfels, sizes);
   // By so much less is the variance of a mean if its values are weighted.
-  if (sums.count == 0 || sums.squares * sums.inverse < (1 + kLeastGain) * sums.count * sums.count) return {};
+  if (sums.count == 0 || sums.squares * sums.inverse < (1 + kMinGain) * sums.count * sums.count) return {};
   std::vector<float> relative(sizes.size(), 1.0F);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    if (sizes[i] > 0) relative[i] = static_cast<float>(std::clamp(sizes[i] / sums.usual(), 1 / kMost, kMost));
+    if (sizes[i] > 0) relative[i] = static_cast<float>(std::clamp(sizes[i] / sums.usual(), 1 / kMax, kMax));
   }
   return relative;
 }

@@ -142,10 +142,10 @@ Sample thin_evenly(const Sample& sample, std::size_t count, std::uint64_t seed) 
 }
 
 std::size_t beams_for(double sigma, std::size_t most) {
-  constexpr double kWide = 0.1;        // [m]
-  constexpr std::size_t kLeast = 400;  // a few turns of a beam in the plate's plane
+  constexpr double kWide = 0.1;      // [m]
+  constexpr std::size_t kMin = 400;  // a few turns of a beam in the plate's plane
   const auto some = static_cast<std::size_t>(static_cast<double>(most) * std::min(1.0, kWide / sigma));
-  return std::min(most, std::max(some, kLeast));
+  return std::min(most, std::max(some, kMin));
 }
 
 Sample thin_for(double sigma, const Sample& sample) {

@@ -10,7 +10,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::uint32_t kFewest = 100;  // blocks, to see by how much their block_scores scatter
+constexpr std::uint32_t kMin = 100;  // blocks, to see by how much their block_scores scatter
 
 /// The number of beams in a scan of each laser, from the beams at hand.
 std::vector<std::uint32_t> beams_of_scans(const Measurements& beams) {
@@ -50,7 +50,7 @@ std::uint32_t place_on(const Surfel& surfel, const Eigen::Vector2d& foot) {
 Division recording_blocks(const Measurements& beams) {
   constexpr double kLong = 0.1;  // [s]
   const auto [first, last] = std::ranges::minmax(beams.time);
-  const double length = std::max(1e-9, std::min(kLong, (last - first) / kFewest));
+  const double length = std::max(1e-9, std::min(kLong, (last - first) / kMin));
   const auto piece = [&, first = first](double time) {
     return static_cast<std::int64_t>((time - first) / length);
   };
@@ -71,12 +71,12 @@ Division recording_blocks(const Measurements& beams) {
 Division scan_blocks(const Measurements& beams) {
   const auto of_scan = beams_of_scans(beams);
   Division blocks = recording_blocks(beams);
-  const bool has_pieces = std::ranges::any_of(of_scan, [](std::uint32_t n) { return n > 0 && n < kFewest; });
+  const bool has_pieces = std::ranges::any_of(of_scan, [](std::uint32_t n) { return n > 0 && n < kMin; });
   const std::uint32_t first = has_pieces ? std::ranges::max(blocks) + 1 : 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const std::uint32_t laser = beams.laser[i];
-    if (of_scan[laser] < kFewest) continue;
-    blocks[i] = first + kFewest * laser + kFewest * beams.beam[i] / of_scan[laser];
+    if (of_scan[laser] < kMin) continue;
+    blocks[i] = first + kMin * laser + kMin * beams.beam[i] / of_scan[laser];
   }
   return blocks;
 }
@@ -87,7 +87,7 @@ Division place_blocks(const Surfels& surfels, const BeamsView& beams) {
     const Surfel& surfel = surfels.surfels[s];
     for (const std::uint32_t i : surfels.beams_of(surfel)) {
       blocks[i] = static_cast<std::uint32_t>(
-          (kPlacesOfEach * s + place_on(surfel, foot_on(surfel, beams, i))) % kFewest);
+          (kPlacesOfEach * s + place_on(surfel, foot_on(surfel, beams, i))) % kMin);
     }
   }
   return blocks;

@@ -13,7 +13,8 @@
 
 namespace crisp {
 
-void check_errors(const Outcome& outcome, const Measurements& beams, double floor, const SearchRange& prior) {
+void check_errors(const Outcome& outcome, const Measurements& beams, double floor,
+                  const ParameterPrior& prior) {
   constexpr double kFastest = 2 * std::numbers::pi * 100;  // [rad/s] of a plate
   const double farthest = beams.range.empty() ? 0 : *std::ranges::max_element(beams.range);
   const double across = floor / std::sqrt(static_cast<double>(std::max<std::size_t>(1, beams.size())));

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pipeline/estimate/outcome.hpp"
-#include "pipeline/estimate/search_range.hpp"
+#include "pipeline/estimate/parameter_prior.hpp"
 
 namespace crisp {
 
@@ -12,6 +12,7 @@ namespace crisp {
 /// @param floor  [m] least standard deviation across a surface
 /// @param prior  what the rig knows may be better known than by the beams
 /// @throws Error  if there is one
-void check_errors(const Outcome& outcome, const Measurements& beams, double floor, const SearchRange& prior);
+void check_errors(const Outcome& outcome, const Measurements& beams, double floor,
+                  const ParameterPrior& prior);
 
 }  // namespace crisp

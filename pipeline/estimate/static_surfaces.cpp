@@ -63,8 +63,8 @@ double far_for_most_beams(std::vector<Spread> spreads) {
 
 std::vector<bool> static_surfaces(const Surfels& surfels, const BeamsView& beams, double noise) {
   constexpr double kMuchMore = 5;
-  constexpr double kLeast = 0.25;  // [σ]
-  constexpr double kChance = 4;    // of what is expected by chance: χ² of five is beyond once in a thousand
+  constexpr double kMin = 0.25;  // [σ]
+  constexpr double kChance = 4;  // of what is expected by chance: χ² of five is beyond once in a thousand
   if (surfels.surfels.empty() || beams.views.empty()) return std::vector<bool>(surfels.surfels.size(), true);
   const std::size_t views = *std::ranges::max_element(beams.views) + 1;
   std::vector<Spread> spreads(surfels.surfels.size());
@@ -74,7 +74,7 @@ std::vector<bool> static_surfaces(const Surfels& surfels, const BeamsView& beams
   std::vector<double> sizes;
   for (const Spread& spread : spreads) sizes.push_back(std::sqrt(spread.squares));
   const double most =
-      std::max({kLeast * noise, kMuchMore * median_in_place(sizes), far_for_most_beams(spreads)});
+      std::max({kMin * noise, kMuchMore * median_in_place(sizes), far_for_most_beams(spreads)});
   std::vector<bool> result;
   for (const Spread& spread : spreads) {
     result.push_back(spread.squares <= most * most + kChance * noise * noise * spread.by_chance);

@@ -33,7 +33,7 @@ std::optional<std::string> caveat_of_half_a_turn(const SensorModel& model, const
 
 /// The model with held parameters at the rig's values, if the rig gives their standard deviations.
 SensorModel with_nominal(const SensorModel& model, const std::vector<Unobservable>& held,
-                         const SearchRange& prior) {
+                         const ParameterPrior& prior) {
   SensorModel result = model;
   for (const Unobservable& each : held) {
     if (!prior.nominal.contains(each.parameter)) continue;
@@ -50,7 +50,7 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
   const auto caveat = caveat_of_half_a_turn(start, inside);
   FreeParameters parameters = identifiable_parameters(
       free_parameters(start, inside.beams, settings.fixed, settings.terms, settings.forms), start, inside,
-      SearchRange{});
+      ParameterPrior{});
   SurfelRefiner refiner(with_nominal(start, parameters.unobservable, settings.prior), std::move(inside),
                         parameters.free, settings);
   int round = 0;
@@ -82,7 +82,8 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
 }
 
 /// The free parameters that a refinement moved by more than twice what its start was trusted to, in words.
-std::vector<std::string> far_moves(const SensorModel& start, const Outcome& found, const SearchRange& prior) {
+std::vector<std::string> far_moves(const SensorModel& start, const Outcome& found,
+                                   const ParameterPrior& prior) {
   constexpr double kFar = 2;
   std::map<std::string, ShownUnit> units;
   const Calibration calibration = found.model.calibration();
@@ -106,7 +107,7 @@ std::vector<std::string> far_moves(const SensorModel& start, const Outcome& foun
 
 /// Whether the start, which counts as an observation, draws a parameter from where the data have it by a good
 /// part of its standard error: (x − x₀) · s²/p² for a standard deviation p of the start.
-bool is_drawn_to_start(const SensorModel& start, const Outcome& found, const SearchRange& prior) {
+bool is_drawn_to_start(const SensorModel& start, const Outcome& found, const ParameterPrior& prior) {
   constexpr double kMuch = 0.2;
   const Eigen::VectorXd trusted = ranges_of(prior, start, found.free);
   const Eigen::VectorXd moved = picked(found.model, found.free) - picked(start, found.free);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "pipeline/estimate/outcome.hpp"
+#include "pipeline/estimate/parameter_prior.hpp"
 #include "pipeline/estimate/sample.hpp"
-#include "pipeline/estimate/search_range.hpp"
 #include "pipeline/estimate/view_consistency.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
 
@@ -18,7 +18,8 @@ struct RefinementSettings {
   std::vector<std::string> terms;  ///< of the model, to be found as well: see requested_terms.hpp
   bool forms = false;  ///< whether the terms' forms are to be found as well, from about the right ones
   SurfelSettings surfels;
-  SearchRange prior{.lambda = 0.05, .tau = 0.03, .alpha = 0.05, .eta = 0.01, .other = 0.05};  ///< see below
+  ParameterPrior prior{
+      .lambda = 0.05, .tau = 0.03, .alpha = 0.05, .eta = 0.01, .other = 0.05};  ///< see below
   double angle_step = 0;   ///< [rad] of the encoder, for the standard errors; 0: none
   double angle_error = 0;  ///< [rad] standard deviation of the plate's angle at a beam's time: see ViewErrors
   int max_rounds = 20;

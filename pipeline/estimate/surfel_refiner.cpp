@@ -16,12 +16,12 @@
 #include "pipeline/estimate/relative_noise.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/estimate/static_surfaces.hpp"
-#include "pipeline/estimate/surfel_rows.hpp"
+#include "pipeline/estimate/surfel_jacobian.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 
-LagRange refined_lags(const SensorModel& start, const SearchRange& prior) {
+LagRange refined_lags(const SensorModel& start, const ParameterPrior& prior) {
   const LagRange lags = lag_range(start, prior.eta);
   return {.earliest = std::max(lags.earliest, prior.earliest_eta),
           .latest = std::min(lags.latest, prior.latest_eta)};
@@ -195,7 +195,7 @@ Eigen::VectorXd SurfelRefiner::keep_covered(Eigen::VectorXd values) const {
 
 double SurfelRefiner::prior_of_held(const std::string& name) const {
   const auto known = settings_.prior.nominal.find(name);
-  return known != settings_.prior.nominal.end() ? known->second.std_error : range_of(SearchRange{}, name);
+  return known != settings_.prior.nominal.end() ? known->second.std_error : range_of(ParameterPrior{}, name);
 }
 
 /// Removes a parameter from the free ones.

@@ -80,6 +80,6 @@ class SurfelRefiner {
 };
 
 /// The η at which the encoder readings have to cover a refinement's beams.
-LagRange refined_lags(const SensorModel& start, const SearchRange& prior);
+LagRange refined_lags(const SensorModel& start, const ParameterPrior& prior);
 
 }  // namespace crisp

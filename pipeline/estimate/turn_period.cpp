@@ -14,7 +14,7 @@ namespace crisp {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kMost = 0.5;  // [m] by which ranges count as different
+constexpr double kMax = 0.5;  // [m] by which ranges count as different
 
 struct Comparison {
   double angle = 0;  ///< [rad] of the plate
@@ -63,7 +63,7 @@ void add_misses(const std::vector<Comparison>& comparisons, double period, Miss&
       ++next;
     }
     if (std::abs(comparisons[next].angle - then) > kNear) continue;
-    miss.sum += std::min(kMost, std::abs(comparisons[next].range - comparison.range));
+    miss.sum += std::min(kMax, std::abs(comparisons[next].range - comparison.range));
     ++miss.pairs;
   }
 }
@@ -79,12 +79,12 @@ double miss_of(const Comparisons& comparisons, double period) {
 }  // namespace
 
 std::optional<TurnPeriod> turn_period(const Sample& sample) {
-  constexpr double kLeastTurns = 1.2;
+  constexpr double kMinTurns = 1.2;
   constexpr double kAround = 0.08;
   constexpr double kStep = 0.002;
   constexpr std::array kFactors = {0.25, 1.0 / 3, 0.5, 1.0, 2.0, 3.0, 4.0};  // ascending
   constexpr double kAsGood = 1.15, kBesides = 0.01;                          // [m]
-  if (sample.beams.size() == 0 || turned(sample) < kLeastTurns * kTurn) return std::nullopt;
+  if (sample.beams.size() == 0 || turned(sample) < kMinTurns * kTurn) return std::nullopt;
   const Comparisons comparisons = comparisons_of(sample);
   const double at_2pi = miss_of(comparisons, kTurn);
   if (!std::isfinite(at_2pi)) return std::nullopt;
@@ -105,11 +105,11 @@ std::optional<TurnPeriod> turn_period(const Sample& sample) {
 
 bool contradicts_counts(const TurnPeriod& period) {
   constexpr double kClearly = 0.6;  // of the mean difference
-  constexpr double kLeast = 0.03;   // [m] by which it is smaller
+  constexpr double kMin = 0.03;     // [m] by which it is smaller
   const double share = period.angle / kTurn;
   const bool is_part = share < 1 / 1.5;
   return is_part || (std::abs(share - 1) > 0.003 && period.miss < kClearly * period.at_2pi &&
-                     period.miss < period.at_2pi - kLeast);
+                     period.miss < period.at_2pi - kMin);
 }
 
 std::string counts_caveat(const TurnPeriod& period) {

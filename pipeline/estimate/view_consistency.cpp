@@ -79,8 +79,8 @@ struct Piece {
   explicit Piece(std::size_t views) : distances(views), through(views) {}
 
   void add_to(PairSums& sums, const ViewErrors& errors) {
-    constexpr double kFew = 5;          // beams whose median is known to half of the noise
-    constexpr double kLeastPart = 0.2;  // of the beams that should have met it
+    constexpr double kFew = 5;        // beams whose median is known to half of the noise
+    constexpr double kMinPart = 0.2;  // of the beams that should have met it
     const double apart = kDeviationsApart * std::hypot(errors.range, farthest * errors.angle);
     std::vector<double> middles;
     for (auto& own : distances) {
@@ -93,7 +93,7 @@ struct Piece {
         if (other == view || through[other] < kFew) continue;
         sums.beams[pair] += beams;
         const auto hit = static_cast<double>(distances[other].size());
-        const bool meets = hit >= std::max(kFew, kLeastPart * through[other]);
+        const bool meets = hit >= std::max(kFew, kMinPart * through[other]);
         if (meets && std::abs(middles[other] - middles[view]) < apart) sums.agreed[pair] += beams;
       }
     }
@@ -223,12 +223,12 @@ std::vector<ViewPartition> view_partitions(const Sample& sample, const std::vect
 
 std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const BeamsView& beams,
                                               const ViewPartition& partition, const ViewErrors& errors) {
-  constexpr double kLeastShare = 0.02;  // of a view's beams: fewer are no reason for a caveat
-  constexpr double kLeastBeams = 500;
-  constexpr std::size_t kLeastBlock = 64, kMostBlocks = 8;
+  constexpr double kMinShare = 0.02;  // of a view's beams: fewer are no reason for a caveat
+  constexpr double kMinBeams = 500;
+  constexpr std::size_t kMinBlock = 64, kMaxBlocks = 8;
   const std::size_t n = partition.views.size();
   const Directions directions(beams.directions);
-  const std::size_t block = std::max(kLeastBlock, surfels.surfels.size() / kMostBlocks);
+  const std::size_t block = std::max(kMinBlock, surfels.surfels.size() / kMaxBlocks);
   std::vector<ViewConsistency> pairs;
   for (const Orientation orientation : {Orientation::upright, Orientation::level}) {
     const auto add_block = [&](PairSums& sums, std::size_t begin, std::size_t end) {
@@ -242,8 +242,8 @@ std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const Beam
       }
     };
     const auto all = sum_over_blocks(surfels.surfels.size(), block, PairSums(n), add_block);
-    const double least = std::max(
-        kLeastBeams, kLeastShare * static_cast<double>(beams.points.size()) / static_cast<double>(n));
+    const double least =
+        std::max(kMinBeams, kMinShare * static_cast<double>(beams.points.size()) / static_cast<double>(n));
     for (std::size_t pair = 0; pair < n * n; ++pair) {
       if (all.beams[pair] == 0 || all.beams[pair] < least) continue;
       pairs.push_back({.view = partition.views[pair / n],
@@ -262,9 +262,9 @@ const char* in_words(Orientation orientation) {
 
 std::optional<std::string> inconsistency(const ViewPartition& partition,
                                          const std::vector<ViewConsistency>& pairs) {
-  constexpr double kLeastShare = 0.5;
+  constexpr double kMinShare = 0.5;
   const auto least = std::ranges::min_element(pairs, {}, &ViewConsistency::share);
-  if (least == pairs.end() || least->share >= kLeastShare) return std::nullopt;
+  if (least == pairs.end() || least->share >= kMinShare) return std::nullopt;
   return fmt::format(
       "{} and {} agree on {:.0f} % of the {} in common directions (expected above {:.0f} %): {}", least->view,
       least->other, 100 * least->share, in_words(least->orientation), 100 * kExpectedShare, partition.advice);

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr const char* kPart = ".part";
 
 [[noreturn]] void fail(const fs::path& file, int code) {
-  const char* advice = is_for_want_of_room(code) ? "make room on the disk" : "";
+  const char* advice = is_disk_full(code) ? "make room on the disk" : "";
   throw Error("cannot write " + file.string() + ": " + std::strerror(code), advice);
 }
 
@@ -111,7 +111,7 @@ void AtomicFile::commit() {
   sync_folder(file_.parent_path());
 }
 
-bool is_for_want_of_room(int code) { return code == ENOSPC || code == EDQUOT || code == EFBIG; }
+bool is_disk_full(int code) { return code == ENOSPC || code == EDQUOT || code == EFBIG; }
 
 void remove_record_of(const fs::path& file) {
   std::error_code not_there;

@@ -18,7 +18,7 @@ inline constexpr const char* kProvenance = ".provenance.json";
 void remove_record_of(const std::filesystem::path& file);
 
 /// Whether an error number of the system means that a disk, a quota or a file has no more room.
-bool is_for_want_of_room(int code);
+bool is_disk_full(int code);
 
 /// A file that is there whole or not at all: it is written aside, in the same folder, and takes its name when
 /// it is complete and on the disk. Left without commit() (an exception, an interruption), nothing remains of

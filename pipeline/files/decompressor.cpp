@@ -20,15 +20,15 @@ class GzipDecompressor final : public Decompressor {
   ~GzipDecompressor() override { inflateEnd(&stream_); }
 
   std::size_t run(std::string_view& from, char* to, std::size_t most) override {
-    constexpr std::size_t kMost = std::numeric_limits<uInt>::max();
+    constexpr std::size_t kMax = std::numeric_limits<uInt>::max();
     stream_.next_out = reinterpret_cast<Bytef*>(to);
-    stream_.avail_out = static_cast<uInt>(std::min(most, kMost));
+    stream_.avail_out = static_cast<uInt>(std::min(most, kMax));
     const std::size_t room = stream_.avail_out;
     while (!from.empty() && stream_.avail_out == room) {
       if (ended_) inflateReset(&stream_);
       // zlib's interface takes what it does not change without const
       stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(from.data()));
-      stream_.avail_in = static_cast<uInt>(std::min(from.size(), kMost));
+      stream_.avail_in = static_cast<uInt>(std::min(from.size(), kMax));
       const std::size_t had = stream_.avail_in;
       const int status = inflate(&stream_, Z_NO_FLUSH);
       from.remove_prefix(had - stream_.avail_in);

@@ -129,7 +129,7 @@ std::vector<OtherCause> read_alternatives(FindingsMap& parent, const std::string
     FindingsMap map(node, what + ", " + where, parent.errors());
     all.push_back({.cause = map.text("cause"),
                    .scope = map.text("scope"),
-                   .log10_odds = map.number("log10_bayes_factor")});
+                   .log10_bayes_factor = map.number("log10_bayes_factor")});
     map.map().refuse_others();
   });
   return all;
@@ -140,14 +140,14 @@ Finding finding_in(FindingsMap& map, const std::string& what) {
           .scope = map.text("scope"),
           .parameters = read_parameters(map, what),
           .explained_fraction = map.number("explained_fraction"),
-          .log10_odds = map.number("log10_bayes_factor"),
+          .log10_bayes_factor = map.number("log10_bayes_factor"),
           .p_value = map.number("p_value"),
           .confounded_with = map.texts("confounded_with"),
           .resolvable_by = map.texts("resolvable_by"),
           .alternatives = read_alternatives(map, what),
           .gain = read_gains(map, what),
           .accepted = map.boolean("accepted"),
-          .refused = map.text_if_there("refused")};
+          .rejection = map.text_if_there("rejection_reason")};
 }
 
 UnnamedFinding unnamed_in(FindingsMap& map, const std::string& what) {
@@ -178,7 +178,7 @@ Unobservable unobservable_in(FindingsMap& map, const std::string&) {
 
 EstimatorArtifact artifact_in(FindingsMap& map, const std::string& what) {
   return {
-      .name = map.text("artefact"), .parameters = read_parameters(map, what), .reason = map.text("reason")};
+      .name = map.text("artifact"), .parameters = read_parameters(map, what), .reason = map.text("reason")};
 }
 
 DeviceFacts device_in(FindingsMap& map, const std::string&) {
@@ -224,7 +224,7 @@ Findings parse_findings(const YamlNode& root) {
   read_list(map, "unnamed", unnamed_in, all.unnamed);
   read_list(map, "departures", departure_in, all.departures, false);
   read_list(map, "unobservable", unobservable_in, all.unobservable);
-  read_list(map, "artefacts", artifact_in, all.artifacts);
+  read_list(map, "artifacts", artifact_in, all.artifacts);
   read_list(map, "devices", device_in, all.devices);
   read_list(map, "noise", noise_in, all.noise);
   read_list(map, "gain", gain_in, all.gain, false);

@@ -31,7 +31,8 @@ Json json_of(const std::vector<Parameter>& parameters) {
 Json json_of(const std::vector<OtherCause>& causes) {
   Json all = Json::array();
   for (const OtherCause& other : causes) {
-    all.push_back({{"cause", other.cause}, {"scope", other.scope}, {"log10_bayes_factor", other.log10_odds}});
+    all.push_back(
+        {{"cause", other.cause}, {"scope", other.scope}, {"log10_bayes_factor", other.log10_bayes_factor}});
   }
   return all;
 }
@@ -41,14 +42,14 @@ Json json_of(const Finding& finding) {
           {"scope", finding.scope},
           {"parameters", json_of(finding.parameters)},
           {"explained_fraction", finding.explained_fraction},
-          {"log10_bayes_factor", finding.log10_odds},
+          {"log10_bayes_factor", finding.log10_bayes_factor},
           {"p_value", finding.p_value},
           {"confounded_with", finding.confounded_with},
           {"resolvable_by", finding.resolvable_by},
           {"alternatives", json_of(finding.alternatives)},
           {"gain", json_of(finding.gain)},
           {"accepted", finding.accepted},
-          {"refused", finding.refusal()}};
+          {"rejection_reason", finding.rejection_reason()}};
 }
 
 Json json_of(const UnnamedFinding& finding) {
@@ -76,7 +77,7 @@ Json json_of(const Unobservable& unobservable) {
 
 Json json_of(const EstimatorArtifact& artifact) {
   return {
-      {"artefact", artifact.name}, {"parameters", json_of(artifact.parameters)}, {"reason", artifact.reason}};
+      {"artifact", artifact.name}, {"parameters", json_of(artifact.parameters)}, {"reason", artifact.reason}};
 }
 
 Json json_of(const DeviceFacts& facts) {
@@ -111,7 +112,7 @@ std::string findings_json(const Findings& findings) {
                     {"unnamed", list_of(findings.unnamed)},
                     {"departures", list_of(findings.departures)},
                     {"unobservable", list_of(findings.unobservable)},
-                    {"artefacts", list_of(findings.artifacts)},
+                    {"artifacts", list_of(findings.artifacts)},
                     {"devices", list_of(findings.devices)},
                     {"noise", list_of(findings.noise)},
                     {"gain", json_of(findings.gain)},

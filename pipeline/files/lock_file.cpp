@@ -26,7 +26,7 @@ using LockJson = nlohmann::ordered_json;
 
 [[noreturn]] void fail_to_lock(const fs::path& folder, int code) {
   throw Error("cannot write into the folder " + folder.string() + ": " + std::strerror(code),
-              is_for_want_of_room(code) ? "make room on the disk" : "");
+              is_disk_full(code) ? "make room on the disk" : "");
 }
 
 std::string read_all(const fs::path& file) try {

@@ -38,8 +38,11 @@ constexpr std::array kRenamed = {
     RenamedName{Kind::option, "write.capture", "most_bytes", "max_bytes"},
     RenamedName{Kind::option, "write.capture", "most_seconds", "max_duration"},
     RenamedName{Kind::key, "calibration", "doubts", "caveats"},
+    RenamedName{Kind::key, "diagnosis", "artefact", "artifact"},
+    RenamedName{Kind::key, "diagnosis", "artefacts", "artifacts"},
     RenamedName{Kind::key, "diagnosis", "indistinguishable", "goodness_of_fit"},
     RenamedName{Kind::key, "diagnosis", "log10_odds", "log10_bayes_factor"},
+    RenamedName{Kind::key, "diagnosis", "refused", "rejection_reason"},
     RenamedName{Kind::key, "diagnosis", "told_apart_by", "resolvable_by"},
     RenamedName{Kind::key, "summary", "doubts", "caveats"},
 };

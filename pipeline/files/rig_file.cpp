@@ -49,9 +49,8 @@ class RigReader {
   void read_lasers(const YamlNode& node) {
     YamlMap map(node, "lasers", errors_);
     if (node.kind == YamlNode::Kind::map && node.entries.empty()) map.fail(node.place, "there is none");
-    constexpr std::size_t kMost = 1000;
-    if (node.entries.size() > kMost)
-      return map.fail(node.place, fmt::format("there are more than {}", kMost));
+    constexpr std::size_t kMax = 1000;
+    if (node.entries.size() > kMax) return map.fail(node.place, fmt::format("there are more than {}", kMax));
     for (const auto& entry : node.entries) {
       if (!is_device_name(entry.key)) {
         map.fail(entry.place, "'" + entry.key + "' is not a name of letters, digits, _ and -");
@@ -129,9 +128,9 @@ class RigReader {
     rig_.plate.address = read_address(map, kDefaultPort);
     read_joint(map);
     // Its counter has 32 bits; with one step a turn the direction of the turn would be ambiguous.
-    constexpr std::int64_t kMostSteps = std::int64_t{1} << 31;
+    constexpr std::int64_t kMaxSteps = std::int64_t{1} << 31;
     rig_.plate.counts_per_revolution =
-        static_cast<double>(map.integer("counts_per_revolution", 16384, 2, kMostSteps));
+        static_cast<double>(map.integer("counts_per_revolution", 16384, 2, kMaxSteps));
     rig_.plate.direction = direction(map);
     map.refuse_others();
     devices_.push_back({rig_.plate.name, rig_.plate.address, node.place});
@@ -183,9 +182,9 @@ class RigReader {
 
   /// An angle of at most a turn, in rad: a larger one was meant in degrees.
   static double angle(YamlMap& map, const std::string& key) {
-    constexpr double kMost = 2 * std::numbers::pi * (1 + 1e-9);  // 360deg is still meant
+    constexpr double kMax = 2 * std::numbers::pi * (1 + 1e-9);  // 360deg is still meant
     const double value = map.number(key, "rad", 0);
-    if (std::abs(value) <= kMost) return value;
+    if (std::abs(value) <= kMax) return value;
     const YamlNode& node = *map.find(key);
     std::string wrong;
     const bool plain = read_number(node, "", wrong).has_value();

@@ -11,8 +11,8 @@ namespace crisp {
 namespace {
 
 // A signal handler reaches nothing but objects of static storage, and may not wait for a lock.
-constexpr std::size_t kMostFiles = 64;  // at once; those beyond stay when a signal ends the program
-std::array<std::atomic<const char*>, kMostFiles> files_to_remove;
+constexpr std::size_t kMaxFiles = 64;  // at once; those beyond stay when a signal ends the program
+std::array<std::atomic<const char*>, kMaxFiles> files_to_remove;
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
 void replace_once(const char* known, const char* by) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "pipeline/model/equation_two.hpp"
+#include "pipeline/model/laser_pose.hpp"
 #include "pipeline/model/sensor_model.hpp"
 
 namespace crisp {

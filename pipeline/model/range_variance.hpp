@@ -32,11 +32,10 @@ using ByPart = std::array<double, kVarianceParts>;
 /// The variance [m²] of each part of size 1. What would be infinite is not: beams that graze count as met at
 /// 84°, where tan β = 9.95, and echoes of less than one of the device's units as of one.
 inline ByPart unit_variances(const EchoConditions& echo) {
-  constexpr double kLeastCosine = 0.1;
-  constexpr double kLeastRemission = 1;
-  const double cosine = std::clamp(std::abs(echo.cosine), kLeastCosine, 1.0);
-  return {1, echo.range * echo.range, 1 / (cosine * cosine) - 1,
-          1 / std::max(kLeastRemission, echo.remission)};
+  constexpr double kMinCosine = 0.1;
+  constexpr double kMinRemission = 1;
+  const double cosine = std::clamp(std::abs(echo.cosine), kMinCosine, 1.0);
+  return {1, echo.range * echo.range, 1 / (cosine * cosine) - 1, 1 / std::max(kMinRemission, echo.remission)};
 }
 
 /// [m] Standard deviation of a range by all parts together.

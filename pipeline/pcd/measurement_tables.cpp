@@ -35,7 +35,7 @@ bool all_finite(const std::vector<double>& values) {
 
 }  // namespace
 
-PcdTable to_table(const Measurements& beams, const PlateTrajectory& plate) {
+PcdTable to_pcd_table(const Measurements& beams, const PlateTrajectory& plate) {
   const auto angles = plate_angles(beams, plate);
   PcdTable table(beams.size());
   table.set_note("epoch_ns", std::to_string(beams.epoch_ns));
@@ -49,7 +49,7 @@ PcdTable to_table(const Measurements& beams, const PlateTrajectory& plate) {
   return table;
 }
 
-PcdTable to_table(const PlateTrajectory& plate) {
+PcdTable to_pcd_table(const PlateTrajectory& plate) {
   PcdTable table(plate.size());
   table.set_note("epoch_ns", std::to_string(plate.epoch_ns()));
   table.set_note("max_gap", fmt::format("{}", plate.max_gap()));

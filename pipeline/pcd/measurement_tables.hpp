@@ -13,11 +13,11 @@ namespace crisp {
 /// Measurements as a PCD table: fields range, mirror_angle, time, plate_angle, laser, beam, remission, and
 /// the note epoch_ns. All but plate_angle, φ at `time` (NaN where the readings do not cover it), come back
 /// exactly.
-PcdTable to_table(const Measurements& beams, const PlateTrajectory& plate);
+PcdTable to_pcd_table(const Measurements& beams, const PlateTrajectory& plate);
 
 /// A trajectory as a PCD table: fields time and angle, one row a reading, and the notes epoch_ns and max_gap;
 /// if the encoder's count restarted, the field zero numbers the restarts. The conversion is lossless.
-PcdTable to_table(const PlateTrajectory& plate);
+PcdTable to_pcd_table(const PlateTrajectory& plate);
 
 /// The file in which the trajectory stands that belongs to a file of measurements: x.pcd → x.plate.pcd.
 std::filesystem::path plate_path(const std::filesystem::path& measurements);

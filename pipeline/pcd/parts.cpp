@@ -9,7 +9,7 @@
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
-#include "pipeline/files/folder.hpp"
+#include "pipeline/files/list_files.hpp"
 #include "pipeline/files/sha256.hpp"
 #include "pipeline/pcd/measurement_tables.hpp"
 
@@ -127,7 +127,7 @@ void remove_own(const fs::path& file) {
 std::vector<fs::path> remove_numbered_beyond(const fs::path& file, std::size_t last,
                                              const std::string& note) {
   std::vector<fs::path> removed;
-  for (const auto& candidate : files_in(file.has_parent_path() ? file.parent_path() : ".")) {
+  for (const auto& candidate : list_files(file.has_parent_path() ? file.parent_path() : ".")) {
     const fs::path named = file.parent_path() / candidate.filename();
     const auto number = number_of(named, file);
     if (!number || *number <= last || !has_number(named, *number, note)) continue;

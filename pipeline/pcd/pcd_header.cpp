@@ -25,8 +25,8 @@ constexpr std::array<std::pair<std::string_view, PcdFormat>, 3> kFormats{
     {{"ascii", PcdFormat::ascii},
      {"binary", PcdFormat::binary},
      {"binary_compressed", PcdFormat::binary_compressed}}};
-constexpr std::size_t kMostFields = 1000;
-constexpr std::size_t kMostElements = 1 << 16;
+constexpr std::size_t kMaxFields = 1000;
+constexpr std::size_t kMaxElements = 1 << 16;
 constexpr std::string_view kNote = "# crisp ";
 
 Words words_of(std::string_view line) {
@@ -99,7 +99,7 @@ class HeaderReader {
 
   void read_fields(const Words& words) {
     if (!header_.fields.empty()) fail("FIELDS is given twice");
-    if (words.size() < 2 || words.size() > kMostFields + 1) fail("FIELDS must name 1 to 1000 fields");
+    if (words.size() < 2 || words.size() > kMaxFields + 1) fail("FIELDS must name 1 to 1000 fields");
     for (const auto name : Words(words.begin() + 1, words.end())) {
       header_.fields.push_back({.name = std::string(name), .size = 0});  // until SIZE sets it
     }
@@ -114,7 +114,7 @@ class HeaderReader {
       field.size = number(word);
     } else {
       field.count = number(word);
-      if (field.count < 1 || field.count > kMostElements) fail("COUNT must be 1 to 65536");
+      if (field.count < 1 || field.count > kMaxElements) fail("COUNT must be 1 to 65536");
     }
   }
 

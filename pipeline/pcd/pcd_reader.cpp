@@ -20,7 +20,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kMostExpansion = 264;  // LZF's longest match takes three bytes, at the least
+constexpr std::size_t kMaxExpansion = 264;  // LZF's longest match takes three bytes, at the least
 
 /// Reads the body after a header, and checks it against the header.
 class BodyReader {
@@ -90,7 +90,7 @@ class BodyReader {
     std::memcpy(sizes.data(), body_.data(), sizeof sizes);
     const auto compressed = body_.substr(sizeof sizes);
     if (sizes[0] > compressed.size()) fail("is cut off within its points");
-    std::string columns = room_for_points(std::size_t{sizes[0]} * kMostExpansion);
+    std::string columns = room_for_points(std::size_t{sizes[0]} * kMaxExpansion);
     if (sizes[1] != columns.size()) fail("does not hold as many bytes as its header states");
     if (lzf_decompress(compressed.data(), sizes[0], columns.data(), sizes[1]) != sizes[1]) {
       fail("has compressed points that cannot be decompressed");

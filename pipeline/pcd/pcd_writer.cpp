@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "binary PCD files are little-endian");
 
 constexpr std::size_t kRowsAtOnce = 1 << 16;
-constexpr std::size_t kMostCompressed = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kMaxCompressed = std::numeric_limits<std::uint32_t>::max();
 
 /// One field's values.
 struct Column {
@@ -69,7 +69,7 @@ void write_rows(AtomicFile& out, const PcdTable& table, Append append, bool line
 
 void write_compressed(AtomicFile& out, const PcdTable& table) {
   const std::string compressed = compress_lzf(table.bytes());
-  if (compressed.size() > kMostCompressed) throw Error("the compressed points are beyond 4 GB");
+  if (compressed.size() > kMaxCompressed) throw Error("the compressed points are beyond 4 GB");
   for (const std::size_t size : {compressed.size(), table.bytes().size()}) {
     const auto bytes = std::bit_cast<std::array<char, 4>>(static_cast<std::uint32_t>(size));
     out.write({bytes.data(), bytes.size()});
@@ -82,7 +82,7 @@ void write_compressed(AtomicFile& out, const PcdTable& table) {
 void write_pcd(AtomicFile& out, const PcdTable& table, PcdFormat format) {
   PcdHeader header = table.header();
   header.format = format;
-  if (header.format == PcdFormat::binary_compressed && table.bytes().size() > kMostCompressed) {
+  if (header.format == PcdFormat::binary_compressed && table.bytes().size() > kMaxCompressed) {
     throw Error(
         "cannot write " + out.path().string() + ": a binary_compressed PCD file cannot hold more than 4 GB",
         "split the file, or use format: binary");

@@ -25,7 +25,7 @@ struct End {
 /// The most significant end in one direction, beyond chance and surface bumps.
 End strangest(const std::vector<SurfelResidual>& residuals, const Eigen::Vector2d& outwards) {
   constexpr std::size_t kLines = 64;
-  constexpr double kMost = 0.25;   // of the beams
+  constexpr double kMax = 0.25;    // of the beams
   constexpr double kChance = 4.5;  // standard deviations of a mean: some thousand ends are tested
   constexpr double kBump = 0.3;    // [spreads]
   End end{.outwards = outwards};
@@ -53,7 +53,7 @@ End strangest(const std::vector<SurfelResidual>& residuals, const Eigen::Vector2
   for (std::size_t line = kLines; line-- > 0;) {
     sum += sums[line];
     count += counts[line];
-    if (count > kMost * all) break;
+    if (count > kMax * all) break;
     const double chance = std::abs(sum) / std::sqrt(std::max(1.0, count));
     if (std::abs(sum) < kBump * count || chance < std::max(kChance, end.chance)) continue;
     end.from = least + step * static_cast<double>(line);

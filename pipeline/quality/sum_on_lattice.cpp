@@ -13,8 +13,8 @@
 namespace crisp {
 namespace {
 
-constexpr double kReach = 9;        // [σ] of the convolution: 2e-9 is left there
-constexpr double kMostNodes = 8e6;  // 64 MB a field
+constexpr double kReach = 9;       // [σ] of the convolution: 2e-9 is left there
+constexpr double kMaxNodes = 8e6;  // 64 MB a field
 
 /// [σ] The distance between nodes: finer in a cloud that is small against σ, where errors would not cancel.
 double step_for(const PointsView& points, double sigma) {
@@ -79,7 +79,7 @@ bool lattice_pays(const PointsView& points, const TruncatedGaussian& kernel) {
   const double cost = kPoint * static_cast<double>(points.size()) + kNode * nodes;
   // All pairs there are cost less than that already: no need for a closer estimate.
   const double all_pairs = 0.5 * static_cast<double>(points.size()) * static_cast<double>(points.size());
-  if (nodes > kMostNodes || kTest * all_pairs < cost) return false;
+  if (nodes > kMaxNodes || kTest * all_pairs < cost) return false;
   return kTest * tests_by_pairs(points, kernel.radius) > cost;
 }
 

@@ -67,7 +67,7 @@ void add_without_plane(const SurfelSums& sums, std::span<const SurfelResidual> r
     ++beams;
     to.weight += r.weight;
     to.influence += std::pow(r.weight * r.distance / r.spread, 2);
-    to.stiffness += biweight_slope(r.weight);
+    to.stiffness += biweight_psi_derivative(r.weight);
   }
   to.beams += beams;
   to.degrees_of_freedom += static_cast<double>(beams) - 3;

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "pipeline/quality/blocks.hpp"
-#include "pipeline/quality/view_shape.hpp"
+#include "pipeline/quality/view_flatness.hpp"
 
 namespace crisp {
 namespace {
@@ -62,7 +62,7 @@ class PatchFinder {
 
   const SurfelCells& cells_;
   const SurfelSettings& settings_;
-  ViewShape shape_;
+  ViewFlatness shape_;
   std::vector<FlatPatch> found_;
 };
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "pipeline/quality/blocks.hpp"
-#include "pipeline/quality/once.hpp"
+#include "pipeline/quality/sort_unique.hpp"
 #include "pipeline/quality/surfel_patches.hpp"
 
 namespace crisp {

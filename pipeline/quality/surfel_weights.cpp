@@ -115,7 +115,7 @@ std::vector<double> within_views(const Views& views, const Weighing& of) {
 
 /// Ratio of the residuals' scatter to the expected one; 1 where it is no larger.
 double excess(const std::vector<double>& left) {
-  const auto size = [](double value) { return kSigmaByMedian * std::abs(value); };
+  const auto size = [](double value) { return kMadToSigma * std::abs(value); };
   // Most are small enough, as a rule, which is found sooner than the median.
   const auto small = std::ranges::count_if(
       left, [](double value) { return value <= 1; }, size);
@@ -170,7 +170,7 @@ struct CellSum {
   double count = 0;
 
   /// By more than chance and more than bumps explain.
-  bool is_strange() const {
+  bool is_outlier() const {
     constexpr double kChance = 3;  // standard deviations of the mean
     constexpr double kBump = 0.3;  // [spreads]
     const double n = std::max(1.0, count);
@@ -179,7 +179,7 @@ struct CellSum {
 };
 
 /// Leaves out what lies in strange cells.
-void leave_out_strange(const CellsOnPlane& cells, const Views& views, Weighing& of) {
+void reject_outliers(const CellsOnPlane& cells, const Views& views, Weighing& of) {
   const auto left = within_views(views, of);
   std::vector<std::size_t> cell_of(of.size());
   std::vector<CellSum> sums(cells.count());
@@ -189,10 +189,10 @@ void leave_out_strange(const CellsOnPlane& cells, const Views& views, Weighing& 
     sums[cell_of[i]].sum += left[i];
     sums[cell_of[i]].count += 1;
   }
-  std::vector<char> is_strange(cells.count());
-  std::ranges::transform(sums, is_strange.begin(), &CellSum::is_strange);
+  std::vector<char> is_outlier(cells.count());
+  std::ranges::transform(sums, is_outlier.begin(), &CellSum::is_outlier);
   for (std::size_t i = 0; i < of.size(); ++i) {
-    if (is_strange[cell_of[i]]) of.weight[i] = 0;
+    if (is_outlier[cell_of[i]]) of.weight[i] = 0;
   }
 }
 
@@ -209,9 +209,9 @@ void weigh(std::vector<SurfelResidual>& residuals, std::span<const std::uint32_t
   constexpr double kPatch = 0.1;     // [m]
   constexpr double kStrip = 0.5;     // [m] long
   constexpr double kNarrow = 0.025;  // [m] wide
-  leave_out_strange({weighing, kPatch, kPatch}, numbered, weighing);
-  leave_out_strange({weighing, kStrip, kNarrow}, numbered, weighing);
-  leave_out_strange({weighing, kNarrow, kStrip}, numbered, weighing);
+  reject_outliers({weighing, kPatch, kPatch}, numbered, weighing);
+  reject_outliers({weighing, kStrip, kNarrow}, numbered, weighing);
+  reject_outliers({weighing, kNarrow, kStrip}, numbered, weighing);
   for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i].weight = weighing.weight[i];
 }
 

@@ -103,14 +103,14 @@ Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
   });
   // Where each view is but a line, an edge resembles lines that disagree.
   constexpr double kFarMore = 3;
-  leave_out_odd_ones(result, beams, settings, kFarMore);
+  reject_inconsistent(result, beams, settings, kFarMore);
   std::ranges::stable_sort(result.surfels, std::ranges::greater{},
                            [](const Surfel& surfel) { return surfel.end - surfel.begin; });
   return result;
 }
 
-void leave_out_odd_ones(Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
-                        double times) {
+void reject_inconsistent(Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
+                         double times) {
   constexpr double kChance = 2.1;  // 3 standard deviations of n beams' root mean square, times √n
   std::vector<double> misfits(found.surfels.size());
   for_each_index(misfits.size(),

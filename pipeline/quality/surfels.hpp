@@ -73,6 +73,7 @@ Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings);
 /// are edges, or two sides of something thin.
 ///
 /// @param times  so many times as much as most, and what chance makes of so few beams
-void leave_out_odd_ones(Surfels& found, const BeamsView& beams, const SurfelSettings& settings, double times);
+void reject_inconsistent(Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
+                         double times);
 
 }  // namespace crisp

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/files/folder.hpp"
+#include "pipeline/files/list_files.hpp"
 #include "pipeline/files/quantity.hpp"
 
 namespace crisp {

@@ -129,9 +129,9 @@ class PlanReader {
     } else if (list.items.empty()) {
       errors_.emplace_back("pipeline: there is no stage in it", "", list.place);
     }
-    constexpr std::size_t kMost = 1000;
-    if (list.items.size() > kMost) {
-      errors_.emplace_back(fmt::format("pipeline: there are more than {} stages", kMost), "", list.place);
+    constexpr std::size_t kMax = 1000;
+    if (list.items.size() > kMax) {
+      errors_.emplace_back(fmt::format("pipeline: there are more than {} stages", kMax), "", list.place);
       return;
     }
     for (const auto& item : list.items) read_stage(item);

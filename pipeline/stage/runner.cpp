@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-#include "pipeline/data/want_of_resources.hpp"
+#include "pipeline/data/resource_exhaustion.hpp"
 #include "pipeline/stage/stopwatch.hpp"
 
 namespace crisp {
@@ -323,7 +323,7 @@ class Runner {
       const Place& place = error.place().file.empty() ? worker.node->place : error.place();
       throw Reported(worker.node->tag + ": " + error.message(), error.advice(), place);
     } catch (const std::exception& thrown) {
-      const Error error = want_of_resources(thrown).value_or(Error(thrown.what()));
+      const Error error = resource_exhaustion(thrown).value_or(Error(thrown.what()));
       throw Reported(worker.node->tag + ": " + error.message(), error.advice(), worker.node->place);
     } catch (...) {
       throw Reported(worker.node->tag + ": it threw something that is no std::exception",

@@ -31,7 +31,7 @@ Number median_in_place(std::vector<Number>& values) {
 }
 
 /// Standard deviation of what is normal about 0, in medians of its size.
-inline constexpr double kSigmaByMedian = 1.4826;
+inline constexpr double kMadToSigma = 1.4826;
 
 /// Tukey's biweight of a residual, which is given as a share of the size from which it no longer counts.
 inline double biweight(double share) {
@@ -40,7 +40,7 @@ inline double biweight(double share) {
 }
 
 /// Derivative of a residual times its biweight by the residual: ψ′, by that weight.
-inline double biweight_slope(double weight) {
+inline double biweight_psi_derivative(double weight) {
   const double root = std::sqrt(weight);
   return root * (5 * root - 4);
 }

@@ -31,7 +31,7 @@ Caveats of_misfit(const Refinement& refined, double noise) {
 
 /// Contradictions with the rig. The stage that gave a start outside of a range has already reported it.
 Caveats of_rig(const Calibration& calibration, const Calibration& start, const Rig& rig) {
-  const SearchRange range;
+  const ParameterPrior range;
   const RigCheck check = check_with_rig(calibration, rig, range);
   const bool is_new = check.is_explained || check_with_rig(start, rig, range).caveats.empty();
   return is_new ? check.caveats : far_from_nominal(calibration, rig);

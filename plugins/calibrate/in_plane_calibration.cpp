@@ -65,7 +65,7 @@ class InPlaneCalibration {
     if (!sees_both_sides(laser) || free.empty()) return;
     for (const double sigma : annealing(settings_.sigma_from, settings_.sigma_to)) {
       minimize_rqe(model_, thin_for(sigma, own), free, measure_, sigma, settings_.range,
-                   sigma > settings_.sigma_to ? rough(settings_.minimiser) : settings_.minimiser);
+                   sigma > settings_.sigma_to ? rough(settings_.minimizer) : settings_.minimizer);
     }
   }
 
@@ -97,7 +97,7 @@ class InPlaneCalibration {
       if (!has_few(laser)) geometry.insert(geometry.end(), free.begin(), free.end());
     }
     if (geometry.empty()) return;
-    minimize_rqe(model_, both_, geometry, measure_, settings_.sigma_to, settings_.range, settings_.minimiser);
+    minimize_rqe(model_, both_, geometry, measure_, settings_.sigma_to, settings_.range, settings_.minimizer);
   }
 
   const std::vector<CompetingMinimum>& competitors() const { return competitors_; }

@@ -12,8 +12,8 @@ struct InPlaneSettings {
   double half_width = 0.0044;  ///< [rad] beams so near to the plate's plane count as in it
   double sigma_from = 0.5;     ///< [m]
   double sigma_to = 0.1;       ///< [m]
-  SearchRange range;
-  MinimiserSettings minimiser;
+  ParameterPrior range;
+  MinimizerSettings minimizer;
 };
 
 /// With fewer beams of a laser there is nothing to align.

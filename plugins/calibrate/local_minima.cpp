@@ -28,9 +28,9 @@ LineMinimum bottom(const Curve& curve, const LineSearch& search) {
   const auto [start, step, lower, upper, accuracy] = search;
   const int bits = static_cast<int>(std::ceil(1 - std::log2(accuracy)));
   constexpr double kAtTheEnd = 0.95;  // of the step: the curve may fall on beyond
-  constexpr int kMostSteps = 50;
+  constexpr int kMaxSteps = 50;
   LineMinimum best{.at = start, .value = 0};
-  for (int k = 0; k < kMostSteps; ++k) {
+  for (int k = 0; k < kMaxSteps; ++k) {
     const double middle = best.at;
     const double from = std::max(-1.0, (lower - middle) / step);
     const double to = std::min(1.0, (upper - middle) / step);

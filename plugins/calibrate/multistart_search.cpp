@@ -43,8 +43,8 @@ double between(double a, double b, bool circular) {
 std::optional<CompetingMinimum> multistart_search(SensorModel& model, std::size_t parameter,
                                                   const std::vector<double>& grid, bool circular,
                                                   const Sample& sample, Measure& measure,
-                                                  const SearchRange& range, const Narrowing& sigma) {
-  constexpr std::size_t kMostMinima = 4;
+                                                  const ParameterPrior& range, const Narrowing& sigma) {
+  constexpr std::size_t kMaxMinima = 4;
   constexpr double kSame = 0.1;          // of a step: ends so near to one another are one
   constexpr std::size_t kFinalists = 2;  // under the narrowest kernel, which uses all beams
   const auto sigmas = annealing(sigma.from, sigma.to);
@@ -52,7 +52,7 @@ std::optional<CompetingMinimum> multistart_search(SensorModel& model, std::size_
   for (const double width : sigmas) samples.push_back(thin_for(width, sample));
   auto starts =
       local_minima(cost_over(model, parameter, samples.front(), measure, sigma.from), grid, circular);
-  starts.resize(std::min(starts.size(), kMostMinima));
+  starts.resize(std::min(starts.size(), kMaxMinima));
   const double margin = circular ? std::numbers::pi : grid[1] - grid[0];
   const auto step_at = [&](double place, std::size_t k) {
     const SensorModel there = with_one(model, parameter, place);

@@ -42,6 +42,6 @@ struct CompetingMinimum {
 std::optional<CompetingMinimum> multistart_search(SensorModel& model, std::size_t parameter,
                                                   const std::vector<double>& grid, bool circular,
                                                   const Sample& sample, Measure& measure,
-                                                  const SearchRange& range, const Narrowing& sigma);
+                                                  const ParameterPrior& range, const Narrowing& sigma);
 
 }  // namespace crisp

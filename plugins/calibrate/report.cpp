@@ -25,11 +25,11 @@ std::string in_words(const Unobservable& u) {
 }
 
 void report_correlations(const Calibration& calibration, Context& context) {
-  constexpr std::size_t kMost = 3;
-  constexpr double kLeast = 0.7;
+  constexpr std::size_t kMax = 3;
+  constexpr double kMin = 0.7;
   auto section = nlohmann::json::array();
   std::vector<std::string> words;
-  for (const Correlation& pair : strongest_correlations(calibration, kMost, kLeast)) {
+  for (const Correlation& pair : strongest_correlations(calibration, kMax, kMin)) {
     section.push_back({{"one", pair.one}, {"other", pair.other}, {"value", pair.value}});
     words.push_back(fmt::format("{} and {}: {:+.2f}", pair.one, pair.other, pair.value));
   }

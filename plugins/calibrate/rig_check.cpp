@@ -21,7 +21,7 @@ constexpr double kReach = 3;  // standard deviations of a nominal value that a p
 /// Standard deviations of one laser's nominal values: the rig's, or else half of a range. Nominal values of λ
 /// are not needed by the search, so that they may be rough.
 struct NominalErrors {
-  NominalErrors(const LaserCalibration& nominal, const SearchRange& range)
+  NominalErrors(const LaserCalibration& nominal, const ParameterPrior& range)
       : lambda(nominal.lambda.std_error > 0 ? nominal.lambda.std_error : 15 * kDegree),
         tau(nominal.tau.std_error > 0 ? nominal.tau.std_error : range.tau / 2),
         alpha(nominal.alpha.std_error > 0 ? nominal.alpha.std_error : range.alpha / 2) {}
@@ -36,7 +36,7 @@ double square(double x) { return x * x; }
 ///
 /// @param turn  [rad] by which the calibration's frame is turned against the rig's
 double distance(const LaserCalibration& found, const LaserCalibration& nominal, double turn,
-                const SearchRange& range) {
+                const ParameterPrior& range) {
   const NominalErrors error(nominal, range);
   const auto at = [&](double lambda, double tau, double alpha) {
     return square(wrapped(lambda - nominal.lambda.value - turn) / error.lambda) +
@@ -48,7 +48,7 @@ double distance(const LaserCalibration& found, const LaserCalibration& nominal, 
 }
 
 /// Squared distance of all lasers, in the frame in which it is smallest.
-double distance(const Calibration& found, const Calibration& nominal, const SearchRange& range) {
+double distance(const Calibration& found, const Calibration& nominal, const ParameterPrior& range) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t reference = 0; reference < found.lasers.size(); ++reference) {
     for (const double half_turn : {0.0, kPi}) {
@@ -79,7 +79,7 @@ std::string other_direction(const Calibration& calibration) {
       counts, states, is_clockwise ? "counter_clockwise" : "clockwise");
 }
 
-std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, const SearchRange& range) {
+std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, const ParameterPrior& range) {
   const Calibration nominal = nominal_calibration(rig);
   std::vector<Hypothesis> all = {{other_direction(found), distance(mirrored(found), nominal, range)}};
   Calibration all_turned = nominal;
@@ -139,7 +139,7 @@ void add_if_outside(const std::string& laser, const Parameter& found, const Para
 }
 
 /// Each parameter that is farther from its nominal value than the rig or the search allows.
-std::vector<std::string> outside(const Calibration& found, const Rig& rig, const SearchRange& range) {
+std::vector<std::string> outside(const Calibration& found, const Rig& rig, const ParameterPrior& range) {
   std::vector<std::string> caveats;
   for (std::size_t k = 0; k < found.lasers.size(); ++k) {
     const LaserCalibration& laser = found.lasers[k];
@@ -204,7 +204,7 @@ Calibration match_form_of_rig(Calibration calibration, const Rig& rig) {
   return calibration;
 }
 
-std::vector<std::string> known_from_rig_only(const Calibration& calibration, const SearchRange& prior) {
+std::vector<std::string> known_from_rig_only(const Calibration& calibration, const ParameterPrior& prior) {
   constexpr double kAboutAll = 0.9;
   std::vector<std::string> names;
   for_each_parameter(calibration, [&](const std::string& name, const Parameter& parameter) {
@@ -221,7 +221,7 @@ std::vector<std::string> far_from_nominal(const Calibration& calibration, const 
   return outside(calibration, rig, {.tau = 0, .alpha = 0});
 }
 
-RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const SearchRange& range) {
+RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const ParameterPrior& range) {
   constexpr double kClearly = 12;       // a likelihood ratio of 400
   constexpr double kFitsPerLaser = 12;  // three values, each within two standard deviations
   const double as_it_is = distance(calibration, nominal_calibration(rig), range);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipeline/data/rig.hpp"
-#include "pipeline/estimate/search_range.hpp"
+#include "pipeline/estimate/parameter_prior.hpp"
 
 namespace crisp {
 
@@ -36,7 +36,7 @@ struct RigCheck {
 ///
 /// @param calibration  one laser for each of the rig's, in its order
 /// @param range        [m, rad] how far τ and α may be from their nominal values
-RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const SearchRange& range);
+RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const ParameterPrior& range);
 
 /// The calibration's mirror image, in the form near the rig, if the rig leaves the encoder's direction to the
 /// calibration and the mirror image agrees with the rig. Otherwise nothing.
@@ -48,7 +48,7 @@ inline constexpr const char* kCountsClockwise =
     "the encoder counts clockwise, by the signs of tau and alpha and the order of the lasers; the calibration takes it so. Set plate.direction: clockwise in the rig";
 
 /// The parameters whose standard error is about that which the rig gives them.
-std::vector<std::string> known_from_rig_only(const Calibration& calibration, const SearchRange& prior);
+std::vector<std::string> known_from_rig_only(const Calibration& calibration, const ParameterPrior& prior);
 
 /// Caveats for parameters that are more than three of the rig's standard deviations from their nominal value.
 std::vector<std::string> far_from_nominal(const Calibration& calibration, const Rig& rig);

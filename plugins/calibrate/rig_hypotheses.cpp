@@ -120,15 +120,15 @@ bool fits_with(const RigHypothesis& hypothesis, const Sample& sample, const Rig&
   RqeCalibrationSettings rqe;
   rqe.points = 10'000;
   rqe.probes = 4;
-  rqe.in_plane.minimiser.interrupted = settings.interrupted;
+  rqe.in_plane.minimizer.interrupted = settings.interrupted;
   try {
     const SensorModel start(nominal_calibration(rig), *settings.terms);
-    rqe.in_plane.range = search_range_with_lambda(start, rig, SearchRange{});
+    rqe.in_plane.range = search_range_with_lambda(start, rig, ParameterPrior{});
     const Outcome crisp = calibrate_by_rqe(start, changed.sample(), *settings.measure, rqe);
     if (settings.interrupted()) return false;
     const auto refined = refined_with_mounts(crisp.model, changed.sample(), rig, settings);
     return refined && refined->outcome.caveats.empty() && !refined->views.empty() &&
-           check_with_rig(calibration_of(refined->outcome, rig), rig, SearchRange{}).caveats.empty();
+           check_with_rig(calibration_of(refined->outcome, rig), rig, ParameterPrior{}).caveats.empty();
   } catch (const Error&) {
     return false;  // RQE refuses the data with that
   }
@@ -155,8 +155,8 @@ std::optional<std::string> mount_of_one(std::size_t laser, const Sample& sample,
 
 std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
                                       const HypothesisSettings& settings) {
-  constexpr double kLeast = 0.1 * kDegree;  // 2 mm a metre
-  constexpr double kClearly = 5;            // standard errors
+  constexpr double kMin = 0.1 * kDegree;  // 2 mm a metre
+  constexpr double kClearly = 5;          // standard errors
   std::vector<std::string> caveats;
   const Sample some = thin_evenly(sample, kBeams, 1);
   if (mount_terms(some, rig).empty()) return {};
@@ -167,7 +167,7 @@ std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sa
     for (const TermParameters& term : found.lasers[laser].terms) {
       if (term.term != kMirrorZero || term.parameters.empty()) continue;
       const Parameter& zero = term.parameters.front();
-      if (!zero.free || std::abs(zero.value) < std::max(kLeast, kClearly * zero.std_error)) continue;
+      if (!zero.free || std::abs(zero.value) < std::max(kMin, kClearly * zero.std_error)) continue;
       const RigLaser& own = rig.lasers[laser];
       caveats.push_back(fmt::format(
           "{}'s mount is off: {:.3f} ± {:.3f} deg fits, the rig has {:.3f} deg. Set mount in the rig, or estimate it with calibrate.refine's terms: [{}]",

@@ -22,12 +22,12 @@ constexpr double kClearlyCrisper = 0.1;
 constexpr double kDeviations = 3;              // [standard deviations] of a nominal value: the search range
 constexpr double kUsualLambda = 20 * kDegree;  // within which nominal λ are, unless the rig is wrong
 
-double off(const Outcome& outcome, const SearchRange& range, std::size_t parameter) {
+double off(const Outcome& outcome, const ParameterPrior& range, std::size_t parameter) {
   return std::abs(picked(outcome.model, {parameter})[0] - centres_of(range, outcome.model, {parameter})[0]);
 }
 
 /// Whether a parameter ended where its range ends, η apart.
-bool is_at_limit(const Outcome& outcome, const SearchRange& range) {
+bool is_at_limit(const Outcome& outcome, const ParameterPrior& range) {
   constexpr double kNear = 0.99;
   return std::ranges::any_of(outcome.free, [&](std::size_t parameter) {
     return range.nominal.contains(outcome.model.names()[parameter]) &&
@@ -36,7 +36,7 @@ bool is_at_limit(const Outcome& outcome, const SearchRange& range) {
 }
 
 /// Whether a λ is elsewhere than where the rig has it.
-bool has_moved_lambda(const Outcome& outcome, const SearchRange& near) {
+bool has_moved_lambda(const Outcome& outcome, const ParameterPrior& near) {
   return std::ranges::any_of(outcome.free, [&](std::size_t parameter) {
     return outcome.model.names()[parameter].ends_with(".lambda") &&
            off(outcome, near, parameter) > kUsualLambda;
@@ -57,7 +57,7 @@ std::optional<Refinement> refined(const Outcome& outcome, const Sample& sample, 
 
 }  // namespace
 
-SearchRange search_range_around(const SensorModel& start, const Rig& rig, SearchRange range) {
+ParameterPrior search_range_around(const SensorModel& start, const Rig& rig, ParameterPrior range) {
   range.reach = kDeviations;
   range.nominal = nominal_values(rig);
   for (std::size_t laser = 0; laser < start.lasers(); ++laser) {
@@ -71,8 +71,9 @@ SearchRange search_range_around(const SensorModel& start, const Rig& rig, Search
   return range;
 }
 
-SearchRange search_range_with_lambda(const SensorModel& start, const Rig& rig, const SearchRange& given) {
-  SearchRange range = search_range_around(start, rig, given);
+ParameterPrior search_range_with_lambda(const SensorModel& start, const Rig& rig,
+                                        const ParameterPrior& given) {
+  ParameterPrior range = search_range_around(start, rig, given);
   for (std::size_t laser = 0; laser < start.lasers(); ++laser) {
     const std::size_t parameter = slot(start, laser, kLambda);
     range.nominal.try_emplace(start.names()[parameter],
@@ -85,17 +86,17 @@ SearchRange search_range_with_lambda(const SensorModel& start, const Rig& rig, c
 Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measure& measure,
                           RqeCalibrationSettings settings, const Rig& rig, const Reporter& report) {
   constexpr double kMore = 1.2;
-  const SearchRange given = settings.in_plane.range;
+  const ParameterPrior given = settings.in_plane.range;
   const auto interrupted = [&] {
-    return settings.in_plane.minimiser.interrupted && settings.in_plane.minimiser.interrupted();
+    return settings.in_plane.minimizer.interrupted && settings.in_plane.minimizer.interrupted();
   };
-  const auto calibrated = [&](const SearchRange& range, double from, double share) {
+  const auto calibrated = [&](const ParameterPrior& range, double from, double share) {
     settings.in_plane.range = range;
     return calibrate_by_rqe(start, sample, measure, settings,
                             [&](double done, std::string_view what) { report(from + share * done, what); });
   };
-  const SearchRange near = search_range_around(start, rig, given);
-  const SearchRange nearest = search_range_with_lambda(start, rig, given);
+  const ParameterPrior near = search_range_around(start, rig, given);
+  const ParameterPrior nearest = search_range_with_lambda(start, rig, given);
   const auto fits = [&](const std::optional<Refinement>& fit) {
     return fit && fit->outcome.caveats.empty() &&
            check_with_rig(calibration_of(fit->outcome, rig), rig, given).caveats.empty();

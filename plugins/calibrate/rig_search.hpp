@@ -8,10 +8,11 @@ namespace crisp {
 
 /// The range with those of τ and α around the start, and what the rig knows better: three standard
 /// deviations.
-SearchRange search_range_around(const SensorModel& start, const Rig& rig, SearchRange range);
+ParameterPrior search_range_around(const SensorModel& start, const Rig& rig, ParameterPrior range);
 
 /// The same with each λ within 20° of the start, too.
-SearchRange search_range_with_lambda(const SensorModel& start, const Rig& rig, const SearchRange& given);
+ParameterPrior search_range_with_lambda(const SensorModel& start, const Rig& rig,
+                                        const ParameterPrior& given);
 
 /// Minimizes RQE near the rig's nominal values; or away from them, where that shows that the rig is wrong.
 ///

@@ -26,9 +26,9 @@ constexpr const char* kSingleSpots =
     "the beams have few directions only, since the rates of the plate and the mirrors are commensurate: walls appear as separate spots, whose RQE does not determine a calibration. Record at another rate, or with a changing one";
 
 void refuse_a_standing_plate(const PlateTrajectory& plate) {
-  constexpr double kLeast = 1 * kDegree;
+  constexpr double kMin = 1 * kDegree;
   const auto [low, high] = std::ranges::minmax(plate.angles());
-  if (high - low >= kLeast) return;
+  if (high - low >= kMin) return;
   throw Error("the plate is stationary in these data: no surface is seen twice", "record while it turns");
 }
 
@@ -98,7 +98,7 @@ class RqeCalibration {
  private:
   /// The beams that encoder readings cover at every η of the search; sets the range's ends.
   static Sample with_margin(const SensorModel& start, const Sample& sample, InPlaneSettings& settings) {
-    SearchRange& range = settings.range;
+    ParameterPrior& range = settings.range;
     const LagRange lag = lag_range(start, range.eta);
     range.earliest_eta = lag.earliest;
     range.latest_eta = lag.latest;
@@ -127,13 +127,13 @@ class RqeCalibration {
   /// surface then that it sees twice, from either side, and an entropy falls as τ and α make the scene
   /// smaller.
   void keep_where_one_side_is_seen() {
-    constexpr double kLeastShare = 0.15;
+    constexpr double kMinShare = 0.15;
     for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
       const Sample own = of_laser(sample_, laser);
       const auto left = static_cast<double>(
           std::ranges::count_if(own.beams.mirror_angle, [](float theta) { return theta < 0; }));
       const auto all = static_cast<double>(own.beams.size());
-      if (std::min(left, all - left) >= kLeastShare * all) continue;
+      if (std::min(left, all - left) >= kMinShare * all) continue;
       for (const BaseSlot which : {kTau, kAlpha}) {
         if (std::erase(parameters_.free, slot(model_, laser, which)) > 0) {
           not_estimated_.push_back(slot(model_, laser, which));
@@ -158,9 +158,9 @@ class RqeCalibration {
       report(0.25 + 0.55 * static_cast<double>(k) / static_cast<double>(sigmas.size()),
              fmt::format("sigma {:.2g} cm", sigmas[k] * 100));
       thin = thin_by_area(sample_, model_, beams_for(sigmas[k], settings_.points), settings_.seed);
-      const MinimiserSettings& minimiser = settings_.in_plane.minimiser;
+      const MinimizerSettings& minimizer = settings_.in_plane.minimizer;
       minimize_rqe(model_, thin, parameters_.free, measure_, sigmas[k], settings_.in_plane.range,
-                   k + 1 < sigmas.size() ? rough(minimiser) : minimiser);
+                   k + 1 < sigmas.size() ? rough(minimizer) : minimizer);
     }
     return thin;
   }

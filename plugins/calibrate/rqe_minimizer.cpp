@@ -26,7 +26,7 @@ Eigen::MatrixXd whitening(const Eigen::MatrixXd& displacement, const Eigen::Vect
 /// From step to step η may move on by its range, but not to where the encoder readings no longer cover the
 /// beams.
 void keep_covered(Box& box, const SensorModel& model, const std::vector<std::size_t>& free,
-                  const SearchRange& range) {
+                  const ParameterPrior& range) {
   for (std::size_t i = 0; i < free.size(); ++i) {
     if (!model.names()[free[i]].ends_with(".eta")) continue;
     for (double* end : {&box.lower[static_cast<Eigen::Index>(i)], &box.upper[static_cast<Eigen::Index>(i)]}) {
@@ -38,13 +38,14 @@ void keep_covered(Box& box, const SensorModel& model, const std::vector<std::siz
 }  // namespace
 
 Eigen::MatrixXd search_basis(const SensorModel& model, const Sample& sample,
-                             const std::vector<std::size_t>& free, const SearchRange& range, double scale) {
+                             const std::vector<std::size_t>& free, const ParameterPrior& range,
+                             double scale) {
   return whitening(displacement(model, sample, free), ranges_of(range, model, free), scale);
 }
 
 Minimum minimize_rqe(SensorModel& model, const Sample& sample, const std::vector<std::size_t>& free,
-                     Measure& measure, double scale, const SearchRange& range,
-                     const MinimiserSettings& settings) {
+                     Measure& measure, double scale, const ParameterPrior& range,
+                     const MinimizerSettings& settings) {
   const Eigen::VectorXd start = picked(model, free);
   const Eigen::VectorXd ranges = ranges_of(range, model, free);
   const Eigen::VectorXd centres = centres_of(range, model, free);
@@ -57,12 +58,12 @@ Minimum minimize_rqe(SensorModel& model, const Sample& sample, const std::vector
     if (gradient) *gradient = quality.gradient;
     return quality.value;
   };
-  Minimum minimum = minimise(objective, start, box, settings);
+  Minimum minimum = minimize(objective, start, box, settings);
   model = with(model, free, minimum.x);
   return minimum;
 }
 
-MinimiserSettings rough(MinimiserSettings settings) {
+MinimizerSettings rough(MinimizerSettings settings) {
   constexpr double kTolerance = 1e-3;  // some hundredths of σ off the optimum, which itself is σ-dependent
   settings.tolerance = std::max(settings.tolerance, kTolerance);
   return settings;

@@ -42,17 +42,17 @@ void RqeStage::describe(StageDescription<RqeStage>& d) {
   d.option("points", &RqeStage::settings_, &RqeCalibrationSettings::points,
            "approximate number of points used, sampled evenly over the surfaces")
       .range(1000, 1e7);
-  d.option("lambda_range", &RqeStage::range_, &SearchRange::lambda,
+  d.option("lambda_range", &RqeStage::range_, &ParameterPrior::lambda,
            "search range of lambda in one step; its start does not matter")
       .unit("rad")
       .range(1e-6, 3.2);
-  d.option("tau_range", &RqeStage::range_, &SearchRange::tau, "search range of tau around its start")
+  d.option("tau_range", &RqeStage::range_, &ParameterPrior::tau, "search range of tau around its start")
       .unit("m")
       .range(1e-6, 10);
-  d.option("alpha_range", &RqeStage::range_, &SearchRange::alpha, "search range of alpha around its start")
+  d.option("alpha_range", &RqeStage::range_, &ParameterPrior::alpha, "search range of alpha around its start")
       .unit("rad")
       .range(1e-6, 1.5);
-  d.option("eta_range", &RqeStage::range_, &SearchRange::eta, "search range of eta around its start")
+  d.option("eta_range", &RqeStage::range_, &ParameterPrior::eta, "search range of eta around its start")
       .unit("s")
       .range(1e-6, 1);
   d.option("fixed", &RqeStage::settings_, &RqeCalibrationSettings::fixed,
@@ -122,7 +122,7 @@ void RqeStage::finish(Outputs& out, Context& context) {
   settings.in_plane.sigma_from = in_plane_sigma_[0];
   settings.in_plane.sigma_to = in_plane_sigma_[1];
   settings.in_plane.range = range_;
-  settings.in_plane.minimiser.interrupted = [&] { return context.interrupted(); };
+  settings.in_plane.minimizer.interrupted = [&] { return context.interrupted(); };
   settings.seed = context.seed();
   const auto measure = make_measure(context.run());
   const auto& terms = context.run().registrar->get<TermRegistry>();

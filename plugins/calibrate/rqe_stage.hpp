@@ -27,7 +27,7 @@ class RqeStage final : public Stage {
   Calibration compared_with_rig(Calibration calibration, Context& context) const;
 
   RqeCalibrationSettings settings_;
-  SearchRange range_;
+  ParameterPrior range_;
   std::vector<double> sigma_{0.2, 0.05};
   std::vector<double> in_plane_sigma_{0.5, 0.1};
   std::string measure_ = "rqe";

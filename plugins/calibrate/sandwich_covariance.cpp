@@ -42,7 +42,7 @@ Eigen::MatrixXd hessian(Gradient& gradient, Eigen::Index m, const Sample& sample
 
 /// B = noise² Σᵢ (∂g/∂rᵢ)(∂g/∂rᵢ)ᵀ, as the mean over random signs of all ranges' changes.
 Eigen::MatrixXd gradient_covariance(Gradient& gradient, Eigen::Index m, const Sample& sample,
-                                    const ScatterSettings& settings) {
+                                    const SandwichSettings& settings) {
   constexpr float kChange = 0.002F;  // [m] small against the scale, large against rounding
   std::mt19937_64 bits(settings.seed);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(m, m);
@@ -67,7 +67,7 @@ Eigen::MatrixXd gradient_covariance(Gradient& gradient, Eigen::Index m, const Sa
 
 Eigen::MatrixXd sandwich_covariance(const SensorModel& model, const Sample& sample,
                                     const std::vector<std::size_t>& free, Measure& measure,
-                                    const ScatterSettings& settings) {
+                                    const SandwichSettings& settings) {
   const auto m = static_cast<Eigen::Index>(free.size());
   const Eigen::MatrixXd basis = search_basis(model, sample, free, settings.range, settings.scale);
   Gradient gradient(model, free, measure, settings.scale, basis);

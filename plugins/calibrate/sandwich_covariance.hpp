@@ -9,12 +9,12 @@
 
 namespace crisp {
 
-struct ScatterSettings {
+struct SandwichSettings {
   double scale = 0.05;      ///< [m] the measure's
   double noise = 0.012;     ///< [m] standard deviation of a range
   std::size_t probes = 32;  ///< the standard errors are known to 1/√(2 · probes) of themselves
   std::uint64_t seed = 1;
-  SearchRange range;  ///< a parameter's standard error is at most of this size
+  ParameterPrior range;  ///< a parameter's standard error is at most of this size
 };
 
 /// Sandwich covariance of a measure's optimum under the noise of the ranges: H⁻¹ B H⁻¹, where H is the
@@ -25,6 +25,6 @@ struct ScatterSettings {
 /// @return m × m, positive definite, in the order of `free`
 Eigen::MatrixXd sandwich_covariance(const SensorModel& model, const Sample& sample,
                                     const std::vector<std::size_t>& free, Measure& measure,
-                                    const ScatterSettings& settings);
+                                    const SandwichSettings& settings);
 
 }  // namespace crisp

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "pipeline/estimate/parameter_prior.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
-#include "pipeline/estimate/search_range.hpp"
 #include "pipeline/quality/line_segmentation.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/calibrate/local_minima.hpp"
@@ -41,14 +41,14 @@ double between_scans(const Sample& own) {
 std::optional<CompetingMinimum> minimize_wall_residual(SensorModel& model, std::size_t parameter,
                                                        const std::vector<double>& grid, bool circular,
                                                        const Sample& sample, double noise) {
-  constexpr std::size_t kMostMinima = 3;
+  constexpr std::size_t kMaxMinima = 3;
   constexpr double kRoughly = 3;     // times the noise, during the global search
   constexpr double kOneMinimum = 3;  // steps: clutter makes dips near the minimum
   const auto price = [&](double by) {
     return [&, by](double value) { return wall_straightness(with_one(model, parameter, value), sample, by); };
   };
   auto places = local_minima(price(kRoughly * noise), grid, circular);
-  places.resize(std::min(places.size(), kMostMinima));
+  places.resize(std::min(places.size(), kMaxMinima));
   if (places.empty()) return std::nullopt;
   const double step = grid[1] - grid[0];
   std::vector<LineMinimum> found;

@@ -14,8 +14,8 @@
 #include "pipeline/data/pool.hpp"
 #include "pipeline/data/rig.hpp"
 #include "pipeline/data/scan.hpp"
-#include "plugins/clock/laser_track.hpp"
-#include "plugins/clock/plate_track.hpp"
+#include "plugins/clock/laser_timing.hpp"
+#include "plugins/clock/plate_timing.hpp"
 
 namespace crisp {
 
@@ -67,9 +67,9 @@ class Aligner {
 };
 
 /// An aligner's tracks of a rig's devices.
-class HubTracks {
+class HubTimings {
  public:
-  HubTracks(const Rig& rig, const AlignmentSettings& settings);
+  HubTimings(const Rig& rig, const AlignmentSettings& settings);
 
   /// Notes that something was received. @return [s since the epoch] when
   double arrive(std::int64_t receipt_ns);
@@ -78,14 +78,14 @@ class HubTracks {
   /// Forgets all but the epoch and where the plate was: what comes now is of another recording.
   void begin_anew();
   /// The track that a scan belongs to; nullptr, and counted, if the rig has no such laser.
-  LaserTrack* track_of(const Scan& scan);
+  LaserTiming* track_of(const Scan& scan);
 
-  std::vector<LaserTrack>& lasers() { return lasers_; }
-  const std::vector<LaserTrack>& lasers() const { return lasers_; }
+  std::vector<LaserTiming>& lasers() { return lasers_; }
+  const std::vector<LaserTiming>& lasers() const { return lasers_; }
   /// Measurements of a scan, on the hub's clock.
   std::shared_ptr<const Measurements> measurements_of(const TimedScan& scan);
-  PlateTrack& plate() { return plate_; }
-  const PlateTrack& plate() const { return plate_; }
+  PlateTiming& plate() { return plate_; }
+  const PlateTiming& plate() const { return plate_; }
   std::int64_t epoch_ns() const { return epoch_ns_; }
   double now() const { return now_; }  ///< [s since the epoch] latest receipt
 
@@ -101,8 +101,8 @@ class HubTracks {
  private:
   Rig rig_;
   AlignmentSettings settings_;
-  std::vector<LaserTrack> lasers_;
-  PlateTrack plate_;
+  std::vector<LaserTiming> lasers_;
+  PlateTiming plate_;
   Pool<Measurements> measurements_;
   std::int64_t epoch_ns_ = 0;
   bool begun_ = false;

@@ -101,10 +101,10 @@ void report_losses(const DeviceReport& device, AlignmentReport& report) {
 /// can make it steep by chance; but then they are not far from it.
 std::string caveat_of(const DeviceReport& device) {
   if (!device.clock || device.clock->residual_median < kFar) return {};
-  if (std::abs(device.clock->skew_ppm()) < 0.99e6 * kMostSkew) return {};
+  if (std::abs(device.clock->skew_ppm()) < 0.99e6 * kMaxSkew) return {};
   return fmt::format(
       "{}: its stamps fit no clock of constant rate (skew beyond {:.0f} ppm; half of them more than {:.1f} ms from it)",
-      device.device, 1e6 * kMostSkew, 1e3 * device.clock->residual_median);
+      device.device, 1e6 * kMaxSkew, 1e3 * device.clock->residual_median);
 }
 
 /// Uncertainty of a clock's line [s] at the ends of half a minute about its middle; a longer recording has
@@ -138,12 +138,12 @@ void AlignmentReport::append(AlignmentReport other) {
   for (auto& caveat : other.caveats) caveats.push_back(std::move(caveat));
 }
 
-AlignmentReport HubTracks::report() const {
+AlignmentReport HubTimings::report() const {
   AlignmentReport report{.devices = reports()};
   for (const auto& laser : lasers_) {
     report.counts[laser.laser().name + ": scans without ranges"] = laser.without_ranges();
     report.counts[laser.laser().name + ": beams without echo"] = laser.without_echo();
-    if (laser.sees_nothing())
+    if (laser.has_no_echoes())
       report.warnings.push_back(fmt::format(
           "{}: none of its {} beams has an echo: nothing is within its range, its window is covered, or it sends codes in place of ranges",
           laser.laser().name, laser.without_echo()));

@@ -50,7 +50,7 @@ double ClockAligner::arrive(std::int64_t receipt_ns) {
 void ClockAligner::add(std::shared_ptr<const Scan> scan) {
   if (tracks_.track_of(*scan) == nullptr) return;
   const double hub = arrive(scan->receipt_ns);
-  LaserTrack& laser = tracks_.lasers()[scan->laser];
+  LaserTiming& laser = tracks_.lasers()[scan->laser];
   laser.add(std::move(scan), hub);
 }
 
@@ -112,7 +112,7 @@ void ClockAligner::settle(double begin, double end) {
 }
 
 void ClockAligner::hand_out(double limit) {
-  PlateTrack& plate = tracks_.plate();
+  PlateTiming& plate = tracks_.plate();
   const std::int64_t epoch_ns = tracks_.epoch_ns();
   std::vector<TimedScan> scans;
   for (auto& laser : tracks_.lasers()) laser.take_before(limit, scans);

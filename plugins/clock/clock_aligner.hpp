@@ -37,7 +37,7 @@ class ClockAligner final : public Aligner {
 
   AlignmentSettings settings_;
   AlignmentSink sink_;
-  HubTracks tracks_;
+  HubTimings tracks_;
   AlignmentReport report_;  ///< of recordings that have ended, and the hub's clock
   double begin_ = 0;        ///< [s since the epoch] of the window that is being filled
   double length_;           ///< [s] of it

@@ -8,9 +8,9 @@
 namespace crisp {
 namespace {
 
-constexpr double kSilence = 1;            // [s]
-constexpr std::size_t kMostNoted = 1000;  // silences, and steps
-constexpr std::uint64_t kStanding = 5;    // stamps in a row that are the same: the clock stands still
+constexpr double kSilence = 1;           // [s]
+constexpr std::size_t kMaxNoted = 1000;  // silences, and steps
+constexpr std::uint64_t kStanding = 5;   // stamps in a row that are the same: the clock stands still
 
 }  // namespace
 
@@ -79,7 +79,7 @@ void DeviceStamps::watch_count(const Last& now, std::int64_t steps, double hub) 
     stepped_at_ = hub;
     clock_.drop_last();  // what was counted before the step may have been sent after it
   }
-  if (const auto by = counted_.confirmed(); by && report_.clock_steps.size() < kMostNoted) {
+  if (const auto by = counted_.confirmed(); by && report_.clock_steps.size() < kMaxNoted) {
     report_.clock_steps.push_back({.at = stepped_at_, .by = *by});
   }
 }
@@ -124,7 +124,7 @@ void DeviceStamps::count_useless(std::uint16_t counter, std::uint32_t raw_us, do
 
 void DeviceStamps::note_silence(double hub) {
   if (report_.received == 1) first_hub_ = last_hub_ = hub;
-  if (hub - last_hub_ >= kSilence && report_.silences.size() < kMostNoted) {
+  if (hub - last_hub_ >= kSilence && report_.silences.size() < kMaxNoted) {
     report_.silences.push_back({.begin = last_hub_, .duration = hub - last_hub_});
   }
   last_hub_ = std::max(last_hub_, hub);

@@ -90,7 +90,7 @@ void FittedClock::follow(double window) {
   const ClockPiece piece{.device_begin = begin,
                          .hub_begin = segment.first_hub + (begin - first) + line.lead(begin - first),
                          .rate = 1 + line.slope,
-                         .rate_std_error = kMostSkew};
+                         .rate_std_error = kMaxSkew};
   if (segment.followed) {
     map_->pieces.replace_last(piece);
   } else {
@@ -160,8 +160,8 @@ void FittedClock::take_out(const HubDeviation& deviation) {
       stamp.lead -= deviation.at(hub);
       if (!deviation.is_unsure(hub)) kept.push_back(stamp);
     }
-    constexpr std::size_t kFewest = 4;  // a stretch that is all unsure is kept as it is
-    if (kept.size() < std::min(kFewest, segment.stamps.size())) continue;
+    constexpr std::size_t kMin = 4;  // a stretch that is all unsure is kept as it is
+    if (kept.size() < std::min(kMin, segment.stamps.size())) continue;
     segment.stamps = std::move(kept);
     make_hull_anew(segment, first);
   }
@@ -169,9 +169,9 @@ void FittedClock::take_out(const HubDeviation& deviation) {
 }
 
 void FittedClock::take_out_steps() {
-  constexpr int kMost = 8;  // a link that is so restless has no shortest delay
+  constexpr int kMax = 8;  // a link that is so restless has no shortest delay
   for (auto& segment : segments_) {
-    for (int n = 0; n < kMost; ++n) {
+    for (int n = 0; n < kMax; ++n) {
       const auto step = step_of_delay(segment.stamps);
       if (!step) break;
       take_out(segment, *step);
@@ -308,7 +308,7 @@ void FittedClock::finish() {
   if (!map_) return;
   map_->skew_std_error = followed_error     ? *followed_error
                          : fitted_time_ > 0 ? std::sqrt(squared_errors_) / fitted_time_
-                                            : kMostSkew;
+                                            : kMaxSkew;
   if (knots_ > 0) map_->std_error = std::sqrt(squared_offsets_) / static_cast<double>(knots_);
   map_->residual_median = delays_.quantile(0.5);
   map_->residual_95 = delays_.quantile(0.95);

@@ -15,7 +15,7 @@ constexpr double kLargestGap = 10;  // of usual steps of the turn number, within
 constexpr double kImplausible =
     0.05;  // a period this far from the usual one is a jump of stamps, not of the mirror
 constexpr int kRounds = 3;
-constexpr double kRobust = 3 * kSigmaByMedian;
+constexpr double kRobust = 3 * kMadToSigma;
 
 using Stamps = std::span<const MirrorStamp>;
 

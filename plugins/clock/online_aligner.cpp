@@ -33,7 +33,7 @@ OnlineAligner::OnlineAligner(const Rig& rig, const AlignmentSettings& alignment,
 
 void OnlineAligner::add(std::shared_ptr<const Scan> scan) {
   const double hub = tracks_.arrive(scan->receipt_ns);
-  LaserTrack* laser = tracks_.track_of(*scan);
+  LaserTiming* laser = tracks_.track_of(*scan);
   if (laser == nullptr) return;
   if (!laser->add(std::move(scan), hub)) return;
   laser->clock().follow(settings_.window);
@@ -47,14 +47,14 @@ void OnlineAligner::add(std::shared_ptr<const Scan> scan) {
 
 void OnlineAligner::add(const PlateReading& reading) {
   const double hub = tracks_.arrive(reading.receipt_ns);
-  PlateTrack& plate = tracks_.plate();
+  PlateTiming& plate = tracks_.plate();
   if (plate.add(reading, hub)) plate.clock().follow(settings_.window);
   plate.forget_before(hub - kReadingsKept);
   release();
 }
 
 bool OnlineAligner::is_covered(const TimedScan& scan) const {
-  const PlateTrack& plate = tracks_.plate();
+  const PlateTiming& plate = tracks_.plate();
   if (plate.clock().followed() < settings_.warm_up) return false;
   const auto latest = plate.latest();
   return latest && *latest >= last_beam(scan) + settings_.greatest_lag;

@@ -56,7 +56,7 @@ class OnlineAligner final : public Aligner {
   AlignmentSettings alignment_;
   OnlineSettings settings_;
   AlignmentSink sink_;
-  HubTracks tracks_;
+  HubTimings tracks_;
   std::deque<TimedScan> waiting_;
   std::uint64_t impatient_ = 0;  ///< scans that went without the encoder readings
 };

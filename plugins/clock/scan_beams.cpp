@@ -14,7 +14,7 @@ namespace {
 constexpr double kFirstPossible =
     -std::numbers::pi / 4;  // [rad] where a sweep begins, whatever is output of it
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr std::size_t kMostBeams = std::numeric_limits<std::uint16_t>::max() + std::size_t{1};
+constexpr std::size_t kMaxBeams = std::numeric_limits<std::uint16_t>::max() + std::size_t{1};
 
 bool came_back(float range) { return (range > 0) & (range < std::numeric_limits<float>::infinity()); }
 
@@ -61,7 +61,7 @@ void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64
   const Scan& scan = *timed.scan;
   const auto& remissions = scan.echoes.front().remissions;
   const auto& all = scan.echoes.front().ranges;
-  const std::size_t beams = std::min(all.size(), kMostBeams);
+  const std::size_t beams = std::min(all.size(), kMaxBeams);
   const std::span ranges(all.data(), beams);
   const bool has_remissions = remissions.size() >= beams;
   const double first_time = timed.beam_time(0);

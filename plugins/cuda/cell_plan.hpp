@@ -6,7 +6,7 @@
 
 #include "pipeline/quality/points.hpp"
 #include "pipeline/quality/spatial_order.hpp"
-#include "plugins/cuda/unit_sums.hpp"
+#include "plugins/cuda/rqe_kernel.hpp"
 
 namespace crisp::cuda {
 

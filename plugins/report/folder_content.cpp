@@ -8,7 +8,7 @@
 #include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/renamed_names.hpp"
 #include "pipeline/files/utc_now.hpp"
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "pipeline/pcd/parts.hpp"
 #include "pipeline/stage/files_written.hpp"
 #include "plugins/report/calibration_json.hpp"

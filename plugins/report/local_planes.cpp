@@ -10,9 +10,9 @@
 namespace crisp {
 namespace {
 
-constexpr unsigned kLevels = 2;        // the cells' side is doubled twice
-constexpr double kMostFlatness = 0.2;  // spread across the plane over that along it
-constexpr std::size_t kFewest = 12;    // points of a plane
+constexpr unsigned kLevels = 2;       // the cells' side is doubled twice
+constexpr double kMaxFlatness = 0.2;  // spread across the plane over that along it
+constexpr std::size_t kMin = 12;      // points of a plane
 
 Plane plane_of_run(const CellRun& run, const PointsView& points, const SpatialOrder& order) {
   Moments moments;
@@ -43,9 +43,9 @@ double LocalPlanes::incidence(std::size_t point, const Eigen::Vector3d& directio
 LocalPlanes local_planes(const PointsView& points, const SpatialOrder& order) {
   LocalPlanes found{.planes = {}, .of = std::vector(points.size(), LocalPlanes::kNone)};
   for (const CellRun& run : cell_runs(order, kLevels)) {
-    if (run.size() < kFewest) continue;
+    if (run.size() < kMin) continue;
     const Plane plane = plane_of_run(run, points, order);
-    if (!(plane.extent[0] < kMostFlatness * plane.extent[1])) continue;
+    if (!(plane.extent[0] < kMaxFlatness * plane.extent[1])) continue;
     for (std::size_t k = run.begin; k < run.end; ++k) {
       found.of[order.index[k]] = static_cast<std::uint32_t>(found.planes.size());
     }

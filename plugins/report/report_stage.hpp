@@ -26,8 +26,8 @@ class WriteReportStage final : public Stage {
   std::size_t points_ = 300'000;
   std::optional<std::filesystem::path> against_;
 
-  static constexpr std::size_t kMostBeams = 2'000'000;  ///< that points are chosen from
-  MeasurementBuffer collected_{kMostBeams};
+  static constexpr std::size_t kMaxBeams = 2'000'000;  ///< that points are chosen from
+  MeasurementBuffer collected_{kMaxBeams};
   bool has_beams_ = false;
   OrientedPlate oriented_;
   std::shared_ptr<const Calibration> calibration_;

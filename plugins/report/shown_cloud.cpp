@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "pipeline/quality/spatial_order.hpp"
-#include "plugins/report/even_sample.hpp"
 #include "plugins/report/local_planes.hpp"
+#include "plugins/report/voxel_sampling.hpp"
 
 namespace crisp {
 namespace {
@@ -80,7 +80,7 @@ ShownCloud shown_cloud(const Sample& sample, const SensorModel& before, const Se
   const LocalPlanes planes = local_planes(points.view(), order);
   const LocalPlanes planes_before =
       local_planes(points_before.view(), spatial_order(points_before.view(), kSide));
-  const std::vector<std::uint32_t> chosen = even_sample(order, count);
+  const std::vector<std::uint32_t> chosen = voxel_sample(order, count);
 
   ShownCloud shown{.before = picked(points_before, chosen),
                    .after = picked(points, chosen),
@@ -111,7 +111,7 @@ ShownCloud shown_cloud(const Cloud& cloud, std::size_t count) {
   }
   const SpatialOrder order = spatial_order(points.view(), kSide);
   const LocalPlanes planes = local_planes(points.view(), order);
-  const std::vector<std::uint32_t> chosen = even_sample(order, count);
+  const std::vector<std::uint32_t> chosen = voxel_sample(order, count);
   ShownCloud shown{.after = picked(points, chosen),
                    .distance = distances(planes, points.view(), chosen),
                    .of = cloud.size()};

@@ -83,17 +83,18 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
        "fraction of ranges that are replaced by outliers: four fifths of them nearer, the others up to 5 m farther")
       .unit("1")
       .range(0, 1);
-  d.option("eta", &MonteCarloStage::trial, &TrialSettings::truth, &Departures::eta,
+  d.option("eta", &MonteCarloStage::trial, &TrialSettings::truth, &NominalErrors::eta,
            "largest true lag, drawn around 0, where RQE starts")
       .unit("s")
       .range(0, 0.09);
-  d.option("tau_off", &MonteCarloStage::start, &Departures::tau, "largest error of tau at RQE's start")
+  d.option("tau_off", &MonteCarloStage::start, &NominalErrors::tau, "largest error of tau at RQE's start")
       .unit("m")
       .range(0, 0.1);
-  d.option("alpha_off", &MonteCarloStage::start, &Departures::alpha, "largest error of alpha at RQE's start")
+  d.option("alpha_off", &MonteCarloStage::start, &NominalErrors::alpha,
+           "largest error of alpha at RQE's start")
       .unit("rad")
       .range(0, 0.3);
-  d.option("lambda_off", &MonteCarloStage::start, &Departures::lambda,
+  d.option("lambda_off", &MonteCarloStage::start, &NominalErrors::lambda,
            "largest error of lambda at RQE's start")
       .unit("rad")
       .range(0, 3.2);

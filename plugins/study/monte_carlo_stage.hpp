@@ -26,7 +26,7 @@ class MonteCarloStage final : public Stage {
   // Target of the options.
   TrialSettings& trial() { return settings_.trial; }
   MotionSettings& motion() { return settings_.trial.motion; }
-  Departures& start() { return settings_.trial.start; }
+  NominalErrors& start() { return settings_.trial.start; }
 
   /// Has the lasers scatter as real ones were measured to, if any are named.
   void use_realism(TrialSettings& trial, Context& context) const;

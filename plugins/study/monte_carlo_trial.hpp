@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "grabbers/simulate/departures.hpp"
+#include "grabbers/simulate/nominal_errors.hpp"
 #include "grabbers/simulate/paper.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "pipeline/quality/measure.hpp"
@@ -37,10 +37,10 @@ struct TrialSettings {
   std::vector<LaserEffects> laser_effects;   ///< one a laser of the rig: noise of its own; empty: none
   std::optional<double> counted_noise;       ///< [m] that estimators and bound count on; none: `noise`
   double outliers = 0;                       ///< share of the ranges that are: see add_outliers()
-  Departures truth{.eta = 0.04};             ///< how far the truth lies off the rig at most
+  NominalErrors truth{.eta = 0.04};          ///< how far the truth lies off the rig at most
   Estimators estimators = Estimators::kBoth;
-  Departures start;  ///< how far off the start of RQE is at most; its η is 0
-  Departures near;   ///< how far off the refinement starts at most where RQE is left out: where RQE ends
+  NominalErrors start;  ///< how far off the start of RQE is at most; its η is 0
+  NominalErrors near;   ///< how far off the refinement starts at most where RQE is left out: where RQE ends
   RqeCalibrationSettings rqe;
   RefinementSettings refinement;
 

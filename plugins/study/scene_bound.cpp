@@ -78,7 +78,7 @@ SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const
   const SensorModel truth(exact.truth, terms);
   const FreeParameters parameters = free_parameters(truth, exact.beams, {});
   const auto& free = parameters.free;
-  SearchRange prior = RefinementSettings{}.prior;
+  ParameterPrior prior = RefinementSettings{}.prior;
   prior.nominal = nominal_values(scanner.rig);
   Eigen::VectorXd from_rig = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free.size()));
   for (std::size_t k = 0; k < free.size(); ++k) {

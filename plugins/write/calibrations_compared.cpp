@@ -41,9 +41,9 @@ std::vector<Row> rows_of(const Calibration& first, const Calibration& second) {
 /// With so many digits behind the point that an error of this size has two that count.
 std::string figure(double value, double error) {
   constexpr int kUnknown = 4;
-  constexpr int kMost = 9;
+  constexpr int kMax = 9;
   const int digits = error > 0 ? decimals_that_show(error) : kUnknown;
-  return fmt::format("{:.{}f}", value, std::clamp(digits, 0, kMost));
+  return fmt::format("{:.{}f}", value, std::clamp(digits, 0, kMax));
 }
 
 std::string line_of(const Row& row) {

@@ -5,7 +5,7 @@
 
 #include <system_error>
 
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "pipeline/pcd/parts.hpp"
 #include "plugins/write/parts_options.hpp"
 
@@ -35,7 +35,7 @@ void WriteCloudsStage::describe(StageDescription<WriteCloudsStage>& d) {
 
 void WriteCloudsStage::write(const Cloud& cloud) {
   AtomicFile file(part_path(file_, written_ + 1));
-  PcdTable table = to_table(cloud);
+  PcdTable table = to_pcd_table(cloud);
   table.set_note(kCloud, std::to_string(written_ + 1));
   write_pcd(file, table, format_);
   file.commit();

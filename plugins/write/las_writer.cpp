@@ -63,8 +63,8 @@ void put_extra_fields(RecordBuffer& to) {
 /// A number of tenths of a millimetre; nothing beyond 32 bits.
 bool to_steps(double metres, std::int32_t& steps) {
   const double rounded = std::round(metres / kScale);
-  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-  if (std::abs(rounded) > kMost) return false;
+  constexpr double kMax = std::numeric_limits<std::int32_t>::max();
+  if (std::abs(rounded) > kMax) return false;
   steps = static_cast<std::int32_t>(rounded);
   return true;
 }

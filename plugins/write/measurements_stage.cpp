@@ -28,8 +28,8 @@ void WriteMeasurementsStage::process(const Inputs& in, Outputs&, Context&) {
 }
 
 void WriteMeasurementsStage::write_part(bool more) {
-  const auto file = writer_->write(to_table(pending_, *plate_), more);
-  writer_->write_next_to(plate_path(file), to_table(*plate_));
+  const auto file = writer_->write(to_pcd_table(pending_, *plate_), more);
+  writer_->write_next_to(plate_path(file), to_pcd_table(*plate_));
   written_ += pending_.size();
   pending_ = {};
 }

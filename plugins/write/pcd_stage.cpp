@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "plugins/write/finite_points.hpp"
 
 namespace crisp {
@@ -38,7 +38,7 @@ void WritePcdStage::add(const Point& point) {
   const bool is_of_next = recording > recording_;
   if (!pending_.empty() &&
       (is_of_next || options_.is_full(pending_.size(), pending_.front().time, point.time))) {
-    writer_->write(to_table(pending_), true);
+    writer_->write(to_pcd_table(pending_), true);
     written_ += pending_.size();
     pending_.clear();
   }
@@ -50,7 +50,7 @@ void WritePcdStage::finish(Outputs&, Context& context) {
   if (pending_.empty()) {
     throw no_point_came();
   }
-  writer_->write(to_table(pending_), false);
+  writer_->write(to_pcd_table(pending_), false);
   finish_parts(*writer_, written_ + pending_.size(), "points", context);
 }
 

@@ -46,7 +46,7 @@ def untrusted(program, folder):
     summary = {"crisp": "0", "pipeline": ATTACK, "rig": ATTACK, "started": ATTACK, "seconds": 2, "trusted": False, "exit_status": 3,
                "inputs": [{"file": "/tmp/" + ATTACK, "bytes": 5, "sha256": "00"}], "stages": [stage]}
     (folder / "summary.json").write_text(json.dumps(summary))
-    finding = {"cause": "mirror.cone", "scope": "laser1" + ATTACK, "accepted": True, "refused": "", "explained_fraction": 0.5,
+    finding = {"cause": "mirror.cone", "scope": "laser1" + ATTACK, "accepted": True, "rejection_reason": "", "explained_fraction": 0.5,
                "p_value": 1e-9, "log10_bayes_factor": 12.0, "confounded_with": ["timing.intra_scan " + ATTACK], "resolvable_by": ["both directions"],
                "parameters": [{"name": "kappa", "value": 0.005, "unit": "rad", "std_error": 0.0001}],
                "alternatives": [{"cause": "base.motion", "scope": "plate", "log10_bayes_factor": 12.0}],
@@ -54,7 +54,7 @@ def untrusted(program, folder):
     departure = {"covariate": "mirror angle", "quantity": "range", "scope": "laser1", "amplitude": 0.001, "unit": "m",
                  "p_value": 1e-6, "amplitude_after": 0.0001, "p_value_after": 0.5}
     findings = {"crisp": 1, "findings": [finding, {**finding, "cause": "encoder.eccentricity", "scope": "plate"}], "unnamed": [],
-                "departures": [departure], "unobservable": [{"cause": ATTACK, "reason": ATTACK, "combination": ""}], "artefacts": [],
+                "departures": [departure], "unobservable": [{"cause": ATTACK, "reason": ATTACK, "combination": ""}], "artifacts": [],
                 "devices": [], "noise": [{"laser": "laser1", "ranges": 1000, "sigma": 0.012}], "gain": finding["gain"],
                 "goodness_of_fit": {"before_p": 1e-9, "after_p": 0.4}}
     (folder / "diagnosis.json").write_text(json.dumps(findings))

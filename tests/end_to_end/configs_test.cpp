@@ -15,7 +15,7 @@
 #include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/rig_file.hpp"
 #include "pipeline/files/yaml.hpp"
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "tests/end_to_end/calibration_errors.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 #include "tests/support/source_dir.hpp"

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "pipeline/app/builtin.hpp"
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "tests/support/source_dir.hpp"
 
 namespace crisp::test {
@@ -32,7 +32,7 @@ class Listener {
   std::streambuf* before_;
 };
 
-std::vector<std::string> files_in(const fs::path& folder) {
+std::vector<std::string> list_files(const fs::path& folder) {
   std::vector<std::string> names;
   if (!fs::is_directory(folder)) return names;
   for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
@@ -80,7 +80,7 @@ Outcome PipelineFixture::run(const std::string& config, const fs::path& input, c
   const Listener listener(std::cerr);
   Outcome outcome{.status = run_command(request, builtin.registrar())};
   outcome.console = listener.text();
-  outcome.files = files_in(out);
+  outcome.files = list_files(out);
   if (fs::exists(out / "summary.json"))
     outcome.summary = nlohmann::json::parse(bytes_of(out / "summary.json"));
   if (fs::exists(out / "cloud.pcd")) outcome.cloud = cloud_of(read_pcd(out / "cloud.pcd")).cloud;

@@ -9,7 +9,7 @@
 #include "grabbers/capture/capture_reader.hpp"
 #include "pipeline/files/calibration_file.hpp"
 #include "pipeline/model/catalogue.hpp"
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "plugins/assemble/deskew.hpp"
 #include "plugins/clock/clock_aligner.hpp"
 
@@ -47,7 +47,7 @@ int main(int count, char** words) {
   try {
     const auto cloud = cloud_of(words[1], crisp::default_rig(), crisp::read_calibration(words[2]));
     crisp::AtomicFile file(words[3]);
-    crisp::write_pcd(file, crisp::to_table(cloud), crisp::PcdFormat::binary_compressed);
+    crisp::write_pcd(file, crisp::to_pcd_table(cloud), crisp::PcdFormat::binary_compressed);
     file.commit();
     std::cout << cloud.size() << " points\n";
   } catch (const std::exception& error) {

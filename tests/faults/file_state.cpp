@@ -60,7 +60,7 @@ bool are_json_lines(const std::string& bytes, bool may_be_cut) {
 
 }  // namespace
 
-Files files_in(const fs::path& folder) {
+Files list_files(const fs::path& folder) {
   Files files;
   std::error_code none;
   if (!fs::is_directory(folder, none)) return files;

@@ -9,7 +9,7 @@ namespace crisp::test {
 
 /// The files of a folder and of those in it, by their path relative to it, with their bytes.
 using Files = std::map<std::string, std::string>;
-Files files_in(const std::filesystem::path& folder);
+Files list_files(const std::filesystem::path& folder);
 
 /// A part of a file, or a lock.
 bool is_hidden(const std::string& name);

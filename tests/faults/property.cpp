@@ -29,7 +29,7 @@ class Judge {
   Verdict judge() {
     stage_.reset();
     end_ = stage_.run(fault_);
-    const Files files = files_in(stage_.output());
+    const Files files = list_files(stage_.output());
     check_end();
     check_inputs();
     if (is_done()) {
@@ -85,7 +85,7 @@ class Judge {
   }
 
   void check_inputs() {
-    if (files_in(stage_.input()) != stage_.inputs()) violate("an input has changed");
+    if (list_files(stage_.input()) != stage_.inputs()) violate("an input has changed");
   }
 
   std::vector<std::string> differing(const Files& files) const {
@@ -144,7 +144,7 @@ class Judge {
   void check_next_run() {
     const ProgramEnd next = stage_.run_next();
     if (next.status != stage_.status()) violate("the next run fails: " + next.messages);
-    const Files files = files_in(stage_.output());
+    const Files files = list_files(stage_.output());
     for (const auto& [name, bytes] : files) {
       // A batch does not go back into the folder of a recording that is done.
       const bool may_stay = call() == "unlink" && stage_.scenario().command == Command::batch;

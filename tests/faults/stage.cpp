@@ -37,16 +37,16 @@ Stage::Stage(const Scenario& scenario) : scenario_(scenario), folder_(fast_folde
     scanner_ = std::make_unique<EmulatedScanner>(input() / "rig.yaml");
   else
     make_inputs();
-  inputs_ = files_in(input());
+  inputs_ = list_files(input());
   run_or_throw(arguments(scenario_.earlier), folder_.path());
-  earlier_ = files_in(output());
+  earlier_ = list_files(output());
   const ProgramEnd end = run();
   if (end.status != 0 && end.status != 3)
     throw std::runtime_error(in_words(arguments()) + ": " + end.messages);
   status_ = end.status;
   calls_ = end.calls;
   lasted_ = end.lasted;
-  undisturbed_ = files_in(output());
+  undisturbed_ = list_files(output());
 }
 
 void Stage::make_inputs() const {

@@ -8,7 +8,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kMostItems = 1200;
+constexpr std::size_t kMaxItems = 1200;
 constexpr double kHubBegin = 1'700'000'000.3;  // [s since the Unix epoch]
 /// [s] From jumps below the delays to counter wraps; a leap second, TAI against UTC, a wrap of the devices'
 /// clocks, and of 32 bits of seconds.
@@ -101,7 +101,7 @@ void ItemScript::operate(unsigned operation, std::size_t index, std::uint8_t arg
 void ItemScript::send_for(double seconds) {
   constexpr double kInterval = 0.01;
   const int n = static_cast<int>(std::lround(seconds / kInterval));
-  for (int i = 0; i < n && items_.size() < kMostItems; ++i) {
+  for (int i = 0; i < n && items_.size() < kMaxItems; ++i) {
     now_ += kInterval;
     hub_ahead_ += hub_rate_ * kInterval;
     for (std::size_t device = 0; device < devices_.size(); ++device) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "pipeline/data/error.hpp"
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "pipeline/pcd/measurement_tables.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "grabbers/telegrams/telegram_list.hpp"
+#include "grabbers/telegrams/sick_scan_xd_json.hpp"
 #include "pipeline/data/error.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

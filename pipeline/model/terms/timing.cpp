@@ -45,7 +45,7 @@ struct MirrorPeriod final : DifferentiableTerm<MirrorPeriod> {
                         .unit = "s",
                         .lower = -1e-2,
                         .upper = 1e-2,
-                        .summary = "relative excess of the period over the assumed one"}},
+                        .summary = "excess of the mirror's period over the assumed one"}},
         .details =
             "`t + excess θ/2π`: a term for measurements whose times assume a nominal period. Real LMS1xx are 0.57 % slow, 114 µs of 20 ms, and wander by ±0.2 % within seconds. Within one scan it is confounded with timing.intra_scan: the stamps of successive scans distinguish them. Simulated telegrams come from a mirror with this period.",
         .resolvable_by = "the mirror's own stamps"};

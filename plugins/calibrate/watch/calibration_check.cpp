@@ -12,7 +12,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::uint64_t kLots = 1;  // the same beams each time
+constexpr std::uint64_t kSampleSeed = 1;  // the same beams each time
 
 double rqe_of(const SensorModel& model, const Sample& sample, double sigma) {
   Vectors points;
@@ -37,21 +37,21 @@ Sample covered_by_both(const Sample& sample, const Calibration& a, const Calibra
   return covered(sample, least, greatest);
 }
 
-std::string amount(const std::string& name, double by) {
+std::string format_change(const std::string& name, double by) {
   if (name.ends_with(".tau")) return fmt::format("{:.2g} mm", 1e3 * by);
   if (name.ends_with(".eta")) return fmt::format("{:.2g} ms", 1e3 * by);
   if (name.ends_with(".lambda") || name.ends_with(".alpha")) return fmt::format("{:.2g} deg", by / kDegree);
   return fmt::format("{:.3g}", by);
 }
 
-struct Move {
+struct ParameterChange {
   double errors = 0;  ///< standard errors
   std::string text;
 };
 
 /// The free parameter that a refinement moved most, in its standard errors.
-Move greatest_move(const SensorModel& start, const Outcome& outcome) {
-  Move most;
+ParameterChange largest_change(const SensorModel& start, const Outcome& outcome) {
+  ParameterChange most;
   for (std::size_t k = 0; k < outcome.free.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(outcome.free[k]);
     const auto j = static_cast<Eigen::Index>(k);
@@ -59,8 +59,8 @@ Move greatest_move(const SensorModel& start, const Outcome& outcome) {
     const double by = outcome.model.values()[i] - start.values()[i];
     if (!(error > 0) || std::abs(by) / error <= most.errors) continue;
     const std::string& name = start.names()[outcome.free[k]];
-    most = {std::abs(by) / error,
-            fmt::format("{} by {} ({:.0f} standard errors)", name, amount(name, by), std::abs(by) / error)};
+    most = {std::abs(by) / error, fmt::format("{} by {} ({:.0f} standard errors)", name,
+                                              format_change(name, by), std::abs(by) / error)};
   }
   return most;
 }
@@ -77,47 +77,49 @@ Calibration with_lags_of(Calibration calibration, const Calibration& other) {
 class Checker {
  public:
   Checker(const Calibration& calibration, const Sample& sample, const Rig& rig, const TermRegistry& terms,
-          const CheckSettings& settings, const std::function<bool()>& go_on)
+          const CheckSettings& settings, const std::function<bool()>& keep_running)
       : calibration_(calibration),
         sample_(sample),
         rig_(rig),
         settings_(settings),
-        go_on_(go_on),
+        keep_running_(keep_running),
         start_(calibration, terms),
-        thinned_(thin_evenly(sample, settings.beams, kLots)) {}
+        thinned_(thin_evenly(sample, settings.beams, kSampleSeed)) {}
 
-  CalibrationCheck check(Renewing renewing) {
+  CalibrationCheck check(RecalibrationPolicy policy) {
     const Refinement best = refine(settings_.refinement);
     const Sample few =
         thin_by_area(covered_by_both(sample_, calibration_, calibration_of(best.outcome, rig_)), start_,
-                     settings_.beams, kLots);
+                     settings_.beams, kSampleSeed);
     CalibrationCheck check{.rqe = rqe_of(start_, few, settings_.sigma),
                            .best_rqe = rqe_of(best.outcome.model, few, settings_.sigma)};
-    const Move most = greatest_move(start_, best.outcome);
+    const ParameterChange most = largest_change(start_, best.outcome);
     check.moved = most.text;
     check.stale = check.rqe - check.best_rqe > settings_.tolerance && most.errors > settings_.significance;
-    if (renewing == Renewing::Yes || (renewing == Renewing::IfStale && check.stale)) {
-      check.renewal = settings_.renewed == Renewed::All ? whole(best.outcome, check.best_rqe) : lags(few);
+    if (policy == RecalibrationPolicy::Yes || (policy == RecalibrationPolicy::IfStale && check.stale)) {
+      check.recalibration = settings_.parameters == RecalibratedParameters::All
+                                ? whole(best.outcome, check.best_rqe)
+                                : lags(few);
     }
     return check;
   }
 
  private:
   Refinement refine(const RefinementSettings& settings) const {
-    return refine_by_surfels(start_, thinned_, settings, [this](int) { return go_on_(); });
+    return refine_by_surfels(start_, thinned_, settings, [this](int) { return keep_running_(); });
   }
 
   /// With the geometry as it is.
-  Renewal lags(const Sample& few) const {
+  Recalibration lags(const Sample& few) const {
     RefinementSettings settings = settings_.refinement;
     for (const char* geometry : {"lambda", "tau", "alpha"}) settings.fixed.emplace_back(geometry);
     const Outcome outcome = refine(settings).outcome;
-    Renewal renewal = whole(outcome, rqe_of(outcome.model, few, settings_.sigma));
-    renewal.calibration = with_lags_of(calibration_, renewal.calibration);
-    return renewal;
+    Recalibration recalibration = whole(outcome, rqe_of(outcome.model, few, settings_.sigma));
+    recalibration.calibration = with_lags_of(calibration_, recalibration.calibration);
+    return recalibration;
   }
 
-  Renewal whole(const Outcome& outcome, double rqe) const {
+  Recalibration whole(const Outcome& outcome, double rqe) const {
     return {.calibration = calibration_of(outcome, rig_), .rqe = rqe, .caveats = outcome.caveats};
   }
 
@@ -125,7 +127,7 @@ class Checker {
   const Sample& sample_;
   const Rig& rig_;
   const CheckSettings& settings_;
-  const std::function<bool()>& go_on_;
+  const std::function<bool()>& keep_running_;
   SensorModel start_;
   Sample thinned_;
 };
@@ -134,8 +136,8 @@ class Checker {
 
 CalibrationCheck check_calibration(const Calibration& calibration, const Sample& sample, const Rig& rig,
                                    const TermRegistry& terms, const CheckSettings& settings,
-                                   Renewing renewing, const std::function<bool()>& go_on) {
-  return Checker(calibration, sample, rig, terms, settings, go_on).check(renewing);
+                                   RecalibrationPolicy policy, const std::function<bool()>& keep_running) {
+  return Checker(calibration, sample, rig, terms, settings, keep_running).check(policy);
 }
 
 }  // namespace crisp

@@ -44,9 +44,9 @@ void WatchStage::describe(StageDescription<WatchStage>& d) {
                 {"at_start", Recalibrate::AtStart},
                 {"when_stale", Recalibrate::WhenStale},
                 {"always", Recalibrate::Always}});
-  d.option("recalibrate_parameters", &WatchStage::settings_, &CheckSettings::renewed,
+  d.option("recalibrate_parameters", &WatchStage::settings_, &CheckSettings::parameters,
            "parameters to recalibrate: the lags alone, or all")
-      .choices({{"lags", Renewed::Lags}, {"all", Renewed::All}});
+      .choices({{"lags", RecalibratedParameters::Lags}, {"all", RecalibratedParameters::All}});
   d.option("request", &WatchStage::request_,
            "file whose creation requests a recalibration at once; none: no file");
   d.option("sigma", &WatchStage::settings_, &CheckSettings::sigma, "kernel width of the RQE")
@@ -109,21 +109,20 @@ bool WatchStage::is_requested() {
   return std::filesystem::remove(request_, ignored);
 }
 
-Renewing WatchStage::renewing() const {
+RecalibrationPolicy WatchStage::policy() const {
   const bool first = recalibrate_ == Recalibrate::AtStart && checks_ == 0;
-  if (requested_ || first || recalibrate_ == Recalibrate::Always) return Renewing::Yes;
-  return recalibrate_ == Recalibrate::WhenStale ? Renewing::IfStale : Renewing::No;
+  if (requested_ || first || recalibrate_ == Recalibrate::Always) return RecalibrationPolicy::Yes;
+  return recalibrate_ == Recalibrate::WhenStale ? RecalibrationPolicy::IfStale : RecalibrationPolicy::No;
 }
 
 void WatchStage::begin_check(Context& context) {
   due_ = recent_->latest() + every_;
   auto check = [this, batches = recent_->batches(), calibration = calibration_, rig = context.rig(),
-                terms = context.run().registrar->get<TermRegistry>(), renewing = renewing()]() mutable {
+                terms = context.run().registrar->get<TermRegistry>(), policy = policy()]() mutable {
     PlateTrajectory plate;
     // Beams outside of a check can be replaced while it runs.
     const Sample sample = sample_of(std::exchange(batches, {}), kToChooseFrom * settings_.beams, plate);
-    return check_calibration(*calibration, sample, rig, terms, settings_, renewing,
-                             [this] { return !stop_; });
+    return check_calibration(*calibration, sample, rig, terms, settings_, policy, [this] { return !stop_; });
   };
   running_ =
       std::async(std::launch::async, [check = std::move(check)]() mutable { return in_background(check); });
@@ -147,9 +146,9 @@ void WatchStage::judge(CalibrationCheck found, Outputs& out, Context& context) {
   const bool was_good = std::exchange(good_, !found.stale);
   rqe_ = found.rqe;
   best_rqe_ = found.best_rqe;
-  if (found.renewal) {
-    const double rqe = found.renewal->rqe;
-    if (take(std::move(*found.renewal), out, context)) {
+  if (found.recalibration) {
+    const double rqe = found.recalibration->rqe;
+    if (take(std::move(*found.recalibration), out, context)) {
       rqe_ = rqe;
       good_ = good_ || rqe - best_rqe_ <= settings_.tolerance;
     }
@@ -160,13 +159,13 @@ void WatchStage::judge(CalibrationCheck found, Outputs& out, Context& context) {
   if (was_good) note("the calibration is stale: " + found.moved, context);
 }
 
-bool WatchStage::take(Renewal found, Outputs& out, Context& context) {
+bool WatchStage::take(Recalibration found, Outputs& out, Context& context) {
   if (!found.caveats.empty()) {
     context.count("untrusted recalibrations");
     note("not recalibrated: " + found.caveats.front(), context);
     return false;
   }
-  ++renewed_;
+  ++parameters_;
   events_.emplace_back("recalibrated");
   found.calibration.provenance = calibration_->provenance;
   found.calibration.provenance["recalibration"] = "calibrate.watch";
@@ -186,7 +185,7 @@ void WatchStage::report(Context& context) {
                                  {"rqe_above_best", rqe_ - best_rqe_},
                                  {"calibration_checks_total", static_cast<double>(checks_)},
                                  {"calibration_stale_total", static_cast<double>(stale_)},
-                                 {"recalibrations_total", static_cast<double>(renewed_)}},
+                                 {"recalibrations_total", static_cast<double>(parameters_)}},
                       .events = std::exchange(events_, {})});
 }
 
@@ -194,11 +193,11 @@ void WatchStage::finish(Outputs& out, Context& context) {
   if (running_.valid()) end_check(out, context);
   context.report({{"checks", checks_},
                   {"stale", stale_},
-                  {"recalibrations", renewed_},
+                  {"recalibrations", parameters_},
                   {"rqe", rqe_},
                   {"best_rqe", best_rqe_}});
   context.print(fmt::format("{} checks of the calibration, {} of them found it stale; {} recalibrations{}",
-                            checks_, stale_, renewed_, line_.empty() ? "" : "; at last " + line_));
+                            checks_, stale_, parameters_, line_.empty() ? "" : "; at last " + line_));
   if (!good_) context.mark_untrusted("the calibration is stale: recalibrate");
 }
 

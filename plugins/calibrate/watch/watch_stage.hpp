@@ -32,11 +32,11 @@ class WatchStage final : public Stage {
  private:
   bool is_due();
   bool is_requested();
-  Renewing renewing() const;
+  RecalibrationPolicy policy() const;
   void begin_check(Context& context);
   void end_check(Outputs& out, Context& context);
   void judge(CalibrationCheck found, Outputs& out, Context& context);
-  bool take(Renewal found, Outputs& out, Context& context);
+  bool take(Recalibration found, Outputs& out, Context& context);
   void note(std::string what, Context& context);
   void report(Context& context);
 
@@ -55,7 +55,7 @@ class WatchStage final : public Stage {
   bool requested_ = false;                          ///< the next or current check was requested
   std::atomic<bool> stop_ = false;                  ///< the check that runs
   std::future<CalibrationCheck> running_;
-  std::uint64_t checks_ = 0, stale_ = 0, renewed_ = 0;
+  std::uint64_t checks_ = 0, stale_ = 0, parameters_ = 0;
   bool good_ = true;  ///< the calibration in use, as far as is known
   std::string line_;
   std::vector<std::string> events_;  ///< not yet reported

@@ -96,12 +96,12 @@ Eigen::MatrixXd AngleShiftModel::clustered_scores(const Eigen::MatrixXd& rows) c
 }
 
 double AngleShiftModel::scale() const {
-  constexpr double kLeast = 0.01 * kDegree;
+  constexpr double kMin = 0.01 * kDegree;
   std::vector<double> sizes(static_cast<std::size_t>(residuals_.size()));
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     sizes[i] = std::abs(residuals_[static_cast<Eigen::Index>(i)]);
   }
-  return std::max(kLeast, kSigmaByMedian * median_in_place(sizes));
+  return std::max(kMin, kMadToSigma * median_in_place(sizes));
 }
 
 }  // namespace crisp

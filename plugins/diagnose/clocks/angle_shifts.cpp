@@ -195,12 +195,12 @@ void compare(const ScanLines& lines, std::size_t i, std::pair<std::size_t, std::
 
 /// Shift of least mean cost, refined by a parabola through three grid points.
 std::optional<double> minimizer(const Cost& cost) {
-  constexpr double kFewest = 100;  // comparisons
-  constexpr double kDeep = 0.7;    // of the median cost
+  constexpr double kMin = 100;   // comparisons
+  constexpr double kDeep = 0.7;  // of the median cost
   std::vector<double> means(kShifts, std::numeric_limits<double>::infinity());
   std::vector<double> known;
   for (std::size_t s = 0; s < kShifts; ++s) {
-    if (cost.count[s] < kFewest) continue;
+    if (cost.count[s] < kMin) continue;
     means[s] = cost.sum[s] / cost.count[s];
     known.push_back(means[s]);
   }

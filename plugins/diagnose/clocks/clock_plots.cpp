@@ -45,12 +45,12 @@ bool is_pause_between(std::span<const Stamp> stamps, std::size_t first, std::siz
 
 Plot clock_plot(const std::string& device, std::span<const CountedStamp> stamps,
                 const std::optional<ClockDeparture>& departure) {
-  constexpr std::size_t kMostPoints = 1000;
+  constexpr std::size_t kMaxPoints = 1000;
   const std::vector<Stamp> all = without_counts(stamps);
   const ClockLine line = line_of(all);
   const auto delay_ms = [&](const Stamp& s, double lead) { return kMilli * (lead - line.lead(s.device)); };
   PlotSeries telegrams{.name = "telegrams", .x = {}, .y = {}, .joined = false};
-  for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / kMostPoints) {
+  for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / kMaxPoints) {
     add_point(receipt_of(all[i]), delay_ms(all[i], all[i].lead), telegrams);
   }
   Plot plot{.title = device + ": receipt less device time, about the clock",

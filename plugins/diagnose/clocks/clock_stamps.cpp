@@ -16,7 +16,7 @@ namespace crisp {
 namespace {
 
 constexpr std::int64_t kWrap_us = std::int64_t{1} << 32;
-constexpr std::size_t kFewest = 64;  // minimum number of stamps for a test
+constexpr std::size_t kMin = 64;  // minimum number of stamps for a test
 
 /// Stamp at which the device's own time jumps most, and whether the jump equals the envelope's step.
 struct JumpThere {
@@ -97,20 +97,22 @@ std::vector<ClockDeparture::Competitor> competitors_of(std::span<const CountedSt
   const JumpThere jump = jump_about(stamps, envelope, window, size);
   const double own = kind == Kind::drift ? drift_bic : step_bic;
   const auto odds = [own](double other) { return (other - own) / 2 / std::numbers::ln10; };
-  std::vector<ClockDeparture::Competitor> competitors = {{.kind = {}, .log10_odds = odds(constant_bic)}};
+  std::vector<ClockDeparture::Competitor> competitors = {
+      {.kind = {}, .log10_bayes_factor = odds(constant_bic)}};
   if (kind == Kind::drift) {
-    competitors.push_back(
-        {.kind = jump.is_the_step ? Kind::clock_step : Kind::latency_step, .log10_odds = odds(step_bic)});
+    competitors.push_back({.kind = jump.is_the_step ? Kind::clock_step : Kind::latency_step,
+                           .log10_bayes_factor = odds(step_bic)});
   } else {
     const double for_clock = log10_odds_of_jump(stamps, jump.stamp, -size);
-    competitors.push_back({.kind = Kind::drift, .log10_odds = odds(drift_bic)});
+    competitors.push_back({.kind = Kind::drift, .log10_bayes_factor = odds(drift_bic)});
     competitors.push_back({.kind = kind == Kind::clock_step ? Kind::latency_step : Kind::clock_step,
-                           .log10_odds = kind == Kind::clock_step ? for_clock : -for_clock});
+                           .log10_bayes_factor = kind == Kind::clock_step ? for_clock : -for_clock});
   }
   // Receipt times that jump by years give no finite Bayes factor.
-  if (!std::ranges::all_of(competitors, [](const auto& one) { return std::isfinite(one.log10_odds); }))
+  if (!std::ranges::all_of(competitors,
+                           [](const auto& one) { return std::isfinite(one.log10_bayes_factor); }))
     return {};
-  std::ranges::stable_sort(competitors, {}, &ClockDeparture::Competitor::log10_odds);
+  std::ranges::stable_sort(competitors, {}, &ClockDeparture::Competitor::log10_bayes_factor);
   return competitors;
 }
 
@@ -153,22 +155,22 @@ void StampTrack::add(std::uint16_t counter, std::uint32_t device_us, std::int64_
 }
 
 ClockFacts clock_facts(std::span<const CountedStamp> stamps) {
-  if (stamps.size() < kFewestOfClock) return {};
+  if (stamps.size() < kMinOfClock) return {};
   const std::vector<Stamp> all = without_counts(stamps);
   const ClockLine line = line_of(all);
   std::vector<double> delays;
   for (const Stamp& s : all) delays.push_back(s.lead - line.lead(s.device));
   std::ranges::sort(delays);
-  constexpr double kMost = 0.95;
+  constexpr double kMax = 0.95;
   return {.skew = line.slope,
           .skew_std_error = errors_of_line(all, line).slope,
           .delay_median = delays[delays.size() / 2],
-          .delay_95 = delays[static_cast<std::size_t>(kMost * static_cast<double>(delays.size() - 1))]};
+          .delay_95 = delays[static_cast<std::size_t>(kMax * static_cast<double>(delays.size() - 1))]};
 }
 
 std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stamps, std::size_t tests,
                                               std::uint64_t seed) {
-  if (stamps.size() < kFewest) return std::nullopt;
+  if (stamps.size() < kMin) return std::nullopt;
   constexpr Eigen::Index kMargin = 2;  // windows at either end
   const Envelope envelope = envelope_of(without_counts(stamps));
   const Eigen::MatrixXd columns = bend_and_steps(envelope.time, kMargin);
@@ -254,7 +256,7 @@ std::vector<std::span<const CountedStamp>> unbroken_segments(
 
 std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes,
                                         const std::optional<std::array<double, 2>>& step_interval) {
-  constexpr std::size_t kFewestPieces = 8;  // fewer give no variance
+  constexpr std::size_t kMinPieces = 8;  // fewer give no variance
   MirrorFacts facts;
   double time = 0;
   double turns = 0;
@@ -270,7 +272,7 @@ std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes,
       turns += turned;
     }
   }
-  if (facts.periods.size() < kFewestPieces) return std::nullopt;
+  if (facts.periods.size() < kMinPieces) return std::nullopt;
   facts.period = time / turns;
   double squares = 0;
   for (const double period : facts.periods) squares += std::pow(period - facts.period, 2);

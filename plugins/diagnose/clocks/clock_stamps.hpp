@@ -55,8 +55,8 @@ struct ClockDeparture {
   Gain gain;                ///< RMS of held-out minimum delays about the clock model
 
   struct Competitor {
-    std::optional<Kind> kind;  ///< empty: no deviation
-    double log10_odds = 0;     ///< log10 of the Bayes factor against it
+    std::optional<Kind> kind;       ///< empty: no deviation
+    double log10_bayes_factor = 0;  ///< log10 of the Bayes factor against it
   };
   /// Other deviations that could explain the minimum delays, the most likely first. The Bayes factors come
   /// from the BIC (normal errors of the minimum delays). Steps of clock and link compare by the device's own
@@ -74,7 +74,7 @@ struct ClockFacts {
   double delay_95 = kNotTested;      ///< [s]
 };
 
-inline constexpr std::size_t kFewestOfClock = 10;  ///< minimum number of stamps for a clock
+inline constexpr std::size_t kMinOfClock = 10;  ///< minimum number of stamps for a clock
 
 /// Estimates skew and delays of a device.
 ClockFacts clock_facts(std::span<const CountedStamp> stamps);

@@ -54,10 +54,11 @@ Finding finding_of(const ClockDeparture& departure, const std::string& device) {
                           parameter("at", "s", departure.at, departure.at_std_error)};
   }
   constexpr double kEven = 2;  // log10 of the Bayes factor below which causes are not resolvable
-  if (!departure.competitors.empty()) finding.log10_odds = departure.competitors.front().log10_odds;
+  if (!departure.competitors.empty())
+    finding.log10_bayes_factor = departure.competitors.front().log10_bayes_factor;
   for (const auto& [kind, odds] : departure.competitors) {
     if (!kind) continue;
-    finding.alternatives.push_back({.cause = cause_of(*kind), .scope = device, .log10_odds = odds});
+    finding.alternatives.push_back({.cause = cause_of(*kind), .scope = device, .log10_bayes_factor = odds});
     if (odds < kEven) finding.confounded_with.push_back(device + "." + cause_of(*kind));
   }
   return finding;
@@ -102,8 +103,8 @@ std::string caveat_of(const DeviceFacts& facts) {
   constexpr double kFar =
       1e-3;  // [s] largest plausible median distance; few stamps tilt the line, but stay near
   constexpr double kNoDelay = 1;  // [s] larger than any median delay of a link
-  const bool steep = std::abs(facts.skew) >= 0.99 * kMostSkew;
-  const bool unknown = facts.skew_std_error >= 0.9 * kMostSkew;  // the data do not constrain the skew
+  const bool steep = std::abs(facts.skew) >= 0.99 * kMaxSkew;
+  const bool unknown = facts.skew_std_error >= 0.9 * kMaxSkew;  // the data do not constrain the skew
   if (!((steep || unknown) && facts.delay_median > kFar) && !(facts.delay_median > kNoDelay)) return {};
   return fmt::format(
       "{}: its stamps fit no clock of constant rate ({:+.0f} ± {:.0f} ppm; median distance {:.1f} ms). One wrong receipt or device time suffices for that. Check the plot of its stamps",
@@ -228,7 +229,7 @@ void DiagnoseClocksStage::add_mirror(const Device& device, const MirrorFacts& fa
                           .scope = device.name,
                           .parameters = {parameter("excess", "s", excess, facts.period_std_error)},
                           .explained_fraction = gain.explained(),
-                          .log10_odds = (z * z - price) / 2 / std::numbers::ln10,
+                          .log10_bayes_factor = (z * z - price) / 2 / std::numbers::ln10,
                           .p_value = p,
                           .confounded_with = {},
                           .gain = {gain},

@@ -38,7 +38,7 @@ double local_scatter(std::span<const CountedStamp> stamps, std::size_t at) {
   std::vector<double> sizes;
   for_each_pair(stamps, at, 1,
                 [&](double time, double counts) { sizes.push_back(std::abs(time - period * counts)); });
-  return sizes.empty() ? kStampQuantum : std::max(kStampQuantum, kSigmaByMedian * median_in_place(sizes));
+  return sizes.empty() ? kStampQuantum : std::max(kStampQuantum, kMadToSigma * median_in_place(sizes));
 }
 
 }  // namespace

@@ -18,14 +18,14 @@ namespace crisp {
 namespace {
 
 constexpr double kBlock = AngleShiftModel::kBlock;
-constexpr std::size_t kMostSlips = 100;
+constexpr std::size_t kMaxSlips = 100;
 
 std::int64_t block_of(double time) { return AngleShiftModel::block_of(time); }
 
 /// Starts of blocks with enough blocks of shifts across them on either side: with few clusters, clustered
 /// standard errors are too small (Cameron, Gelbach and Miller 2008).
 std::set<std::int64_t> supported_blocks(std::span<const AngleShift> shifts) {
-  constexpr std::size_t kFewest = 8;
+  constexpr std::size_t kMin = 8;
   std::map<std::int64_t, std::pair<std::set<std::int64_t>, std::set<std::int64_t>>> sides;
   for (const AngleShift& shift : shifts) {
     for (std::int64_t begin = block_of(shift.earlier) + 1; begin <= block_of(shift.later); ++begin) {
@@ -35,7 +35,7 @@ std::set<std::int64_t> supported_blocks(std::span<const AngleShift> shifts) {
   }
   std::set<std::int64_t> supported;
   for (const auto& [begin, side] : sides) {
-    if (side.first.size() >= kFewest && side.second.size() >= kFewest) supported.insert(begin);
+    if (side.first.size() >= kMin && side.second.size() >= kMin) supported.insert(begin);
   }
   return supported;
 }
@@ -75,7 +75,7 @@ std::vector<StepCandidate> best_candidates(std::span<const AngleShift> shifts, c
     end.gradient -= gradient;
     end.information -= weight;
   }
-  constexpr double kFewest = 2;  // shifts
+  constexpr double kMin = 2;  // shifts
   std::vector<StepCandidate> candidates;
   double best = 0;  // largest gain of a supported candidate
   Score sum;
@@ -83,7 +83,7 @@ std::vector<StepCandidate> best_candidates(std::span<const AngleShift> shifts, c
     sum.gradient += change.gradient;
     sum.information += change.information;
     const double time = kBlock * static_cast<double>(block);
-    if (sum.information < kFewest || is_near(known, time)) continue;
+    if (sum.information < kMin || is_near(known, time)) continue;
     const bool is_supported = supported.contains(block);
     const double gain = sum.gradient * sum.gradient / sum.information;
     candidates.push_back({.time = time, .gain = gain, .is_supported = is_supported});
@@ -101,19 +101,19 @@ std::vector<StepCandidate> best_candidates(std::span<const AngleShift> shifts, c
 std::optional<EncoderSlip> step_in_readings(double time, double size, const PlateTrajectory& plate) {
   constexpr double kAround = 2.5 * kBlock;
   constexpr std::size_t kClear = 3;  // readings on either side, whose rates the step does not affect
-  constexpr double kLeast = 0.5;     // relative to the size
-  constexpr double kMost = 2;
+  constexpr double kMin = 0.5;       // relative to the size
+  constexpr double kMax = 2;
   const auto times = plate.times();
   const auto first =
       static_cast<std::size_t>(std::ranges::lower_bound(times, time - kAround) - times.begin());
   std::optional<EncoderSlip> slip;
-  double largest = kLeast;
+  double largest = kMin;
   for (std::size_t n = std::max(first, kClear); n + kClear + 1 < times.size(); ++n) {
     if (times[n] > time + kAround) break;
     const double width = times[n + 1] - times[n];
     const double rate = 0.5 * (plate.rates()[n - kClear] + plate.rates()[n + 1 + kClear]);
     const double step = (plate.angles()[n + 1] - plate.angles()[n] - rate * width) / size;
-    if (step <= largest || step > kMost) continue;
+    if (step <= largest || step > kMax) continue;
     largest = step;
     slip = EncoderSlip{.at = 0.5 * (times[n] + times[n + 1]),
                        .at_std_error = width / std::sqrt(12.0),
@@ -159,7 +159,7 @@ class SlipSearch {
   bool run(const PlateTrajectory& plate) {
     const std::size_t known = found_.size();
     update();
-    while (found_.size() < kMostSlips) {
+    while (found_.size() < kMaxSlips) {
       const auto candidates = best_candidates(shifts_, model_, supported_, found_);
       if (candidates.empty()) break;
       AngleShiftModel trial = model_;
@@ -270,14 +270,14 @@ void measure_gain(std::vector<AngleShift> shifts, std::span<const EncoderSlip> r
 
 EncoderSlips find_encoder_slips(const Measurements& beams, const PlateTrajectory& plate, double angle_step,
                                 std::uint64_t seed) {
-  constexpr std::size_t kFewest = 20;  // shifts
+  constexpr std::size_t kMin = 20;  // shifts
   constexpr int kRounds = 6;
   EncoderSlips result;
   PlateTrajectory corrected = plate;
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<AngleShift> shifts = angle_shifts(beams, corrected);
     result.shifts = shifts.size();
-    if (shifts.size() < kFewest) return result;
+    if (shifts.size() < kMin) return result;
     const std::vector<EncoderSlip> removed = result.slips;
     SlipSearch search(shifts, angle_step, result.slips);
     result.tested = search.tested();

@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 
-#include "pipeline/estimate/surfel_rows.hpp"
+#include "pipeline/estimate/surfel_jacobian.hpp"
 #include "pipeline/model/beam.hpp"
 
 namespace crisp {

@@ -24,10 +24,10 @@ std::vector<std::size_t> base_of(const Refinement& refinement) {
 
 std::vector<Hypothesis::Competitor> competitors(const SelectedCandidate& choice,
                                                 const CandidateJacobian& jacobian) {
-  constexpr std::size_t kMost = 5;
+  constexpr std::size_t kMax = 5;
   std::vector<Hypothesis::Competitor> result;
   for (const CompetingCandidate& other : choice.alternatives) {
-    if (result.size() == kMost) break;
+    if (result.size() == kMax) break;
     const Candidate& candidate = jacobian.candidates()[other.candidate];
     result.push_back({.name = candidate.name,
                       .behind = other.behind,

@@ -21,7 +21,7 @@ namespace {
 
 using Turn = CrossValidator::Score::Turn;
 
-constexpr std::size_t kLeastTurns = 4;
+constexpr std::size_t kMinTurns = 4;
 
 /// Turn of the plate and recording of each beam.
 struct Pieces {
@@ -49,7 +49,7 @@ Pieces pieces_of(const Sample& sample) {
     pieces.recording.push_back(recording);
   }
   double piece = 2 * std::numbers::pi;
-  if (way < static_cast<double>(kLeastTurns) * piece) piece = way / (2 * kLeastTurns) * (1 + 1e-9);
+  if (way < static_cast<double>(kMinTurns) * piece) piece = way / (2 * kMinTurns) * (1 + 1e-9);
   std::uint32_t before = 0;  // recording borders so far; each ends a turn
   for (std::size_t i = 0; i < turned.size(); ++i) {
     if (i > 0 && pieces.recording[i] != pieces.recording[i - 1]) ++before;

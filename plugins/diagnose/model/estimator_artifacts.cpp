@@ -28,12 +28,12 @@ std::vector<double> directions(const Sample& sample, std::size_t laser) {
 
 /// Number of evenly spaced directions per turn in which most scans lie; empty without such a pattern.
 std::optional<std::size_t> lines_of(std::vector<double> angles) {
-  constexpr std::size_t kMost = 3000;  // scans
-  constexpr std::size_t kLeastLines = 4;
+  constexpr std::size_t kMax = 3000;  // scans
+  constexpr std::size_t kMinLines = 4;
   constexpr double kTogether = 0.7;  // resultant length of the k-th harmonic of the directions
-  angles.resize(std::min(angles.size(), kMost));
+  angles.resize(std::min(angles.size(), kMax));
   const auto n = static_cast<double>(angles.size());
-  for (std::size_t lines = kLeastLines; lines <= angles.size() / 2; ++lines) {
+  for (std::size_t lines = kMinLines; lines <= angles.size() / 2; ++lines) {
     std::complex<double> sum = 0;
     for (const double angle : angles) sum += std::polar(1.0, static_cast<double>(lines) * angle);
     if (std::abs(sum) > kTogether * n) return lines;

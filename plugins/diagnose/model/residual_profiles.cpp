@@ -113,7 +113,7 @@ std::vector<double> means_in(const QuantileBins& layout, const WeightedResiduals
     for (std::size_t k = layout.first[b]; k < layout.first[b + 1]; ++k) {
       const double weight = residuals.weight[layout.residual[k]];
       sum += weight * residuals.value[layout.residual[k]];
-      slope += biweight_slope(weight);
+      slope += biweight_psi_derivative(weight);
     }
     means.push_back(slope > 0 ? sum / slope : 0);
   }
@@ -153,8 +153,8 @@ std::vector<double> sizes_of(const std::vector<double>& noise, const Residuals& 
 
 /// p-value of a profile under the null hypothesis of noise alone: χ² over its bins, less one degree of
 /// freedom where the mean was removed.
-double chance_of(const QuantileBins& layout, const std::vector<double>& means,
-                 const std::vector<double>& errors) {
+double profile_p_value(const QuantileBins& layout, const std::vector<double>& means,
+                       const std::vector<double>& errors) {
   double chi2 = 0;
   for (std::size_t b = 0; b < means.size(); ++b) {
     if (errors[b] > 0) chi2 += std::pow(means[b] / errors[b], 2);
@@ -203,7 +203,7 @@ ProfileComparison compare_with_simulation(const SurfaceObservations& observation
   for (std::size_t p = 0; p < all.size(); ++p) {
     const auto errors = errors_of(means[p]);
     for (std::size_t s = 0; s < kSimulations; ++s)
-      least[s] = std::min(least[s], chance_of(all[p], means[p][s], errors));
+      least[s] = std::min(least[s], profile_p_value(all[p], means[p][s], errors));
   }
   const double tests = effective_number_of_tests(least);
   for (std::size_t p = 0; p < all.size(); ++p) {
@@ -218,7 +218,7 @@ ProfileComparison compare_with_simulation(const SurfaceObservations& observation
       square += own[b] * own[b] - errors[b] * errors[b];
     }
     profile.rms = std::sqrt(std::max(0.0, square / static_cast<double>(own.size())));
-    profile.p_value = sidak_p_value(tests, chance_of(all[p], own, errors));
+    profile.p_value = sidak_p_value(tests, profile_p_value(all[p], own, errors));
     result.p_value = std::min(result.p_value, profile.p_value);
     result.profiles.push_back(std::move(profile));
   }

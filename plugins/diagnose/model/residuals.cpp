@@ -80,7 +80,7 @@ std::vector<double> noise_of(const Residuals& residuals, const Measurements& bea
   std::vector<double> noise;
   for (std::size_t laser = 0; laser < lasers; ++laser) {
     auto& sizes = pairs[laser].size() > kFewPairs ? pairs[laser] : alone[laser];
-    noise.push_back(sizes.empty() ? 0 : kSigmaByMedian * median_in_place(sizes));
+    noise.push_back(sizes.empty() ? 0 : kMadToSigma * median_in_place(sizes));
   }
   return noise;
 }

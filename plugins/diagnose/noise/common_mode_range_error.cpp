@@ -30,12 +30,12 @@ Eigen::VectorXd means(const RangeErrors& errors, std::size_t scans) {
     squares[errors.beam[i]] += std::pow(double{errors.value[i]}, 2);
     shots[errors.beam[i]] += 1;
   }
-  constexpr double kLeast = 1e-6;  // [m²] square of a device's resolution, a millimetre
+  constexpr double kMin = 1e-6;  // [m²] square of a device's resolution, a millimetre
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(scans));
   Eigen::VectorXd weights = sums;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const std::size_t beam = errors.beam[i];
-    const double weight = 1 / std::max(kLeast, squares[beam] / shots[beam]);
+    const double weight = 1 / std::max(kMin, squares[beam] / shots[beam]);
     sums[errors.block[i]] += weight * double{errors.value[i]};
     weights[errors.block[i]] += weight;
   }
@@ -53,8 +53,8 @@ Eigen::MatrixXd slow(const Eigen::ArrayXd& time, Eigen::Index count) {
 
 /// [s] The catalogue and the simulator have no shorter time constants.
 double time_constant(std::size_t warm_up, double duration) {
-  constexpr double kLeast = 0.5;
-  return std::max(kLeast, kWarmUps.at(warm_up) * duration);
+  constexpr double kMin = 0.5;
+  return std::max(kMin, kWarmUps.at(warm_up) * duration);
 }
 
 Eigen::MatrixXd creeping(const Eigen::ArrayXd& time) {
@@ -135,7 +135,7 @@ CommonModeChange change_of(const MeansModel& model, const PermutationTest& test,
                           .size = test.values[own],
                           .std_error = test.errors[own],
                           .p_value = std::min(1.0, test.p_value * tests),
-                          .log10_odds = (next_likely - model.bic) / 2 / std::numbers::ln10,
+                          .log10_bayes_factor = (next_likely - model.bic) / 2 / std::numbers::ln10,
                           .gain = named(test.gain)};
   if (model.is_step) {
     const auto first = static_cast<std::size_t>(before_step(model.columns->col(test.column)));
@@ -216,8 +216,8 @@ bool is_significant(const CommonModeError& found) {
 CommonModeError common_mode_error(const RangeErrors& errors, const std::vector<double>& seconds,
                                   std::size_t tests, std::uint64_t seed) {
   const auto n = static_cast<Eigen::Index>(seconds.size());
-  constexpr Eigen::Index kFewest = 32;
-  if (n < kFewest || !(seconds.back() > seconds.front())) return {};
+  constexpr Eigen::Index kMin = 32;
+  if (n < kMin || !(seconds.back() > seconds.front())) return {};
   const Eigen::VectorXd values = means(errors, seconds.size());
   const Eigen::ArrayXd time = Eigen::Map<const Eigen::ArrayXd>(seconds.data(), n) - seconds.front();
   const Shapes shapes{.jumps = steps(n, kMargin), .creeping = creeping(time)};

@@ -21,7 +21,8 @@ struct CommonModeChange {
   double shape = 0;  ///< [s] time of the step since the run's epoch, or time constant T
   double shape_error = 0;
   double p_value = 1;
-  double log10_odds = 0;  ///< log10 of the Bayes factor (BIC) against the best model without the change
+  double log10_bayes_factor =
+      0;  ///< log10 of the Bayes factor (BIC) against the best model without the change
   Gain gain;
 };
 

@@ -42,7 +42,7 @@ struct ExpectationStep::Block {
   std::size_t size = 0;
   const std::vector<ComponentKind>* kinds = nullptr;
   RangeArray value{}, weight{}, relative{}, deviation{}, log_density{};
-  std::array<RangeArray, MixtureBlock::kMostComponents> share{}, mean{}, probability{};
+  std::array<RangeArray, MixtureBlock::kMaxComponents> share{}, mean{}, probability{};
 
   /// Evaluates the mixture for the ranges of the block.
   void compute(const NoiseModel& model, const RangeErrors& errors,

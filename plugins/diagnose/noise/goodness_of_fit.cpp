@@ -223,9 +223,8 @@ class Chance {
   }
   double mean() const { return mean_; }
   double of(double value) const {
-    constexpr double kMostDegreesOfFreedom =
-        1e5;  // more than any number of groups: the statistic is constant
-    if (!(kMostDegreesOfFreedom * variance_ > 2 * mean_ * mean_)) return 1;
+    constexpr double kMaxDegreesOfFreedom = 1e5;  // more than any number of groups: the statistic is constant
+    if (!(kMaxDegreesOfFreedom * variance_ > 2 * mean_ * mean_)) return 1;
     const boost::math::chi_squared model(2 * mean_ * mean_ / variance_);
     return cdf(complement(model, value * 2 * mean_ / variance_));
   }
@@ -264,8 +263,8 @@ Chances chances_in(const ScoreStatistics& tests, const Simulator& by, const Rang
 
 FitStatistics goodness_of_noise_model(const RangeErrors& all, const NoiseModel& like,
                                       const Eigen::VectorXd& curve, BeamsOf beams, std::uint64_t seed) {
-  constexpr std::size_t kMost = 60'000;
-  RangeErrors errors = thinned(all, kMost);
+  constexpr std::size_t kMax = 60'000;
+  RangeErrors errors = thinned(all, kMax);
   const double step = step_of(errors);
   if (curve.size() > 0) {
     subtract_curve(curve, errors);

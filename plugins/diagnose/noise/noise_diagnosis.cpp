@@ -94,10 +94,11 @@ ComponentFit best_of(const std::string& scope, const std::vector<NoiseComponent>
     if (components[w].cause.empty()) continue;
     const double behind = best.rise - rises[w];
     if (rises[w] > 0 && behind < kOdds) best.as_probable.push_back(components[w].cause);
-    best.others.push_back(
-        {.cause = components[w].cause, .scope = scope, .log10_odds = behind / 2 / std::numbers::ln10});
+    best.others.push_back({.cause = components[w].cause,
+                           .scope = scope,
+                           .log10_bayes_factor = behind / 2 / std::numbers::ln10});
   }
-  std::ranges::stable_sort(best.others, {}, &OtherCause::log10_odds);
+  std::ranges::stable_sort(best.others, {}, &OtherCause::log10_bayes_factor);
   return best;
 }
 
@@ -126,7 +127,7 @@ SelectedComponent found_of(const std::string& scope, const NoiseComponent& compo
   Finding finding{.cause = component.cause,
                   .scope = scope,
                   .parameters = {},
-                  .log10_odds = tried.lead / 2 / std::numbers::ln10,
+                  .log10_bayes_factor = tried.lead / 2 / std::numbers::ln10,
                   .p_value = p_value_of(before, tried.model, errors),
                   .confounded_with = {},
                   .alternatives = tried.others,
@@ -134,7 +135,7 @@ SelectedComponent found_of(const std::string& scope, const NoiseComponent& compo
   for (const std::string& cause : tried.as_probable) {
     finding.confounded_with.push_back(fmt::format("{}.{}", scope, cause));
   }
-  finding.accepted = finding.gain[0].surely_rises();
+  finding.accepted = finding.gain[0].significant_increase();
   return {.component = component, .model = tried.model, .finding = std::move(finding)};
 }
 
@@ -185,8 +186,8 @@ void report(std::vector<SelectedComponent> found, const NoiseModel& named, const
     one.finding.parameters = one.finding.accepted ? parameters_of(one.component, fits)
                                                   : parameters_of(one.component, in_parts(one.model, errors));
     if (one.finding.accepted)
-      one.finding.refused = rejection_reason(one.finding, one.component, named, errors);
-    if (!one.finding.refused.empty()) {
+      one.finding.rejection = rejection_reason(one.finding, one.component, named, errors);
+    if (!one.finding.rejection.empty()) {
       one.finding.accepted = false;
       one.component.remove(to.model);
       to.model = fitted(to.model, errors);
@@ -199,8 +200,8 @@ void report(std::vector<SelectedComponent> found, const NoiseModel& named, const
 
 NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, std::uint64_t seed,
                               double least_gain) {
-  constexpr std::size_t kMost = 120'000;  // sufficient for all components
-  const RangeErrors errors = thinned(all, kMost);
+  constexpr std::size_t kMax = 120'000;  // sufficient for all components
+  const RangeErrors errors = thinned(all, kMax);
   NoiseDiagnosis result{.plain = fitted({}, errors), .model = {}, .findings = {}, .unnamed = {}};
   result.model = result.plain;
   NoiseModel named = result.plain;

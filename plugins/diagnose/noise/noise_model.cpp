@@ -54,21 +54,21 @@ double relative_of(const NoiseModel& model, std::uint16_t beam) {
   return model.has_relative() ? model.relative[beam] : 1;
 }
 
-constexpr double kLeastVariance = 1e-10;  // [m²]
+constexpr double kMinVariance = 1e-10;  // [m²]
 
 /// The maximum-likelihood normal distribution about 0.
 NoiseModel fitted_normal(NoiseModel model, const RangeErrors& errors) {
   double squares = 0;
   for (const float value : errors.value) squares += double{value} * double{value};
   const double variance = squares / std::max(1.0, static_cast<double>(errors.size()));
-  model.size = {std::sqrt(std::max(kLeastVariance, variance)), 0, 0, 0};
+  model.size = {std::sqrt(std::max(kMinVariance, variance)), 0, 0, 0};
   return model;
 }
 
 void take_variance(const ExpectationSums& sums, NoiseModel& model) {
   const std::vector<double> squares = sums.variance.solution();
   for (std::size_t part = 0; part < kVarianceParts; ++part) model.size[part] = std::sqrt(squares[part]);
-  model.size[0] = std::sqrt(std::max(kLeastVariance, squares[0]));
+  model.size[0] = std::sqrt(std::max(kMinVariance, squares[0]));
 }
 
 /// Sets the relative deviations of beams, normalized to a mean of about 1.
@@ -87,12 +87,12 @@ void take_relative(const ExpectationSums& sums, NoiseModel& model) {
 }
 
 void take(const ExpectationSums& sums, NoiseModel& model) {
-  constexpr double kLeastScale = 1.5;
+  constexpr double kMinScale = 1.5;
   take_variance(sums, model);
   if (model.has_relative()) take_relative(sums, model);
   if (model.has_tail) {
     model.tail_share = std::clamp(sums.tail / sums.ranges, 1e-6, 0.5);
-    if (sums.tail > 0) model.tail_scale = std::max(kLeastScale, std::sqrt(sums.tail_squares / sums.tail));
+    if (sums.tail > 0) model.tail_scale = std::max(kMinScale, std::sqrt(sums.tail_squares / sums.tail));
   }
   if (model.has_peaks()) {
     if (sums.separation_weight > 0)
@@ -198,14 +198,14 @@ double NoiseModel::drawn(std::mt19937_64& random, const EchoConditions& echo, st
 }
 
 NoiseModel fitted(const NoiseModel& like, const RangeErrors& errors, double settled) {
-  constexpr int kMostRounds = 300;
+  constexpr int kMaxRounds = 300;
   if (like.is_normal()) return fitted_normal(like, errors);
   // The ranges may lack the last beams that the model was fitted to.
   const std::size_t beams = std::max({beams_of(errors), like.weight.size(), like.relative.size()});
   const ExpectationStep step(errors);
   NoiseModel model = like;
   double last = -HUGE_VAL;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const ExpectationSums sums = step.sums(model, beams);
     take(sums, model);
     if (sums.log_likelihood - last < settled) break;

@@ -19,7 +19,7 @@
 #include "plugins/diagnose/noise/range_quantization.hpp"
 #include "plugins/diagnose/noise/surface_range_errors.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"
-#include "plugins/diagnose/scene/edges.hpp"
+#include "plugins/diagnose/scene/mixed_pixels.hpp"
 #include "plugins/diagnose/scene/visibility.hpp"
 
 namespace crisp {
@@ -76,14 +76,15 @@ void DiagnoseNoiseModelStage::finish(Outputs& out, Context& context) {
   context.progress(0, "associating beams with surfaces");
   const SurfaceObservations observations = all_of(model, covered(sample, lag.earliest, lag.latest), noise_);
   const Measurements& beams = observations.sample().beams;
-  Followed all{.model = model,
-               .observations = observations,
-               .beams = beams,
-               .points = observations.beams().points,
-               .association = associate_beams(observations.surfels(), observations.beams(), beams.range),
-               .crowd = Crowd(observations.beams().points),
-               .blocks = recording_blocks(beams)};
-  all.usual = usual_error(all.association);
+  AssociatedBeams all{
+      .model = model,
+      .observations = observations,
+      .beams = beams,
+      .points = observations.beams().points,
+      .association = associate_beams(observations.surfels(), observations.beams(), beams.range),
+      .density = PointDensity(observations.beams().points),
+      .blocks = recording_blocks(beams)};
+  all.typical_sigma = usual_error(all.association);
   Findings found;
   std::vector<std::string> without_edges;
   for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
@@ -97,7 +98,8 @@ void DiagnoseNoiseModelStage::finish(Outputs& out, Context& context) {
                                   ? std::string("any laser")
                                   : fmt::format("{}", fmt::join(without_edges, ", "))));
   }
-  const auto changing = changing_directions(beams, *observations.sample().plate, all.association, all.usual);
+  const auto changing =
+      changing_directions(beams, *observations.sample().plate, all.association, all.typical_sigma);
   if (const auto moved = moving(changing, context.seed())) {
     found.findings.push_back(*moved);
     if (folder_) write_plots(*folder_ / "scene_moving.svg", {moving_plot(changing)}, context);
@@ -114,7 +116,7 @@ void DiagnoseNoiseModelStage::finish(Outputs& out, Context& context) {
   out.give(std::move(all_));
 }
 
-std::size_t DiagnoseNoiseModelStage::add_laser(std::size_t laser, const Followed& all, Findings& found,
+std::size_t DiagnoseNoiseModelStage::add_laser(std::size_t laser, const AssociatedBeams& all, Findings& found,
                                                Context& context) {
   const std::string& name = calibration_->lasers[laser].name;
   const std::size_t named = found.findings.size();
@@ -133,7 +135,7 @@ std::size_t DiagnoseNoiseModelStage::add_laser(std::size_t laser, const Followed
     plots.push_back(quantization_plot(name, ranges, quantization->parameters.front().value));
   }
   const Crossings edges =
-      crossings_of(laser, all.beams, all.points, all.association, all.crowd, all.usual, noise);
+      crossings_of(laser, all.beams, all.points, all.association, all.density, all.typical_sigma, noise);
   if (!edges.mixed.empty()) {
     context.print(fmt::format("{}: {} edges crossed, {:.1f} % of them with a mixed pixel", name,
                               edges.mixed.size(), 100 * edges.share()));
@@ -148,7 +150,7 @@ std::size_t DiagnoseNoiseModelStage::add_laser(std::size_t laser, const Followed
 }
 
 std::pair<RangeErrors, NoiseDiagnosis> DiagnoseNoiseModelStage::noise_of(std::size_t laser,
-                                                                         const Followed& all,
+                                                                         const AssociatedBeams& all,
                                                                          Context& context) const {
   constexpr double kMuchLarger = 1.1;
   const std::string& name = calibration_->lasers[laser].name;
@@ -157,7 +159,7 @@ std::pair<RangeErrors, NoiseDiagnosis> DiagnoseNoiseModelStage::noise_of(std::si
     if (errors.size() >= kTooFew) model = diagnose_noise(name, errors, context.seed(), least_gain_);
     return std::pair(std::move(errors), std::move(model));
   };
-  auto found = model_of(scatter_of(laser, all.beams, all.association, all.usual, all.blocks));
+  auto found = model_of(scatter_of(laser, all.beams, all.association, all.typical_sigma, all.blocks));
   const auto& [errors, noise] = found;
   if (errors.size() < kTooFew) return found;
   const double widest = widest_deviation(noise.model, errors);
@@ -168,14 +170,14 @@ std::pair<RangeErrors, NoiseDiagnosis> DiagnoseNoiseModelStage::noise_of(std::si
   return again.first.size() < kTooFew ? found : again;
 }
 
-NoiseModel DiagnoseNoiseModelStage::add_noise(std::size_t laser, const Followed& all, Findings& found,
+NoiseModel DiagnoseNoiseModelStage::add_noise(std::size_t laser, const AssociatedBeams& all, Findings& found,
                                               std::vector<Plot>& plots, Context& context) {
   const std::string& name = calibration_->lasers[laser].name;
   const auto [errors, noise] = noise_of(laser, all, context);
   if (errors.size() < kTooFew) {
     context.print(
         fmt::format("{}: noise not estimated, since too few beams lie well inside flat surfaces", name));
-    return {.size = {all.usual}};
+    return {.size = {all.typical_sigma}};
   }
   context.print(fmt::format("{}: {} ranges on flat surfaces have noise of {:.2f} mm (RMS)", name,
                             errors.size(), 1e3 * noise.plain.sigma()));

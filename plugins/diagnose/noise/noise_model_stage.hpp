@@ -20,7 +20,7 @@
 #include "plugins/diagnose/noise/noise_diagnosis.hpp"
 #include "plugins/diagnose/noise/noise_model.hpp"
 #include "plugins/diagnose/scene/beam_association.hpp"
-#include "plugins/diagnose/scene/edges.hpp"
+#include "plugins/diagnose/scene/mixed_pixels.hpp"
 
 namespace crisp {
 
@@ -33,26 +33,26 @@ class DiagnoseNoiseModelStage final : public Stage {
 
  private:
   /// All beams with their associated surfaces.
-  struct Followed {
+  struct AssociatedBeams {
     const SensorModel& model;
     const SurfaceObservations& observations;
     const Measurements& beams;
     PointsView points;
     BeamAssociation association;
-    Crowd crowd;
-    double usual = 0;  // [m] standard deviation of ranges
+    PointDensity density;
+    double typical_sigma = 0;  // [m] standard deviation of ranges
     std::vector<std::uint32_t> blocks;
   };
   /// @return number of edges that the laser crossed
-  std::size_t add_laser(std::size_t laser, const Followed& all, Findings& found, Context& context);
+  std::size_t add_laser(std::size_t laser, const AssociatedBeams& all, Findings& found, Context& context);
   /// Range errors and noise model of one laser. Surfaces are selected as flat within `noise`. If the laser's
   /// noise is larger, that selection favours places of small errors, so the surfaces are selected again with
   /// its own.
-  std::pair<RangeErrors, NoiseDiagnosis> noise_of(std::size_t laser, const Followed& all,
+  std::pair<RangeErrors, NoiseDiagnosis> noise_of(std::size_t laser, const AssociatedBeams& all,
                                                   Context& context) const;
   /// @param plots  receives the plots of the noise model
-  NoiseModel add_noise(std::size_t laser, const Followed& all, Findings& found, std::vector<Plot>& plots,
-                       Context& context);
+  NoiseModel add_noise(std::size_t laser, const AssociatedBeams& all, Findings& found,
+                       std::vector<Plot>& plots, Context& context);
 
   double noise_ = SurfelSettings{}.noise;
   double least_gain_ = 0.001;

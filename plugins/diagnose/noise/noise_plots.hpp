@@ -7,7 +7,7 @@
 
 #include "pipeline/plot/plot.hpp"
 #include "plugins/diagnose/noise/noise_diagnosis.hpp"
-#include "plugins/diagnose/scene/edges.hpp"
+#include "plugins/diagnose/scene/mixed_pixels.hpp"
 #include "plugins/diagnose/scene/visibility.hpp"
 
 namespace crisp {

@@ -25,7 +25,7 @@ Finding finding_of(const CommonModeChange& change, const std::string& laser) {
                   .scope = laser,
                   .parameters = {},
                   .explained_fraction = change.gain.explained(),
-                  .log10_odds = change.log10_odds,
+                  .log10_bayes_factor = change.log10_bayes_factor,
                   .p_value = change.p_value,
                   .confounded_with = {},
                   .gain = {change.gain},

@@ -20,7 +20,7 @@ HWY_INLINE void expect_some(Tag tag, const MixtureBlock& block, std::size_t k) {
   const auto deviation = hn::LoadU(tag, block.deviation + k);
   const auto half = hn::Set(tag, -0.5);
   auto total = hn::Set(tag, 1e-300);
-  hn::Vec<Tag> density[MixtureBlock::kMostComponents];
+  hn::Vec<Tag> density[MixtureBlock::kMaxComponents];
   for (std::size_t c = 0; c < block.components; ++c) {
     const auto& component = block.component[c];
     const auto spread = hn::Mul(deviation, hn::Set(tag, component.scale));

@@ -7,7 +7,7 @@ namespace crisp {
 
 /// n values with their normal mixture of up to four components. All arrays have n elements.
 struct MixtureBlock {
-  static constexpr std::size_t kMostComponents = 4;
+  static constexpr std::size_t kMaxComponents = 4;
 
   struct Component {
     const double* share = nullptr;  ///< prior probability
@@ -20,7 +20,7 @@ struct MixtureBlock {
   const double* value = nullptr;      ///< [m]
   const double* deviation = nullptr;  ///< [m] standard deviation of a component of scale 1
   std::size_t components = 0;
-  Component component[kMostComponents];
+  Component component[kMaxComponents];
   double* log_density = nullptr;  ///< out: ln of the mixture's density [1/m] at the value
 };
 

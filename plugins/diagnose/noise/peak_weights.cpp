@@ -48,14 +48,14 @@ std::vector<OfBeam> by_beam(const NoiseModel& model, const RangeErrors& errors) 
 /// Log-likelihood of each weight where the nearer peak lies at `near` [m].
 ByWeight with_peak_at(double near, const OfBeam& beam, const NoiseModel& model) {
   constexpr std::size_t kBeforeUnderflow = 64;  // number of factors
-  constexpr double kLeast = 1e-4;               // relative density of outliers, which belong to neither peak
+  constexpr double kMin = 1e-4;                 // relative density of outliers, which belong to neither peak
   ByWeight logarithm{};
   ByWeight product;
   product.fill(1);
   for (std::size_t i = 0; i < beam.value.size(); ++i) {
     const double off = beam.value[i] - near;
-    const double nearer = density_about(off, beam.sigma[i], model) + kLeast;
-    const double farther = density_about(off - model.separation, beam.sigma[i], model) + kLeast;
+    const double nearer = density_about(off, beam.sigma[i], model) + kMin;
+    const double farther = density_about(off - model.separation, beam.sigma[i], model) + kMin;
     for (std::size_t k = 0; k < kWeights; ++k) product[k] *= std::lerp(nearer, farther, weight_at(k));
     if (i % kBeforeUnderflow != kBeforeUnderflow - 1 && i + 1 != beam.value.size()) continue;
     for (std::size_t k = 0; k < kWeights; ++k) logarithm[k] += std::log(product[k]);

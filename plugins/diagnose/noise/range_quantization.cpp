@@ -66,7 +66,7 @@ bool is_on(double range, double step) {
 }
 
 constexpr double kFinest = 1.5e-3, kCoarsest = 0.05;  // [m]
-constexpr std::size_t kMost = 20'000;                 // ranges used to refine the frequency
+constexpr std::size_t kMax = 20'000;                  // ranges used to refine the frequency
 
 /// A line in the spectrum of ranges.
 struct RangeComb {
@@ -89,7 +89,7 @@ std::optional<RangeComb> quantization_of(std::span<const float> ranges) {
   auto line = std::find_if(begin, end, [&](double size) { return size >= kAsStrong * strongest; });
   while (line + 1 != end && *(line + 1) > *line) ++line;
   const double frequency = top_near(static_cast<double>(line - sizes.begin()) * apart, apart,
-                                    ranges.first(std::min(ranges.size(), kMost)));
+                                    ranges.first(std::min(ranges.size(), kMax)));
   return RangeComb{.step = 1 / frequency, .strength = strongest, .tests = static_cast<double>(end - begin)};
 }
 
@@ -138,7 +138,7 @@ std::optional<Finding> range_quantization(const std::string& scope, std::span<co
   // The phase of a line is known to about the telegram's rounding; its slope over the ranges gives the
   // frequency.
   const double rounding = kTelegram / std::sqrt(12.0) * 2 * std::numbers::pi / step;
-  const double slope_error = rounding / std::sqrt(static_cast<double>(std::min(ranges.size(), kMost)) *
+  const double slope_error = rounding / std::sqrt(static_cast<double>(std::min(ranges.size(), kMax)) *
                                                   std::max(1e-6, squares - mean * mean));
   Finding finding{
       .cause = "noise.quantisation",
@@ -148,12 +148,12 @@ std::optional<Finding> range_quantization(const std::string& scope, std::span<co
                       .value = step,
                       .std_error = step * step * slope_error / (2 * std::numbers::pi),
                       .free = true}},
-      .log10_odds = (count * (gain.after - gain.before) - std::log(count) / 2) / std::numbers::ln10,
+      .log10_bayes_factor = (count * (gain.after - gain.before) - std::log(count) / 2) / std::numbers::ln10,
       .p_value = std::min(
           1.0, quantization->tests * std::exp(-count * quantization->strength * quantization->strength)),
       .confounded_with = {},
       .gain = {gain},
-      .accepted = gain.surely_rises()};
+      .accepted = gain.significant_increase()};
   return finding;
 }
 

@@ -11,14 +11,14 @@
 namespace crisp {
 namespace {
 
-constexpr double kMostSpread = 0.03;  // [m]
+constexpr double kMaxSpread = 0.03;  // [m]
 
 }  // namespace
 
 void StationaryScans::add(const Scan& scan) {
-  constexpr std::size_t kMostScans = 4000;  // bounds the memory, and suffices for all tests
+  constexpr std::size_t kMaxScans = 4000;  // bounds the memory, and suffices for all tests
   const bool has_ranges = !scan.echoes.empty() && !scan.echoes.front().ranges.empty();
-  if (!has_ranges || receipt_ns_.size() >= kMostScans) {
+  if (!has_ranges || receipt_ns_.size() >= kMaxScans) {
     ++left_out_;
     return;
   }
@@ -49,19 +49,19 @@ bool PlateStandstill::turned() const {
 }
 
 std::vector<std::size_t> StationaryScans::shots_of(std::size_t beam) const {
-  constexpr double kLeastCame = 0.8;     // share of a beam's shots with an echo
-  constexpr double kLeastRange = 0.016;  // [m] smaller values are error codes
+  constexpr double kMinCame = 0.8;     // share of a beam's shots with an echo
+  constexpr double kMinRange = 0.016;  // [m] smaller values are error codes
   std::vector<std::size_t> shots;
   for (std::size_t scan = 0; scan < scans(); ++scan) {
-    if (range(scan, beam) > kLeastRange && std::isfinite(range(scan, beam))) shots.push_back(scan);
+    if (range(scan, beam) > kMinRange && std::isfinite(range(scan, beam))) shots.push_back(scan);
   }
-  if (static_cast<double>(shots.size()) < kLeastCame * static_cast<double>(scans())) shots.clear();
+  if (static_cast<double>(shots.size()) < kMinCame * static_cast<double>(scans())) shots.clear();
   return shots;
 }
 
 FarShots StationaryScans::far_shots() const {
-  constexpr double kFar = 8;           // standard deviations
-  constexpr double kMostAtOnce = 0.5;  // share of the beams
+  constexpr double kFar = 8;          // standard deviations
+  constexpr double kMaxAtOnce = 0.5;  // share of the beams
   FarShots far{.scans = scans(), .of_beam = std::vector<std::vector<std::uint32_t>>(beams_)};
   std::vector<double> shots_in(scans(), 0);
   std::vector<double> far_in(scans(), 0);
@@ -72,29 +72,29 @@ FarShots StationaryScans::far_shots() const {
     for (const std::size_t scan : shots) ranges.push_back(range(scan, beam));
     const double middle = median_in_place(ranges);
     for (double& value : ranges) value = std::abs(value - middle);
-    const double spread = kSigmaByMedian * median_in_place(ranges);
-    if (spread > kMostSpread) continue;
+    const double spread = kMadToSigma * median_in_place(ranges);
+    if (spread > kMaxSpread) continue;
     far.shots += shots.size();
     for (const std::size_t scan : shots) {
       shots_in[scan] += 1;
-      if (std::abs(range(scan, beam) - middle) < std::max(kMostSpread, kFar * spread)) continue;
+      if (std::abs(range(scan, beam) - middle) < std::max(kMaxSpread, kFar * spread)) continue;
       far_in[scan] += 1;
       far.of_beam[beam].push_back(static_cast<std::uint32_t>(scan));
     }
   }
   for (auto& scans : far.of_beam) {
-    std::erase_if(scans, [&](std::uint32_t scan) { return far_in[scan] > kMostAtOnce * shots_in[scan]; });
+    std::erase_if(scans, [&](std::uint32_t scan) { return far_in[scan] > kMaxAtOnce * shots_in[scan]; });
   }
   return far;
 }
 
 std::variant<RangeErrors, InsufficientData> StationaryScans::errors(
     const std::vector<bool>& leave_out) const {
-  constexpr std::size_t kFewestScans = 10;
-  constexpr double kLeastStatic = 0.25;  // share of the beams with echoes
-  if (scans() < kFewestScans) {
+  constexpr std::size_t kMinScans = 10;
+  constexpr double kMinStatic = 0.25;  // share of the beams with echoes
+  if (scans() < kMinScans) {
     return InsufficientData{
-        fmt::format("it sent only {} scans (at least {} are needed)", scans(), kFewestScans)};
+        fmt::format("it sent only {} scans (at least {} are needed)", scans(), kMinScans)};
   }
   RangeErrors all;
   std::size_t steady = 0;
@@ -108,7 +108,7 @@ std::variant<RangeErrors, InsufficientData> StationaryScans::errors(
     ++seen;
     std::vector<double> off;
     for (const std::size_t scan : shots) off.push_back(std::abs(range(scan, beam) - mean));
-    if (kSigmaByMedian * median_in_place(off) > kMostSpread) continue;
+    if (kMadToSigma * median_in_place(off) > kMaxSpread) continue;
     ++steady;
     for (const std::size_t scan : shots) {
       all.value.push_back(static_cast<float>(range(scan, beam) - mean));
@@ -119,7 +119,7 @@ std::variant<RangeErrors, InsufficientData> StationaryScans::errors(
     }
   }
   if (seen == 0) return InsufficientData{"no beam has echoes in at least 80 % of the scans"};
-  if (static_cast<double>(steady) < kLeastStatic * static_cast<double>(seen) || steady == 0)
+  if (static_cast<double>(steady) < kMinStatic * static_cast<double>(seen) || steady == 0)
     return InsufficientData{"the laser or the whole scene moves"};
   return all;
 }

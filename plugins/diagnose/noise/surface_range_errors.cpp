@@ -100,13 +100,13 @@ RangeErrors scatter_of(std::size_t laser, const Measurements& beams, const BeamA
 }
 
 double widest_deviation(const NoiseModel& model, const RangeErrors& errors) {
-  constexpr double kMost = 0.99;
+  constexpr double kMax = 0.99;
   std::vector<double> deviations;
   deviations.reserve(errors.size());
   for (std::size_t i = 0; i < errors.size(); ++i) {
     deviations.push_back(model.deviation(errors.echo(i), errors.beam[i]));
   }
-  return quantile_in_place(deviations, kMost);
+  return quantile_in_place(deviations, kMax);
 }
 
 std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const float> values,
@@ -149,7 +149,7 @@ std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const 
                         .unit = "m",
                         .p_value = all.p_value,
                         .gain = {gain},
-                        .accepted = gain.surely_rises()};
+                        .accepted = gain.significant_increase()};
 }
 
 }  // namespace crisp

@@ -20,7 +20,7 @@ Inspection inspect_findings(const std::filesystem::path& file, const Rig&) {
   inspection.data = {{"findings", nlohmann::json::array()},
                      {"unnamed", all.unnamed.size()},
                      {"unobservable", all.unobservable.size()},
-                     {"artefacts", all.artifacts.size()},
+                     {"artifacts", all.artifacts.size()},
                      {"devices", all.devices.size()}};
   const auto accepted = std::ranges::count_if(all.findings, &Finding::accepted);
   inspection.text = fmt::format(

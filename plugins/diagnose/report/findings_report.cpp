@@ -76,15 +76,15 @@ Finding finding_of(const Hypothesis& hypothesis, const Calibration& calibration,
                   .resolvable_by = {},
                   .gain = hypothesis.gains,
                   .accepted = hypothesis.accepted,
-                  .refused = hypothesis.rejected};
+                  .rejection = hypothesis.rejected};
   const double behind =
       hypothesis.competitors.empty() ? hypothesis.test.bic : hypothesis.competitors.front().behind;
-  finding.log10_odds = behind / 2 / std::numbers::ln10;
+  finding.log10_bayes_factor = behind / 2 / std::numbers::ln10;
   for (const auto& competitor : hypothesis.competitors) {
     if (competitor.behind < odds) finding.confounded_with.push_back(competitor.name);
     finding.alternatives.push_back({.cause = competitor.term,
                                     .scope = name_of(competitor.owner, calibration),
-                                    .log10_odds = competitor.behind / 2 / std::numbers::ln10});
+                                    .log10_bayes_factor = competitor.behind / 2 / std::numbers::ln10});
   }
   finding.resolvable_by = resolvable_by(finding, terms);
   return finding;

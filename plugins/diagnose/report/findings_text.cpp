@@ -54,7 +54,7 @@ std::string gain_in_words(const std::vector<Gain>& gains) {
 std::string next_in_words(const Finding& finding) {
   if (finding.alternatives.empty()) return "the next cause";
   const OtherCause& next = finding.alternatives.front();
-  if (next.log10_odds > finding.log10_odds) return "no named cause";
+  if (next.log10_bayes_factor > finding.log10_bayes_factor) return "no named cause";
   return fmt::format("the next cause, {} of {},", next.cause, next.scope);
 }
 
@@ -144,9 +144,9 @@ std::string in_words(const Finding& finding) {
     words += fmt::format("\n  explains {:.0f} % of {}", 100 * finding.explained_fraction,
                          is_noise ? "the gain of all its noise components" : "the systematic residual");
   }
-  if (std::isfinite(finding.log10_odds)) {
+  if (std::isfinite(finding.log10_bayes_factor)) {
     words += fmt::format("\n  Bayes factor (BIC) against {} 10^{:.0f}", next_in_words(finding),
-                         finding.log10_odds);
+                         finding.log10_bayes_factor);
   }
   if (!finding.confounded_with.empty()) {
     words += fmt::format("; in these data not resolvable from {}", fmt::join(finding.confounded_with, ", "));
@@ -154,7 +154,7 @@ std::string in_words(const Finding& finding) {
   if (!finding.resolvable_by.empty()) {
     words += fmt::format("\n  resolvable by: {}", fmt::join(finding.resolvable_by, "; "));
   }
-  if (!finding.accepted) words += "\n  rejected: " + finding.refusal();
+  if (!finding.accepted) words += "\n  rejected: " + finding.rejection_reason();
   return words + gain_in_words(finding.gain);
 }
 

@@ -24,8 +24,8 @@ double share_together(std::vector<double> times, double interval) {
 Bursts find_bursts(const std::vector<double>& receipts, const std::vector<double>& stamps,
                    std::uint64_t seed) {
   Bursts bursts;
-  constexpr std::size_t kFewest = 10;
-  if (receipts.size() < kFewest) return bursts;
+  constexpr std::size_t kMin = 10;
+  if (receipts.size() < kMin) return bursts;
   const auto n = static_cast<double>(receipts.size());
   bursts.interval = (stamps.back() - stamps.front()) / (n - 1);
   bursts.together = share_together(receipts, bursts.interval);

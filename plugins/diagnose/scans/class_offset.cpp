@@ -121,7 +121,7 @@ void weigh(const Comparison& comparison, ClassOffset& class_offset) {
                                                               {log_evidence(less_offset, 1), "range.offset"},
                                                               {log_evidence(less_scale, 1), "range.scale"}};
   const auto next = *std::max_element(others.begin(), others.end());
-  class_offset.log10_odds =
+  class_offset.log10_bayes_factor =
       (log_evidence(comparison.errors(class_offset.shift), 1) - next.first) / std::log(10.0);
   class_offset.next_likely = next.second;
 }
@@ -186,8 +186,8 @@ std::vector<ClassOffset> compare_classes(const std::vector<SeriesScan>& scans, s
     const Comparison found(mean_profile(others), mean_profile(mine));
     ClassOffset class_offset{.kind = kind, .scans = 2 * mine.size(), .beams = found.size()};
     const auto beams = everyone(found.size());
-    constexpr std::size_t kFewest = 20;
-    if (found.size() < kFewest) continue;
+    constexpr std::size_t kMin = 20;
+    if (found.size() < kMin) continue;
     class_offset.shift = best_shift(found, beams);
     class_offset.shift_error = bootstrap(found.size(), kBlock, seed, kDraws, [&](const auto& picked) {
                                  return best_shift(found, picked);

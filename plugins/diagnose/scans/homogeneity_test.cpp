@@ -31,7 +31,7 @@ HomogeneityTest homogeneity_test(std::vector<ValueWithError> values, Level level
   about.compared = true;
   about.p_value =
       cdf(complement(boost::math::fisher_f(degrees_of_freedom, n - 1), chi2 / degrees_of_freedom));
-  about.log10_odds = (gained - degrees_of_freedom / 2 * std::log(n)) / std::numbers::ln10;
+  about.log10_bayes_factor = (gained - degrees_of_freedom / 2 * std::log(n)) / std::numbers::ln10;
   return about;
 }
 

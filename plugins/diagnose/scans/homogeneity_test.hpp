@@ -15,9 +15,10 @@ enum class Level { kZero, kMean };
 
 /// Heterogeneity of values about a level.
 struct HomogeneityTest {
-  double beyond = 0;      ///< between-value variance: mean square less the mean squared error
-  double p_value = 1;     ///< under homogeneity; 1 without values to compare
-  double log10_odds = 0;  ///< log10 of the Bayes factor (BIC) of individual values against the common level
+  double beyond = 0;   ///< between-value variance: mean square less the mean squared error
+  double p_value = 1;  ///< under homogeneity; 1 without values to compare
+  double log10_bayes_factor =
+      0;  ///< log10 of the Bayes factor (BIC) of individual values against the common level
   bool compared = false;
 };
 

@@ -34,7 +34,8 @@ struct ClassOffset {
   double shift_error = 0;
   double offset = 0;  ///< [m] of the ranges, after the shift is removed
   double offset_error = 0;
-  double log10_odds = 0;  ///< of the shift against the best of: nothing, a range offset, a range scale
+  double log10_bayes_factor =
+      0;  ///< of the shift against the best of: nothing, a range offset, a range scale
   const char* next_likely = "";
   Gain gain;  ///< held-out scans: difference of the profiles without and with the shift
   std::vector<double> error_over_shift;  ///< [m] RMS, over shift_grid()

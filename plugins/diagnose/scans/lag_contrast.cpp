@@ -29,7 +29,7 @@ double mean_difference(const std::vector<double>& p, const std::vector<double>& 
 std::vector<std::size_t> rests_of(const std::vector<std::int64_t>& counts) {
   std::vector<std::size_t> first = {0};
   for (std::size_t i = 1; i < counts.size(); ++i) {
-    if (counts[i] - counts[i - 1] > static_cast<std::int64_t>(kMostLags)) first.push_back(i);
+    if (counts[i] - counts[i - 1] > static_cast<std::int64_t>(kMaxLags)) first.push_back(i);
   }
   first.push_back(counts.size());
   return first;
@@ -54,7 +54,7 @@ LagContrast::LagContrast(std::vector<std::vector<double>> rows, const std::vecto
     for (std::size_t i = phases_[r]; i < phases_[r + 1]; ++i) {
       for (std::size_t j = i + 1; j < phases_[r + 1]; ++j) {
         const auto lag = static_cast<std::size_t>(counts[j] - counts[i]);
-        if (lag >= 1 && lag <= kMostLags) pairs_.push_back({.first = i, .second = j, .lag = lag});
+        if (lag >= 1 && lag <= kMaxLags) pairs_.push_back({.first = i, .second = j, .lag = lag});
       }
     }
   }
@@ -65,13 +65,13 @@ double LagContrast::contrast() const { return contrast_of(difference_); }
 
 template <class Between>
 std::vector<double> LagContrast::by_lag(const Between& between) const {
-  std::vector<double> sums(kMostLags, 0);
-  std::vector<double> counts(kMostLags, 0);
+  std::vector<double> sums(kMaxLags, 0);
+  std::vector<double> counts(kMaxLags, 0);
   for (const Pair& pair : pairs_) {
     sums[pair.lag - 1] += between(pair.first, pair.second);
     counts[pair.lag - 1] += 1;
   }
-  for (std::size_t l = 0; l < kMostLags; ++l) sums[l] = counts[l] > 0 ? sums[l] / counts[l] : std::nan("");
+  for (std::size_t l = 0; l < kMaxLags; ++l) sums[l] = counts[l] > 0 ? sums[l] / counts[l] : std::nan("");
   return sums;
 }
 

@@ -8,14 +8,14 @@
 namespace crisp {
 
 /// Largest lag between compared stationary scans; a larger gap separates stationary phases.
-inline constexpr std::size_t kMostLags = 8;
+inline constexpr std::size_t kMaxLags = 8;
 
 /// Contrast of the differences between stationary scans over their lag. Differences are clipped at 0.3 m, so
 /// that edges do not dominate.
 class LagContrast {
  public:
   /// @param rows    ranges [m] of each scan, or residuals of a model; NaN without an echo
-  /// @param counts  of the scans, ascending; a gap above kMostLags separates stationary phases
+  /// @param counts  of the scans, ascending; a gap above kMaxLags separates stationary phases
   LagContrast(std::vector<std::vector<double>> rows, const std::vector<std::int64_t>& counts);
 
   /// [m] Element l − 1: mean absolute difference of scans at lag l; NaN without pairs.

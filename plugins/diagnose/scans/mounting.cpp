@@ -146,7 +146,7 @@ MountingValues moved(MountingValues values, const GlobalVector& step, double sha
 /// Plane of a window by least squares in the ranges, for a given mounting (damped Gauss-Newton).
 LocalPlane best_plane(const FlatWindow& window, const MountingValues& values) {
   constexpr int kRounds = 10;
-  constexpr double kLeastShare = 1.0 / 64;
+  constexpr double kMinShare = 1.0 / 64;
   constexpr double kSettled = 1e-9;  // relative decrease of the squares
   LocalPlane plane = first_plane(window, values);
   Projected now = project(window, plane, values, GlobalVector::Zero());
@@ -155,7 +155,7 @@ LocalPlane best_plane(const FlatWindow& window, const MountingValues& values) {
     const double before = now.squares;
     const Eigen::Vector3d from = plane.parameters;
     const Eigen::Vector3d step = now.plane_step;
-    for (double share = 1; share > kLeastShare && !better; share /= 2) {
+    for (double share = 1; share > kMinShare && !better; share /= 2) {
       LocalPlane next_plane = plane;
       next_plane.parameters = from + share * step;
       Projected next = project(window, next_plane, values, GlobalVector::Zero());
@@ -203,15 +203,15 @@ double noise_between_scans(const FlatWindow& window) {
     last = sight.range;
   }
   constexpr double kSecond = 2.449489742783178;  // √6
-  return median_in_place(second) * kSigmaByMedian / kSecond;
+  return median_in_place(second) * kMadToSigma / kSecond;
 }
 
 /// Whether the window is flat, with an optical centre of its own.
 bool is_flat(const FlatWindow& window) {
-  constexpr std::size_t kFewest = 60;
-  constexpr double kOfNoise = 3, kLeastNoise = 0.002;
-  if (window.sights.size() < kFewest) return false;
-  const double noise = std::max(noise_between_scans(window), kLeastNoise);
+  constexpr std::size_t kMin = 60;
+  constexpr double kOfNoise = 3, kMinNoise = 0.002;
+  if (window.sights.size() < kMin) return false;
+  const double noise = std::max(noise_between_scans(window), kMinNoise);
   const GlobalVector free = mask_of({kAlongBeam, kAlongNormal});
   MountingValues values{};
   Projected own = project(window, best_plane(window, values), values, free);

@@ -125,8 +125,8 @@ void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const
   auto report = nlohmann::json::array();
   for (const double side : sides_.empty() ? usual : sides_) {
     const auto windows = flat_windows(*sweep, fan, side);
-    constexpr std::size_t kFewestWindows = 6;
-    if (windows.size() < kFewestWindows || context.interrupted()) continue;
+    constexpr std::size_t kMinWindows = 6;
+    if (windows.size() < kMinWindows || context.interrupted()) continue;
     for (const bool with_offset : {false, true}) {
       std::vector<MountingParameter> free = {kAlongBeam, kAlongNormal};
       if (with_offset) free.push_back(kRangeOffset);

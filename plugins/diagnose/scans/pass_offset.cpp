@@ -50,10 +50,10 @@ double least_around(const Curve& curve, double centre, double step) {
 }
 
 Curve variances(const PassComparison& comparison, std::span<const std::size_t> blocks) {
-  constexpr double kFewest = 200;  // beams
+  constexpr double kMin = 200;  // beams
   Curve curve;
   for (const auto& bin : sum_of(comparison, blocks)) {
-    if (bin.n < kFewest) continue;
+    if (bin.n < kMin) continue;
     const double mean = bin.error / bin.n;
     curve.emplace_back(bin.by / bin.n, bin.squares / bin.n - mean * mean);
   }
@@ -139,10 +139,10 @@ double shift_between(const PassComparison& comparison, std::span<const std::size
     if (curve[i].second < curve[least].second) least = i;
   }
   if (least < kAroundLeast || least + kAroundLeast >= curve.size()) return std::nan("");
-  constexpr int kMostRounds = 20;
+  constexpr int kMaxRounds = 20;
   constexpr double kSettled = 1e-4;  // [steps]
   double centre = curve[least].first;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const double next = least_around(curve, centre, comparison.step);
     if (!(std::abs(next - curve[least].first) < kAroundLeast * comparison.step)) return std::nan("");
     const bool settled = std::abs(next - centre) < kSettled * comparison.step;

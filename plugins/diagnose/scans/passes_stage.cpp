@@ -120,7 +120,8 @@ void add_findings(const std::string& laser, const PassOffset& found, Findings& f
   finding.parameters = {{"delta", "rad", -found.shift / 2, found.std_error / 2, true}};
   finding.explained_fraction = found.gain.explained();
   const HomogeneityTest none = homogeneity_test({{found.shift, found.std_error}}, Level::kZero, kPassBlocks);
-  finding.log10_odds = none.log10_odds;  // a lag is equally likely, and is listed as confounded
+  finding.log10_bayes_factor =
+      none.log10_bayes_factor;  // a lag is equally likely, and is listed as confounded
   finding.p_value = none.p_value;
   finding.confounded_with = {laser + ".eta"};
   finding.resolvable_by = {

@@ -10,7 +10,7 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kFewestHits = 10;
+constexpr std::size_t kMinHits = 10;
 
 /// [m] Change between scans i and i + 1 beyond half of the changes before and after.
 std::optional<double> jump_behind(const std::vector<SeriesScan>& scans, std::size_t i) {
@@ -24,7 +24,7 @@ std::optional<double> jump_behind(const std::vector<SeriesScan>& scans, std::siz
     if (std::ranges::any_of(r, [](double range) { return !(range > 0); })) continue;
     jumps.push_back((r[2] - r[1]) - ((r[1] - r[0]) + (r[3] - r[2])) / 2);
   }
-  if (jumps.size() < std::max<std::size_t>(kFewestHits, scans[i].ranges().size() / 4)) return {};
+  if (jumps.size() < std::max<std::size_t>(kMinHits, scans[i].ranges().size() / 4)) return {};
   return median_in_place(jumps);
 }
 

@@ -48,7 +48,7 @@ PlateTrajectory ScanSeries::actuator(const RigPlate& plate) const {
 
 std::vector<SeriesScan> ScanSeries::stationary(const RigPlate& plate) const {
   constexpr double kAround = 0.25;  // [s]
-  constexpr double kOfABeam = 0.02, kLeastSteps = 2;
+  constexpr double kOfABeam = 0.02, kMinSteps = 2;
   const double step = std::abs(plate.angle_per_count());
   std::vector<SeriesScan> still;
   for (const auto& scan : scans_) {
@@ -57,7 +57,7 @@ std::vector<SeriesScan> ScanSeries::stationary(const RigPlate& plate) const {
     if (begin == end) continue;
     const auto [least, most] = std::minmax_element(counts_.begin() + (begin - times_.begin()),
                                                    counts_.begin() + (end - times_.begin()));
-    const double still_steps = std::max(kLeastSteps, kOfABeam * std::abs(scan.scan->angle_step) / step);
+    const double still_steps = std::max(kMinSteps, kOfABeam * std::abs(scan.scan->angle_step) / step);
     if (static_cast<double>(*most - *least) <= still_steps) still.push_back(scan);
   }
   return still;

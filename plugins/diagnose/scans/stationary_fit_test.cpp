@@ -18,8 +18,8 @@ namespace {
 using Row = std::vector<double>;
 
 constexpr double kLargestProfileError = 0.1;  // [m] truncation of differences between profiles
-constexpr std::size_t kFewestOfAKind = 4;     // scans per class and half of a stationary phase
-constexpr std::size_t kFewestBeams = 20;      // over all stationary phases
+constexpr std::size_t kMinOfAKind = 4;        // scans per class and half of a stationary phase
+constexpr std::size_t kMinBeams = 20;         // over all stationary phases
 constexpr std::size_t kSimulations = 499;
 
 /// Scans of one stationary phase; the first half is the training set.
@@ -65,7 +65,7 @@ double noise_of(const std::vector<Row>& rows, const Row& profile) {
       if (std::isfinite(row[k] - profile[k])) sizes.push_back(std::abs(row[k] - profile[k]));
     }
   }
-  return kSigmaByMedian * median_in_place(sizes);
+  return kMadToSigma * median_in_place(sizes);
 }
 
 /// Beams around which the profile is straight within its noise.
@@ -90,7 +90,7 @@ std::vector<std::size_t> straight_beams(const std::vector<Row>& rows) {
 std::vector<StationaryPhase> rests_of(std::span<const SeriesScan> scans, std::size_t period) {
   std::vector<StationaryPhase> all;
   for (const SeriesScan& scan : scans) {
-    if (all.empty() || scan.count - all.back().counts.back() > static_cast<std::int64_t>(kMostLags))
+    if (all.empty() || scan.count - all.back().counts.back() > static_cast<std::int64_t>(kMaxLags))
       all.emplace_back();
     all.back().rows.push_back(row_of(scan));
     all.back().kinds.push_back(class_of(scan, period));
@@ -98,7 +98,7 @@ std::vector<StationaryPhase> rests_of(std::span<const SeriesScan> scans, std::si
   }
   std::erase_if(all, [&](const StationaryPhase& phase) {
     for (std::size_t kind = 0; kind < period; ++kind) {
-      if (phase.of(kind, true).size() < kFewestOfAKind || phase.of(kind, false).size() < kFewestOfAKind)
+      if (phase.of(kind, true).size() < kMinOfAKind || phase.of(kind, false).size() < kMinOfAKind)
         return true;
     }
     return false;
@@ -273,7 +273,7 @@ std::optional<GoodnessOfFit> stationary_fit_test(const std::string& laser,
     phase.beams = straight_beams(phase.of(reference, true));
     beams += phase.beams.size();
   }
-  if (beams < kFewestBeams) return {};
+  if (beams < kMinBeams) return {};
   const LagContrast plain = left_of(phases, nullptr).lags;
   const auto chance = plain.shuffled(seed);
   return GoodnessOfFit{.scope = laser,

@@ -7,20 +7,20 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/plot/write_plot.hpp"
-#include "plugins/diagnose/scans/neighbour_errors.hpp"
+#include "plugins/diagnose/scans/scan_prediction_errors.hpp"
 #include "plugins/diagnose/scans/stationary_profiles.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr std::size_t kFewestStationary = 24;  // scans
-constexpr double kDecisive = 2;                // log10 of the Bayes factor
-constexpr double kStands = 3;                  // standard errors
+constexpr std::size_t kMinStationary = 24;  // scans
+constexpr double kDecisive = 2;             // log10 of the Bayes factor
+constexpr double kStands = 3;               // standard errors
 
 /// Whether the shift is accepted: it has the best BIC, exceeds its standard error, and generalizes to
 /// held-out scans.
 bool is_shift(const ClassOffset& class_offset) {
-  return class_offset.log10_odds > kDecisive &&
+  return class_offset.log10_bayes_factor > kDecisive &&
          std::abs(class_offset.shift) > kStands * class_offset.shift_error &&
          class_offset.gain.significant_decrease();
 }
@@ -34,8 +34,8 @@ Gain gain_in_sweep(const ScanSeries& series, const std::vector<double>& shifts, 
     printed.push_back(scan.scan->start_angle);
     found.push_back(scan.scan->start_angle + shifts[class_of(scan, period)]);
   }
-  return neighbour_gain(neighbour_errors(series.scans(), times, printed, plate),
-                        neighbour_errors(series.scans(), times, found, plate), seed);
+  return prediction_gain(scan_prediction_errors(series.scans(), times, printed, plate),
+                         scan_prediction_errors(series.scans(), times, found, plate), seed);
 }
 
 Finding finding_of(const std::string& laser, const ClassOffset& class_offset,
@@ -46,7 +46,7 @@ Finding finding_of(const std::string& laser, const ClassOffset& class_offset,
                         {"period", "1", static_cast<double>(interleave.period)},
                         {"kind", "1", static_cast<double>(class_offset.kind)}};
   finding.explained_fraction = class_offset.gain.explained();
-  finding.log10_odds = class_offset.log10_odds;
+  finding.log10_bayes_factor = class_offset.log10_bayes_factor;
   finding.p_value = interleave.p_value;
   finding.gain = {class_offset.gain};
   finding.accepted = true;
@@ -113,9 +113,9 @@ void DiagnoseStationaryStage::report(const std::string& name, const ScanInterlea
     context.print(fmt::format(
         "  class {}: beams shifted by {:+.3f} ± {:.3f} beams, ranges then by {:+.1f} ± {:.1f} mm; Bayes factor (BIC) 10^{:.0f} against {}\n"
         "    profile on held-out scans: {:.1f} -> {:.1f} mm (change {:.1f} .. {:.1f}); {:.2f} beams injected, {:.2f} recovered",
-        k.kind, k.shift, k.shift_error, 1e3 * k.offset, 1e3 * k.offset_error, k.log10_odds, k.next_likely,
-        1e3 * k.gain.before, 1e3 * k.gain.after, 1e3 * k.gain.ci95[0], 1e3 * k.gain.ci95[1], k.injected,
-        k.recovered));
+        k.kind, k.shift, k.shift_error, 1e3 * k.offset, 1e3 * k.offset_error, k.log10_bayes_factor,
+        k.next_likely, 1e3 * k.gain.before, 1e3 * k.gain.after, 1e3 * k.gain.ci95[0], 1e3 * k.gain.ci95[1],
+        k.injected, k.recovered));
     kinds.push_back({{"kind", k.kind},
                      {"beams", k.beams},
                      {"shift", k.shift},
@@ -148,11 +148,11 @@ void DiagnoseStationaryStage::diagnose(std::size_t index, Findings& findings, Co
   Laser& laser = lasers_[index];
   const std::string& name = context.rig().lasers[index].name;
   const auto still = laser.series.stationary(context.rig().plate);
-  if (still.size() < kFewestStationary) {
-    findings.unobservable.push_back({name + ".mirror.interleave",
-                                     fmt::format("{} stationary scans are too few; at least {} are needed",
-                                                 still.size(), kFewestStationary),
-                                     ""});
+  if (still.size() < kMinStationary) {
+    findings.unobservable.push_back(
+        {name + ".mirror.interleave",
+         fmt::format("{} stationary scans are too few; at least {} are needed", still.size(), kMinStationary),
+         ""});
     return;
   }
   const auto interleave = find_interleave(still, context.seed());

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kStretch = 6;  // scans per block …
 constexpr std::size_t kUsed = 4;     // … of which this many are used
-constexpr std::size_t kFewest = 10;  // blocks: with fewer, p < 1 % is hardly attainable
+constexpr std::size_t kMin = 10;     // blocks: with fewer, p < 1 % is hardly attainable
 constexpr int kSweepDraws = 4999;
 
 /// Score of one pattern of lags, by block.
@@ -82,7 +82,7 @@ std::optional<FitStatistics> sweep_fit_test(const std::vector<SeriesScan>& scans
   std::vector<double> by_turns;
   for (const SeriesScan& scan : scans) by_turns.push_back(scan.count % 2 == 0 ? 1 : -1);
   const std::vector<Course> courses = {along(scores, delays), along(scores, by_turns)};
-  if (courses.front().scores.size() < kFewest) return {};
+  if (courses.front().scores.size() < kMin) return {};
   const auto chances = chances_of(courses, seed);
   FitStatistics reported{.tests = {look_along(courses[0], "receipt less stamp"),
                                    look_along(courses[1], "count of scans modulo 2")}};

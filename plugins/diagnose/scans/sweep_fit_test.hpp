@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipeline/data/fit_statistics.hpp"
-#include "plugins/diagnose/scans/neighbour_errors.hpp"
+#include "plugins/diagnose/scans/scan_prediction_errors.hpp"
 
 namespace crisp {
 

@@ -32,8 +32,8 @@ class Sweep {
     }
   }
   const std::vector<double>& receipts() const { return receipts_; }
-  NeighbourErrors errors(const std::vector<double>& times) const {
-    return neighbour_errors(series_.scans(), times, angles_, plate_);
+  ScanPredictionErrors errors(const std::vector<double>& times) const {
+    return scan_prediction_errors(series_.scans(), times, angles_, plate_);
   }
   /// Goodness of fit for receipt times, and for stamps if they were accepted.
   std::optional<GoodnessOfFit> reported(const std::string& laser, const std::vector<double>& stamps,
@@ -80,9 +80,9 @@ Finding burst_finding(const std::string& laser, const Bursts& bursts, const std:
                         {"wait", "s", bursts.wait}};
   finding.p_value = bursts.p_value;
   finding.explained_fraction = kNotTested;
-  finding.refused = "without a sweep, the gain of its stamps over receipt times is unknown";
+  finding.rejection = "without a sweep, the gain of its stamps over receipt times is unknown";
   if (!gain) return finding;
-  finding.refused = {};
+  finding.rejection = {};
   finding.explained_fraction = gain->explained();
   finding.gain = {*gain};
   finding.accepted = gain->significant_decrease();
@@ -105,10 +105,10 @@ void judge_common_lag(const Sweep& sweep, const std::vector<double>& times, cons
   std::string text;
   bool seen = true;
   for (const double by : {-kMuch, kMuch}) {
-    const Gain change = neighbour_gain(here, sweep.errors(Sweep::moved(times, by, by)), seed);
+    const Gain change = prediction_gain(here, sweep.errors(Sweep::moved(times, by, by)), seed);
     text += fmt::format("{}{:+.0f} ms changes {:.1f} mm by {:.1f} to {:.1f} mm", text.empty() ? "" : ", ",
                         1e3 * by, 1e3 * change.before, 1e3 * change.ci95[0], 1e3 * change.ci95[1]);
-    seen = seen && change.surely_rises();
+    seen = seen && change.significant_increase();
   }
   context.print("  response to an injected lag common to all scans: " + text);
   if (seen) return;
@@ -188,7 +188,7 @@ void DiagnoseSweepStage::diagnose(std::size_t index, Findings& findings, Context
   const auto bursts = find_bursts(sweep.receipts(), stamps, context.seed());
   const auto by_receipt = sweep.errors(sweep.receipts());
   const auto by_stamp = sweep.errors(stamps);
-  const Gain gain = neighbour_gain(by_receipt, by_stamp, context.seed());
+  const Gain gain = prediction_gain(by_receipt, by_stamp, context.seed());
   context.print(fmt::format(
       "{}: a scan every {:.3f} ms; {:.0f} % arrive in bursts (permutation test p = {:.3g}), up to {:.0f} ms late",
       name, 1e3 * bursts.interval, 100 * bursts.together, bursts.p_value, 1e3 * bursts.longest));

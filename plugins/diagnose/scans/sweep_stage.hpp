@@ -10,7 +10,7 @@
 #include "pipeline/data/fit_statistics.hpp"
 #include "pipeline/stage/context.hpp"
 #include "pipeline/stage/description.hpp"
-#include "plugins/diagnose/scans/neighbour_errors.hpp"
+#include "plugins/diagnose/scans/scan_prediction_errors.hpp"
 
 namespace crisp {
 

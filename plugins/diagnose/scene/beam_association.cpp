@@ -165,7 +165,7 @@ double usual_error(const BeamAssociation& association) {
     if (association.ahead[i] != kNoSurface) sizes.push_back(std::abs(association.error[i]));
   }
   if (sizes.empty()) return 0;
-  return kSigmaByMedian * double{median_in_place(sizes)};
+  return kMadToSigma * double{median_in_place(sizes)};
 }
 
 }  // namespace crisp

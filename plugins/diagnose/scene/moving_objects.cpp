@@ -80,9 +80,9 @@ class Grid {
   }
 
   static bool is_a_thing(const std::vector<Shot>& group) {
-    constexpr std::size_t kFewest = 20;
+    constexpr std::size_t kMin = 20;
     constexpr std::uint32_t kNarrowest = 3;  // beams and scans
-    if (group.size() < kFewest) return false;
+    if (group.size() < kMin) return false;
     const auto wide = [&](std::uint32_t Shot::*along) {
       const auto [least, most] = std::ranges::minmax(group, {}, along);
       return most.*along - least.*along + 1 >= kNarrowest;

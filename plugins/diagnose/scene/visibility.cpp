@@ -142,14 +142,14 @@ ChangingDirections changing_among(const RepeatGrid& grid, const VisibilityGrid& 
                                   double beams) {
   std::vector<bool> does_change(grid.cells());
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) does_change[cell] = visibility_grid.changes(cell);
-  constexpr std::ptrdiff_t kMostOfNine = 6;
+  constexpr std::ptrdiff_t kMaxOfNine = 6;
   ChangingDirections result;
   std::map<std::size_t, std::size_t> place;  // index of a cell among the changing ones
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
     if (!does_change[cell]) continue;
     const auto alike =
         std::ranges::count_if(grid.around(cell), [&](std::size_t near) { return does_change[near]; });
-    if (alike < kMostOfNine) continue;
+    if (alike < kMaxOfNine) continue;
     place.emplace(cell, result.views.size());
     result.views.push_back(visibility_grid.views(cell));
     result.hidden += static_cast<double>(visibility_grid.hidden(cell)) / std::max(1.0, beams);

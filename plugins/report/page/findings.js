@@ -152,7 +152,7 @@ function findingFacts(finding) {
   if ((finding.confounded_with || []).length > 0) facts.push(['not distinguished from', finding.confounded_with.join(', ')]);
   const needs = finding.resolvable_by || [];
   if (needs.length > 0) facts.push(['resolvable by', needs.join('; ')]);
-  if (!finding.accepted && finding.refused) facts.push(['rejected because', finding.refused]);
+  if (!finding.accepted && finding.rejection_reason) facts.push(['rejected because', finding.rejection_reason]);
   return facts;
 }
 

@@ -77,9 +77,9 @@ void write_text(Picture& picture, std::uint32_t left, std::uint32_t top, const s
   }
 }
 
-constexpr std::uint32_t kLeastSize = 120;  // pixels of a picture that has room for labels
+constexpr std::uint32_t kMinSize = 120;  // pixels of a picture that has room for labels
 
-bool has_room(const Picture& picture) { return std::min(picture.width, picture.height) >= kLeastSize; }
+bool has_room(const Picture& picture) { return std::min(picture.width, picture.height) >= kMinSize; }
 
 /// The largest of 1, 2, 5 times a power of ten that is not above the value.
 double round_below(double value) {

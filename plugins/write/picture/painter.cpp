@@ -70,7 +70,7 @@ std::array<double, 2> limits_of(const PicturePoints& points, const PictureProjec
 
 void paint_values(Picture& picture, const PicturePoints& points, const PictureProjection& projection,
                   const std::array<double, 2>& limits) {
-  constexpr double kLeastLight = 0.8;  // so that the darkest colour differs from the ground
+  constexpr double kMinLight = 0.8;  // so that the darkest colour differs from the ground
   struct Sum {
     double value = 0;
     std::uint32_t count = 0;
@@ -85,7 +85,7 @@ void paint_values(Picture& picture, const PicturePoints& points, const PicturePr
     const auto& [sum, count] = sums[pixel];
     if (count == 0) continue;
     const PictureRgb colour = ramp_colour((sum / count - limits[0]) / (limits[1] - limits[0]));
-    const double light = std::max(kLeastLight, brightness(static_cast<double>(count * points.one_in())));
+    const double light = std::max(kMinLight, brightness(static_cast<double>(count * points.one_in())));
     put(picture, pixel, {light * colour[0], light * colour[1], light * colour[2]});
   }
 }

@@ -69,7 +69,7 @@ PictureProjection::PictureProjection(const PictureSettings& settings, const std:
 void PictureProjection::fit(const std::vector<PicturePoint>& points) {
   const bool is_perspective = settings_.view == PictureView::perspective;
   const double margin = is_perspective ? 1.3 : 1.05;  // what is near looks larger
-  constexpr double kLeast = 0.1;                      // [m] of the view, however few points there are
+  constexpr double kMin = 0.1;                        // [m] of the view, however few points there are
   std::array<std::vector<double>, 3> coordinates;
   for (const PicturePoint& point : points) {
     if (!is_deep_enough(point)) continue;
@@ -79,7 +79,7 @@ void PictureProjection::fit(const std::vector<PicturePoint>& points) {
   const Spread right = spread_of(coordinates[0]), up = spread_of(coordinates[1]);
   const double shape = static_cast<double>(settings_.width) / settings_.height;
   across_ =
-      settings_.across.value_or(round_above(margin * std::max({right.extent, up.extent * shape, kLeast})));
+      settings_.across.value_or(round_above(margin * std::max({right.extent, up.extent * shape, kMin})));
   // Clouds that differ little, as before and after a calibration, get the same centre.
   const double step = across_ / 20;
   centre_ = settings_.centre.value_or(

@@ -5,7 +5,7 @@
 
 #include "grabbers/pcd/cloud_stage.hpp"
 #include "pipeline/data/cloud.hpp"
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "pipeline/pcd/parts.hpp"
 #include "plugins/write/measurements_stage.hpp"
 #include "tests/pipeline/pcd/sample_tables.hpp"
@@ -144,7 +144,7 @@ TEST_F(GrabMeasurements, ALaserThatTheRigDoesNotHaveIsRefused) {
 
 TEST_F(GrabMeasurements, ACloudInPlaceOfMeasurementsIsRefusedByName) {
   PartsWriter writer(folder_ / "run.pcd", PcdFormat::binary);
-  writer.write(to_table(test::sample_cloud(3)), false);
+  writer.write(to_pcd_table(test::sample_cloud(3)), false);
   writer.commit();
   EXPECT_THAT(complaint(), HasSubstr("run.pcd holds a cloud, no measurements; read it with grabber.cloud"));
 }
@@ -171,7 +171,7 @@ TEST_F(GrabMeasurements, TheTwoFilesOfARecordingAreNamedAsTwo) {
 
 TEST_F(GrabMeasurements, ACloudIsReadByItsOwnGrabber) {
   PartsWriter writer(folder_ / "cloud.pcd", PcdFormat::binary);
-  writer.write(to_table(test::sample_cloud(3)), false);
+  writer.write(to_pcd_table(test::sample_cloud(3)), false);
   writer.commit();
   auto stage = StageDriver::of<GrabCloudStage>(file("cloud.pcd"));
   stage.feed();

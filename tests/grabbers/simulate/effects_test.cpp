@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "grabbers/simulate/departures.hpp"
 #include "grabbers/simulate/device_effects.hpp"
+#include "grabbers/simulate/nominal_errors.hpp"
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/error.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "grabbers/capture/capture_reader.hpp"
 #include "grabbers/capture/item_merge.hpp"
-#include "grabbers/simulate/departures.hpp"
 #include "grabbers/simulate/measurements.hpp"
+#include "grabbers/simulate/nominal_errors.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/recorded_capture.hpp"
 #include "grabbers/simulate/scenes.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grabbers/simulate/departures.hpp"
 #include "grabbers/simulate/measurements.hpp"
+#include "grabbers/simulate/nominal_errors.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/model/sensor_model.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "pipeline/pcd/parts.hpp"
 #include "tests/pipeline/app/program_fixture.hpp"
 
@@ -25,7 +25,7 @@ class ConvertTest : public ProgramTest {
   }
   void put_cloud(std::string_view name, std::size_t points) const {
     PartsWriter writer(folder_ / name, PcdFormat::binary);
-    writer.write(to_table(cloud(points)), false);
+    writer.write(to_pcd_table(cloud(points)), false);
     writer.commit();
   }
 };
@@ -45,8 +45,8 @@ TEST_F(ConvertTest, WritesEachCloudOfAFolderIntoAFolder) {
   fs::create_directory(folder_ / "clouds");
   put_cloud("clouds/one.pcd", 3);
   PartsWriter parts(folder_ / "clouds/two.pcd", PcdFormat::binary);
-  parts.write(to_table(cloud(4)), true);
-  parts.write(to_table(cloud(5)), false);
+  parts.write(to_pcd_table(cloud(4)), true);
+  parts.write(to_pcd_table(cloud(5)), false);
   parts.commit();
   const auto run = crisp({"convert", path("clouds"), path("out"), "--format", "las"});
   EXPECT_EQ(run.status, 0) << run.error;

@@ -76,10 +76,10 @@ TEST(ClockLine, IsNeverSteeperThanACrystalCanBe) {
       {0, 0}, {0.01, 1e-3}, {0.02, 0.5e-3}};  // two stamps would give 25000 ppm
   const auto hull = line_by_convex_hull(stamps, 0.01);
   const auto programme = test::line_by_linear_program(stamps, 0.01);
-  EXPECT_DOUBLE_EQ(hull.slope, kMostSkew);
-  EXPECT_DOUBLE_EQ(programme.slope, kMostSkew);
-  EXPECT_NEAR(hull.at_center, 0.01 * kMostSkew, 1e-18);
-  EXPECT_NEAR(programme.at_center, 0.01 * kMostSkew, 1e-18);
+  EXPECT_DOUBLE_EQ(hull.slope, kMaxSkew);
+  EXPECT_DOUBLE_EQ(programme.slope, kMaxSkew);
+  EXPECT_NEAR(hull.at_center, 0.01 * kMaxSkew, 1e-18);
+  EXPECT_NEAR(programme.at_center, 0.01 * kMaxSkew, 1e-18);
 }
 
 TEST(ClockLine, IsLevelWhereAllStampsAreOfOneInstant) {

@@ -27,10 +27,10 @@ ClockLine line_by_linear_program(std::span<const Stamp> stamps, double center) {
   }
   // height(slope) = min over i of lead_i + slope · (center − device_i) is concave; a stamp that supports the
   // line left of the center shows that a steeper line stands higher, one right of it the contrary.
-  std::size_t left = touched_by(stamps, -kMostSkew);
-  if (stamps[left].device > center) return line_through(stamps[left], -kMostSkew, center);
-  std::size_t right = touched_by(stamps, kMostSkew);
-  if (stamps[right].device <= center) return line_through(stamps[right], kMostSkew, center);
+  std::size_t left = touched_by(stamps, -kMaxSkew);
+  if (stamps[left].device > center) return line_through(stamps[left], -kMaxSkew, center);
+  std::size_t right = touched_by(stamps, kMaxSkew);
+  if (stamps[right].device <= center) return line_through(stamps[right], kMaxSkew, center);
   while (true) {
     const double slope =
         (stamps[right].lead - stamps[left].lead) / (stamps[right].device - stamps[left].device);

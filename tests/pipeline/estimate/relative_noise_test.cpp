@@ -10,8 +10,8 @@
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/incidence.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/estimate/surfel_jacobian.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
-#include "pipeline/estimate/surfel_rows.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 

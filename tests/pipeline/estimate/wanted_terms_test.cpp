@@ -5,8 +5,8 @@
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/parameter_prior.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
-#include "pipeline/estimate/search_range.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 #include "tests/support/built_in_terms.hpp"

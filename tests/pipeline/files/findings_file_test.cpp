@@ -20,7 +20,7 @@ Findings some_findings() {
                                .scope = "laser2",
                                .parameters = {{"kappa", "rad", 0.003, 1e-4, true}},
                                .explained_fraction = 0.8,
-                               .log10_odds = 12,
+                               .log10_bayes_factor = 12,
                                .p_value = 1e-9,
                                .confounded_with = {"laser2.mount.tangential_offset"},
                                .resolvable_by = {"surfaces near and far"},
@@ -64,12 +64,12 @@ TEST(FindingsFile, HasItsDocumentedSchema) {
   const auto json = nlohmann::json::parse(findings_json(some_findings()));
   EXPECT_THAT(keys_of(json),
               testing::UnorderedElementsAre("crisp", "findings", "unnamed", "departures", "unobservable",
-                                            "artefacts", "devices", "noise", "gain", "goodness_of_fit"));
+                                            "artifacts", "devices", "noise", "gain", "goodness_of_fit"));
   const auto& finding = json["findings"][0];
-  EXPECT_THAT(keys_of(finding),
-              testing::UnorderedElementsAre("cause", "scope", "parameters", "explained_fraction",
-                                            "log10_bayes_factor", "p_value", "confounded_with",
-                                            "resolvable_by", "alternatives", "gain", "accepted", "refused"));
+  EXPECT_THAT(keys_of(finding), testing::UnorderedElementsAre(
+                                    "cause", "scope", "parameters", "explained_fraction",
+                                    "log10_bayes_factor", "p_value", "confounded_with", "resolvable_by",
+                                    "alternatives", "gain", "accepted", "rejection_reason"));
   EXPECT_THAT(keys_of(finding["alternatives"][0]),
               testing::UnorderedElementsAre("cause", "scope", "log10_bayes_factor"));
   EXPECT_THAT(keys_of(json["departures"][0]),
@@ -93,7 +93,7 @@ TEST(FindingsFile, HoldsSeveralDiagnoses) {
   all.append({.before_p = 0.5, .after_p = 0.1});
   const auto json = nlohmann::json::parse(findings_json(all));
   for (const char* list :
-       {"findings", "unnamed", "departures", "unobservable", "artefacts", "devices", "noise", "gain"}) {
+       {"findings", "unnamed", "departures", "unobservable", "artifacts", "devices", "noise", "gain"}) {
     EXPECT_EQ(json[list].size(), 2U) << list;
   }
   // The less of two: 1 - (1 - 0.005)^2 = 0.009975, then 1 - (1 - 0.009975)^2.
@@ -114,7 +114,7 @@ TEST(FindingsFile, IsDocumentedKeyByKey) {
                                          json["unnamed"][0],
                                          json["departures"][0],
                                          json["unobservable"][0],
-                                         json["artefacts"][0],
+                                         json["artifacts"][0],
                                          json["devices"][0],
                                          json["noise"][0],
                                          json["goodness_of_fit"]};
@@ -142,7 +142,7 @@ TEST(FindingsFile, IsReadAsItWasWritten) {
   EXPECT_TRUE(std::isnan(finding.parameters[2].std_error)) << "missing: not 0";
   EXPECT_EQ(finding.gain.at(0).ci95[0], -3e-4);
   EXPECT_TRUE(finding.accepted);
-  EXPECT_EQ(finding.refusal(), "");
+  EXPECT_EQ(finding.rejection_reason(), "");
   EXPECT_EQ(read.unnamed.at(0).quantity, "range");
   EXPECT_EQ(finding.alternatives.at(0).scope, "laser3");
   EXPECT_EQ(read.departures.at(0).amplitude, 0.004);
@@ -158,13 +158,14 @@ TEST(FindingsFile, ReportsWhyACauseWasRefused) {
   Findings written = some_findings();
   written.findings[0].accepted = false;
   const auto printed = [&] {
-    return nlohmann::json::parse(findings_json(written))["findings"][0]["refused"].get<std::string>();
+    return nlohmann::json::parse(findings_json(written))["findings"][0]["rejection_reason"]
+        .get<std::string>();
   };
   EXPECT_THAT(printed(), testing::HasSubstr("does not improve the fit"));
-  written.findings[0].refused = "more is left than it takes";
+  written.findings[0].rejection = "more is left than it takes";
   EXPECT_EQ(printed(), "more is left than it takes");
   const Findings read = parse_findings(parse_yaml(findings_json(written), "diagnosis.json"));
-  EXPECT_EQ(read.findings.at(0).refusal(), "more is left than it takes");
+  EXPECT_EQ(read.findings.at(0).rejection_reason(), "more is left than it takes");
 }
 
 TEST(FindingsFile, OfAnEarlierVersionIsReadWithoutMissingKeys) {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <pcl/io/pcd_io.h>
 
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "tests/pipeline/pcd/sample_tables.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -19,7 +19,7 @@ class AgainstPcl : public testing::TestWithParam<PcdFormat> {
 
   void write(const Cloud& cloud) const {
     AtomicFile out(file());
-    write_pcd(out, to_table(cloud), GetParam());
+    write_pcd(out, to_pcd_table(cloud), GetParam());
     out.commit();
   }
 

@@ -26,7 +26,7 @@ class MeasurementFormats : public testing::TestWithParam<PcdFormat> {};
 
 TEST_P(MeasurementFormats, MeasurementsComeBackExactly) {
   const Measurements beams = sample_measurements(3000);
-  const auto read = measurements_of(through_a_file(to_table(beams, sample_plate(1)), GetParam()));
+  const auto read = measurements_of(through_a_file(to_pcd_table(beams, sample_plate(1)), GetParam()));
   EXPECT_EQ(read.impossible, 0U);
   EXPECT_EQ(read.beams.epoch_ns, beams.epoch_ns);
   EXPECT_EQ(read.beams.range, beams.range);
@@ -39,7 +39,7 @@ TEST_P(MeasurementFormats, MeasurementsComeBackExactly) {
 
 TEST_P(MeasurementFormats, ATrajectoryComesBackExactly) {
   const PlateTrajectory plate = sample_plate(1);
-  const auto read = trajectory_of(through_a_file(to_table(plate), GetParam()));
+  const auto read = trajectory_of(through_a_file(to_pcd_table(plate), GetParam()));
   EXPECT_EQ(read.epoch_ns(), plate.epoch_ns());
   EXPECT_EQ(read.max_gap(), plate.max_gap());
   ASSERT_EQ(read.size(), plate.size());
@@ -55,7 +55,7 @@ TEST_P(MeasurementFormats, ATrajectoryComesBackExactly) {
 
 TEST_P(MeasurementFormats, NewZerosOfTheEncoderComeBack) {
   const PlateTrajectory plate(5, {0, 1, 2, 3}, {0, 1, 0, 1}, 1, {1.5, 3});
-  const auto read = trajectory_of(through_a_file(to_table(plate), GetParam()));
+  const auto read = trajectory_of(through_a_file(to_pcd_table(plate), GetParam()));
   ASSERT_EQ(read.new_zeros().size(), 2U);
   EXPECT_EQ(read.new_zeros()[0], 2) << "the first reading that counts from it";
   EXPECT_EQ(read.new_zeros()[1], 3);
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(All, MeasurementFormats,
 TEST(MeasurementTables, ThePlatesAngleStandsNextToEachMeasurement) {
   Measurements beams = sample_measurements(2);
   beams.time = {0.5, 2.0};
-  const auto angles = to_table(beams, sample_plate(1)).column<double>("plate_angle");
+  const auto angles = to_pcd_table(beams, sample_plate(1)).column<double>("plate_angle");
   EXPECT_NEAR(angles[0], 1.0 / 3 + 6 * 0.25, 1e-12);  // the angle that sample_plate gives this instant
   EXPECT_TRUE(std::isnan(angles[1])) << "the readings end at 1 s";
 }
@@ -90,7 +90,7 @@ TEST(MeasurementTables, ImpossibleMeasurementsAreCountedAndLeftOut) {
   beams.range[0] = 0;
   beams.range[1] = -1;
   beams.time[2] = std::numeric_limits<double>::quiet_NaN();
-  const auto read = measurements_of(to_table(beams, sample_plate(1)));
+  const auto read = measurements_of(to_pcd_table(beams, sample_plate(1)));
   EXPECT_EQ(read.impossible, 3U);
   EXPECT_EQ(read.beams.range, std::vector<float>{beams.range[3]});
 }

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "pipeline/data/error.hpp"
-#include "pipeline/files/folder.hpp"
+#include "pipeline/files/list_files.hpp"
 #include "pipeline/pcd/measurement_tables.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -78,14 +78,14 @@ TEST_F(Parts, OfTwoRunsAreNotTakenForOneRecording) {
 TEST_F(Parts, OfAnEarlierRunAreRemovedWhenThisOnesAreComplete) {
   const auto names = [&] {
     std::vector<std::string> all;
-    for (const auto& file : files_in(folder_ / "")) all.push_back(file.filename().string());
+    for (const auto& file : list_files(folder_ / "")) all.push_back(file.filename().string());
     return all;
   };
   const auto write = [&](int parts) {
     PartsWriter writer(folder_ / "c.pcd", PcdFormat::binary);
     for (int i = 1; i <= parts; ++i) {
-      const auto file = writer.write(to_table(test::sample_cloud(3)), i < parts);
-      writer.write_next_to(plate_path(file), to_table(test::sample_cloud(1)));
+      const auto file = writer.write(to_pcd_table(test::sample_cloud(3)), i < parts);
+      writer.write_next_to(plate_path(file), to_pcd_table(test::sample_cloud(1)));
     }
     writer.commit();
     return writer.remove_older();

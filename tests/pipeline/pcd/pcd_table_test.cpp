@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "pipeline/data/error.hpp"
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "tests/pipeline/pcd/sample_tables.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -39,11 +39,11 @@ class PcdFormats : public testing::TestWithParam<PcdFormat> {};
 
 TEST_P(PcdFormats, TheSamePointsGiveTheSameBytes) {
   const auto cloud = test::sample_cloud(5000);
-  EXPECT_EQ(written(to_table(cloud), GetParam()), written(to_table(cloud), GetParam()));
+  EXPECT_EQ(written(to_pcd_table(cloud), GetParam()), written(to_pcd_table(cloud), GetParam()));
 }
 
 TEST_P(PcdFormats, AFileThatIsCutOffAnywhereIsRefused) {
-  const std::string bytes = written(to_table(test::sample_cloud(7)), GetParam());
+  const std::string bytes = written(to_pcd_table(test::sample_cloud(7)), GetParam());
   ASSERT_EQ(complaint(bytes), "");
   // What ends an ASCII file is a line break, which is not missed; without its last digit a number is another.
   const std::size_t longest = bytes.size() - (GetParam() == PcdFormat::ascii ? 20 : 0);
@@ -51,7 +51,7 @@ TEST_P(PcdFormats, AFileThatIsCutOffAnywhereIsRefused) {
 }
 
 TEST_P(PcdFormats, AFlippedBitNeverBringsTheReaderDown) {
-  std::string bytes = written(to_table(test::sample_cloud(7)), GetParam());
+  std::string bytes = written(to_pcd_table(test::sample_cloud(7)), GetParam());
   std::size_t refused = 0;
   for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
     const auto flip = static_cast<char>(1 << (bit % 8));
@@ -138,7 +138,7 @@ TEST(PcdTable, FieldsInCapitalsAreACloudsToo) {
   const auto cloud = cloud_of(table).cloud;
   EXPECT_EQ(cloud->at(0).y, 2);
   EXPECT_EQ(cloud->at(0).intensity, 4);
-  EXPECT_THAT(not_kept(table), testing::ElementsAre("the fields GpsTime"));
+  EXPECT_THAT(dropped_fields(table), testing::ElementsAre("the fields GpsTime"));
 }
 
 TEST(PcdTable, AValueThatIsNotANumberIsShown) {

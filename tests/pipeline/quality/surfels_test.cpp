@@ -151,18 +151,18 @@ TEST(Surfels, AreLeftOutWhereBeamsMissThemByMoreThanElsewhere) {
   const auto all = surfels.surfels.size();
   ASSERT_GT(all, 3U);
   constexpr double kMore = 1.3;
-  leave_out_odd_ones(surfels, scan.beams(), settings, kMore);
+  reject_inconsistent(surfels, scan.beams(), settings, kMore);
   EXPECT_EQ(surfels.surfels.size(), all);
 
   const Surfel odd = surfels.surfels[2];
   roughen(scan, surfels, odd, 0.02);
-  leave_out_odd_ones(surfels, scan.beams(), settings, kMore);
+  reject_inconsistent(surfels, scan.beams(), settings, kMore);
   EXPECT_EQ(surfels.surfels.size(), all - 1);
   for (const Surfel& surfel : surfels.surfels) EXPECT_NE(surfel.begin, odd.begin);
 
   // But a wrong calibration roughens all of them.
   for (const Surfel& surfel : surfels.surfels) roughen(scan, surfels, surfel, 0.02);
-  leave_out_odd_ones(surfels, scan.beams(), settings, kMore);
+  reject_inconsistent(surfels, scan.beams(), settings, kMore);
   EXPECT_EQ(surfels.surfels.size(), all - 1);
 }
 

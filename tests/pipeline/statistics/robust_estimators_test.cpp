@@ -28,7 +28,7 @@ TEST(SigmaByMedian, IsTheStandardDeviationOfNormalValues) {
   std::vector<double> sizes(kValues);
   for (double& size : sizes) size = std::abs(normal(random));
   // The median absolute deviation has an efficiency of 37 %.
-  EXPECT_NEAR(kSigmaByMedian * median_in_place(sizes), 3, 4 * 3 / std::sqrt(2 * 0.37 * kValues));
+  EXPECT_NEAR(kMadToSigma * median_in_place(sizes), 3, 4 * 3 / std::sqrt(2 * 0.37 * kValues));
 }
 
 TEST(Biweight, HasTheSlopeOfItsInfluence) {
@@ -36,7 +36,7 @@ TEST(Biweight, HasTheSlopeOfItsInfluence) {
   for (const double share : {0.0, 0.1, 0.4, 0.8, 0.99}) {
     constexpr double kStep = 1e-6;
     const double slope = (influence(share + kStep) - influence(share - kStep)) / (2 * kStep);
-    EXPECT_NEAR(biweight_slope(biweight(share)), slope, 1e-6) << share;
+    EXPECT_NEAR(biweight_psi_derivative(biweight(share)), slope, 1e-6) << share;
   }
   EXPECT_EQ(biweight(1.5), 0);
 }

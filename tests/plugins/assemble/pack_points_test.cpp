@@ -17,18 +17,18 @@ INSTANTIATE_TEST_SUITE_P(All, PackPoints, testing::ValuesIn(test::instruction_se
                          test::name_of_instruction_set);
 
 TEST_P(PackPoints, EveryFieldOfEachPointIsWrittenWhateverTheirNumber) {
-  constexpr std::size_t kMost = 40;  // some of the longest vectors, and all that can be left behind them
-  std::vector<double> x(kMost), y(kMost), z(kMost), time(kMost);
+  constexpr std::size_t kMax = 40;  // some of the longest vectors, and all that can be left behind them
+  std::vector<double> x(kMax), y(kMax), z(kMax), time(kMax);
   std::iota(x.begin(), x.end(), 1.1);
   std::iota(y.begin(), y.end(), -200.2);
   std::iota(z.begin(), z.end(), 0.3);
   std::iota(time.begin(), time.end(), 1e4 + 1e-9);
-  std::vector<float> intensity(kMost);
+  std::vector<float> intensity(kMax);
   std::iota(intensity.begin(), intensity.end(), 0.5F);
-  std::vector<std::uint16_t> laser(kMost), beam(kMost);
+  std::vector<std::uint16_t> laser(kMax), beam(kMax);
   std::iota(laser.begin(), laser.end(), 7);
   std::iota(beam.begin(), beam.end(), 65500);
-  for (std::size_t n = 0; n <= kMost; ++n) {
+  for (std::size_t n = 0; n <= kMax; ++n) {
     std::vector<Point, Eigen::aligned_allocator<Point>> points(n + 1);
     simd::pack_points({.x = x.data(),
                        .y = y.data(),

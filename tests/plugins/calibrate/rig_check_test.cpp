@@ -31,7 +31,7 @@ Calibration found(std::uint64_t seed, const Rig& rig = default_rig()) {
 }
 
 RigCheck check(const Calibration& calibration, const Rig& rig = default_rig()) {
-  return check_with_rig(calibration, rig, SearchRange{});
+  return check_with_rig(calibration, rig, ParameterPrior{});
 }
 
 TEST(RigCheck, MirroredPlacesTheMirrorImageOfTheSceneByNegatedCounts) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/estimate/base_parameters.hpp"
-#include "pipeline/estimate/search_range.hpp"
+#include "pipeline/estimate/parameter_prior.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {

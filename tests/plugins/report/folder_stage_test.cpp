@@ -6,7 +6,7 @@
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/calibration_file.hpp"
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -53,7 +53,7 @@ TEST_F(FolderReport, OfARunHoldsWhatTheFolderHolds) {
   Cloud cloud;
   cloud.resize(20);
   AtomicFile file(folder_ / "cloud.pcd");
-  write_pcd(file, to_table(cloud), PcdFormat::binary);
+  write_pcd(file, to_pcd_table(cloud), PcdFormat::binary);
   file.commit();
   test::put_bytes(folder_ / "diagnosis.json", R"({"findings": []})");
   const Json data = data_of_report();

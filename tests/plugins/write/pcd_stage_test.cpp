@@ -6,7 +6,7 @@
 
 #include <csignal>
 
-#include "pipeline/pcd/cloud_table.hpp"
+#include "pipeline/pcd/cloud_conversion.hpp"
 #include "tests/pipeline/pcd/sample_tables.hpp"
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"

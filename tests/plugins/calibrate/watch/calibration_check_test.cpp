@@ -13,9 +13,10 @@ namespace {
 constexpr auto kGoOn = [] { return true; };
 
 CalibrationCheck check(const Calibration& calibration, const SimulatedMeasurements& simulated,
-                       Renewing renewing = Renewing::No, Renewed renewed = Renewed::All) {
+                       RecalibrationPolicy policy = RecalibrationPolicy::No,
+                       RecalibratedParameters parameters = RecalibratedParameters::All) {
   return check_calibration(calibration, {.beams = simulated.beams, .plate = &simulated.plate}, default_rig(),
-                           {}, {.renewed = renewed}, renewing, kGoOn);
+                           {}, {.parameters = parameters}, policy, kGoOn);
 }
 
 TEST(CalibrationCheck, FindsTheTruthGood) {
@@ -23,17 +24,18 @@ TEST(CalibrationCheck, FindsTheTruthGood) {
   const CalibrationCheck found = check(simulated.truth, simulated);
   EXPECT_FALSE(found.stale) << found.moved;
   EXPECT_NEAR(found.rqe, found.best_rqe, 1e-3);
-  EXPECT_FALSE(check(simulated.truth, simulated, Renewing::IfStale).renewal);
+  EXPECT_FALSE(check(simulated.truth, simulated, RecalibrationPolicy::IfStale).recalibration);
 }
 
 TEST(CalibrationCheck, NamesTheParameterThatMovedAndFindsItAnew) {
   const auto simulated = test::recorded(3);
-  const CalibrationCheck found = check(test::pushed(simulated.truth), simulated, Renewing::IfStale);
+  const CalibrationCheck found =
+      check(test::pushed(simulated.truth), simulated, RecalibrationPolicy::IfStale);
   EXPECT_TRUE(found.stale);
   EXPECT_GT(found.rqe, found.best_rqe + 0.006);
-  ASSERT_TRUE(found.renewal);
-  EXPECT_EQ(found.renewal->rqe, found.best_rqe);
-  const Parameter& alpha = found.renewal->calibration.lasers[1].alpha;
+  ASSERT_TRUE(found.recalibration);
+  EXPECT_EQ(found.recalibration->rqe, found.best_rqe);
+  const Parameter& alpha = found.recalibration->calibration.lasers[1].alpha;
   EXPECT_NEAR(alpha.value, simulated.truth.lasers[1].alpha.value, 5 * alpha.std_error);
   const double by = alpha.value - test::pushed(simulated.truth).lasers[1].alpha.value;
   EXPECT_THAT(found.moved, testing::StartsWith(fmt::format("laser2.alpha by {:.2g} deg", by / kDegree)));
@@ -44,11 +46,12 @@ TEST(CalibrationCheck, FindsLagsAnewAndLeavesWhatIsKnownOfTheGeometry) {
   Calibration before = simulated.truth;
   before.lasers[1].tau.std_error = 1e-3;
   before.lasers[1].eta.value = 0;
-  const CalibrationCheck found = check(before, simulated, Renewing::Yes, Renewed::Lags);
+  const CalibrationCheck found =
+      check(before, simulated, RecalibrationPolicy::Yes, RecalibratedParameters::Lags);
   EXPECT_THAT(found.moved, testing::StartsWith("laser2.eta by 2 ms"));
-  ASSERT_TRUE(found.renewal);
-  EXPECT_NEAR(found.renewal->rqe, found.best_rqe, 1e-3);
-  const LaserCalibration& laser = found.renewal->calibration.lasers[1];
+  ASSERT_TRUE(found.recalibration);
+  EXPECT_NEAR(found.recalibration->rqe, found.best_rqe, 1e-3);
+  const LaserCalibration& laser = found.recalibration->calibration.lasers[1];
   EXPECT_NEAR(laser.eta.value, 2e-3, 5 * laser.eta.std_error);
   EXPECT_LT(laser.eta.std_error, 0.1e-3);
   EXPECT_EQ(laser.tau.value, before.lasers[1].tau.value);
@@ -59,7 +62,7 @@ TEST(CalibrationCheck, CanBeStopped) {
   const auto simulated = test::recorded(1);
   int requested = 0;
   check_calibration(test::pushed(simulated.truth), {.beams = simulated.beams, .plate = &simulated.plate},
-                    default_rig(), {}, {}, Renewing::No, [&] { return ++requested < 2; });
+                    default_rig(), {}, {}, RecalibrationPolicy::No, [&] { return ++requested < 2; });
   EXPECT_EQ(requested, 2);
 }
 

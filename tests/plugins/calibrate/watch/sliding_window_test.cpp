@@ -19,11 +19,11 @@ TEST(SlidingWindow, KeepsTheLastSecondsAndNoMore) {
 
 TEST(SlidingWindow, TakesAShareOfAllBatches) {
   const auto batches = test::batches_of(test::recorded(0.5));
-  constexpr std::size_t kMost = 5000;
+  constexpr std::size_t kMax = 5000;
   PlateTrajectory plate;
-  const Sample sample = sample_of(batches, kMost, plate);
+  const Sample sample = sample_of(batches, kMax, plate);
   // Each batch is sampled: sqrt(5000) = 71 is one standard deviation at most.
-  EXPECT_NEAR(static_cast<double>(sample.beams.size()), kMost, 5 * 71);
+  EXPECT_NEAR(static_cast<double>(sample.beams.size()), kMax, 5 * 71);
   EXPECT_LT(sample.beams.time.front(), batches.front().beams->time.back());
   EXPECT_GT(sample.beams.time.back(), batches.back().beams->time.front());
 }

@@ -151,8 +151,9 @@ TEST(ClockStamps, GiveBayesFactorsAgainstAllOtherDeviations) {
   const auto competitors = [](const Hidden& hidden) {
     const auto found = clock_departure(track_of(3, hidden, kDelays).stamps(), 4, 1);
     std::map<std::optional<Kind>, double> odds;
-    for (const auto& competitor : found->competitors) odds[competitor.kind] = competitor.log10_odds;
-    EXPECT_TRUE(std::ranges::is_sorted(found->competitors, {}, &ClockDeparture::Competitor::log10_odds));
+    for (const auto& competitor : found->competitors) odds[competitor.kind] = competitor.log10_bayes_factor;
+    EXPECT_TRUE(
+        std::ranges::is_sorted(found->competitors, {}, &ClockDeparture::Competitor::log10_bayes_factor));
     return odds;
   };
   for (const auto& [what, hidden, others] :
@@ -161,9 +162,9 @@ TEST(ClockStamps, GiveBayesFactorsAgainstAllOtherDeviations) {
         {"link", Hidden{.latency_step = 0.004, .at = 20}, {{}, Kind::drift, Kind::clock_step}}}) {
     const auto odds = competitors(hidden);
     ASSERT_EQ(odds.size(), others.size()) << what;
-    for (const auto& [kind, log10_odds] : odds) {
+    for (const auto& [kind, log10_bayes_factor] : odds) {
       EXPECT_TRUE(others.contains(kind)) << what;
-      EXPECT_GT(log10_odds, 2) << what << ": Bayes factor 100";
+      EXPECT_GT(log10_bayes_factor, 2) << what << ": Bayes factor 100";
     }
   }
   // The step is 40 times the intervals' spread, in place of 4000 times.
@@ -180,7 +181,7 @@ TEST(ClockStamps, TestAClockJumpByTheSpreadOfIntervals) {
     stamps.push_back({.count = k, .stamp = {.device = 0.02 * k + late, .lead = 0}});
   }
   // Student's density at 3 and at 0 scales: 2 log10(1 + 9/3) …
-  const double width = kSigmaByMedian * kSpread;
+  const double width = kMadToSigma * kSpread;
   const double jump = device_jump(stamps, 30);
   EXPECT_NEAR(log10_odds_of_jump(stamps, 30, jump), 2 * std::log10(1 + std::pow(jump / width, 2) / 3), 1e-9);
   EXPECT_NEAR(log10_odds_of_jump(stamps, 30, 2 * jump), 0, 1e-9) << "half-way between both hypotheses";

@@ -108,10 +108,11 @@ TEST(DiagnoseClocks, ReportsCompetingCausesOfAStepWithBayesFactors) {
   for (const OtherCause& other : finding.alternatives) {
     others.push_back(other.cause);
     EXPECT_EQ(other.scope, "a");
-    EXPECT_GE(other.log10_odds, finding.log10_odds) << "against the most likely competitor, or none";
+    EXPECT_GE(other.log10_bayes_factor, finding.log10_bayes_factor)
+        << "against the most likely competitor, or none";
   }
   EXPECT_THAT(others, testing::UnorderedElementsAre("clock.drift", "clock.step"));
-  EXPECT_GT(finding.log10_odds, 2);
+  EXPECT_GT(finding.log10_bayes_factor, 2);
   EXPECT_THAT(finding.confounded_with, IsEmpty());
 }
 

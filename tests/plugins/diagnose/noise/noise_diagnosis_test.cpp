@@ -146,8 +146,8 @@ TEST(NoiseDiagnosis, EstimatesTheSlopeOfRangeDependentNoise) {
   const auto& others = found.findings[0].alternatives;
   ASSERT_FALSE(others.empty()) << "other components were compared";
   EXPECT_EQ(others.front().scope, "laser1");
-  EXPECT_GE(others.front().log10_odds, found.findings[0].log10_odds);
-  EXPECT_TRUE(std::ranges::is_sorted(others, {}, &OtherCause::log10_odds));
+  EXPECT_GE(others.front().log10_bayes_factor, found.findings[0].log10_bayes_factor);
+  EXPECT_TRUE(std::ranges::is_sorted(others, {}, &OtherCause::log10_bayes_factor));
 }
 
 TEST(NoiseDiagnosis, EstimatesTheShareOfAHeavyTail) {
@@ -242,7 +242,7 @@ TEST(NoiseDiagnosis, FindsBothOfTwoComponents) {
   std::vector<std::string> causes;
   for (const auto& finding : found.findings) causes.push_back(finding.cause);
   EXPECT_THAT(causes, testing::UnorderedElementsAre("noise.two_peaks", "noise.range_dependent"));
-  for (const auto& finding : found.findings) EXPECT_GT(finding.log10_odds, 2) << finding.cause;
+  for (const auto& finding : found.findings) EXPECT_GT(finding.log10_bayes_factor, 2) << finding.cause;
 }
 
 TEST(NoiseDiagnosis, SharesTheGainBetweenFindings) {
@@ -294,7 +294,7 @@ TEST(NoiseDiagnosis, SelectsAStepOrAWarmUpByBic) {
             0.019)
       << "scans 90 and 91 have the same receipt time";
   // Means of 50 beams have σ = 1.1 mm; a straight line leaves 0.75 mm of the step: 200/2 lg 1.44 = 16.
-  EXPECT_GT(step.change->log10_odds, 5);
+  EXPECT_GT(step.change->log10_bayes_factor, 5);
   const Plot plot = common_plot("laser1", step, jumping, seconds);
   double misfit = 0;
   for (std::size_t scan = 0; scan < seconds.size(); ++scan) {
@@ -304,7 +304,7 @@ TEST(NoiseDiagnosis, SelectsAStepOrAWarmUpByBic) {
   const auto creeping =
       common_mode_error(drawn([](int scan) { return 0.008 * (1 - std::exp(-scan / 60.0)); }), seconds, 1, 1);
   ASSERT_TRUE(creeping.change && !creeping.change->is_step);
-  EXPECT_GT(creeping.change->log10_odds, 2);
+  EXPECT_GT(creeping.change->log10_bayes_factor, 2);
   EXPECT_FALSE(creeping.wander);
   const auto quick =
       common_mode_error(drawn([](int scan) { return 0.02 * (1 - std::exp(-scan / 20.0)); }), seconds, 1, 1);

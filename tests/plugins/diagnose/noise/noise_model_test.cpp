@@ -128,7 +128,7 @@ TEST(NoiseModel, OfOnePartIsNotTakenForAnother) {
       ASSERT_THAT(causes_in(found), ElementsAre(cause)) << seed;
       const auto truth = *std::ranges::max_element(size.begin() + 1, size.end());
       EXPECT_LT(std::abs(off(found, cause, truth)), 4) << cause << ", seed " << seed;
-      EXPECT_GT(found.findings[0].log10_odds, 2) << cause << ", seed " << seed;
+      EXPECT_GT(found.findings[0].log10_bayes_factor, 2) << cause << ", seed " << seed;
       EXPECT_THAT(found.findings[0].confounded_with, IsEmpty());
     }
   }

@@ -25,7 +25,7 @@ TEST(RangeQuantization, IsDetectedInMultiplesOnly) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->parameters[0].value, 0.004, 1e-7);
   // Nearly all of 20 000 ranges lie in a quarter of the cells.
-  EXPECT_NEAR(found->log10_odds, 20'000 * std::log10(4), 300);
+  EXPECT_NEAR(found->log10_bayes_factor, 20'000 * std::log10(4), 300);
 }
 
 TEST(RangeQuantization, HasTheGainOfHeldOutBlocks) {

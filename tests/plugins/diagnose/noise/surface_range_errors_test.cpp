@@ -15,7 +15,7 @@
 #include "plugins/diagnose/noise/noise_diagnosis.hpp"
 #include "plugins/diagnose/noise/noise_model_stage.hpp"
 #include "plugins/diagnose/noise/range_quantization.hpp"
-#include "plugins/diagnose/scene/edges.hpp"
+#include "plugins/diagnose/scene/mixed_pixels.hpp"
 #include "plugins/diagnose/scene/visibility.hpp"
 #include "tests/plugins/diagnose/hidden.hpp"
 #include "tests/support/stage_driver.hpp"
@@ -27,7 +27,7 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr double kLeastGain = 0.001;
+constexpr double kMinGain = 0.001;
 
 double value_in(const Finding& finding, const std::string& name) {
   return std::ranges::find(finding.parameters, name, &Parameter::name)->value;
@@ -37,12 +37,13 @@ double error_in(const Finding& finding, const std::string& name) {
 }
 
 /// A recording of known calibration with its beam association.
-class Followed {
+class AssociatedBeams {
  public:
-  Followed(const std::string& scene, const NoiseEffects& noise, double sigma = 0.012, std::uint64_t seed = 3)
-      : Followed(record(scene, noise, sigma, seed), {}, sigma) {}
+  AssociatedBeams(const std::string& scene, const NoiseEffects& noise, double sigma = 0.012,
+                  std::uint64_t seed = 3)
+      : AssociatedBeams(record(scene, noise, sigma, seed), {}, sigma) {}
   /// @param by  calibration of the association; without lasers: the truth
-  Followed(test::Recording recording, const Calibration& by, double sigma = 0.012)
+  AssociatedBeams(test::Recording recording, const Calibration& by, double sigma = 0.012)
       : recording_(std::move(recording)),
         evidence_(evidence_of(recording_, by.lasers.empty() ? recording_.made.truth : by, sigma)) {
     met_ = associate_beams(evidence_.surfels(), evidence_.beams(), beams().range);
@@ -53,7 +54,7 @@ class Followed {
   const BeamAssociation& association() const { return met_; }
   double usual() const { return usual_error(met_); }
   RangeErrors scatter() const { return scatter_of(0, beams(), met_, usual(), blocks_); }
-  NoiseDiagnosis noise() const { return diagnose_noise("laser1", scatter(), 1, kLeastGain); }
+  NoiseDiagnosis noise() const { return diagnose_noise("laser1", scatter(), 1, kMinGain); }
   std::optional<Finding> quantization() const {
     std::vector<float> ranges;
     std::vector<std::uint32_t> blocks;
@@ -66,7 +67,7 @@ class Followed {
   }
   Crossings crossings() const {
     const PointsView points = evidence_.beams().points;
-    return crossings_of(0, beams(), points, met_, Crowd(points), usual(), noise().model);
+    return crossings_of(0, beams(), points, met_, PointDensity(points), usual(), noise().model);
   }
   ChangingDirections changing() const {
     return changing_directions(beams(), *evidence_.sample().plate, met_, usual());
@@ -98,14 +99,14 @@ class Followed {
 
 TEST(SurfaceRangeErrors, OfAPlainScannerHaveNoCause) {
   for (const char* scene : {"office", "hall", "street", "workshop"}) {
-    const Followed plain(scene, {});
+    const AssociatedBeams plain(scene, {});
     const RangeErrors scatter = plain.scatter();
     const NoiseDiagnosis noise = plain.noise();
     EXPECT_THAT(noise.findings, IsEmpty()) << scene;
     EXPECT_THAT(noise.unnamed, IsEmpty()) << scene;
     EXPECT_NEAR(noise.model.sigma(), 0.012, 0.0002) << scene;
-    EXPECT_FALSE(noise_by("incidence", scatter.cosine, "laser1", scatter, noise.model, kLeastGain, 1));
-    EXPECT_FALSE(noise_by("remission", scatter.remission, "laser1", scatter, noise.model, kLeastGain, 1));
+    EXPECT_FALSE(noise_by("incidence", scatter.cosine, "laser1", scatter, noise.model, kMinGain, 1));
+    EXPECT_FALSE(noise_by("remission", scatter.remission, "laser1", scatter, noise.model, kMinGain, 1));
     EXPECT_GT(goodness_of_fit("laser1", scatter, noise.model, {}, BeamsOf::kSurfaces, 1).after.p_value, 0.01)
         << scene;
     EXPECT_FALSE(plain.quantization()) << scene << ": the telegram's millimetre does not count";
@@ -115,7 +116,7 @@ TEST(SurfaceRangeErrors, OfAPlainScannerHaveNoCause) {
 }
 
 TEST(SurfaceRangeErrors, WithHeavyTailsAreNamedAndEstimated) {
-  const Followed tailed("office", {.tail_share = 0.03, .tail_scale = 5});
+  const AssociatedBeams tailed("office", {.tail_share = 0.03, .tail_scale = 5});
   const NoiseDiagnosis noise = tailed.noise();
   const auto& found = noise.findings;
   ASSERT_THAT(found, SizeIs(1));
@@ -214,13 +215,13 @@ TEST(SurfaceRangeErrors, ArePlottedByTheStageForEachLaser) {
   ASSERT_THAT(found[0]->findings, SizeIs(1));
   EXPECT_EQ(found[0]->findings[0].scope, "laser2");
   EXPECT_EQ(found[0]->findings[0].explained_fraction, 1) << "there is no other component";
-  EXPECT_GT(found[0]->findings[0].log10_odds, 10);
+  EXPECT_GT(found[0]->findings[0].log10_bayes_factor, 10);
 }
 
 /// Expects one cause of the scene's noise, with this parameter.
 void expect_named(const std::string& scene, const NoiseEffects& noise, const std::string& cause,
                   const std::string& parameter, double value) {
-  const auto found = Followed(scene, noise).noise().findings;
+  const auto found = AssociatedBeams(scene, noise).noise().findings;
   ASSERT_THAT(found, SizeIs(1)) << scene;
   EXPECT_EQ(found[0].cause, cause) << scene;
   EXPECT_TRUE(found[0].accepted) << scene;
@@ -242,7 +243,7 @@ TEST(SurfaceRangeErrors, DependingOnRemissionAreNamedAndEstimated) {
 }
 
 TEST(SurfaceRangeErrors, DependingOnIncidenceAndRemissionAreNamedAsBoth) {
-  const auto found = Followed("office", {.spread = 0.008, .jitter = 0.08}).noise().findings;
+  const auto found = AssociatedBeams("office", {.spread = 0.008, .jitter = 0.08}).noise().findings;
   std::vector<std::string> causes;
   for (const Finding& finding : found) causes.push_back(finding.cause);
   EXPECT_THAT(causes,
@@ -254,17 +255,17 @@ TEST(SurfaceRangeErrors, OfAnIncompleteSensorModelAreNoNoise) {
     auto turned = test::hidden(3, 10, built_in_scene(scene), {{"encoder.eccentricity", {0.004}}});
     Calibration without = turned.made.truth;
     without.plate_terms.clear();
-    const NoiseDiagnosis noise = Followed(std::move(turned), without).noise();
+    const NoiseDiagnosis noise = AssociatedBeams(std::move(turned), without).noise();
     for (const Finding& finding : noise.findings) {
       EXPECT_FALSE(finding.accepted) << scene << ": " << finding.cause;
-      EXPECT_THAT(finding.refused, testing::HasSubstr("neighbouring beams"))
+      EXPECT_THAT(finding.rejection, testing::HasSubstr("neighbouring beams"))
           << scene << ": " << finding.cause;
     }
   }
 }
 
 TEST(SurfaceRangeErrors, WithTwoPeaksAreNamedAndEstimated) {
-  const auto found = Followed("office", {.separation = 0.015}, 0.005).noise().findings;
+  const auto found = AssociatedBeams("office", {.separation = 0.015}, 0.005).noise().findings;
   ASSERT_THAT(found, SizeIs(1));
   EXPECT_EQ(found[0].cause, "noise.two_peaks");
   EXPECT_NEAR(value_in(found[0], "separation"), 0.015, 2e-4) << "RMS bumps of the surfaces";
@@ -272,7 +273,7 @@ TEST(SurfaceRangeErrors, WithTwoPeaksAreNamedAndEstimated) {
 
 TEST(SurfaceRangeErrors, OfQuantizedRangesAreNamedWithTheStep) {
   for (const double step : {0.01, 0.0025}) {
-    const auto found = Followed("office", {.step = step}).quantization();
+    const auto found = AssociatedBeams("office", {.step = step}).quantization();
     ASSERT_TRUE(found) << step;
     EXPECT_NEAR(value_in(*found, "step"), step, 1e-6);
     EXPECT_TRUE(found->accepted);
@@ -282,26 +283,27 @@ TEST(SurfaceRangeErrors, OfQuantizedRangesAreNamedWithTheStep) {
 TEST(SurfaceRangeErrors, OfMixedPixelsAreNamed) {
   const NoiseEffects spot{.divergence = 0.014, .aperture = 0.008};
   for (const char* scene : {"office", "workshop"}) {
-    EXPECT_TRUE(mixed_pixels("laser1", Followed(scene, spot).crossings(), 1)) << scene;
+    EXPECT_TRUE(mixed_pixels("laser1", AssociatedBeams(scene, spot).crossings(), 1)) << scene;
   }
-  EXPECT_LT(Followed("workshop", {}).crossings().share(), 0.03) << "cluttered, with narrow spots";
+  EXPECT_LT(AssociatedBeams("workshop", {}).crossings().share(), 0.03) << "cluttered, with narrow spots";
 }
 
 TEST(SurfaceRangeErrors, OfGrazingBeamsAreNotTakenForMixedPixels) {
   // Beyond 60°, where the diagnosis does not measure noise, a spread of 9 mm makes errors of up to 9 cm.
-  EXPECT_FALSE(mixed_pixels("laser1", Followed("street", {.spread = 0.009}).crossings(), 1));
+  EXPECT_FALSE(mixed_pixels("laser1", AssociatedBeams("street", {.spread = 0.009}).crossings(), 1));
   EXPECT_TRUE(mixed_pixels(
-      "laser1", Followed("office", {.spread = 0.009, .divergence = 0.014, .aperture = 0.008}).crossings(), 1))
+      "laser1",
+      AssociatedBeams("office", {.spread = 0.009, .divergence = 0.014, .aperture = 0.008}).crossings(), 1))
       << "mixed pixels are still detected without grazing incidence";
 }
 
 TEST(SurfaceRangeErrors, OfMovingPeopleAreNamed) {
   for (std::uint64_t seed = 3; seed <= 6; ++seed) {
-    EXPECT_TRUE(moving(Followed("people", {}, 0.012, seed).changing(), 1)) << seed;
-    EXPECT_FALSE(moving(Followed("workshop", {}, 0.012, seed).changing(), 1))
+    EXPECT_TRUE(moving(AssociatedBeams("people", {}, 0.012, seed).changing(), 1)) << seed;
+    EXPECT_FALSE(moving(AssociatedBeams("workshop", {}, 0.012, seed).changing(), 1))
         << seed << ": cluttered, but static";
   }
-  EXPECT_FALSE(moving(Followed("garden", {}).changing(), 1)) << "moving leaves";
+  EXPECT_FALSE(moving(AssociatedBeams("garden", {}).changing(), 1)) << "moving leaves";
 }
 
 }  // namespace

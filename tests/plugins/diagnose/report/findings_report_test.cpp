@@ -195,8 +195,8 @@ TEST(FindingsReport, NamesTheCompetitorOfTheBayesFactor) {
   for (const Finding& finding : findings.findings) {
     ASSERT_FALSE(finding.alternatives.empty()) << finding.cause;
     const OtherCause& next = finding.alternatives.front();
-    EXPECT_EQ(next.log10_odds, finding.log10_odds) << "the most likely";
-    EXPECT_TRUE(std::ranges::is_sorted(finding.alternatives, {}, &OtherCause::log10_odds));
+    EXPECT_EQ(next.log10_bayes_factor, finding.log10_bayes_factor) << "the most likely";
+    EXPECT_TRUE(std::ranges::is_sorted(finding.alternatives, {}, &OtherCause::log10_bayes_factor));
     EXPECT_THAT(in_words(finding), HasSubstr("Bayes factor (BIC) against the next cause, " + next.cause +
                                              " of " + next.scope + ", 10^"));
   }

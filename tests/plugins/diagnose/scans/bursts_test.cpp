@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "plugins/diagnose/scans/neighbour_errors.hpp"
+#include "plugins/diagnose/scans/scan_prediction_errors.hpp"
 #include "tests/plugins/diagnose/scans/tilting_scene.hpp"
 
 namespace crisp {
@@ -69,28 +69,29 @@ struct EvenSweep {
     }
   }
   double median(const std::vector<double>& when) const {
-    return neighbour_errors(series.scans(), when, angles, series.actuator({.counts_per_revolution = 360000}))
+    return scan_prediction_errors(series.scans(), when, angles,
+                                  series.actuator({.counts_per_revolution = 360000}))
         .median();
   }
   ScanSeries series;
   std::vector<double> times, angles;
 };
 
-TEST(NeighbourErrors, OfCorrectlyTimedScansAreNoise) {
+TEST(ScanPredictionErrors, OfCorrectlyTimedScansAreNoise) {
   constexpr double kNoise = 0.005;
   const EvenSweep sweep(kNoise);
   // Normal value less the mean of two: the median absolute value is 0.674 · √1.5 σ.
   EXPECT_NEAR(sweep.median(sweep.times), 0.674 * std::sqrt(1.5) * kNoise, 0.15 * kNoise);
 }
 
-TEST(NeighbourErrors, OfBurstTimedScansExceedNoise) {
+TEST(ScanPredictionErrors, OfBurstTimedScansExceedNoise) {
   const EvenSweep sweep(0.005);
   auto bunched = sweep.times;
   for (std::size_t i = 1; i < bunched.size(); i += 2) bunched[i] = bunched[i - 1] + 0.001;
   EXPECT_GT(sweep.median(bunched), 4 * sweep.median(sweep.times));
 }
 
-TEST(NeighbourErrors, HardlyRespondToACommonLag) {
+TEST(ScanPredictionErrors, HardlyRespondToACommonLag) {
   const EvenSweep sweep(0.005);
   auto late = sweep.times;
   for (double& time : late) time -= 0.02;

@@ -49,7 +49,7 @@ TEST(Interleave, EstimatesTheShiftOfAScanClass) {
   EXPECT_EQ(kinds[0].kind, 1U);
   EXPECT_NEAR(kinds[0].shift, 0.5, 3 * kinds[0].shift_error + 0.005);
   EXPECT_LT(kinds[0].shift_error, 0.05);
-  EXPECT_GT(kinds[0].log10_odds, 5);
+  EXPECT_GT(kinds[0].log10_bayes_factor, 5);
   EXPECT_LT(kinds[0].gain.ci95[1], 0) << "it generalizes to held-out scans";
   EXPECT_NEAR(kinds[0].recovered, kinds[0].injected, 0.1 * kinds[0].injected);
 }
@@ -75,7 +75,7 @@ TEST(Interleave, DistinguishesARangeOffsetFromAShift) {
   const auto kinds = compare_classes(scans, 2, 1);
   ASSERT_EQ(kinds.size(), 1U);
   EXPECT_STREQ(kinds[0].next_likely, "range.offset");
-  EXPECT_LT(kinds[0].log10_odds, 0);
+  EXPECT_LT(kinds[0].log10_bayes_factor, 0);
 }
 
 TEST(Interleave, KeepsClassesAcrossAMissingScan) {

@@ -126,7 +126,7 @@ TEST(DiagnoseSweep, NamesBurstsWithoutASweep) {
   ASSERT_THAT(findings.findings, SizeIs(1));
   EXPECT_EQ(findings.findings[0].cause, "latency.bursts");
   EXPECT_FALSE(findings.findings[0].accepted) << "no sweep shows a gain by stamps";
-  EXPECT_EQ(findings.findings[0].refusal(),
+  EXPECT_EQ(findings.findings[0].rejection_reason(),
             "without a sweep, the gain of its stamps over receipt times is unknown");
   EXPECT_THAT(findings.findings[0].gain, IsEmpty());
   EXPECT_THAT(findings.unobservable, ElementsAre(Field(&Unobservable::parameter, "laser1.eta"),
@@ -224,7 +224,7 @@ TEST(DiagnosePasses, NamesBacklashWithItsLagAndRemovesHalfPerDirection) {
   EXPECT_THAT(found.confounded_with, ElementsAre("laser1.eta"));
   EXPECT_NEAR(found.parameters[0].value, kActuatorStep,
               3 * found.parameters[0].std_error + 0.02 * kActuatorStep);
-  EXPECT_GT(found.log10_odds, 6) << "against no shift";
+  EXPECT_GT(found.log10_bayes_factor, 6) << "against no shift";
   EXPECT_LT(found.p_value, 1e-6);
   EXPECT_LT(findings.before_p, 1e-6);
   EXPECT_GT(findings.after_p, 0.01);

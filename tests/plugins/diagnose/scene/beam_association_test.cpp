@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-#include "plugins/diagnose/scene/edges.hpp"
+#include "plugins/diagnose/scene/mixed_pixels.hpp"
 
 namespace crisp {
 namespace {
@@ -120,13 +120,13 @@ TEST(BeamAssociation, DoesNotUseABeamToConfirmItsOwnSurface) {
   EXPECT_NEAR(share[0], share[1], 3 * chance);
 }
 
-TEST(Crowd, CountsThePointsNearAPosition) {
+TEST(PointDensity, CountsThePointsNearAPosition) {
   const std::vector<double> x = {0, 0.01, 0.05, 1}, y = {0, 0, 0, 0}, z = {0, 0, 0, 0};
-  const Crowd crowd({x, y, z});
-  EXPECT_EQ(crowd.about(0, 0, 0), 3);
-  EXPECT_EQ(crowd.about(1, 0, 0), 1);
-  EXPECT_EQ(crowd.about(2, 0, 0), 0);
-  EXPECT_EQ(crowd.about(-0.01, 0, 0), 2) << "negative coordinates have their own cells";
+  const PointDensity density({x, y, z});
+  EXPECT_EQ(density.about(0, 0, 0), 3);
+  EXPECT_EQ(density.about(1, 0, 0), 1);
+  EXPECT_EQ(density.about(2, 0, 0), 0);
+  EXPECT_EQ(density.about(-0.01, 0, 0), 2) << "negative coordinates have their own cells";
 }
 
 }  // namespace

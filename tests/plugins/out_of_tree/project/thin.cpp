@@ -5,7 +5,7 @@
 #include <exception>
 #include <iostream>
 
-#include "pipeline/pcd/cloud_table.hpp"           // crisp::pcd
+#include "pipeline/pcd/cloud_conversion.hpp"      // crisp::pcd
 #include "pipeline/quality/pcl_rqe.hpp"           // crisp::pcl_rqe
 #include "plugins/filter/pcl_first_in_voxel.hpp"  // crisp::filter
 

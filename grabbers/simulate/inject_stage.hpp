@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "grabbers/simulate/effect_injection.hpp"
+#include "pipeline/stage/context.hpp"
+#include "pipeline/stage/description.hpp"
+
+namespace crisp {
+
+/// `simulate.inject`: a known change in scans that were recorded, to see what a measure answers.
+class InjectStage final : public Stage {
+ public:
+  static void describe(StageDescription<InjectStage>& d);
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+
+ private:
+  std::vector<Effect> effects(const RunSettings& run) const;
+
+  OptionGroups requested_;
+  std::vector<EffectInjector> lasers_;  // of the rig
+};
+
+}  // namespace crisp

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <exception>
+#include <optional>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+/// Error for an exception of the standard library about exhausted memory or threads; nothing for
+/// any other exception.
+std::optional<Error> resource_exhaustion(const std::exception& thrown);
+
+}  // namespace crisp

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/parameter_prior.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pipeline/data/each_parameter.hpp"
+#include "pipeline/estimate/requested_terms.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kOfBounds = 0.05;  // fraction of a term's bounds within which its parameters are searched
+
+}  // namespace
+
+std::map<std::string, NominalValue> nominal_values(const Rig& rig) {
+  std::map<std::string, NominalValue> known;
+  const Calibration nominal = nominal_calibration(rig);
+  for_each_parameter(nominal, [&](const std::string& name, const Parameter& parameter) {
+    if (parameter.std_error > 0) known[name] = {.value = parameter.value, .std_error = parameter.std_error};
+  });
+  return known;
+}
+
+double range_of(const ParameterPrior& range, const std::string& name) {
+  const auto known = range.nominal.find(name);
+  if (known != range.nominal.end()) return range.reach * known->second.std_error;
+  if (name.ends_with(".lambda")) return range.lambda;
+  if (name.ends_with(".tau")) return range.tau;
+  if (name.ends_with(".alpha")) return range.alpha;
+  if (name.ends_with(".eta")) return range.eta;
+  return range.other;
+}
+
+bool is_at_the_end(const ParameterPrior& range, const std::string& name, double value) {
+  constexpr double kSame = 1e-6;  // [s]
+  return name.ends_with(".eta") && (value < range.earliest_eta + kSame || value > range.latest_eta - kSame);
+}
+
+Eigen::VectorXd picked(const SensorModel& model, const std::vector<std::size_t>& free) {
+  return model.values()(free);
+}
+
+Eigen::VectorXd ranges_of(const ParameterPrior& range, const SensorModel& model,
+                          const std::vector<std::size_t>& free) {
+  Eigen::VectorXd ranges(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const EffectParameter* term = declared(model, free[i]);
+    const double width = term ? term->upper - term->lower : 0;
+    ranges[static_cast<Eigen::Index>(i)] =
+        width > 0 ? kOfBounds * width : range_of(range, model.names()[free[i]]);
+  }
+  return ranges;
+}
+
+Eigen::VectorXd centres_of(const ParameterPrior& range, const SensorModel& model,
+                           const std::vector<std::size_t>& free) {
+  Eigen::VectorXd centres = picked(model, free);
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const std::string& name = model.names()[free[i]];
+    const auto known = range.nominal.find(name);
+    if (known == range.nominal.end()) continue;
+    double& centre = centres[static_cast<Eigen::Index>(i)];
+    const bool is_angle = name.ends_with(".lambda") || name.ends_with(".alpha");
+    const double off = known->second.value - centre;
+    centre += is_angle ? std::remainder(off, 2 * std::numbers::pi) : off;
+  }
+  return centres;
+}
+
+SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x) {
+  Eigen::VectorXd values = model.values();
+  values(free) = x;
+  SensorModel moved = model;
+  moved.set_values(values);
+  return moved;
+}
+
+SensorModel with_one(const SensorModel& model, std::size_t parameter, double value) {
+  return with(model, {parameter}, Eigen::VectorXd::Constant(1, value));
+}
+
+Eigen::VectorXd within_bounds(const SensorModel& model, const std::vector<std::size_t>& free,
+                              Eigen::VectorXd x) {
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const EffectParameter* term = declared(model, free[i]);
+    if (!term || !(term->upper > term->lower)) continue;
+    double& value = x[static_cast<Eigen::Index>(i)];
+    value = std::clamp(value, term->lower, term->upper);
+  }
+  return x;
+}
+
+}  // namespace crisp

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/clock/plate_timing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pipeline/clocks/clock_line.hpp"
+#include "pipeline/clocks/unwrap.hpp"
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+namespace {
+
+constexpr double kFastestChange = 100;  // [turns/s²] no plate spins up faster
+constexpr double kSlack = 0.01;         // [turns] what times and counts may be off otherwise
+constexpr std::uint64_t kMinConsecutiveJumps = 5;
+constexpr std::ptrdiff_t kMarginReadings =
+    2;  // readings beyond the requested ones, so that its ends are as smooth
+
+/// Difference of two values of a 32-bit counter, forwards or back.
+std::int32_t counted(std::uint32_t from, std::uint32_t to) { return static_cast<std::int32_t>(to - from); }
+
+}  // namespace
+
+PlateTiming::PlateTiming(const RigPlate& plate, DeviceStamps stamps, TimeSource source)
+    : counts_per_revolution_(plate.counts_per_revolution),
+      angle_per_count_(plate.angle_per_count()),
+      stamps_(std::move(stamps)),
+      source_(source) {
+  if (!(plate.counts_per_revolution > 0)) {
+    throw Error("the encoder of " + plate.name + " must have more than 0 counts a revolution",
+                "correct counts_per_revolution in the rig");
+  }
+}
+
+bool PlateTiming::is_continuous(const Latest& from, const PlateReading& reading) {
+  constexpr double kMaxDelay = 1;       // [s]
+  constexpr double kLargestError = 60;  // [s] beyond which a wrap of the clock could be mistaken for chance
+  const double hub_s = 1e-9 * static_cast<double>(reading.receipt_ns - from.receipt_ns);
+  const double tolerance = kMaxDelay + kMaxSkew * std::abs(hub_s);
+  const auto device_us =
+      nearest_congruent(std::int64_t{reading.device_us} - from.device_us, std::int64_t{1} << 32, 1e6 * hub_s);
+  return tolerance < kLargestError && std::abs(1e-6 * static_cast<double>(device_us) - hub_s) < tolerance;
+}
+
+bool PlateTiming::add(const PlateReading& reading, double hub) {
+  if (before_) zero_is_new_ = !is_continuous(*before_, reading);
+  before_.reset();
+  latest_ = {.device_us = reading.device_us, .receipt_ns = reading.receipt_ns};
+  stamps_.trust_counter(reading.numbered);
+  const auto arrival = stamps_.accept(reading.sequence, reading.device_us, reading.receipt_ns, hub);
+  if (arrival.kind == StampKind::repeated) return false;
+  if (arrival.kind == StampKind::reset) {
+    before_reset_ = {.last = last_, .zero_is_lost = zero_is_lost_};
+    zero_is_lost_ = zero_is_lost_ || has_lost_zero(reading, hub);
+  }
+  if (arrival.kind == StampKind::returned) undo_reset();
+  if (source_ == TimeSource::receipt && taken_ > 0 && hub <= last_.receipt) {
+    ++simultaneous_;
+    return true;
+  }
+  if (zero_is_lost_) {
+    ++after_lost_zero_;
+    return true;
+  }
+  Reading next{.device = 1e-6 * static_cast<double>(arrival.device_us),
+               .receipt = hub,
+               .count = static_cast<std::int32_t>(reading.count)};
+  if (taken_ > 0) next.count = last_.count + counted(static_cast<std::uint32_t>(last_.count), reading.count);
+  if (taken_ > 0 && has_jumped(last_, next)) {
+    ++impossible_;
+    classify_jump(next);
+  } else {
+    take(next);
+  }
+  return true;
+}
+
+void PlateTiming::take(const Reading& next) {
+  if (taken_ > 0) {
+    interval_ = std::max(next.device - last_.device, 1e-6);
+    rate_ = static_cast<double>(next.count - last_.count) / interval_;
+  }
+  jumps_ = 0;
+  ++taken_;
+  last_ = next;
+  readings_.push_back(next);
+}
+
+void PlateTiming::classify_jump(const Reading& next) {
+  // One such reading is damaged; several that go on from one another are right, and either the first of all
+  // readings were damaged, or the encoder has a new zero.
+  jumps_ = jumps_ > 0 && !has_jumped(jumped_, next) ? jumps_ + 1 : 1;
+  jumped_ = next;
+  if (jumps_ < kMinConsecutiveJumps) return;
+  if (taken_ < kMinConsecutiveJumps) {
+    readings_.clear();
+    taken_ = 0;
+    take(next);
+  } else {
+    zero_is_lost_ = true;
+  }
+}
+
+bool PlateTiming::has_jumped(const Reading& from, const Reading& to) const {
+  const double elapsed = to.device - from.device;
+  const double deviation = std::abs(static_cast<double>(to.count - from.count) - rate_ * elapsed);
+  const double of_whole_counts = 2 * (1 + elapsed / interval_);  // a coarse encoder shows its rate coarsely
+  return deviation > counts_per_revolution_ * (kSlack + kFastestChange * elapsed * elapsed) + of_whole_counts;
+}
+
+void PlateTiming::undo_reset() {
+  if (zero_is_lost_ && !before_reset_.zero_is_lost) --after_lost_zero_;
+  zero_is_lost_ = before_reset_.zero_is_lost;
+  last_ = before_reset_.last;
+  while (!readings_.empty() && readings_.back().device > last_.device) readings_.pop_back();
+}
+
+bool PlateTiming::has_lost_zero(const PlateReading& reading, double hub) const {
+  const double change = counted(static_cast<std::uint32_t>(last_.count), reading.count);
+  const double residual_if_continued = std::abs(change - rate_ * (hub - last_.receipt));
+  const double residual_if_restarted = std::abs(counted(0, reading.count) - rate_ * 1e-6 * reading.device_us);
+  return residual_if_restarted < residual_if_continued;
+}
+
+double PlateTiming::time(const Reading& reading) const {
+  return source_ == TimeSource::receipt ? reading.receipt : stamps_.map()->to_hub(reading.device);
+}
+
+std::optional<double> PlateTiming::latest() const {
+  if (readings_.empty() || !stamps_.map()) return {};
+  return time(readings_.back());
+}
+
+PlateTrajectory PlateTiming::piece(double begin, double end, std::int64_t epoch_ns,
+                                   const PlateMotionSettings& settings) {
+  if (readings_.empty() || !stamps_.map()) return {};
+  const auto is_before = [&](double limit) {
+    return [&, limit](const Reading& r) { return time(r) < limit; };
+  };
+  auto first = std::partition_point(readings_.begin(), readings_.end(), is_before(begin));
+  auto last = std::partition_point(first, readings_.end(), is_before(end));
+  first -= std::min(kMarginReadings, first - readings_.begin());
+  last += std::min(kMarginReadings, readings_.end() - last);
+  std::vector<double> times;
+  std::vector<double> angles;
+  times.reserve(static_cast<std::size_t>(last - first));
+  angles.reserve(static_cast<std::size_t>(last - first));
+  for (auto reading = first; reading != last; ++reading) {
+    const double t = time(*reading);
+    if (!times.empty() && t <= times.back()) continue;  // just after a reset, by the lines' errors
+    times.push_back(t);
+    angles.push_back(static_cast<double>(reading->count) * angle_per_count_);
+  }
+  angles = between_steps(times, angles, std::abs(angle_per_count_), settings.smoothing);
+  std::vector<double> new_zeros;
+  if (std::exchange(zero_is_new_, false) && !times.empty()) new_zeros.push_back(times.front());
+  return {epoch_ns, std::move(times), std::move(angles), settings.max_gap, std::move(new_zeros)};
+}
+
+void PlateTiming::forget_before(double hub) {
+  const auto keep = std::find_if(readings_.begin(), readings_.end(),
+                                 [&](const Reading& reading) { return reading.receipt >= hub; });
+  readings_.erase(readings_.begin(), keep);
+}
+
+}  // namespace crisp

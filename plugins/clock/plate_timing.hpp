@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+#include "pipeline/data/encoder_smoothing.hpp"
+#include "pipeline/data/plate_trajectory.hpp"
+#include "pipeline/data/scan.hpp"
+#include "plugins/clock/device_stamps.hpp"
+#include "plugins/clock/laser_timing.hpp"
+
+namespace crisp {
+
+/// How readings become the motion between them.
+struct PlateMotionSettings {
+  double max_gap = 0.1;                  ///< [s] longest silence of the encoder to interpolate across
+  double smoothing = kEncoderSmoothing;  ///< [s] see between_steps()
+};
+
+/// The encoder readings on their way to a trajectory.
+class PlateTiming {
+ public:
+  /// @throws Error if the rig gives no counts a revolution
+  PlateTiming(const RigPlate& plate, DeviceStamps stamps, TimeSource source);
+
+  /// @param hub [s since the epoch] receipt
+  /// @return whether the clock has another stamp
+  /// @throws Error as DeviceStamps::accept
+  bool add(const PlateReading& reading, double hub);
+  /// State from which a later track determines whether the encoder's count continued.
+  struct Latest {
+    std::uint32_t device_us = 0;
+    std::int64_t receipt_ns = 0;
+  };
+  std::optional<Latest> latest_reading() const { return latest_; }
+  /// To be called before the first reading, if there was another recording of this plate before.
+  void follow_on(const Latest& before) { before_ = before; }
+
+  /// The plate from the last reading at or before `begin` to the first at or after `end` [s since the epoch],
+  /// as far as there are readings.
+  PlateTrajectory piece(double begin, double end, std::int64_t epoch_ns, const PlateMotionSettings& settings);
+  /// [s since the epoch] When the latest reading was taken, as the clock is known now.
+  std::optional<double> latest() const;
+  /// Forgets the readings before this hub time [s since the epoch].
+  void forget_before(double hub);
+
+  bool idle() const { return readings_.empty(); }
+  FittedClock& clock() { return stamps_.clock(); }
+  const FittedClock& clock() const { return stamps_.clock(); }
+  /// With the silences before its first and after its last reading [s since the epoch].
+  DeviceReport report(double begin, double end) const { return stamps_.report(begin, end); }
+  /// Readings that came after the encoder had lost its zero: of no use, the angles have nothing in common.
+  std::uint64_t after_lost_zero() const { return after_lost_zero_; }
+  /// Readings whose angle the plate cannot have reached since the one before them.
+  std::uint64_t impossible() const { return impossible_; }
+  /// Readings at the same hub time as the one before them.
+  std::uint64_t simultaneous() const { return simultaneous_; }
+
+ private:
+  struct Reading {
+    double device = 0;   ///< [s]
+    double receipt = 0;  ///< [s since the epoch]
+    std::int64_t count = 0;
+  };
+  struct Before {
+    Reading last;
+    bool zero_is_lost = false;
+  };
+  double time(const Reading& reading) const;
+  void undo_reset();
+  void take(const Reading& next);
+  void classify_jump(const Reading& next);
+  bool has_jumped(const Reading& from, const Reading& to) const;
+  bool has_lost_zero(const PlateReading& reading, double hub) const;
+  static bool is_continuous(const Latest& from, const PlateReading& reading);
+
+  double counts_per_revolution_;
+  double angle_per_count_;  // [rad] negative where counts grow clockwise
+  DeviceStamps stamps_;
+  TimeSource source_;
+  std::deque<Reading> readings_;
+  Reading last_;
+  double rate_ = 0;      ///< [counts/s] between the last two readings
+  double interval_ = 1;  ///< [s] between them
+  std::uint64_t taken_ = 0;
+  bool zero_is_lost_ = false;
+  Before before_reset_;  ///< for a reset that turns out to be none
+  std::optional<Latest> latest_;
+  std::optional<Latest> before_;  ///< of another recording, until there is a first reading
+  bool zero_is_new_ = false;      ///< and no piece has reported it
+  Reading jumped_;
+  std::uint64_t jumps_ = 0;  ///< in a row, each from the place of the one before it
+  std::uint64_t impossible_ = 0;
+  std::uint64_t after_lost_zero_ = 0;
+  std::uint64_t simultaneous_ = 0;
+};
+
+}  // namespace crisp

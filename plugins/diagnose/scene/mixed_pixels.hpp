@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "pipeline/data/findings.hpp"
+#include "pipeline/data/measurements.hpp"
+#include "pipeline/quality/points.hpp"
+#include "plugins/diagnose/noise/noise_model.hpp"
+#include "plugins/diagnose/scene/beam_association.hpp"
+
+namespace crisp {
+
+/// Point density: number of points near a position, in 27 cells of 4 cm.
+class PointDensity {
+ public:
+  explicit PointDensity(const PointsView& points);
+  std::size_t about(double x, double y, double z) const;
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  struct Hash {
+    std::size_t operator()(const Cell& cell) const;
+  };
+  static Cell cell_of(double x, double y, double z);
+
+  std::unordered_map<Cell, std::size_t, Hash> counts_;
+};
+
+/// Edges that one laser's scans cross, from one flat surface to another one behind it.
+struct Crossings {
+  std::vector<bool> mixed;     ///< per crossing: whether a mixed pixel lies there
+  std::vector<double> places;  ///< of the mixed pixels: 0 at the near side to 1 at the far side
+
+  double share() const;  ///< of the crossings that are mixed
+};
+
+/// Detects edge crossings: a beam that ends on a surface, up to three that end on none, one that ends on
+/// another surface, at least 0.4 m apart in depth. A crossing is mixed if an intermediate range is a mixed
+/// pixel: more than 12 cm from both surfaces, with hardly any other beam of the recording ending nearby.
+/// Solid objects also put points between two surfaces, yet repeatedly at the same position. A crossing does
+/// not count where the laser's noise could produce such a range, as in a spot of grazing incidence.
+///
+/// @param points  [m] end points of the beams
+/// @param usual   [m] standard deviation of ranges, by usual_error()
+/// @param noise   noise model of the laser
+Crossings crossings_of(std::size_t laser, const Measurements& beams, const PointsView& points,
+                       const BeamAssociation& association, const PointDensity& density, double usual,
+                       const NoiseModel& noise);
+
+/// Tests whether a laser reports mixed pixels at edges (noise.mixed_pixels), at more than the 3 % of edges
+/// that thin objects explain.
+///
+/// @return  a finding that is significant at p < 0.002, with the share of mixed crossings
+std::optional<Finding> mixed_pixels(const std::string& scope, const Crossings& crossings, std::uint64_t seed);
+
+}  // namespace crisp
