@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Code blocks of Markdown pages, and which of them are commands of a shell, pipelines or Python."""
+"""Code blocks of Markdown pages, and which of them are commands of a shell, or Python."""
 
 import dataclasses
 import pathlib
@@ -32,11 +32,6 @@ class Block:
         if self.language:
             return self.language in ("sh", "bash", "shell", "console")
         return any(_TYPED.match(line) for line in self.text.splitlines())
-
-    @property
-    def is_yaml(self) -> bool:
-        """A whole pipeline or rig; an excerpt is none."""
-        return self.language in ("", "yaml") and self.text.startswith("crisp: 1")
 
     @property
     def is_python(self) -> bool:
