@@ -133,7 +133,7 @@ class Check(PageTest):
                 with self.subTest(f"{page}:{line}: {text}"):
                     known = help_text(command)
                     self.assertTrue(known, f"there is no command {command}")
-                    if command in ("batch", "cluster") and words and words[0] in (*shim.VERBS, "submit"):
+                    if words and help_text(command, words[0]) not in ("", known):  # a command of its own below it
                         known += help_text(command, words[0])
                     for option in re.findall(r"(?<![\w-])--[a-z][\w-]*", text):
                         self.assertRegex(known, rf"{option}\b")

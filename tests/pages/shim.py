@@ -32,6 +32,11 @@ VERBS = ("status", "table", "retry")
 SECONDS = 8  # after which what ends by Ctrl-C alone gets it
 
 
+def command_of(words):
+    """The command's own name: of `study bound` it is bound."""
+    return next((word for word in words if word != "study"), "")
+
+
 def place_of(words, names):
     """Where the value stands of an option that has these names; None without it."""
     return next((i + 1 for i, word in enumerate(words[:-1]) if word in names), None)
@@ -57,7 +62,7 @@ def call(words, seconds=None):
 
 
 def check(words):
-    command = words[0] if words else ""
+    command = command_of(words)
     if command == "cluster":
         return call([*words, "--dry-run"])
     if command not in LONG or words[1:2] and words[1] in VERBS:
@@ -74,7 +79,7 @@ def check(words):
 
 def shorter(words):
     """The same command on less: as it stands on the page it would take minutes to days."""
-    command, text = words[0] if words else "", " ".join(words)
+    command, text = command_of(words), " ".join(words)
     if command in ("monte-carlo", "basin"):
         if "--only" not in words:
             words = with_value(words, ("-n", "--runs", "--starts"), "1")
@@ -90,7 +95,7 @@ def shorter(words):
 
 
 def run(words):
-    command = words[0] if words else ""
+    command = command_of(words)
     if command == "emulate":  # the page's other terminal
         emulate(words)
         return 0, "", ""
