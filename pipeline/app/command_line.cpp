@@ -45,8 +45,7 @@ CommandLine::CommandLine() {
   add_effects();
   plugins_app = command("plugins", "List the plugins found, and why any were rejected");
   add_info();
-  completion_app = command("completion", "Print a script that completes crisp's command line");
-  completion_app->add_option("shell", shell, "The shell")->required()->check(CLI::IsMember({"bash"}));
+  add_completion();
 }
 
 CLI::App* CommandLine::command(const std::string& name, const std::string& help) {
@@ -160,6 +159,18 @@ void CommandLine::add_info() {
   CLI::Option* json = info_app->add_flag("--json", info.json, "Print JSON");
   info_app->add_flag("--urdf", info.urdf, "Print a calibration as URDF for ROS; --rig gives the mounts")
       ->excludes(json);
+}
+
+void CommandLine::add_completion() {
+  completion_app = command("completion", "Print a script that completes crisp's command line");
+  completion_app
+      ->add_option(
+          "what", completion,
+          "bash: the script for this shell; settings: what can stand behind --set, of a pipeline or of "
+          "all stages")
+      ->required()
+      ->check(CLI::IsMember({"bash", "settings"}));
+  add_pipeline(completion_app, completed_pipeline, "The pipeline whose settings are meant");
 }
 
 }  // namespace crisp

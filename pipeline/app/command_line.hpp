@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,14 @@
 #include "pipeline/app/study_command.hpp"
 
 namespace crisp {
+
+/// An option of a command that is one of a stage.
+struct StageOption {
+  const CLI::App* command;
+  std::string flag;  ///< "--scene"
+  std::string stage;
+  std::string option;
+};
 
 /// Everything that can stand on the command line, and where CLI11 puts it.
 struct CommandLine {
@@ -47,7 +56,10 @@ struct CommandLine {
   EffectsRequest effects;
   std::filesystem::path validate_file;
   InfoRequest info;
-  std::string shell;
+  std::string completion;                                ///< what to print: for bash, or settings
+  std::filesystem::path completed_pipeline;              ///< the one whose settings
+  std::map<const CLI::App*, std::string> own_pipelines;  ///< commands that run one of their own, and its name
+  std::vector<StageOption> stage_options;
   CLI::App* run_app = nullptr;
   CLI::App* calibrate_app = nullptr;
   CLI::App* diagnose_app = nullptr;
@@ -99,12 +111,11 @@ struct CommandLine {
   /// Options of running a pipeline; the result does not depend on them, but for the seed.
   static void add_run_options(CLI::App* to, const std::string& threads, RunRequest& request);
   /// A pipeline that comes with the program.
-  static void add_own_pipeline(CLI::App* to, const char* name, std::string_view text,
-                               const std::filesystem::path& output, const std::string& threads,
-                               RunRequest& request);
+  void add_own_pipeline(CLI::App* to, const char* name, std::string_view text,
+                        const std::filesystem::path& output, const std::string& threads, RunRequest& request);
   /// Options of the one stage of a pipeline, as options of the command.
-  static void add_stage_options(CLI::App* to, const std::string& stage, RunRequest& request,
-                                std::initializer_list<std::pair<std::string, std::string>> names_and_help);
+  void add_stage_options(CLI::App* to, const std::string& stage, RunRequest& request,
+                         std::initializer_list<std::pair<std::string, std::string>> names_and_help);
   /// A study can be divided, and is merged then.
   static void add_parts(CLI::App* to, const std::string& stage, StudyRequest& request);
   void add_studies();
@@ -120,6 +131,7 @@ struct CommandLine {
   void add_effects();
   void add_stages();
   void add_info();
+  void add_completion();
 };
 
 }  // namespace crisp

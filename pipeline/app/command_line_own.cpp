@@ -32,6 +32,7 @@ void CommandLine::add_own_pipeline(CLI::App* to, const char* name, std::string_v
                                    RunRequest& request) {
   request.file = name;
   request.text = text;
+  own_pipelines[to] = std::filesystem::path(name).stem();
   request.arguments.output = output;
   to->add_option("-o,--output", request.arguments.output, "Folder for the results [" + output.string() + "]")
       ->type_name("FOLDER");
@@ -45,6 +46,7 @@ void CommandLine::add_stage_options(
   const auto add = [&](std::string_view name, const std::string& help) {
     std::string flag = "--" + std::string(name);
     std::ranges::replace(flag, '_', '-');
+    stage_options.push_back({to, flag, stage, name});
     std::string set = stage;
     set.append(".").append(name).append("=");
     return to
@@ -165,6 +167,7 @@ void CommandLine::add_convert() {
   convert_app->add_option("--format", convert.format, "Format of each cloud")
       ->check(CLI::IsMember({"las", "ply", "pcd"}));
   convert.run.file = "convert.yaml";
+  own_pipelines[convert_app] = "convert";
   add_set(convert_app, convert.run.arguments);
   add_run_options(convert_app, "--threads", convert.run);
   add_stage_options(convert_app, "grabber.cloud", convert.run,

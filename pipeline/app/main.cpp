@@ -11,6 +11,7 @@
 #include "pipeline/app/builtin.hpp"
 #include "pipeline/app/command_line.hpp"
 #include "pipeline/app/completion.hpp"
+#include "pipeline/app/completion_settings.hpp"
 #include "pipeline/app/exhaustion.hpp"
 #include "pipeline/app/own_process.hpp"
 #include "pipeline/data/resource_exhaustion.hpp"
@@ -52,16 +53,32 @@ void add_options(const CLI::App& command, CommandWords& words) {
   }
 }
 
-std::vector<CommandWords> completion_words(const CommandLine& line) {
+/// The pipeline of its own that the command runs, and the values of options that are those of its stage.
+void add_own(const CommandLine& line, const CLI::App* command, const StageRegistry& stages,
+             CommandWords& words) {
+  if (const auto own = line.own_pipelines.find(command); own != line.own_pipelines.end())
+    words.pipeline = own->second;
+  for (const auto& given : line.stage_options) {
+    if (given.command != command) continue;
+    const StageType* type = stages.find(given.stage);
+    const Option* option = type != nullptr ? type->find_option(given.option) : nullptr;
+    if (option == nullptr) continue;
+    for (const auto& value : values_to_complete(*option)) words.values.push_back(given.flag + " " + value);
+  }
+}
+
+std::vector<CommandWords> completion_words(const CommandLine& line, const StageRegistry& stages) {
   std::vector<CommandWords> commands;
   for (const CLI::App* sub : line.app.get_subcommands({})) {
     CommandWords words{.name = sub->get_name(),
                        .takes_name = sub == line.stages_app || sub == line.effects_app};
     add_options(*sub, words);
+    add_own(line, sub, stages, words);
     for (const CLI::App* verb : sub->get_subcommands({})) {
       words.verbs.push_back(verb->get_name());
       CommandWords with_verb{.name = words.name + " " + verb->get_name()};
       add_options(*verb, with_verb);
+      add_own(line, verb, stages, with_verb);
       // It runs the batch, and takes its options.
       if (verb == line.batch_retry_app) add_options(*sub, with_verb);
       commands.push_back(std::move(with_verb));
@@ -141,6 +158,16 @@ ExitStatus run_batch_command(const CommandLine& line, const Registrar& registrar
   return batch_command(line.batch, registrar);
 }
 
+ExitStatus completion_command(const CommandLine& line, const StageRegistry& stages) {
+  if (line.completion == "bash") {
+    std::cout << bash_completion(completion_words(line, stages));
+  } else {
+    for (const auto& setting : settings_to_complete(line.completed_pipeline, stages))
+      std::cout << setting << '\n';
+  }
+  return ExitStatus::done;
+}
+
 ExitStatus run_program(const CommandLine& line) {
   Builtin builtin;
   Registrar& registrar = builtin.registrar();
@@ -167,8 +194,7 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.stages_app->parsed()) return stages_command(line.stages, registrar);
   if (line.effects_app->parsed()) return effects_command(line.effects, registrar);
   if (line.info_app->parsed()) return info_command(line.info, registrar);
-  std::cout << bash_completion(completion_words(line));
-  return ExitStatus::done;
+  return completion_command(line, registrar.stages());
 }
 
 std::vector<std::string> names_of(const CLI::App& app) {
