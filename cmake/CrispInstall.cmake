@@ -11,5 +11,8 @@ install(EXPORT crispTargets NAMESPACE crisp:: DESTINATION "${package}" COMPONENT
 install(FILES "${CMAKE_BINARY_DIR}/crispConfig.cmake" "${CMAKE_BINARY_DIR}/crispConfigVersion.cmake"
               cmake/CrispPackages.cmake cmake/CrispPlugin.cmake DESTINATION "${package}" COMPONENT development)
 install(DIRECTORY configs/ DESTINATION "${CMAKE_INSTALL_DATADIR}/crisp/configs" COMPONENT program)
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
+install(FILES README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
+if(NOT CRISP_DEBIAN)  # which has them in Debian's form
+  install(FILES LICENSE CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
+endif()
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)

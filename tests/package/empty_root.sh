@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# The Debian packages as their users have them: tests/package/empty_root.sh
+# Builds them, has lintian look at them, and installs them with apt in an empty Debian, where there is nothing of this
+# tree; runs there what users do first (use.sh); removes them, and compares the files with those before.
+# Needs root, debootstrap and Debian's mirror, which is the one that this machine's apt uses. The empty Debian, with what
+# the packages depend on, is kept in ~/.cache/crisp-package. Exits with 77 where it cannot run.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+source=$(cd "$here/../.." && pwd)
+cache=${XDG_CACHE_HOME:-$HOME/.cache}/crisp-package
+suite=bookworm
+
+skip() { echo "skipped: $*"; exit 77; }
+[ "$(id -u)" = 0 ] || skip "it must be run as root"
+for program in debootstrap lintian help2man dpkg-deb; do
+  command -v "$program" >/dev/null || skip "$program is missing: .ci/install packaging"
+done
+mirror=$(apt-get indextargets --format '$(REPO_URI)' "Codename: $suite" 'Created-By: Packages' 2>/dev/null | head -n 1)
+[ -n "$mirror" ] || skip "this machine's apt knows no mirror of Debian $suite"
+
+if [ -z "${CRISP_OWN_MOUNTS:-}" ]; then  # what is mounted below ends with this script, however it ends
+  exec env CRISP_OWN_MOUNTS=1 unshare --mount --propagation private "$0"
+fi
+
+step() { printf '\n== %s (at %d s)\n' "$*" "$SECONDS"; }
+
+step "packages"
+cd "$source"
+cmake --workflow --preset package >build/package.log 2>&1 || { tail -n 50 build/package.log; exit 1; }
+packages=(build/package/*.deb)
+ls -l "${packages[@]}"
+
+step "lintian"
+lintian --fail-on error,warning --info --display-info "${packages[@]}"
+
+# What the packages need of Debian, and what a program that uses them is built with.
+depends=$(for package in "${packages[@]}"; do dpkg-deb -f "$package" Depends; done | sed 's/, */\n/g' |
+  grep -v '^\(lib\|python3-\)\?crisp' | sort -u | paste -sd, )
+depends+=", g++, cmake, ninja-build, man-db"
+
+root=$cache/root
+work=$(mktemp -d "$cache.XXXXXX")
+trap 'umount -R "$work/root" 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
+
+if [ "$(cat "$root.depends" 2>/dev/null)" != "$depends" ]; then
+  step "an empty Debian, and what the packages depend on"
+  "$here/make_root.sh" "$suite" "$mirror" "$root" "$depends"
+fi
+
+# The packages come into a copy, whose changes lie beside it.
+mkdir "$work/changes" "$work/overlay" "$work/root"
+mount -t overlay overlay -o "lowerdir=$root,upperdir=$work/changes,workdir=$work/overlay" "$work/root"
+mount -t proc proc "$work/root/proc"
+in_root() { chroot "$work/root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
+files() { (cd "$work/root" && find . -xdev \( -path ./var/cache/apt -o -path ./var/lib/apt -o -path ./var/log -o -path ./tmp \) -prune -o -print | sort); }
+files >"$work/before"
+
+step "installation"
+mkdir "$work/root/tmp/packages"
+cp "${packages[@]}" "$work/root/tmp/packages/"
+in_root apt-get -q -y install --no-install-recommends --no-download -o Dpkg::Use-Pty=0 \
+  $(cd "$work/root" && ls -d tmp/packages/*.deb | sed 's|^|/|')
+[ -z "$(in_root dpkg --audit)" ]
+
+step "use"
+mkdir "$work/root/tmp/work"
+cp -r "$here/use.sh" "$source/tests/plugins/out_of_tree/project" "$work/root/tmp/work/"
+PYTHONPATH="$source/tests/pages" /usr/bin/python3 -B -c 'import markdown, pathlib, sys
+print(next(block.text for block in markdown.blocks(pathlib.Path(sys.argv[1]), "README.md") if block.is_python))' \
+  "$source/README.md" >"$work/root/tmp/work/readme.py"
+in_root sh /tmp/work/use.sh
+
+step "removal"
+in_root apt-get -q -y purge $(for package in "${packages[@]}"; do dpkg-deb -f "$package" Package; done) >/dev/null
+rm -rf "$work/root/tmp/work" "$work/root/tmp/packages"
+files >"$work/after"
+diff "$work/before" "$work/after" || { echo "removal has left or taken the files above"; exit 1; }
+echo "nothing is left"
+printf '\nall of it took %d s\n' "$SECONDS"
