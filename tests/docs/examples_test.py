@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks the documentation's examples by the program: examples_test.py PROGRAM SOURCE_FOLDER
 
-Rigs and pipelines are validated; each command of crisp has options that it knows.
+Rigs and pipelines are validated; code that names a file of the sources is that file's.
 """
 
-import functools
 import pathlib
 import re
 import subprocess
@@ -13,7 +12,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-import markdown  # noqa: E402
+import code_blocks  # noqa: E402
 
 PROGRAM, ROOT = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
 del sys.argv[1:3]
@@ -21,14 +20,10 @@ PAGES = [ROOT / "README.md"] + sorted((ROOT / "docs").rglob("*.md"))
 
 
 def examples():
-    """(page, line, text) of each block of code, without fence and indentation."""
+    """(page, line, text) of each block of code."""
     for page in PAGES:
-        for block in markdown.blocks(page.read_text(encoding="utf-8")):
-            if block.kind != "code":
-                continue
-            lines = [line for line in block.lines if not line.lstrip().startswith("```")]
-            indent = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
-            yield page, block.line, "\n".join(line[indent:] for line in lines) + "\n"
+        for block in code_blocks.code_blocks(page):
+            yield page, block.line, block.text
 
 
 def validate(text, rigs):
@@ -38,22 +33,6 @@ def validate(text, rigs):
         file = pathlib.Path(folder) / "example.yaml"
         file.write_text(text, encoding="utf-8")
         return subprocess.run([PROGRAM, "validate", str(file)], capture_output=True, text=True, check=False)
-
-
-@functools.cache
-def help_of(*command):
-    """What `crisp COMMAND --help` prints; None if there is no such command."""
-    run = subprocess.run([PROGRAM, *command, "--help"], capture_output=True, text=True, check=False)
-    return run.stdout if run.returncode == 0 else None
-
-
-def command_of(words):
-    """Name and help of the command that these words begin with, of `study bound` those of bound."""
-    help_text = help_of(words[0])
-    below = (help_text or "").partition("Subcommands:\n")[2]
-    if len(words) > 1 and re.search(rf"^  {re.escape(words[1])} ", below, flags=re.M):
-        return " ".join(words[:2]), help_of(*words[:2])
-    return words[0], help_text
 
 
 class Examples(unittest.TestCase):
@@ -73,15 +52,6 @@ class Examples(unittest.TestCase):
                 run = validate(text, rigs)
                 self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         self.assertGreater(count, 8)
-
-    def test_commands_have_options_that_the_program_knows(self):
-        for page, line, text in examples():
-            for words in re.findall(r"^ *crisp ([a-z][^\n#]*)", text.replace("\\\n", " "), flags=re.M):
-                name, help_text = command_of(words.split())
-                with self.subTest(f"{page.relative_to(ROOT)}:{line}: crisp {name}"):
-                    self.assertIsNotNone(help_text, "there is no such command")
-                    for option in re.findall(r"(?<!\S)(--[a-z-]+)", words):
-                        self.assertRegex(help_text, rf"{option}(?![a-z-])")
 
     def test_code_is_that_of_the_file_that_it_names(self):
         count = 0

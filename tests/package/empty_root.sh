@@ -17,6 +17,7 @@ for program in debootstrap lintian help2man dpkg-deb; do
   command -v "$program" >/dev/null || skip "$program is missing: .ci/install packaging"
 done
 mirror=$(apt-get indextargets --format '$(REPO_URI)' "Codename: $suite" 'Created-By: Packages' 2>/dev/null | head -n 1)
+unshare --mount --propagation private true 2>/dev/null || skip "this machine lets nothing be mounted"
 [ -n "$mirror" ] || skip "this machine's apt knows no mirror of Debian $suite"
 
 if [ -z "${CRISP_OWN_MOUNTS:-}" ]; then  # what is mounted below ends with this script, however it ends
@@ -66,8 +67,8 @@ in_root apt-get -q -y install --no-install-recommends --no-download -o Dpkg::Use
 step "use"
 mkdir "$work/root/tmp/work"
 cp -r "$here/use.sh" "$source/tests/plugins/out_of_tree/project" "$work/root/tmp/work/"
-PYTHONPATH="$source/tests/pages" /usr/bin/python3 -B -c 'import markdown, pathlib, sys
-print(next(block.text for block in markdown.blocks(pathlib.Path(sys.argv[1]), "README.md") if block.is_python))' \
+PYTHONPATH="$source/tests/docs" /usr/bin/python3 -B -c 'import code_blocks, pathlib, sys
+print(next(block.text for block in code_blocks.code_blocks(pathlib.Path(sys.argv[1])) if block.is_python))' \
   "$source/README.md" >"$work/root/tmp/work/readme.py"
 in_root sh /tmp/work/use.sh
 
