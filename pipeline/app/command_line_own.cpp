@@ -46,7 +46,7 @@ void CommandLine::add_stage_options(
   const auto add = [&](std::string_view name, const std::string& help) {
     std::string flag = "--" + std::string(name);
     std::ranges::replace(flag, '_', '-');
-    stage_options.push_back({to, flag, stage, name});
+    stage_options.push_back({.command = to, .flag = flag, .stage = stage, .option = std::string(name)});
     std::string set = stage;
     set.append(".").append(name).append("=");
     return to

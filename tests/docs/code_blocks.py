@@ -37,6 +37,12 @@ class CodeBlock:
         return self.language == "python" or (not self.language and self.text.startswith("import crisp"))
 
     @property
+    def file(self) -> typing.Optional[str]:
+        """The file that it shows as a whole, if its first line is `crisp: 1  # NAME.yaml`."""
+        found = re.match(r"crisp: 1 +# ([\w-]+\.yaml)\n", self.text)
+        return found and found[1]
+
+    @property
     def script(self) -> str:
         """What is typed: all of it, or, where outputs are shown with it, what follows `$ `."""
         lines = self.text.splitlines()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Types every command that README.md and the pages under docs/ show, as it stands there.
 
-commands_test.py PROGRAM PLUGIN SOURCE PYTHONPATH check|run, see shim.py.
+commands_test.py PROGRAM SOURCE PYTHONPATH check|run, see shim.py.
 """
 
 import json
@@ -19,8 +19,8 @@ import code_blocks  # noqa: E402
 import shim  # noqa: E402
 from inputs import Inputs  # noqa: E402
 
-PROGRAM, PLUGIN, PYTHONPATH, HOW = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[4], sys.argv[5]
-SOURCE = pathlib.Path(sys.argv[3]).resolve()
+PROGRAM, PYTHONPATH, HOW = sys.argv[1], sys.argv[3], sys.argv[4]
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
 # All pages but the reference, which the program writes, and the tutorial, which tutorial_test.py runs as one story.
 PAGES = ["README.md"] + sorted(
     str(page.relative_to(SOURCE))
@@ -34,7 +34,7 @@ def setUpModule():
     unittest.addModuleCleanup(folder.cleanup)
     global made, inputs
     made = pathlib.Path(folder.name)
-    inputs = Inputs(PROGRAM, PLUGIN, SOURCE, made, HOW)
+    inputs = Inputs(PROGRAM, SOURCE, made, HOW)
 
 
 class Reader:
@@ -48,11 +48,15 @@ class Reader:
         self.folder = pathlib.Path(self._folder.name) / "here"
         self.folder.mkdir()
         inputs.give(self.folder, self.text)
+        for shown in PAGES:  # files that a page shows, here or where it links to
+            for block in code_blocks.code_blocks(SOURCE / shown):
+                if block.file:
+                    (self.folder / block.file).write_text(block.text, encoding="utf-8")
         self._parent = self.folder.parent
         (self._parent / "bin").mkdir()
         for name in ("crisp", *shim.STUBS):
             self._stand_in(self._parent / "bin" / name)
-        for path in set(re.findall(r"(?<!\S)(?:\./|build/release/)[\w/]+", "\n".join(b.text for b in self.blocks if b.is_shell))):
+        for path in set(re.findall(r"(?<!\S)(?:\./|\.ci/|build/release/)[\w/]+", "\n".join(b.text for b in self.blocks if b.is_shell))):
             self._stand_in(self.folder / path)
 
     def _stand_in(self, file: pathlib.Path):

@@ -17,7 +17,7 @@ _RECORDED = re.compile(r"-i ([\w.-]+\.(?:csv|json|pcapng|pcap))")  # perhaps a r
 class Inputs:
     """A small recording and what runs leave of it, and of these whatever a page's reader has."""
 
-    def __init__(self, program: str, plugin: pathlib.Path, source: pathlib.Path, folder: pathlib.Path, how: str):
+    def __init__(self, program: str, source: pathlib.Path, folder: pathlib.Path, how: str):
         self._program = program
         made, out, results, captures = folder / "made", folder / "out", folder / "results", folder / "captures"
         self._run("run", "simulate", "-o", made, "--set", "grabber.simulate.duration=3s")
@@ -49,7 +49,6 @@ class Inputs:
             "my.yaml": configs / "rig.yaml",
             "my_rig.yaml": configs / "rig.yaml",
             "tilt.bag": source / "tests/fuzz/corpus/bag/plain.bag",
-            "example.so": plugin,
             "my-calibration.yaml": made / "truth.yaml",
         }
         self._scene = configs / "scenes/office.yaml"

@@ -282,9 +282,9 @@ TEST_F(ProgramTest, CompletesItsCommandLineInBash) {
   EXPECT_EQ(completed(CRISP_PROGRAM " cluster s", 2), "submit ");
   EXPECT_EQ(completed(CRISP_PROGRAM " cluster submit --ta", 3), "--tasks ");
   EXPECT_EQ(completed(CRISP_PROGRAM " run --rig x", 3), " ");  // left to bash's own, which knows files
-  EXPECT_EQ(completed(CRISP_PROGRAM " bound --scene of", 3), "office ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " study bound --scene of", 4), "office ");
   EXPECT_EQ(completed(CRISP_PROGRAM " emulate --motion st", 3), "stop_and_go ");
-  EXPECT_EQ(completed(CRISP_PROGRAM " bound --duration 1", 3), " ");  // no list, and no file of that name
+  EXPECT_EQ(completed(CRISP_PROGRAM " study bound --duration 1", 4), " ");  // no list, and no file of that name
 
   // Behind --set: of the pipeline its variables, tags and options; bash divides name=value into three words.
   const std::string run = CRISP_PROGRAM " run " + path("sum.yaml") + " -o x --set ";
@@ -296,7 +296,7 @@ TEST_F(ProgramTest, CompletesItsCommandLineInBash) {
   EXPECT_EQ(completed(run + "first.motion = co", 8), "constant ");
   EXPECT_EQ(completed(run + "first.motion =", 7), "constant varying reversal stop_and_go ");
   EXPECT_EQ(completed(run + "first.motion=co", 6), "first.motion=constant ") << "where = divides no words";
-  EXPECT_EQ(completed(CRISP_PROGRAM " run picture --set calibr", 4), "calibration= ");
+  EXPECT_EQ(completed(CRISP_PROGRAM " run picture --set calibr", 4), "calibration= calibrate.load.file= ");
   EXPECT_EQ(completed(CRISP_PROGRAM " calibrate hub.pcap --set clock.convex_hull.win", 4),
             "clock.convex_hull.window= ");
   EXPECT_EQ(completed(CRISP_PROGRAM " run --set filter.vox", 3), "filter.voxel.size= ") << "of all stages";
