@@ -93,7 +93,7 @@ function(crisp_library name)
           LIBRARY COMPONENT libraries NAMELINK_COMPONENT development
           ARCHIVE COMPONENT development)
   install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/crisp/${folder}"
-          COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+          COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN page EXCLUDE PATTERN slurm EXCLUDE)
 endfunction()
 
 # crisp_test(<name> [THREADS] [SLOW <filter>] [SMOKE <filter>] [LONG <filter>] [CLUSTER <filter>] SOURCES ... LIBRARIES ...)

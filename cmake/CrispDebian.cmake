@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The Debian packages. One command makes them, in build/package: cmake --workflow --preset package
 set(CRISP_MAINTAINER "The crisp authors <crisp@localhost>" CACHE STRING "Who answers for the packages")
-set(released "2026-11-27 12:00:00")
 set(released_in_changelog "Fri, 27 Nov 2026 12:00:00 +0000")
 set(debian "${CMAKE_CURRENT_LIST_DIR}/debian")
 set(version "${PROJECT_VERSION}-1")
@@ -20,6 +19,9 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_SOURCE crisp)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# Where cpack has put the package of the libraries, which the other packages are linked with.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS
+  "${CMAKE_BINARY_DIR}/_CPack_Packages/${CMAKE_SYSTEM_NAME}/DEB/crisp-${PROJECT_VERSION}-${CMAKE_SYSTEM_NAME}/libraries${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}")
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
@@ -36,8 +38,7 @@ configure_file("${debian}/changelog.in" "${CMAKE_BINARY_DIR}/changelog" @ONLY)
 
 # crisp_compress(<file> <compressed>) as Debian wants it: as small as can be, without a time of its own.
 function(crisp_compress file compressed)
-  file(ARCHIVE_CREATE OUTPUT "${compressed}" PATHS "${file}" FORMAT raw COMPRESSION GZip COMPRESSION_LEVEL 9
-       MTIME "${released}")
+  execute_process(COMMAND gzip -9nc "${file}" OUTPUT_FILE "${compressed}" COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 crisp_compress("${CMAKE_BINARY_DIR}/changelog" "${CMAKE_BINARY_DIR}/changelog.Debian.gz")
 crisp_compress("${PROJECT_SOURCE_DIR}/CHANGELOG.md" "${CMAKE_BINARY_DIR}/changelog.gz")
@@ -65,6 +66,8 @@ crisp_package(libraries ${libraries} libs "3D point clouds from spinning 2D lase
 crisp_package(development libcrisp-dev libdevel "3D point clouds from spinning 2D lasers (headers)")
 crisp_package(documentation crisp-doc doc "3D point clouds from spinning 2D lasers (documentation)")
 
+set(CPACK_DEBIAN_LIBRARIES_PACKAGE_CONTROL_EXTRA "${debian}/libraries/triggers")
+
 # What each needs beside the libraries that it is linked with.
 set(CPACK_COMPONENT_PROGRAM_DEPENDS libraries)
 set(CPACK_COMPONENT_DEVELOPMENT_DEPENDS libraries)
@@ -77,6 +80,7 @@ string(CONCAT CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libhwy-dev, libjemalloc-dev, liblz4-dev, liblzf-dev, libpcap-dev, libpcl-dev, libpng-dev, libsqlite3-dev, libssl-dev, "
   "libtbb-dev, libtins-dev, libyaml-cpp-dev, libzstd-dev, nlohmann-json3-dev, pkg-config, zlib1g-dev")
 if(TARGET crisp_python)
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
   crisp_package(python python3-crisp python "3D point clouds from spinning 2D lasers (Python 3)")
   math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
   set(CPACK_COMPONENT_PYTHON_DEPENDS program libraries)

@@ -9,7 +9,7 @@ PATH=$(dirname "$program"):$PATH
 # page NAME SUMMARY COMMAND writes NAME.1.gz, under that name, and without the number of this machine's cores.
 page() {
   help2man --no-info --no-discard-stderr --version-string="$version" --name="$2" --source="crisp $version" "$3" |
-    sed -e "s/^\\.TH [A-Z]*/.TH $(echo "$1" | tr a-z A-Z)/" -e 's/^\(.*\(threads\|jobs\)\\fR UINT\)=[0-9]*$/\1/' |
+    sed -e "s/^\\.TH [A-Z]*/.TH $(echo "$1" | tr a-z A-Z)/" -e "s/^$3 \\\\-/$1 \\\\-/" -e 's/^\(.*\(threads\|jobs\)\\fR UINT\)=[0-9]*$/\1/' |
     gzip -9n >"$folder/$1.1.gz"
 }
 

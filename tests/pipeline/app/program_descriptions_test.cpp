@@ -284,7 +284,8 @@ TEST_F(ProgramTest, CompletesItsCommandLineInBash) {
   EXPECT_EQ(completed(CRISP_PROGRAM " run --rig x", 3), " ");  // left to bash's own, which knows files
   EXPECT_EQ(completed(CRISP_PROGRAM " study bound --scene of", 4), "office ");
   EXPECT_EQ(completed(CRISP_PROGRAM " emulate --motion st", 3), "stop_and_go ");
-  EXPECT_EQ(completed(CRISP_PROGRAM " study bound --duration 1", 4), " ");  // no list, and no file of that name
+  EXPECT_EQ(completed(CRISP_PROGRAM " study bound --duration 1", 4),
+            " ");  // no list, and no file of that name
 
   // Behind --set: of the pipeline its variables, tags and options; bash divides name=value into three words.
   const std::string run = CRISP_PROGRAM " run " + path("sum.yaml") + " -o x --set ";
