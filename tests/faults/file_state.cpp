@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/faults/file_state.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -73,13 +75,16 @@ Files list_files(const fs::path& folder) {
 
 bool is_hidden(const std::string& name) { return file_name(name).starts_with('.'); }
 
-bool is_record(const std::string& name) {
-  return name.ends_with(".provenance.json") || file_name(name) == "summary.json";
+/// What a batch says of all its recordings, with times.
+bool is_account(const std::string& name) {
+  constexpr std::array kNames{"batch.json", "table.csv", "trend.svg", "report.html",
+                              "report.html.provenance.json"};
+  return std::ranges::find(kNames, name) != kNames.end() || name.starts_with("manifest/");
 }
 
-bool is_account(const std::string& name) {
-  return name == "batch.json" || name == "table.csv" || name == "trend.svg" || name == "report.html" ||
-         name.starts_with("manifest/");
+bool is_record(const std::string& name) {
+  if (is_account(name)) return false;
+  return name.ends_with(".provenance.json") || file_name(name) == "summary.json";
 }
 
 bool is_whole(const std::string& name, const std::string& bytes, bool may_be_cut) {

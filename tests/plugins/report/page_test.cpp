@@ -55,9 +55,10 @@ TEST(Page, ShowsTextThatIsNoUtf8WithReplacements) {
 
 TEST(Page, NamesNoAddressThatWouldBeLoaded) {
   const std::string page = page_of("plain");
-  for (const char* part :
-       {"src=\"http", "href=\"http", "url(", "@import", "fetch(", "XMLHttpRequest", "import("})
+  for (const char* part : {"src=\"http", "href=\"http", "@import", "fetch(", "XMLHttpRequest", "import("})
     EXPECT_THAT(page, Not(HasSubstr(part)));
+  for (auto at = page.find("url("); at != std::string::npos; at = page.find("url(", at + 1))
+    EXPECT_EQ(page.substr(at, 5), "url(#") << "a part of the page itself";
 }
 
 TEST(Page, LetsTheBrowserRunItsOwnScriptOnly) {
