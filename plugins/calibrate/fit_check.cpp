@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "plugins/calibrate/rig_check.hpp"
 
@@ -37,6 +38,33 @@ Caveats of_rig(const Calibration& calibration, const Calibration& start, const R
   return is_new ? check.caveats : far_from_nominal(calibration, rig);
 }
 
+/// Lasers that were heard for less than half of the recording: their own values rest on little, and the
+/// others' λ and η refer to the first laser's.
+Caveats of_silence(const Measurements& beams, const Rig& rig) {
+  constexpr double kHalf = 0.5;
+  struct Span {
+    double first = std::numeric_limits<double>::infinity();
+    double last = -std::numeric_limits<double>::infinity();
+    double length() const { return std::max(0.0, last - first); }
+  };
+  Span all;
+  std::vector<Span> of(rig.lasers.size());
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    for (Span* span : {&all, &of[beams.laser[i]]}) {
+      span->first = std::min(span->first, beams.time[i]);
+      span->last = std::max(span->last, beams.time[i]);
+    }
+  }
+  Caveats caveats;
+  for (std::size_t laser = 0; laser < of.size(); ++laser) {
+    if (of[laser].length() >= kHalf * all.length()) continue;
+    caveats.push_back(fmt::format(
+        "{} was heard for {:.1f} s of {:.1f} s: its values rest on that part alone, and those of the others may refer to them. Check its cable and its power supply, and record again",
+        rig.lasers[laser].name, of[laser].length(), all.length()));
+  }
+  return caveats;
+}
+
 Caveats of_rqe(const std::map<std::string, double>& quality, bool is_near_start) {
   constexpr double kLess = 0.05;  // [nat] that chance and the bias of an optimum of RQE do not explain
   const double after = quality.at("rqe_after");
@@ -59,9 +87,11 @@ bool agrees_well(const Refinement& refined) {
 double misfit_of(const Refinement& refined, double noise) { return std::sqrt(refined.chi2) * noise; }
 
 std::vector<std::string> check_fit(const Refinement& refined, const Calibration& calibration,
-                                   const Calibration& start, const Rig& rig, double noise) {
+                                   const Calibration& start, const Measurements& beams, const Rig& rig,
+                                   double noise) {
   Caveats caveats = refined.outcome.caveats;
   append(caveats, of_misfit(refined, noise));
+  append(caveats, of_silence(beams, rig));
   append(caveats, of_rig(calibration, start, rig));
   if (!agrees_well(refined)) append(caveats, of_rqe(calibration.quality, refined.restarts == 0));
   return caveats;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/data/all_errors.hpp"
@@ -20,6 +21,17 @@
 #include "plugins/calibrate/single_beams.hpp"
 
 namespace crisp {
+namespace {
+
+/// Whether the refined values answer all caveats of the calibration that they started from.
+bool are_resolved(const std::vector<std::string>& caveats, const RigCheck& refined) {
+  return std::ranges::all_of(caveats, [&](const std::string& caveat) {
+    return caveat == kDirectionIsOpen && refined.knows_direction;
+  });
+}
+
+}  // namespace
+
 void RefineStage::describe(StageDescription<RefineStage>& d) {
   d.name("calibrate.refine").summary("refines a calibration by least squares against flat surfaces");
   d.details(
@@ -163,7 +175,7 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
   }
   const double noise = settings_.surfels.noise;
   context.report({{"misfit", misfit_of(refined, noise)}, {"neighbour_noise", refined.scatter}});
-  const auto of_fit = check_fit(refined, calibration, *start_, context.rig(), noise);
+  const auto of_fit = check_fit(refined, calibration, *start_, sample.beams, context.rig(), noise);
   const auto of_rig = mistakes(sample, refined, of_fit.empty(), *measure, context);
   for (const auto& mistake : of_rig) context.mark_untrusted(mistake);
   // A known mistake explains the other caveats, which nobody needs to examine before it is corrected.
@@ -173,9 +185,13 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
     else
       context.print("probably for that reason: " + caveat);
   }
-  if (of_rig.empty() && of_fit.empty() && start_->caveats.empty()) {
+  const RigCheck check = check_with_rig(calibration, context.rig(), {});
+  if (of_rig.empty() && of_fit.empty() && are_resolved(start_->caveats, check)) {
     context.resolve_caveats(KindName<Calibration>::value,
                             "the refined calibration fits, and agrees with the rig");
+  } else if (check.is_explained) {
+    context.resolve_caveats(KindName<Calibration>::value,
+                            "the refined values, which are more accurate, show what is wrong in the rig");
   }
 }
 

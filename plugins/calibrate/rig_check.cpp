@@ -66,27 +66,46 @@ double distance(const Calibration& found, const Calibration& nominal, const Para
 
 /// A possible mistake of a rig, with the calibration's distance from nominal values under it.
 struct Hypothesis {
-  std::string caveat;
+  std::string statement;
+  std::string remedy;
   double distance = 0;
 };
 
-std::string other_direction(const Calibration& calibration) {
+Hypothesis other_direction(const Calibration& calibration, double distance) {
   const bool is_clockwise = calibration.direction == CountDirection::clockwise;
   const char* states = is_clockwise ? "clockwise" : "counter-clockwise";
   const char* counts = is_clockwise ? "counter-clockwise" : "clockwise";
-  return fmt::format(
-      "the encoder counts {}, not {}, by the signs of tau and alpha and the order of the lasers: the cloud is the mirror image of the scene. Set plate.direction: {} in the rig",
-      counts, states, is_clockwise ? "counter_clockwise" : "clockwise");
+  return {
+      .statement = fmt::format(
+          "the encoder counts {}, not {}, by the signs of tau and alpha and the order of the lasers: the cloud is the mirror image of the scene",
+          counts, states),
+      .remedy =
+          fmt::format("Set plate.direction: {} in the rig", is_clockwise ? "counter_clockwise" : "clockwise"),
+      .distance = distance};
+}
+
+/// What is wrong in the rig, and what to change. Several hypotheses: the nominal values do not decide between
+/// them.
+std::string caveat_of(const std::vector<Hypothesis>& alternatives) {
+  if (alternatives.size() == 1) return alternatives[0].statement + ". " + alternatives[0].remedy;
+  std::string caveat =
+      fmt::format("{} corrections of the rig fit equally well, and the recording cannot decide between them",
+                  alternatives.size());
+  for (std::size_t k = 0; k < alternatives.size(); ++k)
+    caveat += fmt::format("; {}) {}. {}", k + 1, alternatives[k].statement, alternatives[k].remedy);
+  return caveat +
+         ". Find out on the scanner which one is true: a wrong correction gives a mirror image of the scene";
 }
 
 std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, const ParameterPrior& range) {
   const Calibration nominal = nominal_calibration(rig);
-  std::vector<Hypothesis> all = {{other_direction(found), distance(mirrored(found), nominal, range)}};
+  std::vector<Hypothesis> all = {other_direction(found, distance(mirrored(found), nominal, range))};
   Calibration all_turned = nominal;
   for (LaserCalibration& laser : all_turned.lasers) laser.alpha.value += kPi;
   if (nominal.lasers.size() > 1) {
     all.push_back(
-        {"all lasers are mounted upside down, or their mounts are off by 180 degrees, compared with the rig. Turn each mount, or each nominal alpha, by 180 degrees in the rig",
+        {"all lasers are mounted upside down, or their mounts are off by 180 degrees, compared with the rig",
+         "Turn each mount, or each nominal alpha, by 180 degrees in the rig",
          distance(found, all_turned, range)});
   }
   for (std::size_t i = 0; i < nominal.lasers.size(); ++i) {
@@ -94,18 +113,17 @@ std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, con
     Calibration turned = nominal;
     turned.lasers[i].alpha.value += kPi;
     all.push_back(
-        {fmt::format(
-             "{0} is mounted upside down, or its mount is off by 180 degrees, compared with the rig. Turn {0}'s mount, or its nominal alpha, by 180 degrees in the rig",
-             name),
+        {fmt::format("{} is mounted upside down, or its mount is off by 180 degrees, compared with the rig",
+                     name),
+         fmt::format("Turn {}'s mount, or its nominal alpha, by 180 degrees in the rig", name),
          distance(found, turned, range)});
     for (std::size_t j = 0; j < i; ++j) {
       Calibration exchanged = nominal;
       std::swap(exchanged.lasers[i], exchanged.lasers[j]);
-      all.push_back(
-          {fmt::format(
-               "{} and {} are exchanged: each has the other's nominal values. Exchange their addresses in the rig, or their cables",
-               nominal.lasers[j].name, name),
-           distance(found, exchanged, range)});
+      all.push_back({fmt::format("{} and {} are exchanged: each has the other's nominal values",
+                                 nominal.lasers[j].name, name),
+                     "Exchange their addresses in the rig, or their cables",
+                     distance(found, exchanged, range)});
     }
   }
   return all;
@@ -238,7 +256,16 @@ RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const Pa
   RigCheck check{.is_mirrored = is_explained && &best == &mirror_image,
                  .is_explained = is_explained,
                  .knows_direction = as_it_is + kClearly < mirror_image.distance};
-  check.caveats = is_explained ? std::vector{best.caveat} : outside(calibration, rig, range);
+  if (!is_explained) {
+    check.caveats = outside(calibration, rig, range);
+    return check;
+  }
+  std::vector<Hypothesis> alternatives = {best};
+  for (const Hypothesis& other : all) {
+    const bool is_other = &other != &best && !may_be_mirrored;
+    if (is_other && other.distance < best.distance + kClearly) alternatives.push_back(other);
+  }
+  check.caveats = {caveat_of(alternatives)};
   return check;
 }
 

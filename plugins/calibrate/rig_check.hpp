@@ -31,8 +31,9 @@ struct RigCheck {
 /// has the same RQE, and so has one whose lasers have exchanged their names.
 ///
 /// A contradiction is explained, where that fits clearly better, by one of: counts that grow the other way;
-/// two exchanged lasers; a laser mounted upside down. Otherwise each τ and α outside its range is reported by
-/// itself.
+/// two exchanged lasers; a laser mounted upside down. Where several fit equally well, as counts and
+/// upside-down lasers do for two lasers that face each other, the caveat has all of them. Otherwise each τ
+/// and α outside its range is reported by itself.
 ///
 /// @param calibration  one laser for each of the rig's, in its order
 /// @param range        [m, rad] how far τ and α may be from their nominal values
@@ -46,6 +47,10 @@ std::optional<Calibration> in_direction_of_rig(const Calibration& calibration, c
 /// The message then.
 inline constexpr const char* kCountsClockwise =
     "the encoder counts clockwise, by the signs of tau and alpha and the order of the lasers; the calibration takes it so. Set plate.direction: clockwise in the rig";
+
+/// The caveat of a calibration that leaves it open, which more accurate values may resolve.
+inline constexpr const char* kDirectionIsOpen =
+    "the encoder's sense of rotation is undetermined, since the mirror image agrees with the rig's nominal values as well: the cloud may be the mirror image of the scene. Set plate.direction in the rig";
 
 /// The parameters whose standard error is about that which the rig gives them.
 std::vector<std::string> known_from_rig_only(const Calibration& calibration, const ParameterPrior& prior);

@@ -15,6 +15,7 @@
 #include "pipeline/data/mirror_angle.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
 #include "pipeline/estimate/turn_period.hpp"
+#include "plugins/calibrate/fit_check.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 #include "plugins/calibrate/rig_search.hpp"
 
@@ -114,8 +115,14 @@ std::optional<Refinement> refined_with_mounts(const SensorModel& model, const Sa
   }
 }
 
-bool fits_with(const RigHypothesis& hypothesis, const Sample& sample, const Rig& rig,
-               const HypothesisSettings& settings) {
+/// How well the data fit with a changed rig.
+struct HypothesisFit {
+  bool fits = false;      ///< without a caveat, and in agreement with the nominal values
+  std::size_t beams = 0;  ///< on flat surfaces: a wrong rig may fold the scene onto a few of them
+};
+
+HypothesisFit fit_with(const RigHypothesis& hypothesis, const Sample& sample, const Rig& rig,
+                       const HypothesisSettings& settings) {
   const ChangedSample changed(sample, hypothesis);
   RqeCalibrationSettings rqe;
   rqe.points = 10'000;
@@ -125,12 +132,15 @@ bool fits_with(const RigHypothesis& hypothesis, const Sample& sample, const Rig&
     const SensorModel start(nominal_calibration(rig), *settings.terms);
     rqe.in_plane.range = search_range_with_lambda(start, rig, ParameterPrior{});
     const Outcome crisp = calibrate_by_rqe(start, changed.sample(), *settings.measure, rqe);
-    if (settings.interrupted()) return false;
+    if (settings.interrupted()) return {};
     const auto refined = refined_with_mounts(crisp.model, changed.sample(), rig, settings);
-    return refined && refined->outcome.caveats.empty() && !refined->views.empty() &&
-           check_with_rig(calibration_of(refined->outcome, rig), rig, ParameterPrior{}).caveats.empty();
+    if (!refined) return {};
+    const bool fits =
+        refined->outcome.caveats.empty() && agrees_well(*refined) &&
+        check_with_rig(calibration_of(refined->outcome, rig), rig, ParameterPrior{}).caveats.empty();
+    return {.fits = fits, .beams = refined->beams};
   } catch (const Error&) {
-    return false;  // RQE refuses the data with that
+    return {};  // RQE refuses the data with that
   }
 }
 
@@ -138,15 +148,17 @@ bool fits_with(const RigHypothesis& hypothesis, const Sample& sample, const Rig&
 std::optional<std::string> mount_of_one(std::size_t laser, const Sample& sample, const Rig& rig,
                                         const HypothesisSettings& settings) {
   const Sample own = of_laser(sample, laser);
-  const auto fits = [&](double turn) {
+  const auto fit = [&](double turn) {
     RigHypothesis hypothesis{.change = {}, .mount_turns = std::vector<double>(rig.lasers.size(), 0.0)};
     hypothesis.mount_turns[laser] = turn;
-    return fits_with(hypothesis, own, rig, settings);
+    return fit_with(hypothesis, own, rig, settings);
   };
-  if (own.beams.size() == 0 || fits(0)) return std::nullopt;
+  if (own.beams.size() == 0) return std::nullopt;
+  const HypothesisFit unchanged = fit(0);
   for (const double turn : kTurns) {
-    if (settings.interrupted()) break;
-    if (fits(turn)) return with_mount(rig.lasers[laser], turn);
+    if (unchanged.fits || settings.interrupted()) break;
+    const HypothesisFit changed = fit(turn);
+    if (changed.fits && changed.beams > unchanged.beams) return with_mount(rig.lasers[laser], turn);
   }
   return std::nullopt;
 }
@@ -183,6 +195,10 @@ std::optional<std::string> find_rig_error(const Sample& sample, const Rig& rig,
   const auto period = turn_period(sample);
   if (period && contradicts_counts(*period)) return counts_caveat(*period);
   const Sample some = thin_evenly(longest_recording(sample), kBeams, 1);
+  // Where the rig as it stands fits as well, by the same few beams, no change of it explains anything.
+  const RigHypothesis as_it_stands{.change = {}, .mount_turns = std::vector<double>(rig.lasers.size(), 0.0)};
+  const HypothesisFit unchanged = fit_with(as_it_stands, some, rig, settings);
+  if (unchanged.fits) return std::nullopt;
   const auto all = common_hypotheses(rig);
   const double steps = static_cast<double>(all.size() + rig.lasers.size());
   const auto report = [&](std::size_t step, const std::string& what) {
@@ -191,7 +207,8 @@ std::optional<std::string> find_rig_error(const Sample& sample, const Rig& rig,
   std::vector<std::string> changes;
   for (std::size_t k = 0; k < all.size() && changes.empty() && !settings.interrupted(); ++k) {
     report(k, all[k].change);
-    if (fits_with(all[k], some, rig, settings)) changes.push_back(all[k].change);
+    const HypothesisFit changed = fit_with(all[k], some, rig, settings);
+    if (changed.fits && changed.beams > unchanged.beams) changes.push_back(all[k].change);
   }
   for (std::size_t laser = 0; changes.empty() && rig.lasers.size() > 1 && laser < rig.lasers.size();
        ++laser) {

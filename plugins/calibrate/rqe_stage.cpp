@@ -102,14 +102,17 @@ Calibration RqeStage::compared_with_rig(Calibration calibration, Context& contex
     }
   }
   if (finds_direction && !check.knows_direction) {
-    calibration.caveats.emplace_back(
-        "the encoder's sense of rotation is undetermined, since the mirror image agrees with the rig's nominal values as well: the cloud may be the mirror image of the scene. Set plate.direction in the rig");
+    calibration.caveats.emplace_back(kDirectionIsOpen);
     context.mark_untrusted(calibration.caveats.back());
   } else if (!check.knows_direction && !start_) {
     context.print(
         "plate.direction is determined by the rig only: the mirror image agrees with the nominal values as well");
   }
-  for (const auto& caveat : check.caveats) context.mark_untrusted(caveat);
+  // Values that the data do not determine lie anywhere in their ranges: they show no mistake of the rig.
+  const bool is_determined = calibration.unobservable.empty();
+  for (const auto& caveat : check.caveats) {
+    if (is_determined || !check.is_explained) context.mark_untrusted(caveat);
+  }
   return calibration;
 }
 

@@ -112,6 +112,18 @@ TEST(RigCheck, ALaserThatIsUpsideDownIsNamed) {
   EXPECT_THAT(check(calibration).caveats, ElementsAre(HasSubstr("all lasers are mounted upside down")));
 }
 
+TEST(RigCheck, LasersThatFaceEachOtherLeaveOpenWhetherTheyOrTheDirectionAreWrong) {
+  Rig rig = default_rig();
+  rig.lasers.resize(2);
+  rig.lasers[1].nominal.lambda.value = 180 * kDegree;
+  const RigCheck result = check(mirrored(found(7, rig)), rig);
+  ASSERT_EQ(result.caveats.size(), 1U);
+  EXPECT_THAT(result.caveats[0],
+              testing::AllOf(HasSubstr("2 corrections of the rig fit equally well"),
+                             HasSubstr("Set plate.direction: counter_clockwise"),
+                             HasSubstr("Turn each mount, or each nominal alpha, by 180 degrees")));
+}
+
 TEST(RigCheck, AParameterOutsideItsRangeIsReportedWithItsNominalValue) {
   Calibration calibration = found(7);
   calibration.lasers[1].tau.value = 0.487;

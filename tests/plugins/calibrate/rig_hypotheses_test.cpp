@@ -60,6 +60,10 @@ TEST_F(RigHypotheses, MountsThatAreRightAreNotSuspected) {
       IsEmpty());
 }
 
+TEST_F(RigHypotheses, ARigThatFitsAsItStandsHasNoMistake) {
+  EXPECT_FALSE(find_rig_error(sample_of(simulated_), default_rig(), settings()));
+}
+
 TEST_F(RigHypotheses, MountsThatAreAllOffByARightAngleAreFoundFromTheRigsNominalValues) {
   const std::vector<double> off(3, -90 * kDegree);
   const auto mistake = find_rig_error(with_mounts(off), rig_with_mounts(off), settings());
