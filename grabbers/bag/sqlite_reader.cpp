@@ -24,7 +24,9 @@ SqliteReader::SqliteReader(std::filesystem::path file)
   sqlite3* opened = nullptr;
   const int status = sqlite3_open_v2(file_.c_str(), &opened, SQLITE_OPEN_READONLY, nullptr);
   database_.reset(opened);
-  if (status != SQLITE_OK) throw Error("cannot read " + file_.string() + ": " + sqlite3_errstr(status));
+  if (status != SQLITE_OK)
+    throw Error("cannot read " + file_.string() + ": " + sqlite3_errstr(status),
+                "check its name and its permissions");
   if (!has_table("topics") || !has_table("messages")) {
     throw Error(
         file_.string() + " is a database, but no bag of ROS 2: it lacks the tables topics and messages",

@@ -158,7 +158,7 @@ std::string to_text(const CaptureStatistics& statistics) {
   for (const auto& remark : statistics.remarks) text += "\n  " + remark;
   if (statistics.pauses > 0) {
     text += fmt::format(
-        "\n  {} recordings in sequence, with {:.1f} s of pauses in all between them (of {:.0f} s and more, which are no losses)",
+        "\n  {} recordings in sequence, with {:.1f} s of pauses in all between them (of {:.0f} s and more, which are no losses; a forward step of the hub's clock looks like a pause)",
         statistics.pauses + 1, statistics.paused, kPause);
   }
   text += list("lost", statistics.losses) + list("noted", statistics.notes);

@@ -16,7 +16,7 @@ namespace {
 std::int64_t first_packet(const std::filesystem::path& file) {
   CaptureFile capture(file);
   const Packet* packet = capture.next();
-  if (packet == nullptr) throw Error(file.string() + " holds no packet");
+  if (packet == nullptr) throw Error(file.string() + " holds no packet", "remove it, or capture it again");
   return packet->time_ns;
 }
 

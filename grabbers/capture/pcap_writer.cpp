@@ -16,6 +16,7 @@
 #include "grabbers/capture/pcap_extent.hpp"
 #include "grabbers/capture/pcap_records.hpp"
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 #include "pipeline/files/atomic_file.hpp"
 
 namespace crisp {
@@ -153,7 +154,7 @@ void PcapWriter::write(std::int64_t time_ns, ByteView frame) {
         "frames have at most 262144 bytes and times lie between 1970 and 2106");
   }
   auto& f = *file_;
-  if (!f.dump) throw Error("a closed capture cannot be written to");
+  if (!f.dump) throw internal_error("a closed capture cannot be written to");
   pcap_pkthdr header{};
   header.ts.tv_sec = time_ns / kSecond;
   header.ts.tv_usec = time_ns % kSecond;  // nanoseconds, by the file's precision

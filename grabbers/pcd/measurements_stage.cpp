@@ -62,12 +62,7 @@ void GrabMeasurementsStage::process(const Inputs&, Outputs& out, Context& contex
     context.count("impossible measurements", read.impossible);
     count_surplus(table, file, context);
     about(file, [&] { refuse_other_rigs(beams, context.rig()); });
-    auto plate = trajectory(table, file, context);
-    if (plate.epoch_ns() != beams.epoch_ns) {
-      throw Error(fmt::format("{} and {} are of different runs: their epochs differ", file.string(),
-                              plate_path(file).filename().string()));
-    }
-    out.give(std::move(plate));
+    out.give(trajectory(table, file, context));
     for (std::size_t begin = 0; begin < beams.size() && !context.interrupted(); begin += kAtOnce) {
       out.give(some_of(beams, begin, std::min(begin + kAtOnce, beams.size())));
     }
@@ -84,6 +79,11 @@ PlateTrajectory GrabMeasurementsStage::trajectory(const PcdTable& table, const s
   }
   context.reads(plate_file);
   const PcdTable readings = read_pcd(plate_file);
+  if (!about(plate_file, [&] { return belong_together(table, readings); })) {
+    throw Error(file.string() + " and " + plate_file.filename().string() +
+                    " are of different runs, as after an interrupted one",
+                "repeat the run, which writes both anew; if one was edited, remove its line `# crisp plate`");
+  }
   count_surplus(readings, plate_file, context);
   return about(plate_file, [&] { return trajectory_of(readings); });
 }

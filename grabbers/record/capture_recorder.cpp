@@ -14,6 +14,7 @@
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 
 namespace crisp {
 namespace {
@@ -184,7 +185,7 @@ void CaptureRecorder::record(const HubItem& item) {
 }
 
 void CaptureRecorder::write(HubItem item) {
-  if (closed_) throw Error("a closed capture cannot be written to");
+  if (closed_) throw internal_error("a closed capture cannot be written to");
   writer_->push(std::move(item));
   if (settings_.safe_after == 0) writer_->drain();
 }

@@ -38,7 +38,7 @@ class Reader {
   }
 
  private:
-  void fail(const Place& place, std::string what, std::string advice = {}) {
+  void fail(const Place& place, std::string what, std::string advice) {
     errors_.emplace_back(std::move(what), std::move(advice), place);
   }
 
@@ -104,7 +104,9 @@ class Reader {
     const std::string name = info.name + "." + entry.name;
     const auto parsed = parse_quantity(entry.value, parameter->unit);
     if (const auto* complaint = std::get_if<Complaint>(&parsed)) {
-      return fail(entry.place, name + ": " + complaint->text);
+      return fail(
+          entry.place, name + ": " + complaint->text,
+          parameter->unit == "1" ? "expected is a number" : "expected is a number in " + parameter->unit);
     }
     const double value = std::get<double>(parsed);
     const bool bounded = parameter->lower < parameter->upper;

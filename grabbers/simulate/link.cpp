@@ -50,7 +50,8 @@ Link::Link(const LinkSettings& settings, double minimum, std::uint64_t seed, con
       last_arrival_(-std::numeric_limits<double>::infinity()) {
   if (!(minimum >= 0 && minimum + step.by >= 0 && settings.jitter >= 0 && settings.shape > 0 &&
         settings.stall_rate >= 0 && settings.stall_time >= 0 && settings.seconds_per_byte >= 0)) {
-    throw Error("the delays of the link of " + name + " must not be negative");
+    throw Error("a delay or a rate of the link of " + name + " is below 0",
+                "give delays, jitters and stalls of 0 or more, also with latency.step");
   }
   const double never = std::numeric_limits<double>::infinity();
   stall_begin_ = settings.stall_rate > 0 ? stalls_.exponential(1 / settings.stall_rate) : never;

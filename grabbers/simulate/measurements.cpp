@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "grabbers/simulate/sweep.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/data/mirror_angle.hpp"
 
 namespace crisp {
@@ -14,7 +13,7 @@ constexpr double kMargin = 0.25;                            // [s] of encoder re
 constexpr std::int64_t kEpoch = 1'767'225'600'000'000'000;  // 2026-01-01 00:00 UTC: any date will do
 
 PlateTrajectory read_encoder(const ScannerSettings& settings, const Motion& motion) {
-  if (!(settings.plate_frequency > 0)) throw Error("the plate must report more than 0 readings a second");
+  check_plate_frequency(settings);
   const double step = settings.rig.plate.angle_per_count();
   const auto readings =
       static_cast<std::size_t>(std::ceil((settings.duration + 2 * kMargin) * settings.plate_frequency)) + 1;

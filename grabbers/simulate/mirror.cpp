@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/simulate/mirror.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -10,10 +12,14 @@ namespace crisp {
 
 Mirror::Mirror(const MirrorSettings& settings, std::uint64_t seed, const std::string& laser, double excess)
     : settings_(settings), jitter_(seed, laser + ".mirror.jitter") {
-  if (!(settings.frequency > 0)) throw Error("the mirror of " + laser + " must turn faster than 0 Hz");
+  if (!(settings.frequency > 0)) {
+    throw Error(fmt::format("the mirror of {} turns at {:g} Hz", laser, settings.frequency),
+                "give a mirror_frequency above 0 Hz");
+  }
   if (!(std::abs(settings.slowest) < 0.5 && std::abs(excess * settings.frequency) < 0.5 &&
         settings.wander >= 0 && settings.wander < 0.5 && settings.jitter >= 0 && settings.jitter < 0.05)) {
-    throw Error("the mirror of " + laser + " is too far from its nominal period");
+    throw Error("the period of the mirror of " + laser + " deviates by half of its nominal value or more",
+                "reduce mirror_slowest, mirror_wander, mirror_jitter or the effect mirror.period");
   }
   constexpr double kTurn = 2 * std::numbers::pi;
   RandomStream random(seed, laser + ".mirror");

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/simulate/motion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "grabbers/simulate/random.hpp"
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 
 namespace crisp {
 namespace {
@@ -41,23 +44,38 @@ Knots alternating(const MotionSettings& settings, double duration, double first_
 }
 
 void check(const MotionSettings& settings, double duration) {
-  if (!(duration > 0)) throw Error("a simulation must last longer than 0 s");
+  if (!(duration > 0)) {
+    throw Error(fmt::format("the simulation lasts {:g} s", duration), "give a duration above 0 s");
+  }
   if (!std::isfinite(settings.min_rate) || !std::isfinite(settings.max_rate) ||
       settings.min_rate > settings.max_rate) {
-    throw Error("the plate's slowest rate must not exceed its fastest");
+    throw Error(fmt::format("the plate's min_rate of {:g} Hz is above its max_rate of {:g} Hz",
+                            settings.min_rate, settings.max_rate),
+                "give the lower rate as min_rate");
   }
-  if (!(settings.change_time > 0)) throw Error("the plate's change of speed must take longer than 0 s");
-  if (!(settings.hold_time >= 0)) throw Error("the plate cannot hold its speed for less than 0 s");
+  if (!(settings.change_time > 0)) {
+    throw Error(fmt::format("the plate changes its speed within {:g} s", settings.change_time),
+                "give a change_time above 0 s");
+  }
+  if (!(settings.hold_time >= 0)) {
+    throw Error(fmt::format("the plate holds its speed for {:g} s", settings.hold_time),
+                "give a hold_time of 0 s or more");
+  }
 }
 
 }  // namespace
 
 Motion::Motion(std::vector<Knot> knots, double first_angle) : knots_(std::move(knots)) {
-  if (knots_.empty()) throw Error("a motion of the plate needs at least one knot");
+  if (knots_.empty())
+    throw Error("the motion of the plate has no knot", "give one time and one rate at least");
   angles_.push_back(first_angle);
   for (std::size_t i = 1; i < knots_.size(); ++i) {
     const double width = knots_[i].time - knots_[i - 1].time;
-    if (!(width > 0)) throw Error("the times of the plate's motion must ascend");
+    if (!(width > 0)) {
+      throw Error(
+          fmt::format("the plate's motion has {:g} s after {:g} s", knots_[i].time, knots_[i - 1].time),
+          "give its knots in ascending order of time");
+    }
     angles_.push_back(angles_.back() + width * (knots_[i].rate + knots_[i - 1].rate) / 2);
   }
 }
@@ -94,7 +112,7 @@ Motion make_motion(const MotionSettings& settings, double duration, std::uint64_
     case MotionKind::stop_and_go:
       return Motion(alternating(settings, duration, 0, settings.max_rate), first_angle);
   }
-  throw Error("unknown motion of the plate");
+  throw internal_error("the motion of the plate is of no known kind");
 }
 
 }  // namespace crisp

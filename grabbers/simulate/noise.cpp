@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/simulate/noise.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "pipeline/data/error.hpp"
@@ -12,16 +14,21 @@ bool is_share(double value) { return value >= 0 && value <= 1; }
 
 void check(const RangeSettings& range, const NoiseEffects& effects, const std::string& laser) {
   if (!(range.sigma >= 0 && range.quantum >= 0 && range.max_distance > 0)) {
-    throw Error("the noise, the step and the reach of a laser's range must not be negative");
+    throw Error(fmt::format("the ranges have sigma {:g} m, quantum {:g} m and max_range {:g} m", range.sigma,
+                            range.quantum, range.max_distance),
+                "give sigma and quantum of 0 m or more, and max_range above 0 m");
   }
   if (!(effects.sigma >= 0 && effects.slope >= 0 && effects.spread >= 0 && effects.jitter >= 0 &&
         effects.tail_scale >= 0 && effects.divergence >= 0 && effects.aperture >= 0 && effects.merge >= 0 &&
         effects.separation >= 0 && effects.step >= 0)) {
-    throw Error("what the noise of " + laser + " is made of must not be negative");
+    throw Error("a parameter of the noise of " + laser + " is below 0",
+                "give the effects noise.* values of 0 or more");
   }
   if (!is_share(effects.tail_share) || !is_share(effects.least_weight) || !is_share(effects.most_weight) ||
       effects.least_weight > effects.most_weight) {
-    throw Error("shares of the noise of " + laser + " must be from 0 to 1, and the least not above the most");
+    throw Error(fmt::format("the noise of {} has shares of {:g} (heavy_tail), {:g} and {:g} (two_peaks)",
+                            laser, effects.tail_share, effects.least_weight, effects.most_weight),
+                "give shares from 0 to 1, and two_peaks.least not above two_peaks.most");
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/simulate/nominal_errors.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "grabbers/simulate/random.hpp"
@@ -34,7 +36,10 @@ void set(std::vector<TermParameters>& terms, const TermInfo& info, const Effect&
 Calibration draw_truth(const Calibration& nominal, const NominalErrors& nominal_errors, std::uint64_t seed) {
   for (const double departure :
        {nominal_errors.tau, nominal_errors.alpha, nominal_errors.lambda, nominal_errors.eta}) {
-    if (!(departure >= 0)) throw Error("the largest departure from nominal must not be negative");
+    if (!(departure >= 0)) {
+      throw Error(fmt::format("the largest departure from nominal is {:g}, which is below 0", departure),
+                  "give tau_off, alpha_off, lambda_off and eta_off of 0 or more");
+    }
   }
   Calibration truth = nominal;
   for (std::size_t i = 0; i < truth.lasers.size(); ++i) {

@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include "pipeline/data/error.hpp"
-
 namespace crisp {
 namespace {
 
@@ -21,9 +19,7 @@ PlateUnit::PlateUnit(const RecordingSettings& settings, const RecordingTruth& tr
       losses_(settings.scanner.seed, truth_.name + ".losses"),
       begin_(begin),
       time_(begin) {
-  if (!(settings.scanner.plate_frequency > 0)) {
-    throw Error("the plate must report more than 0 readings a second");
-  }
+  check_plate_frequency(settings.scanner);
   sequence_ =
       static_cast<std::uint16_t>(RandomStream(settings.scanner.seed, truth_.name + ".counters").bits());
 }

@@ -29,9 +29,11 @@ Vector3d area_vector(const std::vector<Vector3d>& corners) {
 
 Vector3d checked_normal(const Surface& surface) {
   if (surface.corners.size() < 3)
-    throw Error("the surface " + surface.name + " has fewer than three corners");
+    throw Error("the surface " + surface.name + " has " + std::to_string(surface.corners.size()) + " corners",
+                "give three corners or more");
   const Vector3d area = area_vector(surface.corners);
-  if (!(area.norm() > 1e-12)) throw Error("the surface " + surface.name + " has no area");
+  if (!(area.norm() > 1e-12))
+    throw Error("the surface " + surface.name + " has no area", "move its corners apart, off one line");
   Vector3d normal = area.normalized();
   for (const auto& corner : surface.corners) {
     const double off = std::abs(normal.dot(corner - surface.corners.front()));

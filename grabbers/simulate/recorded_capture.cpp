@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/simulate/recorded_capture.hpp"
 
+#include <fmt/format.h>
+
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_data.hpp"
 #include "pipeline/data/error.hpp"
@@ -17,7 +19,10 @@ constexpr std::size_t kHeaders = 54;  // Ethernet, IPv4 and TCP: damage behind t
 FaultyWire::FaultyWire(const WireFaults& faults, std::uint64_t seed, FrameSink sink)
     : faults_(faults), random_(seed, "wire"), sink_(std::move(sink)) {
   for (const double share : {faults.lost, faults.repeated, faults.damaged}) {
-    if (!(share >= 0 && share <= 1)) throw Error("the share of faulty frames must be between 0 and 1");
+    if (!(share >= 0 && share <= 1)) {
+      throw Error(fmt::format("the share of faulty frames is {:g}", share),
+                  "give lost_frames, repeated_frames and damaged_frames from 0 to 1");
+    }
   }
 }
 

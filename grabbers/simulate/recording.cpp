@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "grabbers/wire/scan_conversion.hpp"
-#include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 
 namespace crisp {
 namespace {
@@ -70,7 +70,8 @@ Scan to_scan(const LaserTelegram& telegram) {
   Scan scan;
   const auto failure = to_scan(telegram.data, telegram.laser, telegram.receipt_ns, scan);
   if (failure != ScanFailure::None) {
-    throw Error("the simulator made a telegram that holds no scan: " + std::string(to_string(failure)));
+    throw internal_error("the simulator made a telegram that holds no scan: " +
+                         std::string(to_string(failure)));
   }
   return scan;
 }

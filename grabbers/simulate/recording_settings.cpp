@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/simulate/recording_settings.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "grabbers/simulate/random.hpp"
 #include "pipeline/data/error.hpp"
+#include "pipeline/files/nearest.hpp"
 
 namespace crisp {
 namespace {
@@ -42,12 +46,13 @@ DeviceTruth draw_device(const RecordingSettings& settings, std::size_t index, co
 
 void check_names(const RecordingSettings& settings) {
   const auto& rig = settings.scanner.rig;
+  std::vector<std::string> names;
+  for (const RigLaser& laser : rig.lasers) names.push_back(laser.name);
+  names.push_back(rig.plate.name);
   const auto check = [&](const std::string& name) {
-    const bool laser = std::any_of(rig.lasers.begin(), rig.lasers.end(),
-                                   [&](const auto& known) { return known.name == name; });
-    if (!laser && name != rig.plate.name) {
-      throw Error("a fault is set for the device '" + name + "', which the rig does not have");
-    }
+    if (std::ranges::find(names, name) != names.end()) return;
+    throw Error("a fault is set for the device '" + name + "', which the rig does not have",
+                did_you_mean(name, names, fmt::format("it has {}", fmt::join(names, ", "))));
   };
   for (const auto& silence : settings.faults.silences) check(silence.device);
   for (const auto& restart : settings.faults.restarts) check(restart.device);
@@ -56,17 +61,24 @@ void check_names(const RecordingSettings& settings) {
 void check(const RecordingSettings& settings) {
   const std::size_t lasers = settings.scanner.rig.lasers.size();
   if (settings.scanner.truth.lasers.size() != lasers) {
-    throw Error("the simulation's truth does not have as many lasers as the rig");
+    throw Error(fmt::format("the simulation's truth has {} lasers, but the rig has {}",
+                            settings.scanner.truth.lasers.size(), lasers),
+                "give the truth of each laser of the rig, in its order");
   }
   if (!settings.clock_overrides.empty() && settings.clock_overrides.size() != lasers + 1) {
-    throw Error("the simulation needs one clock a laser and one for the plate, or none at all");
+    throw Error(fmt::format("the simulation has {} clocks for {} lasers and the plate",
+                            settings.clock_overrides.size(), lasers),
+                "give one clock a laser and one for the plate, or none at all");
   }
   if (!settings.stamp_lags.empty() && settings.stamp_lags.size() != lasers) {
-    throw Error("the simulation needs one stamp lag a laser, or none at all");
+    throw Error(fmt::format("there are {} stamp_lags for {} lasers", settings.stamp_lags.size(), lasers),
+                "give one a laser, or none at all");
   }
   const auto& effects = settings.device_effects;
   if (!effects.empty() && effects.size() != lasers + 1) {
-    throw Error("the simulation needs the effects of each laser and of the plate, or none at all");
+    throw Error(fmt::format("the simulation has effects of {} devices for {} lasers and the plate",
+                            effects.size(), lasers),
+                "give those of each laser and of the plate, or none at all");
   }
   check_names(settings);
 }

@@ -39,7 +39,8 @@ void read_entry(const OptionGroup& laser, const OptionGroup::Entry& entry, ScanP
   }
   const auto parsed = parse_quantity(entry.value, key->unit);
   if (const auto* complaint = std::get_if<Complaint>(&parsed)) {
-    throw Error(fmt::format("{}.{}: {}", laser.name, entry.name, complaint->text), "", entry.place);
+    throw Error(fmt::format("{}.{}: {}", laser.name, entry.name, complaint->text),
+                fmt::format("expected is a number in {}", key->unit), entry.place);
   }
   key->value(pattern) = std::get<double>(parsed);
 }
@@ -57,10 +58,11 @@ void check(const OptionGroup& laser, const ScanPattern& pattern) {
   try {
     pattern.field.beams();
   } catch (const Error& error) {
-    throw Error(laser.name + ": " + error.what(), "", laser.place);
+    throw Error(laser.name + ": " + error.message(), error.advice(), laser.place);
   }
   if (!(pattern.frequency > 0)) {
-    throw Error(laser.name + ".mirror_frequency must be more than 0 Hz", "", laser.place);
+    throw Error(fmt::format("{}.mirror_frequency is {:g} Hz", laser.name, pattern.frequency),
+                "give a frequency above 0 Hz", laser.place);
   }
 }
 

@@ -65,7 +65,8 @@ class SceneReader {
   Scene read_items(const YamlNode& node, const std::string& what) {
     Scene scene;
     if (node.kind != YamlNode::Kind::sequence) {
-      fail(node.place, what + ": " + crisp::describe(node) + " is not a list of surfaces");
+      fail(node.place, what + ": " + crisp::describe(node) + " is not a list of surfaces",
+           "begin the line of each surface with '- '");
     }
     for (const auto& item : node.items) {
       add(scene, read_item(item, what));
@@ -88,7 +89,8 @@ class SceneReader {
     if (const YamlNode* strewing = map.find("strew")) scene = mixed(*strewing, scene);
     map.refuse_others();
     total_ += scene.things();
-    if (total_ > kMaxSurfaces) map.fail(node.place, fmt::format("more than {} surfaces", kMaxSurfaces));
+    if (total_ > kMaxSurfaces)
+      map.fail(node.place, fmt::format("more than {} surfaces", kMaxSurfaces), "leave some out");
     return scene;
   }
 
@@ -97,7 +99,8 @@ class SceneReader {
     const bool has_reflectance = map.find("reflectance") != nullptr;
     const double reflectance = map.number("reflectance", "", 0.5);
     if (!(reflectance >= 0 && reflectance <= 1)) {
-      map.fail(map.find("reflectance")->place, "'reflectance' is not between 0 and 1");
+      map.fail(map.find("reflectance")->place, fmt::format("'reflectance' is {:g}", reflectance),
+               "give a share from 0 to 1");
     }
     const auto look = [&](auto& thing) {
       if (!name.empty()) thing.name = name;
@@ -117,7 +120,8 @@ class SceneReader {
                "set them on each box, cylinder, sphere or ellipsoid of the shape");
     }
     const double reach = read_bounded(map, "depth", "m", 0, kMaxLength);
-    if (depth && !(reach > 0)) map.fail(depth->place, "'depth' is not above 0");
+    if (depth && !(reach > 0))
+      map.fail(depth->place, "'depth' is not above 0", "leave it out for a solid body");
     const Walk way = walk ? read_walk(*walk) : Walk{};
     for (auto& body : scene.bodies) {
       if (depth) body.depth = reach;
@@ -135,7 +139,7 @@ class SceneReader {
     for (std::size_t i = 1; i < walk.along.size(); ++i) length += (walk.along[i] - walk.along[i - 1]).norm();
     if (!(length > 0))
       fail(node.place, "the walk has no length", "give at least two places: along: [[0, 0, 0], [3, 0, 0]]");
-    if (!(walk.speed > 0)) fail(node.place, "'speed' is not above 0");
+    if (!(walk.speed > 0)) fail(node.place, "'speed' is not above 0", "leave out the walk of a body at rest");
     return walk;
   }
 
@@ -166,7 +170,8 @@ class SceneReader {
     map.refuse_others();
     if (!(smallest >= 1 / kMaxTimes && largest >= smallest)) {
       fail(node.place,
-           "sizes of scattered copies need 0.0001 <= smallest <= largest, as multiples of the original's");
+           fmt::format("the copies' sizes are from {:g} to {:g} times the original's", smallest, largest),
+           "give 0.0001 <= smallest <= largest");
       return scene;
     }
     RandomStream random(seed, "strew");
@@ -203,7 +208,7 @@ class SceneReader {
     map.require("count");
     const auto count = static_cast<std::size_t>(map.integer("count", 1, 1, kMaxCopies));
     if (scene.things() * count <= kMaxSurfaces) return count;
-    map.fail(node.place, fmt::format("more than {} surfaces", kMaxSurfaces));
+    map.fail(node.place, fmt::format("more than {} surfaces", kMaxSurfaces), "reduce count");
     return 1;
   }
 
@@ -217,7 +222,7 @@ class SceneReader {
     }
   }
 
-  void fail(const Place& place, const std::string& what, const std::string& advice = {}) {
+  void fail(const Place& place, const std::string& what, const std::string& advice) {
     errors_.emplace_back(what, advice, place);
   }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/simulate/scene_geometry.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <utility>
 
@@ -121,8 +123,8 @@ Scene read_geometry(YamlMap& item, const Place& place, const std::map<std::strin
     things = read_shape(item, *node, shapes);
   }
   if (kinds != 1 && errors.size() == errors_before) {
-    item.fail(place,
-              "an item is one of box, rectangle, polygon, walls, cylinder, sphere, ellipsoid and shape");
+    item.fail(place, fmt::format("there are {} shapes in one item", kinds),
+              "give one of box, rectangle, polygon, walls, cylinder, sphere, ellipsoid and shape");
   }
   return things;
 }

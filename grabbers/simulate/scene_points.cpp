@@ -14,8 +14,8 @@ Vector3d read_point(const YamlNode& node, const std::string& what, std::size_t d
   Vector3d result = Vector3d::Zero();
   if (node.kind != YamlNode::Kind::sequence || node.items.size() != dimensions) {
     errors.emplace_back(
-        fmt::format("{}: {} is not a list of {} lengths", what, crisp::describe(node), dimensions), "",
-        node.place);
+        fmt::format("{}: {} is not a list of {} lengths", what, crisp::describe(node), dimensions),
+        dimensions == 2 ? "write [1m, 2m]" : "write [1m, 2m, 3m]", node.place);
     return result;
   }
   for (std::size_t i = 0; i < dimensions; ++i) {
@@ -23,7 +23,9 @@ Vector3d read_point(const YamlNode& node, const std::string& what, std::size_t d
     const auto value = read_number(node.items[i], "m", wrong);
     if (value && std::abs(*value) > kMaxLength) wrong = fmt::format("{:g} m is implausible", *value);
     if (!wrong.empty()) {
-      errors.emplace_back(fmt::format("{}: {}", what, wrong), "", node.items[i].place);
+      errors.emplace_back(fmt::format("{}: {}", what, wrong),
+                          fmt::format("expected is a number in m, {:g} at most", kMaxLength),
+                          node.items[i].place);
     } else {
       result[static_cast<Eigen::Index>(i)] = *value;
     }
@@ -35,7 +37,9 @@ std::vector<Vector3d> read_points(const YamlNode& node, const std::string& what,
                                   std::vector<Error>& errors) {
   std::vector<Vector3d> points;
   if (node.kind != YamlNode::Kind::sequence) {
-    errors.emplace_back(what + ": " + crisp::describe(node) + " is not a list of points", "", node.place);
+    errors.emplace_back(what + ": " + crisp::describe(node) + " is not a list of points",
+                        dimensions == 2 ? "write [[0, 0], [3, 0]]" : "write [[0, 0, 0], [3, 0, 0]]",
+                        node.place);
   }
   for (const auto& item : node.items) points.push_back(read_point(item, what, dimensions, errors));
   return points;

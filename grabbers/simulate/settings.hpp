@@ -84,4 +84,7 @@ struct ScannerSettings {
   }
 };
 
+/// @throws Error if the plate reports no reading
+void check_plate_frequency(const ScannerSettings& settings);
+
 }  // namespace crisp

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/simulate/sweep.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -44,10 +46,14 @@ void check(const ScannerSettings& settings) {
                 "give the truth of each laser of the rig, in its order");
   }
   if (!settings.laser_effects.empty() && settings.laser_effects.size() != settings.rig.lasers.size()) {
-    throw Error("the simulation needs the effects of each laser, or none at all");
+    throw Error(fmt::format("the simulation has the effects of {} lasers, but the rig has {}",
+                            settings.laser_effects.size(), settings.rig.lasers.size()),
+                "give the effects of each laser, or none at all");
   }
   if (!settings.patterns.empty() && settings.patterns.size() != settings.rig.lasers.size()) {
-    throw Error("the simulation needs the field of view of each laser, or one of all");
+    throw Error(fmt::format("the simulation has the field of view of {} lasers, but the rig has {}",
+                            settings.patterns.size(), settings.rig.lasers.size()),
+                "give the field of view of each laser, or one for all");
   }
   std::size_t most = 0;
   for (std::size_t i = 0; i < settings.rig.lasers.size(); ++i) {
@@ -56,7 +62,8 @@ void check(const ScannerSettings& settings) {
   for (const auto beam : settings.beams) {
     if (beam >= most) {
       throw Error("beam " + std::to_string(beam) + " is outside the field of view of " +
-                  std::to_string(most) + " beams");
+                      std::to_string(most) + " beams",
+                  "give beams from 0 to " + std::to_string(most - 1));
     }
   }
 }

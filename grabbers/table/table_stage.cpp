@@ -196,7 +196,8 @@ void TableStage::report(const TableReader& reader, const TableItems& items, std:
   const auto& fault = reader.first_fault();
   if (format_.range_column ? beams == 0 : reader.rows() == 0) {
     std::error_code none;
-    if (std::filesystem::file_size(file_, none) == 0) throw Error(file_.string() + " is empty");
+    if (std::filesystem::file_size(file_, none) == 0)
+      throw Error(file_.string() + " is empty", "copy it again");
     if (fault) throw Error("no row can be read: " + fault->message(), "correct the columns", fault->place());
     throw Error(file_.string() + (format_.range_column ? " holds no range" : " holds no row"),
                 "check the table and its columns");

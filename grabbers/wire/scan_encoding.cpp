@@ -17,18 +17,20 @@ namespace {
 constexpr double kMillimetres = 1e3;
 constexpr double kMaxRaw = std::numeric_limits<std::uint16_t>::max();
 
+Error beyond_telegram(float value) {
+  return Error(fmt::format("a scan has a value of {}, which a telegram cannot encode", value),
+               "check the unit of the recording's ranges and remissions, or leave such scans out");
+}
+
 /// The least whole scale under which all values fit into `most`.
 float scale_for(const std::vector<float>& values, double factor, double most) {
   float largest = 0;
   for (const float value : values) {
-    if (!(value >= 0))
-      throw Error(fmt::format("a scan has a value of {}, which a telegram cannot encode", value));
+    if (!(value >= 0)) throw beyond_telegram(value);
     largest = std::max(largest, value);
   }
   const double scale = std::max(1.0, std::ceil(largest * factor / most - 1e-6));
-  if (!(scale <= kMaxRaw)) {
-    throw Error(fmt::format("a scan has a value of {}, which a telegram cannot encode", largest));
-  }
+  if (!(scale <= kMaxRaw)) throw beyond_telegram(largest);
   return static_cast<float>(scale);
 }
 
@@ -48,7 +50,11 @@ void check_angles(const Scan& scan) {
   constexpr double kMax = 720 * kDegree;
   const bool start = std::abs(scan.start_angle) <= kMax;
   const bool step = scan.angle_step >= 0 && scan.angle_step * kUnitsPerDegree / kDegree < kMaxRaw;
-  if (!start || !step) throw Error("a scan has angles that a telegram cannot encode");
+  if (start && step) return;
+  throw Error(
+      fmt::format("a scan begins at {:g} rad and has steps of {:g} rad, which a telegram cannot encode",
+                  scan.start_angle, scan.angle_step),
+      "check the unit of the recording's angles; a scan begins within two turns and its angles ascend");
 }
 
 /// Whichever the dialect: CoLa-A takes up to five characters for a value.
@@ -57,7 +63,8 @@ void check_size(const Scan& scan) {
   std::size_t values = 0;
   for (const Echo& echo : scan.echoes) values += echo.ranges.size() + echo.remissions.size();
   if (values * kCharacters + kRest <= kLargestColaPayload) return;
-  throw Error(fmt::format("a scan has {} values, more than a telegram can hold", values));
+  throw Error(fmt::format("a scan has {} values, more than a telegram can hold", values),
+              fmt::format("give scans of {} values at most", (kLargestColaPayload - kRest) / kCharacters));
 }
 
 }  // namespace

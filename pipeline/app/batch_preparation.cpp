@@ -24,7 +24,8 @@ using Json = nlohmann::ordered_json;
 std::optional<double> timeout_of(const BatchRequest& request) {
   if (request.timeout.empty()) return std::nullopt;
   const auto read = parse_quantity(request.timeout, "s");
-  if (const auto* wrong = std::get_if<Complaint>(&read)) throw Error("--timeout: " + wrong->text);
+  if (const auto* wrong = std::get_if<Complaint>(&read))
+    throw Error("--timeout: " + wrong->text, "write it like 90s or 600");
   const double seconds = std::get<double>(read);
   if (seconds > 0) return seconds;
   throw Error("--timeout: " + request.timeout + " is not above 0 s", "omit it for no limit");

@@ -57,14 +57,18 @@ int wait_for(pid_t child) {
 CapturedOutput capture_output(std::vector<std::string> words) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw Error("cannot run " + words.front() + ": " + std::strerror(errno));
+    throw Error("cannot run " + words.front() + ": " + std::strerror(errno),
+                "end other programs, or raise `ulimit -n`");
   pid_t child = -1;
   const int failure = spawn(words, ends[1], child);
   close(ends[1]);
   CapturedOutput output;
   if (failure == 0) output = {.status = 0, .text = read_all(ends[0])};
   close(ends[0]);
-  if (failure != 0) throw Error("cannot run " + words.front() + ": " + std::strerror(failure));
+  if (failure != 0) {
+    throw Error("cannot run " + words.front() + ": " + std::strerror(failure),
+                "check that it is installed and in PATH");
+  }
   output.status = wait_for(child);
   return output;
 }

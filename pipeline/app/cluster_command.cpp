@@ -150,7 +150,7 @@ std::string submit_array(const ClusterPlan& plan) {
     if (sbatch.status == 0) return job_of(sbatch.text);
   } catch (const Error& error) {
     throw Error(
-        error.what(),
+        error.message(),
         "run the command where Slurm's programs are installed, or inspect the scripts with --dry-run");
   }
   throw Error("sbatch refused " + plan.batch_script().string(), "its message is above; see --sbatch");

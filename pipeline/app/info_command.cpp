@@ -57,7 +57,7 @@ std::optional<Error> of_other_commands(const fs::path& file) {
 
 Error none_known(const fs::path& path, const Inspectors& inspectors) {
   if (fs::is_regular_file(path)) {
-    if (fs::file_size(path) == 0) return Error(path.string() + " is empty");
+    if (fs::file_size(path) == 0) return Error(path.string() + " is empty", "copy or record it again");
     if (const auto other = of_other_commands(path)) return *other;
   }
   std::string kinds;
@@ -75,8 +75,8 @@ bool is_named_like_one(const Inspectors& inspectors, const fs::path& file) {
 
 /// @throws Error if it cannot be read; fs::filesystem_error
 Entry read_entry(const Inspectors& inspectors, const fs::path& file, const Rig& rig) {
-  if (!fs::exists(file)) throw Error("there is no file " + file.string());
-  if (!fs::is_regular_file(file)) throw Error(file.string() + " is not a file");
+  if (!fs::exists(file)) throw Error("there is no file " + file.string(), "check its name");
+  if (!fs::is_regular_file(file)) throw Error(file.string() + " is not a file", "name a file");
   const std::string head = head_of(file);
   const auto knows = [&](const Inspector& inspector) { return inspector.recognises(head); };
   const auto inspector = std::ranges::find_if(inspectors, knows);

@@ -134,7 +134,8 @@ bool load_plugins(const CommandLine& line, PluginLoader& loader) {
     const std::string trouble = trouble_with(plugin);
     if (trouble.empty()) continue;
     all_loaded = false;
-    print_errors(Error("the plugin " + plugin.file.string() + " was refused: " + trouble));
+    print_errors(Error("the plugin " + plugin.file.string() + " was refused: " + trouble,
+                       "correct the plugin, or leave it out"));
   }
   return all_loaded;
 }
@@ -290,11 +291,8 @@ int main(int count, char** words) {
     return after_output(crisp::guarded_main(count, words));
   } catch (const crisp::Error& error) {
     crisp::print_errors(error);
-  } catch (const std::filesystem::filesystem_error& error) {
-    crisp::print_errors(crisp::Error(error.path1().string() + ": " + error.code().message(),
-                                     "check the path and its permissions"));
   } catch (const std::exception& error) {
-    crisp::print_errors(crisp::resource_exhaustion(error).value_or(crisp::Error(error.what())));
+    crisp::print_errors(crisp::error_of(error));
   } catch (...) {
     std::cerr << "error: a plugin threw something that is no std::exception\n";
   }

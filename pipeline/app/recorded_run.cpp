@@ -23,8 +23,11 @@ void check_input(const std::optional<fs::path>& input) {
   if (!input) return;
   std::error_code failure;
   if (fs::exists(*input, failure)) return;
-  if (failure) throw Error("the input " + input->string() + " cannot be read: " + failure.message());
-  if (!fs::exists(part_path(*input, 1), failure)) throw Error("there is no input " + input->string());
+  if (failure)
+    throw Error("the input " + input->string() + " cannot be read: " + failure.message(),
+                "check its path and its permissions");
+  if (!fs::exists(part_path(*input, 1), failure))
+    throw Error("there is no input " + input->string(), "check the name after -i");
 }
 
 RunSettings run_settings_of(const RunRequest& request, const Registrar& registrar) {

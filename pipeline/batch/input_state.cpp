@@ -42,7 +42,8 @@ InputFile state_of(const fs::path& path) {
 }  // namespace
 
 std::vector<InputFile> input_files(const BatchInput& input, const fs::path& rig) {
-  if (!input.unreadable.empty()) throw Error(input.path + ": " + input.unreadable);
+  if (!input.unreadable.empty())
+    throw Error(input.path + ": " + input.unreadable, "check its name and its permissions");
   std::vector<InputFile> files;
   for (const auto& path : paths_of(input, rig)) files.push_back(state_of(path));
   return files;

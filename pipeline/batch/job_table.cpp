@@ -65,7 +65,7 @@ void JobTable::become(const Job& job, int error) const {
   try {
     status = run_(job);
   } catch (const std::exception& failure) {
-    const Error error = resource_exhaustion(failure).value_or(Error(failure.what()));
+    const Error error = error_of(failure);
     std::cerr << "error: " << error.what() << "\n";
   } catch (...) {
     std::cerr << "error: a plugin threw something that is no std::exception\n";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/batch/launcher.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/signalfd.h>
@@ -107,7 +108,11 @@ JobLauncher::~JobLauncher() {
 }
 
 void JobLauncher::send(const std::string& message) const {
-  if (message.size() > kLongestJobMessage) throw Error("the paths of a job are longer than 64 KiB");
+  if (message.size() > kLongestJobMessage) {
+    throw Error(
+        fmt::format("the paths of a job have {} bytes, more than {}", message.size(), kLongestJobMessage),
+        "use shorter paths");
+  }
   if (::send(socket_, message.data(), message.size(), MSG_NOSIGNAL) >= 0) return;
   throw Error(std::string("the process that starts the jobs is gone: ") + std::strerror(errno),
               "run the batch again: it continues where it stopped");

@@ -98,7 +98,9 @@ void ManifestWriter::sync() {
 std::size_t read_manifest(const fs::path& file,
                           const std::function<void(BatchEvent&& event, std::string_view line)>& use) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error("cannot read " + file.string() + ": " + std::strerror(errno));
+  if (!stream) {
+    throw Error("cannot read " + file.string() + ": " + std::strerror(errno), "check its permissions");
+  }
   std::size_t damaged = 0;
   for (std::string line; std::getline(stream, line) && !stream.eof();) {
     auto event = parse_manifest_line(line);

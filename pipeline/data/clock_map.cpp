@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <iterator>
 
-#include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 
 namespace crisp {
 namespace {
 
 void require_ascending(const ClockPiece& before, const ClockPiece& next) {
   if (!(next.device_begin > before.device_begin)) {
-    throw Error("the pieces of a clock map must ascend in device time");
+    throw internal_error("the pieces of a clock map do not ascend in device time");
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/data/measurements.hpp"
 
-#include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 
 namespace crisp {
 
@@ -16,7 +16,7 @@ void Measurements::reserve(std::size_t n) {
 
 void Measurements::append(const Measurements& other) {
   if (range.empty()) epoch_ns = other.epoch_ns;
-  if (epoch_ns != other.epoch_ns) throw Error("measurements of different epochs cannot be joined");
+  if (epoch_ns != other.epoch_ns) throw internal_error("measurements of different epochs cannot be joined");
   const bool incidences = (size() == 0 || !cos_incidence.empty()) && !other.cos_incidence.empty();
   const auto join = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   join(range, other.range);

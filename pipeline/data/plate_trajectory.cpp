@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/data/plate_trajectory.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -39,9 +41,14 @@ PlateTrajectory::PlateTrajectory(std::int64_t epoch_ns, std::vector<double> time
       angles_(std::move(angles)),
       new_zeros_(std::move(new_zeros)),
       max_gap_(max_gap) {
-  if (times_.size() != angles_.size()) throw Error("a plate trajectory needs one angle for each time");
-  if (std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) != times_.end()) {
-    throw Error("the times of a plate trajectory must ascend");
+  if (times_.size() != angles_.size())
+    throw Error(fmt::format("a plate trajectory has {} times and {} angles", times_.size(), angles_.size()),
+                "give one angle for each time");
+  const auto late = std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>());
+  if (late != times_.end()) {
+    throw Error(fmt::format("the time of encoder reading {} is {} s, and that of the next is {} s",
+                            late - times_.begin() + 1, *late, *std::next(late)),
+                "give readings in ascending order of time, without repetition");
   }
   rates_ = slopes(times_, angles_);
   if (times_.size() < 2) return;

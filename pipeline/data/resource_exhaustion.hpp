@@ -12,4 +12,8 @@ namespace crisp {
 /// any other exception.
 std::optional<Error> resource_exhaustion(const std::exception& thrown);
 
+/// Any exception as an Error: an Error itself, lack of resources, a refusal of the system, or a fault of
+/// the program.
+Error error_of(const std::exception& thrown);
+
 }  // namespace crisp

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/estimate/bound.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 #include "pipeline/estimate/encoder_error_blocks.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/estimate/surfel_jacobian.hpp"
@@ -25,7 +28,8 @@ Surfels surfels_of_truth(const BeamsView& beams, std::span<const std::uint32_t> 
                          std::span<const Eigen::Vector3d> normals) {
   std::vector<std::vector<std::uint32_t>> members(normals.size());
   for (std::uint32_t i = 0; i < surface.size(); ++i) {
-    if (surface[i] >= normals.size()) throw Error("a beam meets a surface whose plane is not given");
+    if (surface[i] >= normals.size())
+      throw internal_error(fmt::format("a beam meets surface {} of {}", surface[i], normals.size()));
     members[surface[i]].push_back(i);
   }
   Surfels result;
@@ -55,8 +59,10 @@ Eigen::MatrixXd calibration_information(const SensorModel& truth, const Sample& 
                                         std::span<const std::uint32_t> surface,
                                         std::span<const Eigen::Vector3d> normals,
                                         const std::vector<std::size_t>& free, const BoundNoise& noise) {
-  if (surface.size() != beams.beams.size()) throw Error("each beam must have the surface that it meets");
-  if (!(noise.range > 0)) throw Error("without noise of the ranges there is no bound");
+  if (surface.size() != beams.beams.size())
+    throw internal_error(fmt::format("{} beams have {} surfaces", beams.beams.size(), surface.size()));
+  if (!(noise.range > 0))
+    throw Error("the ranges have no noise, so that there is no bound", "give a sigma above 0 m");
   const PlacedBeams placed(truth, beams);
   const Surfels surfels = surfels_of_truth(placed.view(), surface, normals);
   const DerivativeRows rows = surfel_rows(truth, beams, free);

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <string>
 
-#include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 
 namespace crisp {
 
@@ -29,11 +29,8 @@ void check_errors(const Outcome& outcome, const Measurements& beams, double floo
     const auto kind = most.find(name.substr(name.find('.')));
     const auto i = static_cast<Eigen::Index>(k);
     if (kind == most.end() || outcome.covariance(i, i) >= std::pow(across / kind->second, 2)) continue;
-    throw Error(
-        fmt::format(
-            "{} has a standard error of {:.2g}, less than the beams' noise allows: an error of this program",
-            name, std::sqrt(outcome.covariance(i, i))),
-        "please report it with the capture");
+    throw internal_error(fmt::format("{} has a standard error of {:.2g}, less than the beams' noise allows",
+                                     name, std::sqrt(outcome.covariance(i, i))));
   }
 }
 

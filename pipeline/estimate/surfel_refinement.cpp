@@ -64,7 +64,10 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
       converged = false;  // the others take one more step without it
     }
   }
-  if (refiner.free().empty()) throw Error("these data determine none of the parameters");
+  if (refiner.free().empty()) {
+    throw Error("these data determine none of the parameters",
+                "record several turns of the plate in a room with walls, and check the option fixed");
+  }
   refiner.widen_by_shared_errors();
   refiner.consider_held(parameters.unobservable);
   Refinement result = refiner.result();

@@ -38,7 +38,8 @@ void refuse_no_file(const fs::path& file) {
   const bool is_stream =  // /dev/stdout, whatever that is just now
       fs::is_symlink(file, missing) && fs::read_symlink(file, missing).string().starts_with("/proc/");
   if (is_stream || (fs::exists(status) && !fs::is_regular_file(status)))
-    throw Error("cannot write " + file.string() + ": it is there and is not a file");
+    throw Error("cannot write " + file.string() + ": it is there and is not a file",
+                "give the name of a file");
 }
 
 /// A file of a new name next to `file`, whose name shows its purpose.

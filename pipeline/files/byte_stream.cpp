@@ -20,7 +20,8 @@ namespace crisp {
 namespace {
 
 Error cannot_read_bytes(const std::filesystem::path& path, int error) {
-  return Error(fmt::format("cannot read {}: {}", path.string(), std::strerror(error)));
+  return Error(fmt::format("cannot read {}: {}", path.string(), std::strerror(error)),
+               error == EISDIR ? "name a file in it" : "check its name and its permissions");
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ class CalibrationReader {
  private:
   void read_lasers(const YamlNode& node) {
     YamlMap map(node, "lasers", errors_);
-    if (node.kind == YamlNode::Kind::map && node.entries.empty()) map.fail(node.place, "there is none");
+    if (node.kind == YamlNode::Kind::map && node.entries.empty())
+      map.fail(node.place, "there is none", "give the calibration of one laser at least");
     for (const auto& [name, place, value] : node.entries) {
       YamlMap laser_map(value, "laser '" + name + "'", errors_);
       LaserCalibration laser;
@@ -114,7 +115,9 @@ class CalibrationReader {
     }
     if (written && parameter.unit.empty())
       map.fail(written->place, "there is no unit", "write 1 for a plain number");
-    if (parameter.std_error < 0) map.fail(node.find("std_error")->place, "a standard error is not negative");
+    if (parameter.std_error < 0)
+      map.fail(node.find("std_error")->place, fmt::format("the standard error is {:g}", parameter.std_error),
+               "give 0 or more");
     map.refuse_others();
     return parameter;
   }
@@ -128,7 +131,7 @@ class CalibrationReader {
         if (const auto number = read_number(item, "", wrong))
           calibration_.covariance.push_back(*number);
         else
-          map.fail(item.place, "'values': " + wrong);
+          map.fail(item.place, "'values': " + wrong, expected_number(""));
       }
       const std::size_t m = calibration_.covariance_order.size();
       if (values->items.size() != m * m) {
@@ -142,7 +145,7 @@ class CalibrationReader {
   static const YamlNode* list(YamlMap& map, const std::string& key) {
     const YamlNode* node = map.require(key);
     if (!node || node->kind == YamlNode::Kind::sequence) return node;
-    map.fail(node->place, "'" + key + "': " + describe(*node) + " is not a list");
+    map.fail(node->place, "'" + key + "': " + describe(*node) + " is not a list", "write [a, b]");
     return nullptr;
   }
 
@@ -155,7 +158,7 @@ class CalibrationReader {
       if (auto text = read_text(item, wrong))
         read.push_back(std::move(*text));
       else
-        map.fail(item.place, fmt::format("'{}': {}", key, wrong));
+        map.fail(item.place, fmt::format("'{}': {}", key, wrong), "expected is a text");
     }
     return read;
   }
@@ -177,14 +180,15 @@ class CalibrationReader {
         if (const auto figure = read_number(value, "", wrong))
           calibration_.quality[name] = *figure;
         else
-          map.fail(value.place, fmt::format("'{}': {}", name, wrong));
+          map.fail(value.place, fmt::format("'{}': {}", name, wrong), expected_number(""));
       }
     }
   }
 
   void read_unobservable(const YamlNode& node, YamlMap& parent) {
     if (node.kind != YamlNode::Kind::sequence) {
-      parent.fail(node.place, "'unobservable': " + describe(node) + " is not a list");
+      parent.fail(node.place, "'unobservable': " + describe(node) + " is not a list",
+                  "write [{parameter: NAME}]");
     }
     for (const auto& item : node.items) {
       YamlMap map(item, "quality, unobservable", errors_);
@@ -202,7 +206,7 @@ class CalibrationReader {
       if (auto text = read_text(value, wrong))
         calibration_.provenance[key] = std::move(*text);
       else
-        map.fail(value.place, fmt::format("'{}': {}", key, wrong));
+        map.fail(value.place, fmt::format("'{}': {}", key, wrong), "expected is a text");
     }
   }
 

@@ -44,7 +44,8 @@ class FindingsMap {
     const YamlNode* node = map_.require(key);
     if (!node) return;
     if (node->kind != YamlNode::Kind::sequence) {
-      return map_.fail(node->place, "'" + key + "': " + describe(*node) + " is not a list");
+      return map_.fail(node->place, "'" + key + "': " + describe(*node) + " is not a list",
+                       "run the diagnosis again, or correct the file");
     }
     for (std::size_t i = 0; i < node->items.size(); ++i) read(node->items[i], fmt::format("{}[{}]", key, i));
   }
@@ -60,7 +61,7 @@ class FindingsMap {
       if (auto text = read_text(item, wrong)) {
         all.push_back(std::move(*text));
       } else {
-        map_.fail(item.place, where + ": " + wrong);
+        map_.fail(item.place, where + ": " + wrong, "expected is a text");
       }
     });
     return all;
@@ -72,7 +73,8 @@ class FindingsMap {
     const YamlNode* node = map_.require(key);
     if (!node) return all;
     if (node->kind != YamlNode::Kind::sequence || node->items.size() != n) {
-      map_.fail(node->place, fmt::format("'{}': {} is not a list of {} numbers", key, describe(*node), n));
+      map_.fail(node->place, fmt::format("'{}': {} is not a list of {} numbers", key, describe(*node), n),
+                "run the diagnosis again, or correct the file");
       return all;
     }
     for (std::size_t i = 0; i < n; ++i) {
@@ -80,7 +82,8 @@ class FindingsMap {
       const bool unknown = node->items[i].kind == YamlNode::Kind::null;
       const auto number = unknown ? std::nullopt : read_number(node->items[i], "", wrong);
       all[i] = number.value_or(std::numeric_limits<double>::quiet_NaN());
-      if (!wrong.empty()) map_.fail(node->items[i].place, fmt::format("'{}': {}", key, wrong));
+      if (!wrong.empty())
+        map_.fail(node->items[i].place, fmt::format("'{}': {}", key, wrong), expected_number(""));
     }
     return all;
   }

@@ -40,7 +40,9 @@ Error refusal_by(const fs::path& folder, const FoundLock& lock, std::chrono::mil
 const fs::path& made(const fs::path& folder) {
   std::error_code failure;
   fs::create_directories(folder, failure);
-  if (failure) throw Error("cannot write into the folder " + folder.string() + ": " + failure.message());
+  if (failure)
+    throw Error("cannot write into the folder " + folder.string() + ": " + failure.message(),
+                "give another folder, or correct its permissions");
   return folder;
 }
 

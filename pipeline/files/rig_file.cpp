@@ -29,6 +29,8 @@ bool is_device_name(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), allowed);
 }
 
+constexpr const char* kNameAdvice = "use letters, digits, _ and - only";
+
 /// Name of the plate in effects and findings.
 const std::string kPlate = "plate";
 
@@ -48,12 +50,15 @@ class RigReader {
  private:
   void read_lasers(const YamlNode& node) {
     YamlMap map(node, "lasers", errors_);
-    if (node.kind == YamlNode::Kind::map && node.entries.empty()) map.fail(node.place, "there is none");
+    if (node.kind == YamlNode::Kind::map && node.entries.empty())
+      map.fail(node.place, "there is none", "describe one laser at least");
     constexpr std::size_t kMax = 1000;
-    if (node.entries.size() > kMax) return map.fail(node.place, fmt::format("there are more than {}", kMax));
+    if (node.entries.size() > kMax)
+      return map.fail(node.place, fmt::format("there are {}", node.entries.size()),
+                      fmt::format("describe {} at most", kMax));
     for (const auto& entry : node.entries) {
       if (!is_device_name(entry.key)) {
-        map.fail(entry.place, "'" + entry.key + "' is not a name of letters, digits, _ and -");
+        map.fail(entry.place, "'" + entry.key + "' is no name of a device", kNameAdvice);
       }
       if (entry.key == kPlate) {
         map.fail(entry.place, "no laser can be named 'plate'", "effects and findings name the plate by it");
@@ -122,8 +127,7 @@ class RigReader {
     YamlMap map(node, "plate", errors_);
     rig_.plate.name = map.text("name", "plate");
     if (!is_device_name(rig_.plate.name)) {
-      map.fail(map.find("name")->place,
-               "'" + rig_.plate.name + "' is not a name of letters, digits, _ and -");
+      map.fail(map.find("name")->place, "'" + rig_.plate.name + "' is no name of a device", kNameAdvice);
     }
     rig_.plate.address = read_address(map, kDefaultPort);
     read_joint(map);
@@ -212,7 +216,8 @@ class RigReader {
         const bool overlap =
             !address.ip.empty() && (address.port == used.port || address.port == 0 || used.port == 0);
         if (name == other) {
-          errors_.emplace_back("rig: two devices are named '" + name + "'", "", place);
+          errors_.emplace_back("rig: two devices are named '" + name + "'", "give one of them another name",
+                               place);
         } else if (address.ip == used.ip && overlap) {
           errors_.emplace_back(
               fmt::format("rig: '{}' and '{}' have the same address {}", other, name, address.ip),

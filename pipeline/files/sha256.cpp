@@ -50,7 +50,10 @@ std::string sha256_of(std::string_view text) {
 FileDigest digest_of(const std::filesystem::path& file) {
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error("cannot read " + file.string() + ": " + std::strerror(errno));
+  if (!stream) {
+    throw Error("cannot read " + file.string() + ": " + std::strerror(errno),
+                "check its name and its permissions");
+  }
 
   Sha256 hash;
   FileDigest digest;
@@ -61,7 +64,8 @@ FileDigest digest_of(const std::filesystem::path& file) {
     hash.add(block.data(), count);
     digest.bytes += count;
   }
-  if (stream.bad()) throw Error("cannot read " + file.string() + ": " + std::strerror(errno));
+  if (stream.bad())
+    throw Error("cannot read " + file.string() + ": " + std::strerror(errno), "check the disk");
 
   digest.sha256 = hash.digits();
   return digest;

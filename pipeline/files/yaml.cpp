@@ -151,7 +151,9 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YamlNode::Kind kind) {
     constexpr std::size_t kDeepest = 64;
-    if (levels_.size() >= kDeepest) throw Error("lists and maps are nested too deeply", {}, place(mark));
+    if (levels_.size() >= kDeepest)
+      throw Error(fmt::format("lists and maps are nested more than {} deep", kDeepest), "remove some levels",
+                  place(mark));
     check_anchor(mark, anchor);
     check_tag(mark, tag);
     levels_.push_back({node(mark, kind), false, {}});
@@ -180,7 +182,8 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void add_key(Level& level, YamlNode key) {
     if (key.kind != YamlNode::Kind::scalar) {
-      fail("a key must be a name, not " + describe(key), "", key.place);
+      fail("a key must be a name, not " + describe(key), "write NAME: VALUE, without [ or { before the colon",
+           key.place);
     } else if (!level.keys.insert(key.text).second) {
       const auto same = std::find_if(level.node.entries.begin(), level.node.entries.end(),
                                      [&](const YamlEntry& entry) { return entry.key == key.text; });
@@ -245,7 +248,8 @@ YamlNode parse_yaml(std::string_view text, const std::string& file) {
     YAML::Parser parser(stream);
     parser.HandleNextDocument(builder);
     IgnoreAll ignore;
-    if (parser.HandleNextDocument(ignore)) throw Error("there is more than one document in it", {}, {file});
+    if (parser.HandleNextDocument(ignore))
+      throw Error("there is more than one document in it", "remove the line --- and what follows it", {file});
   } catch (const YAML::Exception& error) {
     const Place place = {file, error.mark.line + 1, error.mark.column + 1};
     const auto tab = indented_by_tab(text, place.line);
@@ -260,16 +264,17 @@ YamlNode parse_yaml(std::string_view text, const std::string& file) {
 YamlNode read_yaml(const std::filesystem::path& file) {
   constexpr std::size_t kLimit = 4 << 20;
   YamlNode root = parse_yaml(read_text_file(file, kLimit), file.string());
-  if (root.kind == YamlNode::Kind::null) throw Error("the file is empty", {}, {file.string()});
+  if (root.kind == YamlNode::Kind::null)
+    throw Error("the file is empty", "write it, or name another file", {file.string()});
   return root;
 }
 
 std::string read_text_file(const std::filesystem::path& file, std::size_t limit) {
-  const auto fail = [&](const std::string& why) -> Error {
-    return Error("cannot read " + file.string() + ": " + why);
+  const auto fail = [&](const std::string& why, const std::string& advice) {
+    return Error("cannot read " + file.string() + ": " + why, advice);
   };
   std::error_code missing;  // reported by reading
-  if (std::filesystem::is_directory(file, missing)) throw fail("it is a folder");
+  if (std::filesystem::is_directory(file, missing)) throw fail("it is a folder", "name a file in it");
   constexpr auto kPatience = std::chrono::seconds(10);
   auto give_up = std::chrono::steady_clock::now() + kPatience;
   ByteStream stream(file, [&] { return std::chrono::steady_clock::now() > give_up; });
@@ -283,10 +288,11 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t limit)
       give_up = std::chrono::steady_clock::now() + kPatience;
     }
   } catch (const Interrupted&) {
-    throw fail("it is a pipe without data for 10 s");
+    throw fail("it is a pipe without data for 10 s", "check the program that writes into it");
   }
   text.resize(end);
-  if (text.size() > limit) throw fail(fmt::format("it is longer than {} bytes", limit));
+  if (text.size() > limit)
+    throw fail(fmt::format("it is longer than {} bytes", limit), "is this the right file?");
   return text;
 }
 

@@ -27,6 +27,11 @@ bool is_scalar(const YamlNode& node, std::string_view requested, std::string& wr
 
 }  // namespace
 
+std::string expected_number(std::string_view unit) {
+  if (unit.empty()) return "give a number without a unit";
+  return unit == "1" ? "expected is a number" : fmt::format("expected is a number in {}", unit);
+}
+
 std::optional<double> read_number(const YamlNode& node, std::string_view unit, std::string& wrong) {
   if (!is_scalar(node, "a number", wrong)) return std::nullopt;
   return unpack(parse_quantity(node.text, unit), wrong);
@@ -52,7 +57,8 @@ std::optional<std::string> read_text(const YamlNode& node, std::string& wrong) {
 
 YamlMap::YamlMap(const YamlNode& node, std::string what, std::vector<Error>& errors)
     : node_(node), what_(std::move(what)), errors_(errors) {
-  if (node.kind != YamlNode::Kind::map) fail(node.place, describe(node) + " is not a map");
+  if (node.kind != YamlNode::Kind::map)
+    fail(node.place, describe(node) + " is not a map", "write lines of KEY: VALUE");
 }
 
 void YamlMap::fail(const Place& place, const std::string& what, std::string advice) {
@@ -66,7 +72,8 @@ const YamlNode* YamlMap::find(const std::string& key) {
 
 const YamlNode* YamlMap::require(const std::string& key) {
   const YamlNode* value = find(key);
-  if (!value && node_.kind == YamlNode::Kind::map) fail(node_.place, "'" + key + "' is missing");
+  if (!value && node_.kind == YamlNode::Kind::map)
+    fail(node_.place, "'" + key + "' is missing", "add " + key + ": VALUE");
   return value;
 }
 
@@ -75,7 +82,7 @@ double YamlMap::number(const std::string& key, std::string_view unit, double fal
   if (!value) return fallback;
   std::string wrong;
   const auto number = read_number(*value, unit, wrong);
-  if (!number) fail(value->place, "'" + key + "': " + wrong);
+  if (!number) fail(value->place, "'" + key + "': " + wrong, expected_number(unit));
   return number.value_or(fallback);
 }
 
@@ -88,7 +95,10 @@ std::int64_t YamlMap::integer(const std::string& key, std::int64_t fallback, std
   if (integer && (*integer < min || *integer > max)) {
     wrong = fmt::format("{} is not from {} to {}", *integer, min, max);
   }
-  if (!wrong.empty()) fail(value->place, "'" + key + "': " + wrong);
+  if (!wrong.empty()) {
+    fail(value->place, "'" + key + "': " + wrong,
+         fmt::format("expected is a whole number from {} to {}", min, max));
+  }
   return wrong.empty() ? *integer : fallback;
 }
 
@@ -97,7 +107,7 @@ bool YamlMap::boolean(const std::string& key, bool fallback) {
   if (!value) return fallback;
   std::string wrong;
   const auto boolean = read_boolean(*value, wrong);
-  if (!boolean) fail(value->place, "'" + key + "': " + wrong);
+  if (!boolean) fail(value->place, "'" + key + "': " + wrong, "expected is true or false");
   return boolean.value_or(fallback);
 }
 
@@ -106,7 +116,7 @@ std::string YamlMap::text(const std::string& key, std::string fallback) {
   if (!value) return fallback;
   std::string wrong;
   const auto text = read_text(*value, wrong);
-  if (!text) fail(value->place, "'" + key + "': " + wrong);
+  if (!text) fail(value->place, "'" + key + "': " + wrong, "expected is a text");
   return text.value_or(std::move(fallback));
 }
 

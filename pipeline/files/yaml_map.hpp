@@ -33,7 +33,7 @@ class YamlMap {
   /// Adds an error for each key that was not read.
   void refuse_others();
 
-  void fail(const Place& place, const std::string& what, std::string advice = {});
+  void fail(const Place& place, const std::string& what, std::string advice);
   const std::string& what() const { return what_; }
 
  private:
@@ -48,6 +48,9 @@ std::optional<double> read_number(const YamlNode& node, std::string_view unit, s
 std::optional<std::int64_t> read_integer(const YamlNode& node, std::string& wrong);
 std::optional<bool> read_boolean(const YamlNode& node, std::string& wrong);
 std::optional<std::string> read_text(const YamlNode& node, std::string& wrong);
+
+/// What an error expects in place of a value: "expected is a number in m".
+std::string expected_number(std::string_view unit);
 
 /// Checks `crisp: 1`, the version of the schema, with which all of crisp's files begin.
 void check_schema(YamlMap& map, int version);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/model/sensor_model.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 #include "pipeline/model/term_faults.hpp"
 #include "pipeline/model/traced_runs.hpp"
 
@@ -96,12 +99,14 @@ SensorModel::SensorModel(Calibration calibration, const TermRegistry& terms)
 
 std::size_t SensorModel::index(const std::string& name) const {
   const auto found = std::find(names().begin(), names().end(), name);
-  if (found == names().end()) throw Error("the sensor model has no parameter " + name);
+  if (found == names().end()) throw internal_error("the sensor model has no parameter " + name);
   return static_cast<std::size_t>(found - names().begin());
 }
 
 void SensorModel::set_values(const Eigen::VectorXd& values) {
-  if (values.size() != values_.size()) throw Error("the sensor model was given a wrong number of values");
+  if (values.size() != values_.size())
+    throw internal_error(
+        fmt::format("the sensor model has {} parameters and got {} values", values_.size(), values.size()));
   values_ = values;
   bare_ = bare_lasers(fixed_->chains, values_);
 }

@@ -23,8 +23,9 @@ void check(const TermInfo& info) {
   std::set<std::string> seen;
   for (const EffectParameter& parameter : info.parameters) {
     const auto fail = [&](const std::string& what) {
-      throw Error("the model term " + info.name + " declares its parameter '" + parameter.name +
-                  "' wrongly: " + what);
+      throw Error(
+          "the model term " + info.name + " declares its parameter '" + parameter.name + "' wrongly: " + what,
+          "correct the parameter in the term's info()");
     };
     if (!is_symbol(parameter.name)) fail("names are of letters, digits and _");
     if (!seen.insert(parameter.name).second) fail("it is declared twice");

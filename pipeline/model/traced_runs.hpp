@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 #include "pipeline/model/base_kinematics.hpp"
 #include "pipeline/model/chain.hpp"
 #include "pipeline/model/sensor_model.hpp"
@@ -21,7 +22,8 @@ inline constexpr std::size_t kTracedBlock =
 
 inline void check_epochs(const Measurements& beams, const PlateTrajectory& plate) {
   if (beams.size() > 0 && !plate.empty() && beams.epoch_ns != plate.epoch_ns()) {
-    throw Error("the measurements and the plate's trajectory count their time from different epochs");
+    throw internal_error(
+        "the measurements and the plate's trajectory count their time from different epochs");
   }
 }
 

@@ -15,6 +15,8 @@
 namespace crisp {
 namespace {
 
+const std::string kPlateNote = "plate";  // digest of the trajectory's table
+
 std::int64_t epoch_of(const PcdTable& table) {
   return table.header().note<std::int64_t>("epoch_ns").value_or(0);
 }
@@ -39,6 +41,7 @@ PcdTable to_pcd_table(const Measurements& beams, const PlateTrajectory& plate) {
   const auto angles = plate_angles(beams, plate);
   PcdTable table(beams.size());
   table.set_note("epoch_ns", std::to_string(beams.epoch_ns));
+  table.set_note(kPlateNote, to_pcd_table(plate).digest());
   table.add<float>("range", [&](std::size_t i) { return beams.range[i]; });
   table.add<float>("mirror_angle", [&](std::size_t i) { return beams.mirror_angle[i]; });
   table.add<double>("time", [&](std::size_t i) { return beams.time[i]; });
@@ -61,6 +64,13 @@ PcdTable to_pcd_table(const PlateTrajectory& plate) {
     });
   }
   return table;
+}
+
+bool belong_together(const PcdTable& measurements, const PcdTable& trajectory) {
+  const auto& notes = measurements.header().notes;
+  const auto digest = notes.find(kPlateNote);
+  return epoch_of(measurements) == epoch_of(trajectory) &&
+         (digest == notes.end() || digest->second == trajectory.digest());
 }
 
 std::filesystem::path plate_path(const std::filesystem::path& measurements) {
@@ -99,7 +109,8 @@ PlateTrajectory trajectory_of(const PcdTable& table) {
   auto angles = table.column<double>("angle");
   const double max_gap = table.header().note<double>("max_gap").value_or(0);
   if (!all_finite(times) || !all_finite(angles) || !(max_gap > 0)) {
-    throw Error("some encoder readings are no numbers, or their max_gap is missing");
+    throw Error("some encoder readings are no numbers, or the header lacks their max_gap",
+                "write the file again, or correct it: a line `# crisp max_gap 0.02` in the header, in s");
   }
   std::vector<double> new_zeros;
   if (table.has("zero")) {
@@ -127,7 +138,9 @@ PlateTrajectory trajectory_between(const PcdTable& measurements, double max_gap)
     knots.push_back(times[i]);
     unwrapped.push_back(angles[i] - 2 * std::numbers::pi * std::round(step / (2 * std::numbers::pi)));
   }
-  if (knots.size() < 2) throw Error("the measurements hold no plate angles at two or more times");
+  if (knots.size() < 2)
+    throw Error(fmt::format("the measurements hold plate angles at {} times", knots.size()),
+                "give measurements with plate angles at two times or more, or the file NAME.plate.pcd");
   return {epoch_of(measurements), std::move(knots), std::move(unwrapped), max_gap};
 }
 

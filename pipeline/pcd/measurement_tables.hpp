@@ -11,13 +11,17 @@
 namespace crisp {
 
 /// Measurements as a PCD table: fields range, mirror_angle, time, plate_angle, laser, beam, remission, and
-/// the note epoch_ns. All but plate_angle, φ at `time` (NaN where the readings do not cover it), come back
-/// exactly.
+/// the notes epoch_ns and plate (digest of the trajectory's table). All but plate_angle, φ at `time` (NaN
+/// where the readings do not cover it), come back exactly.
 PcdTable to_pcd_table(const Measurements& beams, const PlateTrajectory& plate);
 
 /// A trajectory as a PCD table: fields time and angle, one row a reading, and the notes epoch_ns and max_gap;
 /// if the encoder's count restarted, the field zero numbers the restarts. The conversion is lossless.
 PcdTable to_pcd_table(const PlateTrajectory& plate);
+
+/// Whether the trajectory's table is the one that was written together with the measurements. Files of
+/// earlier versions and of other programs do not tell apart two of one epoch.
+bool belong_together(const PcdTable& measurements, const PcdTable& trajectory);
 
 /// The file in which the trajectory stands that belongs to a file of measurements: x.pcd → x.plate.pcd.
 std::filesystem::path plate_path(const std::filesystem::path& measurements);

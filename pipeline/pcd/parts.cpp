@@ -10,7 +10,6 @@
 #include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/list_files.hpp"
-#include "pipeline/files/sha256.hpp"
 #include "pipeline/pcd/measurement_tables.hpp"
 
 namespace crisp {
@@ -20,11 +19,6 @@ namespace fs = std::filesystem;
 
 const std::string kNext = "next_part";
 const std::string kBefore = "part_before";  // digest of what it holds
-
-std::string table_digest(const PcdTable& table) {
-  constexpr std::size_t kDigits = 16;
-  return sha256_of(table.bytes()).substr(0, kDigits);
-}
 
 /// @throws Error  if the part's header names another predecessor; files of other programs are not checked
 void check_follows(const PcdTable& part, const std::string& before, const fs::path& file) {
@@ -157,7 +151,7 @@ fs::path PartsWriter::write(PcdTable table, bool more) {
     table.set_note(kPart, std::to_string(parts_));
     if (more) table.set_note(kNext, std::to_string(parts_ + 1));
     if (!last_.empty()) table.set_note(kBefore, last_);
-    last_ = table_digest(table);
+    last_ = table.digest();
   }
   write_next_to(file, table);
   return file;
@@ -192,7 +186,7 @@ void read_parts(const fs::path& file, const std::function<void(const PcdTable&, 
   for (bool more = true; more;) {
     const PcdTable table = read_pcd(now);
     check_follows(table, before, now);
-    before = table_digest(table);
+    before = table.digest();
     use(table, now);
     const auto next = table.header().note<std::size_t>(kNext);
     more = next.has_value();

@@ -53,7 +53,7 @@ class HeaderReader {
 
  private:
   [[noreturn]] void fail(const std::string& what, std::size_t column = 1) const {
-    throw Error(what, "this is no PCD file, or its header is wrong here",
+    throw Error(what, "correct the header here, or name a PCD file",
                 {.file = name_, .line = line_, .column = static_cast<int>(column)});
   }
 

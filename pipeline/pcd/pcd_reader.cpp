@@ -45,7 +45,7 @@ class BodyReader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(name_ + " " + what, "the file is damaged or was cut off");
+    throw Error(name_ + " " + what, "it is damaged or was cut off: use an intact copy");
   }
 
   /// Sizes the columns, unless there cannot be as many points in `most` bytes.

@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
+#include "pipeline/files/sha256.hpp"
 #include "pipeline/pcd/pcd_number.hpp"
 
 namespace crisp {
@@ -20,7 +22,10 @@ T converted(From value, std::string_view field) {
     const auto wide = static_cast<long double>(value);
     const bool fits = wide >= static_cast<long double>(std::numeric_limits<T>::min()) &&
                       wide <= static_cast<long double>(std::numeric_limits<T>::max());
-    if (!fits) throw Error(fmt::format("the field '{}' holds {}, which it cannot be", field, value));
+    if (!fits)
+      throw Error(fmt::format("the field '{}' holds {}", field, value),
+                  fmt::format("expected is a number from {} to {}", std::numeric_limits<T>::min(),
+                              std::numeric_limits<T>::max()));
   }
   return static_cast<T>(value);
 }
@@ -30,8 +35,13 @@ T converted(From value, std::string_view field) {
 PcdTable::PcdTable(PcdHeader header, std::string columns, std::size_t surplus)
     : header_(std::move(header)), columns_(std::move(columns)), surplus_(surplus) {
   if (columns_.size() != header_.points * header_.record_size()) {
-    throw Error("the columns of a PCD table do not fit its header");
+    throw internal_error("the columns of a PCD table do not fit its header");
   }
+}
+
+std::string PcdTable::digest() const {
+  constexpr std::size_t kDigits = 16;
+  return sha256_of(columns_).substr(0, kDigits);
 }
 
 template <PcdNumber T>

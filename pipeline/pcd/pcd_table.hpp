@@ -32,6 +32,9 @@ class PcdTable {
   std::string_view bytes() const { return columns_; }
   bool has(std::string_view field) const { return header_.find(field) != nullptr; }
 
+  /// 16 hexadecimal digits that differ where the columns do.
+  std::string digest() const;
+
   /// Sets a note of crisp in the header's comments; neither key nor value may hold blanks.
   void set_note(const std::string& key, std::string value) { header_.notes[key] = std::move(value); }
 

@@ -67,9 +67,15 @@ void write_rows(AtomicFile& out, const PcdTable& table, Append append, bool line
   }
 }
 
+Error beyond_limit(const AtomicFile& out) {
+  return Error(
+      "cannot write " + out.path().string() + ": a binary_compressed PCD file cannot hold more than 4 GB",
+      "split the file, or use format: binary");
+}
+
 void write_compressed(AtomicFile& out, const PcdTable& table) {
   const std::string compressed = compress_lzf(table.bytes());
-  if (compressed.size() > kMaxCompressed) throw Error("the compressed points are beyond 4 GB");
+  if (compressed.size() > kMaxCompressed) throw beyond_limit(out);
   for (const std::size_t size : {compressed.size(), table.bytes().size()}) {
     const auto bytes = std::bit_cast<std::array<char, 4>>(static_cast<std::uint32_t>(size));
     out.write({bytes.data(), bytes.size()});
@@ -83,9 +89,7 @@ void write_pcd(AtomicFile& out, const PcdTable& table, PcdFormat format) {
   PcdHeader header = table.header();
   header.format = format;
   if (header.format == PcdFormat::binary_compressed && table.bytes().size() > kMaxCompressed) {
-    throw Error(
-        "cannot write " + out.path().string() + ": a binary_compressed PCD file cannot hold more than 4 GB",
-        "split the file, or use format: binary");
+    throw beyond_limit(out);
   }
   out.write(to_text(header));
   if (header.format == PcdFormat::ascii) write_rows(out, table, append_ascii, true);

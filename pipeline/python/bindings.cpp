@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -41,7 +42,8 @@ void load_plugins(const std::vector<fs::path>& files, Registrar& registrar) {
   for (const auto& file : files) loader.load(file);
   for (const auto& plugin : loader.tried()) {
     if (!plugin.refusal.empty())
-      throw Error("the plugin " + plugin.file.string() + " was refused: " + plugin.refusal);
+      throw Error("the plugin " + plugin.file.string() + " was refused: " + plugin.refusal,
+                  "correct the plugin, or leave it out");
   }
 }
 
@@ -108,7 +110,10 @@ py::dict run(const Request& request) {
 
 py::tuple rqe_of_array(const py::array_t<double, py::array::c_style | py::array::forcecast>& points,
                        double sigma) {
-  if (points.ndim() != 2 || points.shape(1) != 3) throw Error("the points are no array of n rows x, y, z");
+  if (points.ndim() != 2 || points.shape(1) != 3) {
+    throw Error(fmt::format("the points have {} dimensions and {} values", points.ndim(), points.size()),
+                "give an array of n rows x, y, z");
+  }
   const auto row = points.unchecked<2>();
   const auto n = static_cast<std::size_t>(points.shape(0));
   Vectors vectors;

@@ -20,7 +20,8 @@ Rqe rqe(const PointsView& points, std::span<const double> weights, const RqeSett
         Search& search) {
   check(points);
   check_weights(weights, points.size());
-  if (points.size() == 0) throw Error("the entropy of a cloud without points is not defined");
+  if (points.size() == 0)
+    throw Error("the entropy of a cloud without points is not defined", "give at least one point");
   const TruncatedGaussian kernel(settings.sigma, settings.cutoff);
   const auto scaled = with_mean_one(weights, points.size());
   GaussianSums sums = search.sums(points, scaled, kernel, {settings.gradient, settings.error_bound});

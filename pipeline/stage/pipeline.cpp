@@ -64,7 +64,8 @@ class Builder {
     for (const auto& [name, value] : spec.with) {
       const Option* option = node.type->find_option(name);
       if (!option) {
-        fail(spec.place, fmt::format("{}: there is no option '{}'", node.tag, name), {});
+        fail(spec.place, fmt::format("{}: there is no option '{}'", node.tag, name),
+             no_such_option(*node.type, name));
       } else if (const auto wrong = complaint(*option, value)) {
         fail(spec.place, fmt::format("{}: option '{}' {}", node.tag, name, *wrong),
              "expected is " + expectation(*option));

@@ -127,11 +127,12 @@ class PlanReader {
       errors_.emplace_back("pipeline: " + describe(list) + " is not a list of stages",
                            "begin each with '- stage:'", list.place);
     } else if (list.items.empty()) {
-      errors_.emplace_back("pipeline: there is no stage in it", "", list.place);
+      errors_.emplace_back("pipeline: there is no stage in it", "add `- stage: NAME`", list.place);
     }
     constexpr std::size_t kMax = 1000;
     if (list.items.size() > kMax) {
-      errors_.emplace_back(fmt::format("pipeline: there are more than {} stages", kMax), "", list.place);
+      errors_.emplace_back(fmt::format("pipeline: there are more than {} stages", kMax),
+                           "split it into several pipelines", list.place);
       return;
     }
     for (const auto& item : list.items) read_stage(item);
@@ -185,13 +186,13 @@ class PlanReader {
     if (node.kind == YamlNode::Kind::scalar)
       add(node.text, node.place);
     else if (node.kind != YamlNode::Kind::sequence)
-      map.fail(node.place, describe(node) + " is not a list of tags");
+      map.fail(node.place, describe(node) + " is not a list of tags", "write inputs: [TAG, TAG]");
     for (const auto& item : node.items) {
       std::string wrong;
       if (auto tag = read_text(item, wrong))
         add(*tag, item.place);
       else
-        map.fail(item.place, "inputs: " + wrong);
+        map.fail(item.place, "inputs: " + wrong, "expected is the tag of a stage");
     }
     return inputs;
   }

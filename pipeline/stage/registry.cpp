@@ -18,7 +18,8 @@ void check_options(const StageType& type) {
   const auto object = type.make();
   for (const auto& option : type.options) {
     const auto fail = [&](const std::string& what) {
-      throw Error("stage " + type.name + " declares its option '" + option.name + "' wrongly: " + what);
+      throw Error("stage " + type.name + " declares its option '" + option.name + "' wrongly: " + what,
+                  "correct the option in the stage's describe()");
     };
     if (!is_plain_name(option.name)) fail("names are of a-z, 0-9 and _");
     if (!seen.insert(option.name).second) fail("it is declared twice");
@@ -33,11 +34,13 @@ void check_options(const StageType& type) {
 void check_flow(const StageType& type) {
   const auto drives = [](const StageInput& input) { return !input.held; };
   if (!type.inputs.empty() && std::none_of(type.inputs.begin(), type.inputs.end(), drives)) {
-    throw Error("stage " + type.name + " holds inputs but takes none that makes it run");
+    throw Error("stage " + type.name + " holds inputs but takes none that makes it run",
+                "let describe() declare one of its inputs by takes()");
   }
   for (auto i = type.inputs.begin(); i != type.inputs.end(); ++i) {
     if (std::any_of(type.inputs.begin(), i, [&](const auto& other) { return other.kind == i->kind; })) {
-      throw Error("stage " + type.name + " takes " + std::string(i->kind.name()) + " twice");
+      throw Error("stage " + type.name + " takes " + std::string(i->kind.name()) + " twice",
+                  "let describe() declare each input once");
     }
   }
 }
@@ -65,7 +68,8 @@ void StageRegistry::add(StageType type) {
   if (!is_name_in_family(type.name)) {
     throw Error("'" + type.name + "' is not a stage's name", "write family.name, of a-z, 0-9 and _");
   }
-  if (type.summary.empty()) throw Error("stage " + type.name + " has no summary");
+  if (type.summary.empty())
+    throw Error("stage " + type.name + " has no summary", "let describe() give one by summary()");
   check_flow(type);
   check_options(type);
   if (const auto* other = find(type.name)) {
@@ -102,7 +106,9 @@ std::vector<std::string> StageRegistry::givers(const Kind& kind) const {
 
 void* Registrar::other(std::type_index type) const {
   const auto found = others_.find(type);
-  if (found == others_.end()) throw Error("this program has no " + readable(type));
+  if (found == others_.end())
+    throw Error("this program has no " + readable(type),
+                "leave the plugin that needs it out, or use a newer crisp");
   return found->second.registry;
 }
 

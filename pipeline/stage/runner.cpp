@@ -292,9 +292,12 @@ class Runner {
     const auto& outputs = worker.node->type->outputs;
     const auto output = std::find(outputs.begin(), outputs.end(), item.kind);
     if (output == outputs.end()) {
-      throw Error("it gives " + std::string(item.kind.name()) + ", which it does not declare");
+      throw Error("it gives " + std::string(item.kind.name()) + ", which it does not declare",
+                  "let the stage's describe() declare it by gives()");
     }
-    if (!item.value) throw Error("it gives a " + std::string(item.kind.name()) + " that is null");
+    if (!item.value)
+      throw Error("it gives a " + std::string(item.kind.name()) + " that is null",
+                  "let the stage give an item, or nothing");
     ++worker.given[static_cast<std::size_t>(output - outputs.begin())];
     if (hooks_.given) hooks_.given(worker.node->tag, item);
     for (const auto& edge : worker.edges) {
@@ -323,7 +326,7 @@ class Runner {
       const Place& place = error.place().file.empty() ? worker.node->place : error.place();
       throw Reported(worker.node->tag + ": " + error.message(), error.advice(), place);
     } catch (const std::exception& thrown) {
-      const Error error = resource_exhaustion(thrown).value_or(Error(thrown.what()));
+      const Error error = error_of(thrown);
       throw Reported(worker.node->tag + ": " + error.message(), error.advice(), worker.node->place);
     } catch (...) {
       throw Reported(worker.node->tag + ": it threw something that is no std::exception",

@@ -28,7 +28,9 @@ class Inputs {
   template <class T>
   const T& get() const {
     const T* item = find<T>();
-    if (!item) throw Error("there is no " + std::string(KindName<T>::value) + " here");
+    if (!item)
+      throw Error("there is no " + std::string(KindName<T>::value) + " here",
+                  "let describe() take it, or test by find()");
     return *item;
   }
   /// As find(), for stages that keep the item beyond the call.

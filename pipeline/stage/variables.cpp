@@ -66,7 +66,9 @@ void Variables::substitute_scalar(YamlNode& node, std::vector<Error>& errors) {
 void Variables::count(const YamlNode& value, const Place& place) {
   constexpr std::size_t kMax = 1 << 20;
   put_in_ += 1 + value.text.size();
-  if (put_in_ > kMax) throw Error("the variables' expansion exceeds one mebibyte", "", place);
+  if (put_in_ > kMax)
+    throw Error("the variables' expansion exceeds one mebibyte",
+                "shorten vars, or use fewer of them in each other", place);
   for (const auto& item : value.items) count(item, place);
   for (const auto& entry : value.entries) count(entry.value, place);
 }

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 
 namespace crisp {
 namespace {
@@ -92,7 +92,7 @@ class BoxProblem final : public Ipopt::TNLP {
     x_.resize(0);
     best_ = {.x = question.start, .value = std::numeric_limits<double>::infinity()};
     evaluate(question.start);
-    if (!std::isfinite(best_.value)) throw Error("the cost function is not a number at the start");
+    if (!std::isfinite(best_.value)) throw internal_error("the cost function is not a number at the start");
     // As Ipopt's "gradient-based" does, which it would keep from the first question on.
     constexpr double kSteepest = 100;
     scale_ = std::min(1.0, kSteepest / slope().lpNorm<Eigen::Infinity>());
@@ -331,7 +331,7 @@ Minimum minimize(const Objective& objective, const Eigen::VectorXd& start, const
                  const MinimizerSettings& settings) {
   const auto n = start.size();
   if (box.lower.size() != n || box.upper.size() != n || box.basis.rows() != n || box.basis.cols() != n) {
-    throw Error("the start and the box of a minimization have different sizes");
+    throw internal_error("the start and the box of a minimization have different sizes");
   }
   if (n == 0) return {.x = start, .value = objective(start, nullptr)};
   std::unique_lock lock(solvers().mutex);

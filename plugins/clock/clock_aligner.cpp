@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "pipeline/data/recordings.hpp"
 
@@ -14,7 +15,20 @@ namespace {
 
 constexpr double kWindow = 60;          // [s]
 constexpr double kLongestWindow = 240;  // [s] bounds the memory
+constexpr double kLookAhead = 1;        // [s] after a gap in the receipts
 constexpr double kLate = 30;            // [s] a scan may come in so long after it was swept
+
+/// Adds a step, or what a larger step at the same time left of itself to that one.
+void add_step(const StampStep& step, std::vector<StampStep>& steps) {
+  constexpr double kNear = 1;  // [s]
+  const auto same = std::ranges::find_if(steps, [&](const StampStep& other) {
+    return other.by > kPause && std::abs(other.at - step.at) < kNear;
+  });
+  if (same != steps.end())
+    same->by += step.by;
+  else
+    steps.push_back(step);
+}
 
 /// One warning for a removed deviation of the hub's clock, and not one for each device.
 void warn_of_hub_clock(AlignmentReport& report) {
@@ -40,23 +54,55 @@ ClockAligner::ClockAligner(const Rig& rig, const AlignmentSettings& settings, Al
       tracks_(rig, settings),
       length_(settings.window.value_or(kWindow)) {}
 
+void ClockAligner::add(std::shared_ptr<const Scan> scan) {
+  if (tracks_.track_of(*scan) != nullptr) receive(std::move(scan));
+}
+
+void ClockAligner::add(const PlateReading& reading) { receive(reading); }
+
+void ClockAligner::receive(Received item) {
+  if (stepped_ns_ != 0) set_back(item, stepped_ns_);
+  const std::int64_t receipt_ns = receipt_of(item);
+  const bool is_gap = settings_.source == TimeSource::clock && tracks_.pause_before(receipt_ns) > kPause;
+  if (held_.empty() && !is_gap) return pass(item);
+  forward_step_.after(device_of(item), stamp_of(item));
+  held_.push_back(std::move(item));
+  const double held = 1e-9 * static_cast<double>(receipt_ns - receipt_of(held_.front()));
+  if (std::abs(held) > kLookAhead) judge_gap();
+}
+
+/// Takes out a step of the hub's clock; without one, what is held begins another recording.
+void ClockAligner::judge_gap() {
+  const std::int64_t step_ns = forward_step_.size_ns().value_or(0);
+  forward_step_.forget_after();
+  if (step_ns > 0) {
+    stepped_ns_ += step_ns;
+    const double by = 1e-9 * static_cast<double>(step_ns);
+    report_.hub_steps.push_back({.at = tracks_.now(), .by = by});
+    report_.hub_deviation = std::max(report_.hub_deviation, by);
+  }
+  for (Received& item : std::exchange(held_, {})) {
+    if (step_ns > 0) set_back(item, step_ns);
+    pass(item);
+  }
+}
+
+void ClockAligner::pass(const Received& item) {
+  const double hub = arrive(receipt_of(item));
+  forward_step_.before(device_of(item), stamp_of(item));
+  if (const auto* reading = std::get_if<PlateReading>(&item)) {
+    tracks_.plate().add(*reading, hub);
+  } else {
+    const auto& scan = std::get<std::shared_ptr<const Scan>>(item);
+    tracks_.lasers()[scan->laser].add(scan, hub);
+  }
+}
+
 double ClockAligner::arrive(std::int64_t receipt_ns) {
   if (tracks_.pause_before(receipt_ns) > kPause) end_recording();
   const double hub = tracks_.arrive(receipt_ns);
   advance_windows();
   return hub;
-}
-
-void ClockAligner::add(std::shared_ptr<const Scan> scan) {
-  if (tracks_.track_of(*scan) == nullptr) return;
-  const double hub = arrive(scan->receipt_ns);
-  LaserTiming& laser = tracks_.lasers()[scan->laser];
-  laser.add(std::move(scan), hub);
-}
-
-void ClockAligner::add(const PlateReading& reading) {
-  const double hub = arrive(reading.receipt_ns);
-  tracks_.plate().add(reading, hub);
 }
 
 void ClockAligner::advance_windows() {
@@ -86,7 +132,7 @@ void ClockAligner::take_out_hub_deviation() {
   if (!deviation) return;
   for (auto& laser : tracks_.lasers()) laser.clock().take_out(*deviation);
   tracks_.plate().clock().take_out(*deviation);
-  for (const auto& step : deviation->steps()) report_.hub_steps.push_back({.at = step.at, .by = step.by});
+  for (const auto& step : deviation->steps()) add_step({.at = step.at, .by = step.by}, report_.hub_steps);
   report_.hub_deviation = std::max(report_.hub_deviation, deviation->largest());
 }
 
@@ -161,6 +207,7 @@ void ClockAligner::end_recording() {
 }
 
 AlignmentReport ClockAligner::finish() {
+  judge_gap();
   if (report_.devices.empty()) tracks_.refuse_if_missing();
   end_recording();
   warn_of_hub_clock(report_);

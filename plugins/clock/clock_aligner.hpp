@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pipeline/clocks/forward_step.hpp"
 #include "plugins/clock/aligner.hpp"
+#include "plugins/clock/received.hpp"
 
 namespace crisp {
 
@@ -15,7 +21,8 @@ namespace crisp {
 /// than the drift over the window.
 ///
 /// After a pause of all devices (kPause) another recording begins, which has nothing in common with the one
-/// before it but the epoch.
+/// before it but the epoch. Where the devices' clocks ran on, the hub's clock was set forward: that is
+/// reported as its step, taken out of all receipts after it, and the recording goes on.
 class ClockAligner final : public Aligner {
  public:
   ClockAligner(const Rig& rig, const AlignmentSettings& settings, AlignmentSink sink);
@@ -25,6 +32,9 @@ class ClockAligner final : public Aligner {
   AlignmentReport finish() override;
 
  private:
+  void receive(Received item);
+  void judge_gap();
+  void pass(const Received& item);
   double arrive(std::int64_t receipt_ns);
   void end_recording();
   void advance_windows();
@@ -39,8 +49,11 @@ class ClockAligner final : public Aligner {
   AlignmentSink sink_;
   HubTimings tracks_;
   AlignmentReport report_;  ///< of recordings that have ended, and the hub's clock
-  double begin_ = 0;        ///< [s since the epoch] of the window that is being filled
-  double length_;           ///< [s] of it
+  ForwardStep forward_step_;
+  std::int64_t stepped_ns_ = 0;  ///< by how much the hub's clock was set forward, in all
+  std::vector<Received> held_;   ///< after a gap in the receipts, until its cause is known
+  double begin_ = 0;             ///< [s since the epoch] of the window that is being filled
+  double length_;                ///< [s] of it
 };
 
 }  // namespace crisp

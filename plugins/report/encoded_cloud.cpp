@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 #include "plugins/report/base64.hpp"
 
 namespace crisp {
@@ -112,7 +112,8 @@ std::vector<unsigned char> deflated(const std::vector<unsigned char>& bytes) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::vector<unsigned char> packed(size);
   const int status = compress2(packed.data(), &size, bytes.data(), static_cast<uLong>(bytes.size()), kLevel);
-  if (status != Z_OK) throw Error("zlib cannot compress the report's cloud: " + std::to_string(status));
+  if (status != Z_OK)
+    throw internal_error("zlib cannot compress the report's cloud: " + std::to_string(status));
   packed.resize(size);
   return packed;
 }

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
+#include "pipeline/data/internal_error.hpp"
 
 namespace crisp {
 
@@ -20,7 +20,8 @@ std::span<const ParameterKind> parameter_kinds() {
 const ParameterKind& kind_of(const std::string& parameter) {
   const std::string name = parameter.substr(parameter.rfind('.') + 1);
   const auto found = std::ranges::find(parameter_kinds(), name, &ParameterKind::name);
-  if (found == parameter_kinds().end()) throw Error("no calibration estimates the parameter " + parameter);
+  if (found == parameter_kinds().end())
+    throw internal_error("no calibration estimates the parameter " + parameter);
   return *found;
 }
 

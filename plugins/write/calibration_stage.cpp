@@ -16,7 +16,7 @@ void WriteCalibrationStage::describe(StageDescription<WriteCalibrationStage>& d)
 void WriteCalibrationStage::process(const Inputs& in, Outputs&, Context&) { last_ = in.share<Calibration>(); }
 
 void WriteCalibrationStage::finish(Outputs&, Context& context) {
-  if (!last_) throw Error("there was no calibration to write");
+  if (!last_) throw Error("there was no calibration to write", "see what the stages above report");
   Calibration calibration = *last_;
   calibration.caveats = context.caveats_above();
   calibration.provenance["crisp"] = CRISP_VERSION;

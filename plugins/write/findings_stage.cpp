@@ -15,7 +15,7 @@ void WriteFindingsStage::describe(StageDescription<WriteFindingsStage>& d) {
 void WriteFindingsStage::process(const Inputs& in, Outputs&, Context&) { last_ = in.share<Findings>(); }
 
 void WriteFindingsStage::finish(Outputs&, Context& context) {
-  if (!last_) throw Error("there were no findings to write");
+  if (!last_) throw Error("there were no findings to write", "see what the stages above report");
   write_file(file_, findings_json(*last_));
   context.wrote(file_);
 }

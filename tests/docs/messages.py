@@ -10,6 +10,8 @@ from cpp_text import VALUE
 FOLDERS = ("grabbers", "pipeline", "plugins")
 MARKS = {"distrust", "mark_untrusted"}  # Context's: the run ends with exit status 3
 DECLARES_MARKS = "pipeline/stage/context.hpp"
+INTERNAL = ": an error of this program"  # what internal_error() appends, with the advice
+REPORT = "please report it with the command and its input"
 LISTS = {"caveats", "other_minima"}
 
 # Functions here return caveats, which other files mark: each sentence in them is one.
@@ -55,6 +57,8 @@ def errors(root):
         for given in cpp_text.calls(tokens, {"Error"}):
             advice = " / ".join(cpp_text.texts_of(given[1])) if len(given) > 1 else ""
             found += [(name, text, advice) for text in cpp_text.texts_of(given[0]) if is_message(text)] if given else []
+        for given in cpp_text.calls(tokens, {"internal_error"}):
+            found += [(name, text + INTERNAL, REPORT) for text in cpp_text.texts_of(given[0]) if is_message(text)]
     return found
 
 

@@ -33,6 +33,13 @@ class Messages(unittest.TestCase):
         self.assertTrue(written == messages_page.page(ROOT),
                         "run: python3 tests/docs/messages_page.py . > docs/reference/messages.md")
 
+    def test_every_error_of_the_sources_has_advice(self):
+        found = messages.errors(ROOT)
+        self.assertGreater(len(found), 300)
+        for name, message, advice in found:
+            with self.subTest(message):
+                self.assertTrue(advice, f"{name}: an error tells what to do, as the second argument of Error: {message}")
+
     def test_every_caveat_of_the_sources_has_an_entry(self):
         texts = [text for entry, _ in entries() for text in entry]
         found, relays = messages.caveats(ROOT)

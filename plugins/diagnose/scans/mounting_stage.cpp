@@ -164,7 +164,7 @@ void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const
 }
 
 void DiagnoseMountingStage::finish(Outputs& out, Context& context) {
-  if (series_.scans().empty()) throw Error("no scans with actuator readings arrived");
+  if (series_.scans().empty()) throw no_actuated_scans();
   diagnose(findings_, context);
   if (!context.interrupted()) out.give(std::move(findings_));
 }

@@ -245,7 +245,7 @@ double DiagnosePassesStage::diagnose(Findings& findings, Context& context) const
 }
 
 void DiagnosePassesStage::finish(Outputs& out, Context& context) {
-  if (!plate_ || series_.scans().empty()) throw Error("no scans with actuator readings arrived");
+  if (!plate_ || series_.scans().empty()) throw no_actuated_scans();
   Findings own;
   const double shift = diagnose(own, context);
   findings_.append(own);

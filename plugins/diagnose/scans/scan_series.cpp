@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/scans/scan_series.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -37,8 +39,15 @@ void ScanSeries::add(const PlateReading& reading) {
   counts_.push_back(last + on);
 }
 
+Error no_actuated_scans() {
+  return Error("no scans with actuator readings arrived",
+               "check by crisp info that the recording holds scans and actuator readings");
+}
+
 PlateTrajectory ScanSeries::actuator(const RigPlate& plate) const {
-  if (times_.size() < 2) throw Error("fewer than two actuator readings at different times arrived");
+  if (times_.size() < 2)
+    throw Error(fmt::format("{} actuator readings at different times arrived", times_.size()),
+                "check that the actuator was recorded together with the laser");
   std::vector<double> angles;
   angles.reserve(counts_.size());
   const double step = plate.angle_per_count();

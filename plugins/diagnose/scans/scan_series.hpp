@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/data/clock_map.hpp"
+#include "pipeline/data/error.hpp"
 #include "pipeline/data/plate_trajectory.hpp"
 #include "pipeline/data/rig.hpp"
 #include "pipeline/data/scan.hpp"
@@ -52,5 +53,8 @@ class ScanSeries {
   std::vector<double> times_;         ///< [s] of the readings
   std::vector<std::int64_t> counts_;  ///< [steps]
 };
+
+/// There is nothing to diagnose.
+Error no_actuated_scans();
 
 }  // namespace crisp

@@ -124,8 +124,8 @@ std::string as_png(const Picture& picture) {
       return bytes;
     }
   }
-  throw Error(std::string("the picture cannot be encoded as PNG: ") +
-              static_cast<const char*>(image.message));
+  throw Error(std::string("the picture cannot be encoded as PNG: ") + static_cast<const char*>(image.message),
+              "reduce width and height");
 }
 
 }  // namespace crisp

@@ -135,6 +135,17 @@ TEST_F(GrabMeasurements, WhatDoesNotBelongTogetherIsRefused) {
   EXPECT_THAT(complaint(), HasSubstr("are of different runs"));
 }
 
+TEST_F(GrabMeasurements, AnInterruptedRunIsNotedWhereTheEpochsAreTheSame) {
+  const auto beams = sample_measurements(10);
+  written({{beams, plate(2)}});
+  const fs::path old = folder_ / "old.plate.pcd";
+  fs::copy_file(folder_ / "run.plate.pcd", old);
+  written({{beams, plate(1)}});
+  EXPECT_EQ(complaint(), "");
+  fs::rename(old, folder_ / "run.plate.pcd");  // as a kill between the two files leaves them
+  EXPECT_THAT(complaint(), HasSubstr("run.pcd and run.plate.pcd are of different runs"));
+}
+
 TEST_F(GrabMeasurements, ALaserThatTheRigDoesNotHaveIsRefused) {
   auto beams = sample_measurements(10);
   beams.laser[3] = 7;

@@ -124,7 +124,7 @@ TEST(SceneFile, ReportsSurfacesThatCannotGrowOrWalk) {
   EXPECT_THAT(complaint(kHead + "  - {sphere: {middle: [0, 0, 0], radius: 0}}\n"),
               HasSubstr("has no volume"));
   EXPECT_THAT(complaint(kHead + "  - {sphere: {middle: [0, 0, 0], radius: 1}, depth: 0}\n"),
-              HasSubstr("'depth' is not above 0"));
+              HasSubstr("'depth' is not above 0; leave it out"));
   EXPECT_THAT(complaint(kHead + "  - {sphere: {middle: [0, 0, 0], radius: 1}, walk: {along: [[0, 0, 0]]}}\n"),
               HasSubstr("the walk has no length"));
   EXPECT_THAT(

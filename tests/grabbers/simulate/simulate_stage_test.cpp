@@ -208,7 +208,7 @@ TEST_F(SimulateStageTest, HasTheLossesOfItsFaults) {
 }
 
 TEST_F(SimulateStageTest, RefusesBeforeItRunsWhatMakesNoSense) {
-  EXPECT_THAT(complaint("min_rate: 3Hz"), HasSubstr("slowest rate must not exceed"));
+  EXPECT_THAT(complaint("min_rate: 3Hz"), HasSubstr("min_rate of 3 Hz is above its max_rate of 2 Hz; give"));
   EXPECT_THAT(complaint("last_angle: -90deg"), HasSubstr("field of view"));
   EXPECT_THAT(complaint("effects: {mirror.coin: {kappa: 3}}"), HasSubstr("did you mean 'mirror.cone'?"));
   EXPECT_THAT(complaint("effects: {mirror.coin: {kappa: 3}}"), HasSubstr("pipeline.yaml:4:"));
@@ -216,7 +216,7 @@ TEST_F(SimulateStageTest, RefusesBeforeItRunsWhatMakesNoSense) {
   EXPECT_THAT(complaint("effects: {mirror.cone: 3}"), HasSubstr("is no map"));
   EXPECT_THAT(complaint("effects: {mirror.cone: {kappa: [3]}}"), HasSubstr("mirror.cone.kappa"));
   EXPECT_THAT(complaint("effects: {scene.moving: {}}"), HasSubstr("scene_file"));
-  EXPECT_THAT(complaint("stamp_lags: [1ms]"), HasSubstr("stamp lag"));
+  EXPECT_THAT(complaint("stamp_lags: [1ms]"), HasSubstr("1 stamp_lags for 3 lasers; give one a laser"));
   EXPECT_THAT(complaint("scene: beach"), HasSubstr("office"));
   EXPECT_THAT(complaint("scene_file: nowhere.yaml"), HasSubstr("nowhere.yaml"));
 }

@@ -129,7 +129,8 @@ TEST_F(ProgramTest, DescribesACalibration) {
   EXPECT_THAT(unknown.error, HasSubstr("is of no known kind of file"));
   EXPECT_EQ(crisp({"info", path("nowhere")}).status, 1);
   write_file(folder_ / "hub.pcap", "");
-  EXPECT_EQ(crisp({"info", path("hub.pcap")}).error, "error: " + path("hub.pcap") + " is empty\n");
+  EXPECT_EQ(crisp({"info", path("hub.pcap")}).error,
+            "error: " + path("hub.pcap") + " is empty; copy or record it again\n");
   EXPECT_EQ(crisp({"info", path("sum.yaml")}).error,
             "error: " + path("sum.yaml") + " is a pipeline; crisp validate checks it, crisp run runs it\n");
   EXPECT_THAT(crisp({"info", source_dir() + "/configs/rig.yaml"}).error, HasSubstr("rig.yaml is a rig; "));
@@ -169,7 +170,8 @@ TEST_F(ProgramTest, DescribesTheOtherFilesWhereOneIsUnreadable) {
       folder_ / "c.yaml",
       "crisp: 1\nlasers: {a: {lambda: {value: 0, unit: rad}, tau: {value: 0.25, unit: m}, alpha: {value: 0, unit: rad}, eta: {value: 0, unit: s}}}\n");
   write_file(folder_ / "hub.pcap", "");
-  const std::string wrong = path("hub.pcap") + ": not read\nerror: " + path("hub.pcap") + " is empty\n";
+  const std::string wrong =
+      path("hub.pcap") + ": not read\nerror: " + path("hub.pcap") + " is empty; copy or record it again\n";
   for (const auto& words : {std::vector{folder_.string()}, {path("hub.pcap"), path("c.yaml")}}) {
     auto request = words;
     request.insert(request.begin(), "info");
@@ -180,7 +182,8 @@ TEST_F(ProgramTest, DescribesTheOtherFilesWhereOneIsUnreadable) {
     request.emplace_back("--json");
     const auto data = nlohmann::json::parse(crisp(request).out);
     EXPECT_EQ(data.size(), 2U);
-    EXPECT_EQ(data[path("hub.pcap")]["error"], "error: " + path("hub.pcap") + " is empty");
+    EXPECT_EQ(data[path("hub.pcap")]["error"],
+              "error: " + path("hub.pcap") + " is empty; copy or record it again");
     EXPECT_EQ(data[path("c.yaml")]["parameters"]["a.tau"]["value"], 0.25);
   }
   EXPECT_EQ(crisp({"info", path("c.yaml"), path("c.yaml")}).status, 0);

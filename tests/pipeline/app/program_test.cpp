@@ -67,7 +67,8 @@ TEST_F(ProgramTest, CalibratesByAShortForm) {
   EXPECT_EQ(brief.status, full.status) << brief.error;
   EXPECT_EQ(content("brief/cloud.pcd"), content("full/cloud.pcd"));
   EXPECT_GT(content("brief/cloud.pcd").size(), 100000U);
-  EXPECT_EQ(crisp({"diagnose", path("no.pcap")}).error, "error: there is no input " + path("no.pcap") + "\n");
+  EXPECT_EQ(crisp({"diagnose", path("no.pcap")}).error,
+            "error: there is no input " + path("no.pcap") + "; check the name after -i\n");
 }
 
 TEST_F(ProgramTest, LetsSettingsGoBeforeTheFileAndFlagsThatAreNotGivenNot) {

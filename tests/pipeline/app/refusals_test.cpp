@@ -254,14 +254,15 @@ TEST_F(ProgramTest, ReportsInASentenceThatAnInputCannotBeRead) {
   const auto loop = crisp({"run", path("sum.yaml"), "-i", path("a"), "-o", path("out")});
   EXPECT_EQ(loop.status, 2);
   EXPECT_EQ(loop.error,
-            "error: the input " + path("a") + " cannot be read: Too many levels of symbolic links\n");
+            "error: the input " + path("a") +
+                " cannot be read: Too many levels of symbolic links; check its path and its permissions\n");
   fs::create_directory(folder_ / "folder");
   write_file(folder_ / "list.yaml",
              "crisp: 1\npipeline:\n  - {stage: grabber.telegrams, with: {file: folder}}\n");
   const auto folder = crisp({"run", path("list.yaml"), "-o", path("out")});
   EXPECT_EQ(folder.status, 1);
-  EXPECT_THAT(folder.error,
-              HasSubstr("grabber.telegrams: cannot read " + path("folder") + ": Is a directory"));
+  EXPECT_THAT(folder.error, HasSubstr("grabber.telegrams: cannot read " + path("folder") +
+                                      ": Is a directory; name a file in it"));
 }
 
 TEST_F(ProgramTest, RefusesALineBreakInASetting) {

@@ -49,7 +49,9 @@ TEST(JobLauncher, ReportsHowAJobEnded) {
   EXPECT_EQ(end_of(launcher, "abort").signal, SIGABRT);
   const auto threw = end_of(launcher, "throw");
   EXPECT_EQ(threw.exit_status, 1);
-  EXPECT_EQ(threw.error, "error: a requested exception\n");
+  EXPECT_EQ(
+      threw.error,
+      "error: a requested exception: an error of this program; please report it with the command and its input\n");
 }
 
 TEST(JobLauncher, KeepsTheEndOfWhatAJobPrints) {

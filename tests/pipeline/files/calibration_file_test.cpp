@@ -154,11 +154,11 @@ TEST(CalibrationFile, ReportsEveryMistakeWithItsPlace) {
                             "qualiti: {}\n"),
       ElementsAre(
           "c.yaml:4:30: error: laser 'a', lambda: 'deg' is not its unit; convert the value to rad",
-          "c.yaml:5:18: error: laser 'a', tau: 'value': '20cm' has a unit, but a plain number is expected",
-          "c.yaml:6:12: error: laser 'a', alpha: 'value' is missing",
+          "c.yaml:5:18: error: laser 'a', tau: 'value': '20cm' has a unit, but a plain number is expected; give a number without a unit",
+          "c.yaml:6:12: error: laser 'a', alpha: 'value' is missing; add value: VALUE",
           "c.yaml:6:13: error: laser 'a', alpha: there is no key 'valu'; did you mean 'value'?",
-          "c.yaml:7:51: error: laser 'a', eta: 'free': 'yes' is neither true nor false",
-          "c.yaml:7:41: error: laser 'a', eta: a standard error is not negative",
+          "c.yaml:7:51: error: laser 'a', eta: 'free': 'yes' is neither true nor false; expected is true or false",
+          "c.yaml:7:41: error: laser 'a', eta: the standard error is -1; give 0 or more",
           "c.yaml:8:38: error: covariance: there are 2 values for 1 parameters; write 1 x 1, row by row",
           "c.yaml:9:1: error: calibration: there is no key 'qualiti'; did you mean 'quality'?"));
 }

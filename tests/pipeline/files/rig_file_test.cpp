@@ -124,7 +124,7 @@ lasers:
 plate: {counts_per_revolution: 0}
 )"),
       ElementsAre(
-          HasSubstr("rig.yaml:3:3: error: lasers: 'laser 1' is not a name of letters"),
+          HasSubstr("rig.yaml:3:3: error: lasers: 'laser 1' is no name of a device; use letters"),
           HasSubstr("rig.yaml:4:14: error: laser 'laser 1': '192.168.0.300' is not an IP address"),
           HasSubstr("rig.yaml:5:11: error: laser 'laser 1': 'port': 99999 is not from 0 to 65535"),
           HasSubstr(
@@ -145,7 +145,7 @@ std::vector<std::string> errors_of_plate(const std::string& plate, const std::st
 TEST(RigFile, NamesAreOfWhatFilesCanBeNamedAfter) {
   for (const char* name : {"../../escaped", "/tmp/x", "a b", "", "a\\nb"}) {
     EXPECT_THAT(errors_of_plate("{name: \"" + std::string(name) + "\"}"),
-                ElementsAre(HasSubstr("is not a name of letters, digits, _ and -")))
+                ElementsAre(HasSubstr("use letters, digits, _ and - only")))
         << name;
   }
   EXPECT_THAT(errors_of_plate("{name: servo-1}"), testing::IsEmpty());

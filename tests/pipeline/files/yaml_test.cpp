@@ -116,11 +116,13 @@ TEST(Yaml, ReportsWhyAFileCannotBeRead) {
     }
     return "";
   };
-  EXPECT_EQ(message("/nowhere/x.yaml"), "cannot read /nowhere/x.yaml: No such file or directory");
+  EXPECT_EQ(message("/nowhere/x.yaml"),
+            "cannot read /nowhere/x.yaml: No such file or directory; check its name and its permissions");
   const test::TemporaryFolder folder;
   std::ofstream(folder / "empty.yaml") << "# only a comment\n";
-  EXPECT_EQ(message(folder / "empty.yaml"), (folder / "empty.yaml").string() + ": error: the file is empty");
-  EXPECT_EQ(message("/tmp"), "cannot read /tmp: it is a folder");
+  EXPECT_EQ(message(folder / "empty.yaml"),
+            (folder / "empty.yaml").string() + ": error: the file is empty; write it, or name another file");
+  EXPECT_EQ(message("/tmp"), "cannot read /tmp: it is a folder; name a file in it");
 }
 
 }  // namespace

@@ -290,8 +290,10 @@ TEST_F(PipelineFileTest, FindsMistakesOfSchemaStagesAndWiringAtOnce) {
 
 TEST_F(PipelineFileTest, ReadsTheRigNextToItOrTheOneOfTheCommandLine) {
   const std::string stages = "pipeline: [{stage: toy.count}]\n";
-  EXPECT_THAT(errors_of("crisp: 1\nrig: nowhere.yaml\n" + stages),
-              ElementsAre("p.yaml:2:6: error: cannot read /there/nowhere.yaml: No such file or directory"));
+  EXPECT_THAT(
+      errors_of("crisp: 1\nrig: nowhere.yaml\n" + stages),
+      ElementsAre(
+          "p.yaml:2:6: error: cannot read /there/nowhere.yaml: No such file or directory; check its name and its permissions"));
   const PipelineArguments arguments = {.rig = source_dir() + "/configs/rig.yaml"};
   EXPECT_THAT(errors_of("crisp: 1\nrig: nowhere.yaml\n" + stages, arguments), IsEmpty());
   EXPECT_THAT(

@@ -157,7 +157,9 @@ TEST_F(RunnerTest, TurnsAnyExceptionIntoAnErrorWithThePlaceOfTheStage) {
   std::vector<StageSpec> specs = {{.stage = "toy.count"}, {.stage = "toy.throw"}};
   specs[1].place = {"p.yaml", 7, 5};
   specs[1].with = {{"how", text("standard")}};
-  EXPECT_EQ(message_of(specs), "p.yaml:7:5: error: toy.throw: three");
+  EXPECT_EQ(
+      message_of(specs),
+      "p.yaml:7:5: error: toy.throw: three: an error of this program; please report it with the command and its input");
   specs[1].with = {{"how", text("memory")}};
   EXPECT_THAT(message_of(specs), HasSubstr("toy.throw: the memory is exhausted"));
   specs[1].with = {{"how", text("undeclared")}};

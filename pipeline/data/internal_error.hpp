@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "pipeline/data/error.hpp"
+
+namespace crisp {
+
+/// A fault of the program, which no input and no setting explains. Its one advice is to report it.
+Error internal_error(const std::string& what);
+
+}  // namespace crisp
