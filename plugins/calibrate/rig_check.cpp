@@ -175,6 +175,9 @@ std::vector<std::string> outside(const Calibration& found, const Rig& rig, const
 
 }  // namespace
 
+const std::string_view kDirectionIsOpen =
+    "the encoder's sense of rotation is undetermined, since the mirror image agrees with the rig's nominal values as well: the cloud may be the mirror image of the scene. Set plate.direction in the rig";
+
 Calibration mirrored(const Calibration& calibration) {
   Calibration result = calibration;
   const auto reference = std::ranges::find_if(

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/data/rig.hpp"
@@ -49,8 +50,7 @@ inline constexpr const char* kCountsClockwise =
     "the encoder counts clockwise, by the signs of tau and alpha and the order of the lasers; the calibration takes it so. Set plate.direction: clockwise in the rig";
 
 /// The caveat of a calibration that leaves it open, which more accurate values may resolve.
-inline constexpr const char* kDirectionIsOpen =
-    "the encoder's sense of rotation is undetermined, since the mirror image agrees with the rig's nominal values as well: the cloud may be the mirror image of the scene. Set plate.direction in the rig";
+extern const std::string_view kDirectionIsOpen;
 
 /// The parameters whose standard error is about that which the rig gives them.
 std::vector<std::string> known_from_rig_only(const Calibration& calibration, const ParameterPrior& prior);

@@ -17,8 +17,17 @@ for program in debootstrap lintian help2man dpkg-deb; do
   command -v "$program" >/dev/null || skip "$program is missing: .ci/install packaging"
 done
 mirror=$(apt-get indextargets --format '$(REPO_URI)' "Codename: $suite" 'Created-By: Packages' 2>/dev/null | head -n 1)
-unshare --mount --propagation private true 2>/dev/null || skip "this machine lets nothing be mounted"
 [ -n "$mirror" ] || skip "this machine's apt knows no mirror of Debian $suite"
+
+mkdir -p "$cache"
+try=$(mktemp -d "$cache.XXXXXX")
+may() { unshare --mount --propagation private sh -c "$1" >/dev/null 2>&1; }
+may "mknod '$try/null' c 1 3 && mkdir '$try/a' '$try/b' '$try/c' '$try/d' && mount -t overlay overlay -o lowerdir='$try/a',upperdir='$try/b',workdir='$try/c' '$try/d'" &&
+  can_mount=1 || can_mount=
+/usr/lib/apt/apt-helper download-file "$mirror/dists/$suite/InRelease" "$try/InRelease" >/dev/null 2>&1 && can_load=1 || can_load=
+rm -rf "$try"
+[ "$can_mount" ] || skip "this machine makes no devices, or mounts no overlays"
+[ "$can_load" ] || skip "$mirror cannot be reached"
 
 if [ -z "${CRISP_OWN_MOUNTS:-}" ]; then  # what is mounted below ends with this script, however it ends
   exec env CRISP_OWN_MOUNTS=1 unshare --mount --propagation private "$0"
