@@ -149,7 +149,7 @@ TEST(SceneFile, ReportsEveryMistakeAtItsPlace) {
   EXPECT_THAT(text, HasSubstr("there is no shape 'chair'"));
   EXPECT_THAT(text, HasSubstr("has no area"));
   EXPECT_THAT(text, HasSubstr("do not lie in one plane"));
-  EXPECT_THAT(text, HasSubstr("between 0 and 1"));
+  EXPECT_THAT(text, HasSubstr("'reflectance' is 2; give a share from 0 to 1"));
 }
 
 TEST(SceneFile, RefusesSizesThatCannotBeMeant) {
