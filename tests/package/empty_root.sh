@@ -24,7 +24,7 @@ try=$(mktemp -d "$cache.XXXXXX")
 may() { unshare --mount --propagation private sh -c "$1" >/dev/null 2>&1; }
 may "mknod '$try/null' c 1 3 && mkdir '$try/a' '$try/b' '$try/c' '$try/d' && mount -t overlay overlay -o lowerdir='$try/a',upperdir='$try/b',workdir='$try/c' '$try/d'" &&
   can_mount=1 || can_mount=
-/usr/lib/apt/apt-helper download-file "$mirror/dists/$suite/InRelease" "$try/InRelease" >/dev/null 2>&1 && can_load=1 || can_load=
+/usr/lib/apt/apt-helper download-file "${mirror%/}/dists/$suite/InRelease" "$try/InRelease" >/dev/null 2>&1 && can_load=1 || can_load=
 rm -rf "$try"
 [ "$can_mount" ] || skip "this machine makes no devices, or mounts no overlays"
 [ "$can_load" ] || skip "$mirror cannot be reached"
@@ -66,7 +66,7 @@ mkdir "$work/changes" "$work/overlay" "$work/root"
 mount -t overlay overlay -o "lowerdir=$root,upperdir=$work/changes,workdir=$work/overlay" "$work/root"
 mount -t proc proc "$work/root/proc"
 in_root() { chroot "$work/root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
-files() { (cd "$work/root" && find . -xdev \( -path ./var/cache/apt -o -path ./var/lib/apt -o -path ./var/log -o -path ./tmp \) -prune -o -print | sort); }
+files() { (cd "$work/root" && find . -xdev \( -path ./var/cache/apt -o -path ./var/cache/man -o -path ./var/lib/apt -o -path ./var/log -o -path ./tmp \) -prune -o -print | sort); }
 files >"$work/before"
 
 step "installation"

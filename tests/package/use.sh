@@ -20,7 +20,7 @@ man -P cat crisp | grep -q calibrate
 man -P cat crisp-run | grep -q -e --rig
 test -s /usr/share/doc/crisp/README.md
 bash -c 'source /usr/share/bash-completion/completions/crisp
-COMP_WORDS=(crisp run picture --set calibr) COMP_CWORD=4; _crisp; test "${COMPREPLY[*]}" = calibration='
+COMP_WORDS=(crisp run picture --set calibrati) COMP_CWORD=4; _crisp; test "${COMPREPLY[*]}" = calibration='
 
 # A plugin, and programs that use the libraries
 cmake -G Ninja -S project -B build >/dev/null
