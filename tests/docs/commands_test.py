@@ -4,6 +4,7 @@
 commands_test.py PROGRAM SOURCE PYTHONPATH check|run, see shim.py.
 """
 
+import contextlib
 import json
 import os
 import pathlib
@@ -71,7 +72,8 @@ class Reader:
         emulators = self._parent / "emulators"
         if emulators.exists():
             for pid in emulators.read_text().split():
-                os.kill(int(pid), signal.SIGINT)
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(int(pid), signal.SIGINT)
         self._folder.cleanup()
 
     def types(self, words, text=""):
