@@ -13,10 +13,11 @@
 namespace crisp {
 namespace {
 
-constexpr double kWindow = 60;          // [s]
-constexpr double kLongestWindow = 240;  // [s] bounds the memory
-constexpr double kLookAhead = 1;        // [s] after a gap in the receipts
-constexpr double kLate = 30;            // [s] a scan may come in so long after it was swept
+constexpr double kWindow = 60;            // [s]
+constexpr double kLongestWindow = 240;    // [s] bounds the memory
+constexpr double kLookAhead = 1;          // [s] after a gap in the receipts
+constexpr std::size_t kMaxHeld = 20'000;  // telegrams then: receipts may stand still
+constexpr double kLate = 30;              // [s] a scan may come in so long after it was swept
 
 /// Adds a step, or what a larger step at the same time left of itself to that one.
 void add_step(const StampStep& step, std::vector<StampStep>& steps) {
@@ -68,7 +69,7 @@ void ClockAligner::receive(Received item) {
   forward_step_.after(device_of(item), stamp_of(item));
   held_.push_back(std::move(item));
   const double held = 1e-9 * static_cast<double>(receipt_ns - receipt_of(held_.front()));
-  if (std::abs(held) > kLookAhead) judge_gap();
+  if (std::abs(held) > kLookAhead || held_.size() >= kMaxHeld) judge_gap();
 }
 
 /// Takes out a step of the hub's clock; without one, what is held begins another recording.
