@@ -57,7 +57,9 @@ Caveats of_silence(const Measurements& beams, const Rig& rig) {
   }
   Caveats caveats;
   for (std::size_t laser = 0; laser < of.size(); ++laser) {
-    if (of[laser].length() >= kHalf * all.length()) continue;
+    const bool has_beams =
+        of[laser].first <= of[laser].last;  // without any it is not observable, which is reported
+    if (!has_beams || of[laser].length() >= kHalf * all.length()) continue;
     caveats.push_back(fmt::format(
         "{} was heard for {:.1f} s of {:.1f} s: its values rest on that part alone, and those of the others may refer to them. Check its cable and its power supply, and record again",
         rig.lasers[laser].name, of[laser].length(), all.length()));
