@@ -23,8 +23,8 @@ std::vector<std::string> settings_of(const YamlNode& root, const std::filesystem
   if (const YamlNode* variables = root.find("vars")) {
     for (const auto& variable : variables->entries) settings.push_back(variable.key + "=");
   }
-  std::vector<Error> not_said;  // crisp validate tells them
-  auto plan = parse_plan(root, folder, {.only_validate = true}, stages, not_said);
+  std::vector<Error> ignored;  // crisp validate reports them
+  auto plan = parse_plan(root, folder, {.only_validate = true}, stages, ignored);
   name_stages(plan.stages);
   for (const auto& spec : plan.stages) {
     if (const StageType* type = stages.find(spec.stage)) add_settings(*type, spec.tag, settings);

@@ -19,8 +19,8 @@ PcdTable to_pcd_table(const Measurements& beams, const PlateTrajectory& plate);
 /// if the encoder's count restarted, the field zero numbers the restarts. The conversion is lossless.
 PcdTable to_pcd_table(const PlateTrajectory& plate);
 
-/// Whether the trajectory's table is the one that was written together with the measurements. Files of
-/// earlier versions and of other programs do not tell apart two of one epoch.
+/// Whether the trajectory's table is the one that was written together with the measurements. In files of
+/// earlier versions and of other programs, which have no digest, only the epoch is compared.
 bool belong_together(const PcdTable& measurements, const PcdTable& trajectory);
 
 /// The file in which the trajectory stands that belongs to a file of measurements: x.pcd → x.plate.pcd.

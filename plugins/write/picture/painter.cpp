@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "pipeline/data/error.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/write/picture/colours.hpp"
 #include "plugins/write/picture/labels.hpp"
 #include "plugins/write/picture/projection.hpp"
@@ -58,14 +59,8 @@ std::array<double, 2> limits_of(const PicturePoints& points, const PictureProjec
     if (std::isfinite(point.value) && projection.pixel(point)) values.push_back(point.value);
   }
   if (values.empty()) return {0, 1};
-  const auto quantile = [&](double share) {
-    const auto at =
-        values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::ranges::nth_element(values, at);
-    return double{*at};
-  };
-  const double low = quantile(0.01);
-  return {low, std::max(quantile(0.99), low + 1e-9)};
+  const double low{quantile_in_place(values, 0.01)};
+  return {low, std::max(double{quantile_in_place(values, 0.99)}, low + 1e-9)};
 }
 
 void paint_values(Picture& picture, const PicturePoints& points, const PictureProjection& projection,

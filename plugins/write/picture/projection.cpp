@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/statistics/robust_estimators.hpp"
+
 namespace crisp {
 namespace {
 
@@ -40,13 +42,7 @@ struct Spread {
 
 Spread spread_of(std::vector<double>& values) {
   if (values.empty()) return {};
-  const auto quantile = [&](double share) {
-    const auto at =
-        values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::ranges::nth_element(values, at);
-    return *at;
-  };
-  const double low = quantile(0.01), high = quantile(0.99);
+  const double low = quantile_in_place(values, 0.01), high = quantile_in_place(values, 0.99);
   return {.centre = (low + high) / 2, .extent = high - low};
 }
 
