@@ -45,11 +45,11 @@ nlohmann::json to_json(const DeviceStatistics& device) {
                            {"skew_ppm", device.skew ? nlohmann::json(1e6 * *device.skew) : nlohmann::json()},
                            {"longest_silence", device.longest_silence},
                            {"longest_silence_begin", seconds(device.silence_ns)}};
-  if (!laser) {
+  if (!laser || device.shape.encoder) {
     object["counted_up"] = device.counted_up;
     object["counted_down"] = device.counted_down;
-    return object;
   }
+  if (!laser) return object;
   object["serial_numbers"] = device.serial_numbers;
   object["handover_median"] = to_json(device.median_handover);
   object["period_median"] = to_json(device.period);

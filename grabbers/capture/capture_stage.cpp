@@ -10,12 +10,26 @@
 #include "grabbers/capture/unknown_devices.hpp"
 
 namespace crisp {
+namespace {
+
+/// For a plate of which nothing came, while a laser of the rig has an encoder.
+std::string advice_on_encoders(const CaptureStatistics& statistics) {
+  for (const auto& device : statistics.devices) {
+    if (device.name.empty() || !device.shape.encoder) continue;
+    return fmt::format(
+        "; the telegrams of {} carry an encoder's counts: if it is the plate's, write encoder_of: {} for the plate in the rig, in place of its address",
+        device.name, device.name);
+  }
+  return {};
+}
+
+}  // namespace
 
 void CaptureStage::describe(StageDescription<CaptureStage>& d) {
   d.name("grabber.capture")
       .summary("reads scans and encoder readings from a capture of the hub's network interface");
   d.details(
-      "A capture is a pcap or pcapng file as tcpdump, dumpcap or Wireshark write it, plain or compressed by gzip or zstd. The rig's addresses identify the lasers' TCP streams of CoLa-A or CoLa-B telegrams, and the plate's UDP datagrams or TCP stream of sentences. Each item carries the time of the packet that completed it, and items come in the order of these times.\n\n"
+      "A capture is a pcap or pcapng file as tcpdump, dumpcap or Wireshark write it, plain or compressed by gzip or zstd. The rig's addresses identify the lasers' TCP streams of CoLa-A or CoLa-B telegrams, and the plate's UDP datagrams or TCP stream of sentences. With `plate: {encoder_of: laser1}` the plate's readings are the encoder counts in the telegrams of that laser. Each item carries the time of the packet that completed it, and items come in the order of these times.\n\n"
       "A folder stands for all captures in it, one after the other in the order of their first packets: of one scanner in several places, or of one recording in several files.\n\n"
       "Where packet times go back, the file's parts are read in the order of their times, or time is continued if the hub's clock was set back.\n\n"
       "Damaged, lost, repeated and unknown data are counted by name; they never end the reading. Memory does not depend on the size of the capture.");
@@ -138,7 +152,8 @@ std::uint64_t CaptureStage::report(const CaptureStatistics& statistics, const st
     found += device.items;
     for (const auto& [what, n] : device.losses.all()) context.count(device.name + ": " + what, n);
     if (device.items == 0) {
-      context.warn(fmt::format("{} holds nothing of {}", file.filename().string(), title(device)));
+      context.warn(fmt::format("{} holds nothing of {}{}", file.filename().string(), title(device),
+                               device.kind == DeviceKind::Plate ? advice_on_encoders(statistics) : ""));
     }
   }
   return found;

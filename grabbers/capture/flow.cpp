@@ -29,9 +29,14 @@ Flow::Flow(const FlowKey& key, Devices& devices, Devices::Device* known, const C
   const bool laser = known == nullptr || known->kind == DeviceKind::Laser;
   const bool plate = known == nullptr || known->kind == DeviceKind::Plate;
   if (laser && key.transport == Transport::Tcp) cola_ = std::make_unique<ColaFramer>();
-  if (plate) plate_ = std::make_unique<PlateFramer>();
+  if (plate) plate_ = plate_framer();
   const bool sure = known != nullptr && (known->port != 0 || is_sick_port(key.from.port));
   if (sure) speech_ = laser ? Speech::Cola : Speech::Plate;
+}
+
+std::unique_ptr<PlateFramer> Flow::plate_framer() const {
+  const auto bytes = key_.transport == Transport::Tcp ? PlateBytes::stream : PlateBytes::datagrams;
+  return std::make_unique<PlateFramer>(device_ == nullptr ? std::nullopt : device_->line, bytes);
 }
 
 /// Whether to take the packet now. Where checksums are usually right, one with a wrong checksum is damaged,
@@ -77,7 +82,7 @@ void Flow::take_trusted(const TransportPacket& packet, std::int64_t time_ns) {
       speech_ = Speech::Unknown;
       unconvincing_bytes_ = 0;
       cola_ = std::make_unique<ColaFramer>();
-      plate_ = std::make_unique<PlateFramer>();
+      plate_ = plate_framer();
     }
     if (speech_ != Speech::Nothing) tcp_.take(packet, time_ns);
   } else if (plate_) {
@@ -104,7 +109,7 @@ void Flow::data(ByteView bytes, std::int64_t arrival_ns) {
 
 void Flow::gap() {
   if (cola_) cola_->gap([&](const ColaFrame& frame) { take_frame(frame); });
-  if (plate_) plate_->gap();
+  if (plate_) plate_->gap([&](const PlateReading& reading) { take_reading(reading); });
 }
 
 void Flow::repeated(ByteView bytes) {
@@ -130,7 +135,11 @@ void Flow::take_frame(const ColaFrame& frame) {
   }
   if (!settle(Speech::Cola)) return;
   auto scan = device_->log.take(frame, settings_.encoder_widths);
-  if (scan && is_of_rig()) give_(std::move(scan));
+  if (!scan || !is_of_rig()) return;
+  if (WiredEncoder* encoder = devices_.wired_encoder()) {
+    if (const auto reading = encoder->read(*scan, settings_.encoder_widths)) give_(*reading);
+  }
+  give_(std::move(scan));
 }
 
 void Flow::take_reading(const PlateReading& reading) {

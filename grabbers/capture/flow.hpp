@@ -49,6 +49,7 @@ class Flow final : public StreamSink {
   void gap() override;
   void repeated(ByteView bytes) override;
 
+  std::unique_ptr<PlateFramer> plate_framer() const;
   bool trust(const TransportPacket& packet, std::int64_t time_ns);
   void take_doubtful();
   void take_trusted(const TransportPacket& packet, std::int64_t time_ns);

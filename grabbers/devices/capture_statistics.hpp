@@ -45,12 +45,12 @@ struct DeviceStatistics {
   std::int64_t paused_ns = 0;                 ///< [ns] from last to first items around them
   std::vector<std::uint32_t> serial_numbers;  ///< of a laser
   std::uint64_t serial_changes = 0;           ///< scans with another serial number than the one before
-  std::uint64_t counted_up = 0;           ///< steps of a plate's encoder forwards, from reading to reading
-  std::uint64_t counted_down = 0;         ///< and back
-  std::optional<double> median_handover;  ///< [s] transmission time − scan time, median
-  std::optional<double> period;           ///< [s] of the mirror, measured by the laser's own clock, median
-  std::optional<double> skew;             ///< hub seconds per second of its clock, less 1: a rough estimate
-  double nominal_frequency = 0;           ///< [Hz] that a laser claims
+  std::uint64_t counted_up = 0;               ///< steps of an encoder forwards, from reading to reading
+  std::uint64_t counted_down = 0;             ///< and back
+  std::optional<double> median_handover;      ///< [s] transmission time − scan time, median
+  std::optional<double> period;  ///< [s] of the mirror, measured by the laser's own clock, median
+  std::optional<double> skew;    ///< hub seconds per second of its clock, less 1: a rough estimate
+  double nominal_frequency = 0;  ///< [Hz] that a laser claims
   ScanShape shape;
 
   /// [Hz] items a second within recordings, 0 for fewer than two.

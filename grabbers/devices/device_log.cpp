@@ -163,18 +163,23 @@ void DeviceLog::note_scan(const Scan& scan) {
   }
   last_scan_ = {scan.scan_counter, scan.scan_time_us};
   s.nominal_frequency = scan.scan_frequency;
+  if (!scan.encoders.empty()) note_count(scan.encoders.front().position);
   const auto& first = scan.echoes.front();
   s.shape = {first.ranges.size(), scan.start_angle,          scan.angle_step,
              scan.echoes.size(),  !first.remissions.empty(), !scan.encoders.empty()};
 }
 
-std::optional<PlateReading> DeviceLog::take(const PlateReading& reading) {
-  count_telegram("PPLT");
-  if (!is_new(reading.sequence, reading.device_us, reading.receipt_ns)) return {};
-  note_time(reading.device_us, reading.receipt_ns);
-  const auto steps = static_cast<std::int32_t>(reading.count - last_count_.value_or(reading.count));
+void DeviceLog::note_count(std::uint32_t count) {
+  const auto steps = static_cast<std::int32_t>(count - last_count_.value_or(count));
   (steps > 0 ? statistics_.counted_up : statistics_.counted_down) += std::abs(std::int64_t{steps});
-  last_count_ = reading.count;
+  last_count_ = count;
+}
+
+std::optional<PlateReading> DeviceLog::take(const PlateReading& reading, std::string_view kind) {
+  count_telegram(kind);
+  if (!is_new(reading.sequence, reading.device_us, reading.receipt_ns, !reading.numbered)) return {};
+  note_time(reading.device_us, reading.receipt_ns);
+  note_count(reading.count);
   return reading;
 }
 

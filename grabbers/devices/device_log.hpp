@@ -29,7 +29,8 @@ class DeviceLog {
   /// A telegram of a laser; gives a scan if it holds one that did not come before, otherwise nullptr.
   std::shared_ptr<const Scan> take(const ColaFrame& frame, EncoderWidths widths);
   /// A reading of a plate; gives it if it did not come before.
-  std::optional<PlateReading> take(const PlateReading& reading);
+  /// @param kind  what it came as
+  std::optional<PlateReading> take(const PlateReading& reading, std::string_view kind = "PPLT");
   /// A telegram that TCP sent again after it had come.
   void note_repeated(const ColaFrame& frame);
 
@@ -47,6 +48,7 @@ class DeviceLog {
   void count_telegram(std::string_view kind);
   void note_time(std::uint32_t device_us, std::int64_t time_ns);
   void note_scan(const Scan& scan);
+  void note_count(std::uint32_t count);
 
   DeviceStatistics statistics_;
   std::uint16_t laser_ = 0;
@@ -61,7 +63,7 @@ class DeviceLog {
   RunningMedian handover_, period_;
   std::optional<std::pair<std::uint16_t, std::uint32_t>> last_scan_;  ///< its counter and time
   std::optional<std::uint32_t> last_serial_number_;
-  std::optional<std::uint32_t> last_count_;  ///< of a plate's encoder
+  std::optional<std::uint32_t> last_count_;  ///< of an encoder
 };
 
 }  // namespace crisp

@@ -15,7 +15,11 @@ Devices::Devices(const Rig& rig) {
   for (std::size_t i = 0; i < rig.lasers.size(); ++i) {
     add(DeviceKind::Laser, rig.lasers[i].name, rig.lasers[i].address, static_cast<std::uint16_t>(i));
   }
-  if (!rig.plate.address.ip.empty()) add(DeviceKind::Plate, rig.plate.name, rig.plate.address, 0);
+  if (rig.plate.encoder_of) wired_encoder_ = std::make_unique<WiredEncoder>(rig, pauses_.get());
+  if (!rig.plate.address.ip.empty()) {
+    add(DeviceKind::Plate, rig.plate.name, rig.plate.address, 0);
+    known_.back()->line = rig.plate.line;
+  }
 }
 
 void Devices::add(DeviceKind kind, const std::string& name, const Address& address, std::uint16_t index) {
@@ -62,6 +66,7 @@ Devices::Device* Devices::other(const FlowKey& key, DeviceKind kind) {
 std::vector<DeviceStatistics> Devices::statistics() const {
   std::vector<DeviceStatistics> all;
   for (const auto& device : known_) all.push_back(device->log.statistics());
+  if (wired_encoder_) all.push_back(wired_encoder_->statistics());
   for (const auto& [place, device] : others_) all.push_back(device->log.statistics());
   return all;
 }

@@ -8,6 +8,7 @@
 
 #include "grabbers/devices/device_log.hpp"
 #include "grabbers/devices/network.hpp"
+#include "grabbers/devices/wired_encoder.hpp"
 
 namespace crisp {
 
@@ -22,7 +23,8 @@ class Devices {
     std::optional<std::uint16_t> rig_index;  ///< nothing for a device that the rig does not know
     DeviceKind kind = DeviceKind::Laser;
     IpAddress ip{};
-    std::uint16_t port = 0;  ///< 0: any
+    std::uint16_t port = 0;                ///< 0: any
+    std::optional<EncoderLine> line = {};  ///< of a plate
   };
 
   /// @throws Error if an address of the rig is none, or two devices have the same
@@ -36,6 +38,9 @@ class Devices {
   /// already more than any network has.
   Device* other(const FlowKey& key, DeviceKind kind);
 
+  /// The plate's encoder where it is wired to a laser; nullptr where it sends readings of its own.
+  WiredEncoder* wired_encoder() { return wired_encoder_.get(); }
+
   std::vector<DeviceStatistics> statistics() const;
   const Pauses& pauses() const { return *pauses_; }
 
@@ -44,6 +49,7 @@ class Devices {
 
   std::unique_ptr<Pauses> pauses_ = std::make_unique<Pauses>();
   std::vector<std::unique_ptr<Device>> known_;
+  std::unique_ptr<WiredEncoder> wired_encoder_;
   std::map<std::pair<Endpoint, DeviceKind>, std::unique_ptr<Device>> others_;
 };
 

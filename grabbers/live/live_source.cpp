@@ -9,7 +9,14 @@ namespace crisp {
 
 LiveSource::LiveSource(const Rig& rig, const LiveSettings& settings)
     : queue_(settings.queue), work_(context_.get_executor()) {
-  const auto give = [this](HubItem item) { queue_.push(std::move(item)); };
+  if (settings.plate && rig.plate.encoder_of) wired_encoder_ = std::make_unique<WiredEncoder>(rig);
+  const auto give = [this, widths = settings.sick.encoder_widths](HubItem item) {
+    const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item);
+    if (scan != nullptr && wired_encoder_) {
+      if (const auto reading = wired_encoder_->read(**scan, widths)) queue_.push(*reading);
+    }
+    queue_.push(std::move(item));
+  };
   for (std::size_t i = 0; i < rig.lasers.size() && settings.lasers; ++i) {
     const RigLaser& laser = rig.lasers[i];
     logs_.push_back(std::make_unique<DeviceLog>(DeviceKind::Laser, laser.name, laser.address,
@@ -17,10 +24,13 @@ LiveSource::LiveSource(const Rig& rig, const LiveSettings& settings)
     lasers_.push_back(std::make_unique<SickClient>(context_, *logs_.back(), laser.address, settings.sick,
                                                    give, settings.clock));
   }
-  if (settings.plate) {
+  if (settings.plate && !wired_encoder_) {
     logs_.push_back(std::make_unique<DeviceLog>(DeviceKind::Plate, rig.plate.name, rig.plate.address));
-    plate_ = make_plate_receiver(context_, PlateReadings(*logs_.back(), give, settings.clock),
-                                 rig.plate.address, settings.plate_at);
+    const bool is_stream = settings.plate_at.transport != PlateTransport::Datagrams;
+    PlateFramer framer(rig.plate.line, is_stream ? PlateBytes::stream : PlateBytes::datagrams);
+    plate_ =
+        make_plate_receiver(context_, PlateReadings(*logs_.back(), give, settings.clock, std::move(framer)),
+                            rig.plate.address, settings.plate_at);
   }
   for (const auto& laser : lasers_) laser->start();
   if (plate_) plate_->start();
@@ -74,6 +84,7 @@ CaptureStatistics LiveSource::statistics() {
   CaptureStatistics result;
   in_thread([&] {
     for (const auto& log : logs_) result.devices.push_back(log->statistics());
+    if (wired_encoder_) result.devices.push_back(wired_encoder_->statistics());
   });
   result.losses.add("items dropped because the pipeline was too slow", queue_.dropped());
   return result;

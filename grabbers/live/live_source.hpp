@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "grabbers/devices/capture_statistics.hpp"
+#include "grabbers/devices/wired_encoder.hpp"
 #include "grabbers/live/item_queue.hpp"
 #include "grabbers/live/plate_receiver.hpp"
 #include "grabbers/live/sick_client.hpp"
@@ -67,6 +68,7 @@ class LiveSource final : public ItemSource {
   boost::asio::io_context context_{1};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_;
   std::vector<std::unique_ptr<SickClient>> lasers_;
+  std::unique_ptr<WiredEncoder> wired_encoder_;
   std::unique_ptr<PlateReceiver> plate_;
   std::thread thread_;
 };

@@ -130,7 +130,13 @@ void LiveStage<devices>::check(const RunSettings& run) const {
     if (kLasers) errors.keep_of([&] { ip_of(laser.address); });
   }
   const auto& plate_at = settings_.plate_at;
-  if (kPlate && plate_at.transport != PlateTransport::Serial) {
+  const bool wired = run.rig.plate.encoder_of.has_value();
+  if (kPlate && wired && !kLasers)
+    errors.keep_of([] {
+      throw Error("the plate's encoder is wired to a laser, by encoder_of in the rig",
+                  "use grabber.live, which receives from the lasers as well");
+    });
+  if (kPlate && !wired && plate_at.transport != PlateTransport::Serial) {
     errors.keep_of([&] { ip_of(run.rig.plate.address); });
   }
   if (kPlate && plate_at.transport == PlateTransport::Datagrams) {

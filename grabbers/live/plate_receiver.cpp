@@ -11,13 +11,17 @@ bool PlateReadings::take(ByteView bytes) {
   bool any = false;
   framer_.feed(bytes, clock_(), [&](const PlateReading& reading) {
     any = true;
-    if (const auto fresh = log_.take(reading)) give_(*fresh);
+    take(reading);
   });
   return any;
 }
 
+void PlateReadings::take(const PlateReading& reading) {
+  if (const auto fresh = log_.take(reading)) give_(*fresh);
+}
+
 void PlateReadings::gap() {
-  framer_.gap();
+  framer_.gap([&](const PlateReading& reading) { take(reading); });
   const PlateFramer::Counts counts = framer_.take_counts();
   if (counts.any_damage()) note_framing(counts, log_);
 }

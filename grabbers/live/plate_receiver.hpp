@@ -33,8 +33,8 @@ struct PlateSettings {
 /// From the plate's bytes, however they came, to its readings.
 class PlateReadings {
  public:
-  PlateReadings(DeviceLog& log, GiveItem give, HubClock clock)
-      : log_(log), give_(std::move(give)), clock_(std::move(clock)) {}
+  PlateReadings(DeviceLog& log, GiveItem give, HubClock clock, PlateFramer framer)
+      : log_(log), give_(std::move(give)), clock_(std::move(clock)), framer_(std::move(framer)) {}
 
   /// Bytes that came just now. @return whether there was a reading in them
   bool take(ByteView bytes);
@@ -43,6 +43,8 @@ class PlateReadings {
   void note(const std::string& what) { log_.note(what); }
 
  private:
+  void take(const PlateReading& reading);
+
   DeviceLog& log_;
   GiveItem give_;
   HubClock clock_;

@@ -83,7 +83,8 @@ void refuse_foreign(const std::filesystem::path& file) {
 /// One capture that is being written.
 struct CaptureRecorder::File {
   File(const std::filesystem::path& path, const Rig& rig)
-      : pcap(path, PcapMode::Grow),
+      : is_wired(rig.plate.encoder_of.has_value()),
+        pcap(path, PcapMode::Grow),
         sorter([this](std::int64_t ns, ByteView frame) { pcap.write(ns, frame); }, kHold),
         hub(rig, ColaLanguage::B, [this](std::int64_t ns, ByteView frame) { sorter.push(ns, frame); }),
         connected(rig.lasers.size()) {}
@@ -94,7 +95,9 @@ struct CaptureRecorder::File {
     hub.telegram(scan.laser, encode_scan_data(to_scan_data(scan), ColaLanguage::B), scan.receipt_ns);
   }
 
+  /// Of an encoder wired to a laser, the laser's telegram holds the reading.
   void write(const PlateReading& reading) {
+    if (is_wired) return;
     hub.datagram(as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
   }
 
@@ -104,6 +107,7 @@ struct CaptureRecorder::File {
     pcap.close();
   }
 
+  bool is_wired;
   PcapWriter pcap;
   FrameSorter sorter;
   HubTraffic hub;

@@ -6,6 +6,7 @@ namespace crisp {
 void PlateFramer::gap() {
   if (!line_.empty()) ++counts_.failures[static_cast<std::size_t>(PlateFailure::Truncated)];
   line_.clear();
+  within_line_ = bytes_ == PlateBytes::stream;
 }
 
 /// Consumes the bytes that are within a sentence and do not end it; returns their number.
@@ -41,6 +42,37 @@ std::optional<PlateReading> PlateFramer::finish_line() {
   if (line_.back() == '\r') line_.pop_back();
   PlateReading reading{.receipt_ns = latest_ns_};
   const auto failure = decode_plate_sentence(line_, reading);
+  line_.clear();
+  if (failure != PlateFailure::None) {
+    ++counts_.failures[static_cast<std::size_t>(failure)];
+    return {};
+  }
+  ++counts_.readings;
+  return reading;
+}
+
+PlateFailure PlateFramer::decode_own(PlateReading& reading) {
+  constexpr std::int64_t kNsInUs = 1000;
+  if (line_.size() > kLongestEncoderLine) return PlateFailure::Truncated;
+  if (line_.starts_with("$PPLT,")) return decode_plate_sentence(line_, reading);
+  reading.device_us = static_cast<std::uint32_t>(reading.receipt_ns / kNsInUs);
+  reading.sequence = own_lines_;
+  reading.numbered = false;
+  const PlateFailure failure = decode_encoder_line(line_, *own_, reading);
+  if (failure == PlateFailure::None) ++own_lines_;
+  return failure;
+}
+
+std::optional<PlateReading> PlateFramer::finish_own_line() {
+  const bool begins = !own_->begin.empty() && line_.starts_with(own_->begin);
+  if (std::exchange(within_line_, false) && !begins) {
+    counts_.skipped_bytes += line_.size();
+    line_.clear();
+  }
+  if (line_.ends_with('\r')) line_.pop_back();
+  if (line_.empty()) return {};
+  PlateReading reading{.receipt_ns = latest_ns_};
+  const PlateFailure failure = decode_own(reading);
   line_.clear();
   if (failure != PlateFailure::None) {
     ++counts_.failures[static_cast<std::size_t>(failure)];

@@ -9,15 +9,30 @@
 #include <utility>
 
 #include "grabbers/wire/bytes.hpp"
+#include "grabbers/wire/encoder_line.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 
 namespace crisp {
 
+/// Longest line of a user's own format, without its line end; longer lines are damage.
+inline constexpr std::size_t kLongestEncoderLine = 512;
+
+/// What cuts a plate's bytes into pieces.
+enum class PlateBytes : std::uint8_t {
+  stream,    ///< TCP or a serial line: it may begin within a line
+  datagrams  ///< each begins with a line, and ends its last
+};
+
 /// Finds the plate's sentences in a stream of bytes (datagrams, a serial line, TCP) that is cut anywhere and
 /// may be damaged. A sentence begins with `$` and ends with a line feed; everything else is skipped and
 /// counted. Memory is bounded by one line.
+///
+/// With a format of the user's own each line is read by it, and sentences all the same.
 class PlateFramer {
  public:
+  explicit PlateFramer(std::optional<EncoderLine> own = {}, PlateBytes bytes = PlateBytes::stream)
+      : own_(std::move(own)), bytes_(bytes), within_line_(bytes == PlateBytes::stream) {}
+
   struct Counts {
     std::uint64_t readings = 0;
     std::array<std::uint64_t, 5> failures{};  ///< lines that are no reading, by PlateFailure
@@ -33,6 +48,7 @@ class PlateFramer {
   /// @param arrival_ns [ns] hub time at which these bytes arrived: the reading's receipt time
   template <class Sink>
   void feed(ByteView bytes, std::int64_t arrival_ns, Sink&& sink) {
+    if (own_) return feed_lines(bytes, arrival_ns, sink);
     while (!bytes.empty()) {
       const auto byte = bytes.front();
       latest_ns_ = line_.empty() || byte == '$' ? arrival_ns : std::max(latest_ns_, arrival_ns);
@@ -44,7 +60,15 @@ class PlateFramer {
     }
   }
 
-  /// Marks missing bytes, or the end of the datagram or stream.
+  /// Marks missing bytes, or the end of the datagram or stream, and calls `sink` for a reading that ends
+  /// there.
+  template <class Sink>
+  void gap(Sink&& sink) {
+    if (own_ && bytes_ == PlateBytes::datagrams) {
+      if (const auto reading = finish_own_line()) sink(*reading);
+    }
+    gap();
+  }
   void gap();
 
   const Counts& counts() const { return counts_; }
@@ -55,11 +79,29 @@ class PlateFramer {
   bool waiting() const { return !line_.empty(); }
 
  private:
+  template <class Sink>
+  void feed_lines(ByteView bytes, std::int64_t arrival_ns, Sink& sink) {
+    for (const auto byte : bytes) {
+      latest_ns_ = line_.empty() ? arrival_ns : std::max(latest_ns_, arrival_ns);
+      if (byte != '\n') {
+        if (line_.size() <= kLongestEncoderLine) line_ += static_cast<char>(byte);
+      } else if (const auto reading = finish_own_line()) {
+        sink(*reading);
+      }
+    }
+  }
+
   std::size_t lengthen(ByteView bytes);
   std::optional<PlateReading> take(char c);
   std::optional<PlateReading> finish_line();
+  std::optional<PlateReading> finish_own_line();
+  PlateFailure decode_own(PlateReading& reading);
 
-  std::string line_;  ///< from '$' on; empty between sentences
+  std::optional<EncoderLine> own_;
+  PlateBytes bytes_;
+  bool within_line_;             ///< the next bytes may be the end of a line whose begin is missing
+  std::uint16_t own_lines_ = 0;  ///< read so far
+  std::string line_;             ///< from its begin on; empty between sentences
   std::int64_t latest_ns_ = 0;
   Counts counts_;
 };

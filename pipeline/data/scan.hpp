@@ -48,13 +48,14 @@ struct Scan {
                       ///< its receipt
 };
 
-/// One encoder reading's encoder.
+/// One reading of the plate's encoder.
 struct PlateReading {
-  std::uint16_t sequence = 0;   ///< wraps at 65536; a gap means lost readings
-  std::uint32_t device_us = 0;  ///< [µs] the plate's clock; wraps at 2^32
-  std::uint32_t count = 0;      ///< [encoder steps] modulo 2^32, growing counter-clockwise seen from +z
-  std::int64_t receipt_ns = 0;  ///< [ns since the Unix epoch] hub time of the datagram
-  bool numbered = true;         ///< by the device: else nobody counted what was lost
+  std::uint16_t sequence = 0;    ///< wraps at 65536; a gap means lost readings
+  std::uint32_t device_us = 0;   ///< [µs] the plate's clock; wraps at 2^32
+  std::uint32_t count = 0;       ///< [encoder steps] modulo 2^32, growing counter-clockwise seen from +z
+  std::int64_t receipt_ns = 0;   ///< [ns since the Unix epoch] hub time of the datagram
+  bool numbered = true;          ///< by the device: else nobody counted what was lost
+  std::int32_t handover_us = 0;  ///< [µs] of the plate's clock from the reading until it was sent
 };
 
 }  // namespace crisp

@@ -8,9 +8,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <numbers>
 
+#include "pipeline/files/encoder_line.hpp"
 #include "pipeline/files/file_kind.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
@@ -76,6 +76,13 @@ class RigReader {
     laser.mount = angle(map, "mount");
     laser.time_offset = bounded(map, "time_offset", "s", 0, 10);
     laser.period_offset = static_cast<int>(map.integer("period_offset", 0, -100, 100));
+    laser.echo =
+        read_choice<EchoChoice>(map, "echo",
+                                {{"first", EchoChoice::first},
+                                 {"last", EchoChoice::last},
+                                 {"strongest", EchoChoice::strongest},
+                                 {"all", EchoChoice::all}},
+                                EchoChoice::first, "choice of echoes", "write first, last, strongest or all");
     laser.nominal.name = laser.name;
     if (const YamlNode* nominal = map.require("nominal")) read_nominal(*nominal, map.what(), laser.nominal);
     map.refuse_others();
@@ -131,6 +138,7 @@ class RigReader {
     }
     rig_.plate.address = read_address(map, kDefaultPort);
     read_joint(map);
+    read_encoder(map);
     // Its counter has 32 bits; with one step a turn the direction of the turn would be ambiguous.
     constexpr std::int64_t kMaxSteps = std::int64_t{1} << 31;
     rig_.plate.counts_per_revolution =
@@ -145,30 +153,41 @@ class RigReader {
     rig_.plate.topic = map.text("topic", "");
     rig_.plate.joint = map.text("joint", "");
     rig_.plate.field = map.text("field", "");
-    const std::map<std::string, AngleUnit> units = {
-        {"rad", AngleUnit::rad}, {"deg", AngleUnit::deg}, {"counts", AngleUnit::counts}};
-    const std::string unit = map.text("unit", "");
-    if (const auto known = units.find(unit); known != units.end())
-      rig_.plate.unit = known->second;
-    else if (!unit.empty())
-      map.fail(map.find("unit")->place, "'unit': '" + unit + "' is no unit of an angle",
-               "write rad, deg or counts");
+    if (map.find("unit")) {
+      rig_.plate.unit = read_choice<AngleUnit>(
+          map, "unit", {{"rad", AngleUnit::rad}, {"deg", AngleUnit::deg}, {"counts", AngleUnit::counts}},
+          AngleUnit::rad, "unit of an angle", "write rad, deg or counts");
+    }
     if (!rig_.plate.joint.empty() && !rig_.plate.field.empty()) {
       map.fail(map.find("field")->place, "'field' and 'joint' are both given",
                "a joint belongs to a JointState, a field to a message of another type; remove one of them");
     }
   }
 
+  /// Reads where the encoder's counts come from, and in what form.
+  void read_encoder(YamlMap& map) {
+    if (const YamlNode* line = map.find("line")) rig_.plate.line = read_encoder_line(*line, errors_);
+    const std::string laser = map.text("encoder_of", "");
+    if (laser.empty()) return;
+    const Place& place = map.find("encoder_of")->place;
+    const auto of = std::ranges::find(rig_.lasers, laser, &RigLaser::name);
+    if (of == rig_.lasers.end())
+      return map.fail(place, "'encoder_of': there is no laser '" + laser + "'",
+                      "name the laser whose telegrams carry the encoder's counts");
+    rig_.plate.encoder_of = static_cast<std::uint16_t>(of - rig_.lasers.begin());
+    if (!rig_.plate.address.ip.empty() || rig_.plate.line)
+      map.fail(place, "'encoder_of' and an own 'address' or 'line' are both given",
+               "an encoder is wired to a laser, or sends readings of its own; remove one of them");
+  }
+
   static CountDirection direction(YamlMap& map) {
-    const std::string name = map.text("direction", "counter_clockwise");
-    if (name == "clockwise") return CountDirection::clockwise;
-    if (name == "auto") return CountDirection::automatic;
-    if (name != "counter_clockwise") {
-      map.fail(
-          map.find("direction")->place, "'direction': '" + name + "' is no sense of rotation",
-          "write the plate's sense of rotation, seen from +z, while the count grows: counter_clockwise, clockwise, or auto if it is unknown");
-    }
-    return CountDirection::counter_clockwise;
+    return read_choice<CountDirection>(
+        map, "direction",
+        {{"counter_clockwise", CountDirection::counter_clockwise},
+         {"clockwise", CountDirection::clockwise},
+         {"auto", CountDirection::automatic}},
+        CountDirection::counter_clockwise, "sense of rotation",
+        "write the plate's sense of rotation, seen from +z, while the count grows: counter_clockwise, clockwise, or auto if it is unknown");
   }
 
   /// None where it is written wrongly: what is not known is nobody else's.

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pipeline/files/yaml.hpp"
@@ -48,6 +50,21 @@ std::optional<double> read_number(const YamlNode& node, std::string_view unit, s
 std::optional<std::int64_t> read_integer(const YamlNode& node, std::string& wrong);
 std::optional<bool> read_boolean(const YamlNode& node, std::string& wrong);
 std::optional<std::string> read_text(const YamlNode& node, std::string& wrong);
+
+/// Value of a key that has one of several names; `fallback` where it is missing, or wrong, which is an error.
+/// @param what      "sense of rotation": what a wrong name is not
+/// @param expected  "write clockwise or counter_clockwise"
+template <class Value>
+Value read_choice(YamlMap& map, const std::string& key,
+                  std::initializer_list<std::pair<const char*, Value>> choices, Value fallback,
+                  const std::string& what, const std::string& expected) {
+  const std::string name = map.text(key, "");
+  for (const auto& [known, value] : choices) {
+    if (name == known) return value;
+  }
+  if (!name.empty()) map.fail(map.find(key)->place, "'" + key + "': '" + name + "' is no " + what, expected);
+  return fallback;
+}
 
 /// What an error expects in place of a value: "expected is a number in m".
 std::string expected_number(std::string_view unit);

@@ -143,6 +143,8 @@ AlignmentReport HubTimings::report() const {
   for (const auto& laser : lasers_) {
     report.counts[laser.laser().name + ": scans without ranges"] = laser.without_ranges();
     report.counts[laser.laser().name + ": beams without echo"] = laser.without_echo();
+    report.counts[laser.laser().name + ": beams with a later echo only"] = laser.echoes().later;
+    report.counts[laser.laser().name + ": echoes that the rig's choice leaves out"] = laser.echoes().unused;
     if (laser.has_no_echoes())
       report.warnings.push_back(fmt::format(
           "{}: none of its {} beams has an echo: nothing is within its range, its window is covered, or it sends codes in place of ranges",

@@ -64,7 +64,7 @@ LaserTiming* HubTimings::track_of(const Scan& scan) {
 std::shared_ptr<const Measurements> HubTimings::measurements_of(const TimedScan& scan) {
   auto measurements = measurements_.get();
   fill_measurements(scan, lasers_[scan.scan->laser].laser(), epoch_ns_, *measurements);
-  lasers_[scan.scan->laser].count_beams(scan.scan->echoes.front().ranges.size(), measurements->size());
+  lasers_[scan.scan->laser].count_beams(*scan.scan, *measurements);
   return measurements;
 }
 

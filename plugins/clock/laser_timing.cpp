@@ -24,6 +24,7 @@ bool LaserTiming::add(std::shared_ptr<const Scan> scan, double hub) {
     ++without_ranges_;
     return false;
   }
+  scan = with_used_echoes(std::move(scan), laser_.echo, echoes_);
   const auto handover_us = static_cast<std::int32_t>(scan->transmission_time_us - scan->scan_time_us);
   const double handover = seconds(handover_us);
   if (handover < kEarliestHandover || handover > kLongestHandover) {
@@ -45,6 +46,16 @@ bool LaserTiming::add(std::shared_ptr<const Scan> scan, double hub) {
                       .stamp = {.turn = turn_, .time = seconds(arrival.device_us - handover_us)},
                       .stamp_receipt = hub - handover});
   return true;
+}
+
+void LaserTiming::count_beams(const Scan& scan, const Measurements& measurements) {
+  const auto& all = measurements.beam;
+  std::size_t came_back = all.size();
+  if (scan.echoes.size() > 1) {  // of a beam as many as came back
+    for (std::size_t i = 1; i < all.size(); ++i) came_back -= all[i] == all[i - 1] ? 1 : 0;
+  }
+  beams_ += scan.echoes.front().ranges.size();
+  without_echo_ += scan.echoes.front().ranges.size() - came_back;
 }
 
 double LaserTiming::base(const Pending& scan, double device_time) const {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/data/echoes.hpp"
 #include "plugins/clock/device_stamps.hpp"
 #include "plugins/clock/mirror_turns.hpp"
 #include "plugins/clock/scan_beams.hpp"
@@ -43,12 +44,10 @@ class LaserTiming {
   /// With the silences before its first and after its last scan [s since the epoch].
   DeviceReport report(double begin, double end) const { return stamps_.report(begin, end); }
   std::uint64_t without_ranges() const { return without_ranges_; }
-  /// Notes of a scan how many beams it has, and how many of them came back.
-  void count_beams(std::size_t beams, std::size_t came_back) {
-    beams_ += beams;
-    without_echo_ += beams - came_back;
-  }
+  /// Counts the beams of a scan, and those of them that did not come back.
+  void count_beams(const Scan& scan, const Measurements& measurements);
   std::uint64_t without_echo() const { return without_echo_; }  ///< beams
+  const EchoCounts& echoes() const { return echoes_; }          ///< where the laser sends several
   bool has_no_echoes() const { return beams_ > 0 && without_echo_ == beams_; }
   /// A contradiction between the stamps and the rig's period_offset, or "".
   std::string stamp_warning() const;
@@ -72,6 +71,7 @@ class LaserTiming {
   std::vector<MirrorStamp> taken_;  ///< the last stamps that were handed out: neighbours of the next ones
   DelayHistogram handovers_;        ///< from stamp to transmission
   std::uint64_t without_ranges_ = 0;
+  EchoCounts echoes_;
   std::uint64_t beams_ = 0;
   std::uint64_t without_echo_ = 0;
 };

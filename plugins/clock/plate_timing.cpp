@@ -47,16 +47,19 @@ bool PlateTiming::is_continuous(const Latest& from, const PlateReading& reading)
 bool PlateTiming::add(const PlateReading& reading, double hub) {
   if (before_) zero_is_new_ = !is_continuous(*before_, reading);
   before_.reset();
+  const double receipt = hub - 1e-6 * reading.handover_us;  // as if it had been sent at once
   latest_ = {.device_us = reading.device_us, .receipt_ns = reading.receipt_ns};
   stamps_.trust_counter(reading.numbered);
-  const auto arrival = stamps_.accept(reading.sequence, reading.device_us, reading.receipt_ns, hub);
+  const auto arrival =
+      stamps_.accept(reading.sequence, reading.device_us + static_cast<std::uint32_t>(reading.handover_us),
+                     reading.receipt_ns, hub, reading.handover_us);
   if (arrival.kind == StampKind::repeated) return false;
   if (arrival.kind == StampKind::reset) {
     before_reset_ = {.last = last_, .zero_is_lost = zero_is_lost_};
-    zero_is_lost_ = zero_is_lost_ || has_lost_zero(reading, hub);
+    zero_is_lost_ = zero_is_lost_ || has_lost_zero(reading, receipt);
   }
   if (arrival.kind == StampKind::returned) undo_reset();
-  if (source_ == TimeSource::receipt && taken_ > 0 && hub <= last_.receipt) {
+  if (source_ == TimeSource::receipt && taken_ > 0 && receipt <= last_.receipt) {
     ++simultaneous_;
     return true;
   }
@@ -64,8 +67,8 @@ bool PlateTiming::add(const PlateReading& reading, double hub) {
     ++after_lost_zero_;
     return true;
   }
-  Reading next{.device = 1e-6 * static_cast<double>(arrival.device_us),
-               .receipt = hub,
+  Reading next{.device = 1e-6 * static_cast<double>(arrival.device_us - std::int64_t{reading.handover_us}),
+               .receipt = receipt,
                .count = static_cast<std::int32_t>(reading.count)};
   if (taken_ > 0) next.count = last_.count + counted(static_cast<std::uint32_t>(last_.count), reading.count);
   if (taken_ > 0 && has_jumped(last_, next)) {
@@ -117,9 +120,9 @@ void PlateTiming::undo_reset() {
   while (!readings_.empty() && readings_.back().device > last_.device) readings_.pop_back();
 }
 
-bool PlateTiming::has_lost_zero(const PlateReading& reading, double hub) const {
+bool PlateTiming::has_lost_zero(const PlateReading& reading, double receipt) const {
   const double change = counted(static_cast<std::uint32_t>(last_.count), reading.count);
-  const double residual_if_continued = std::abs(change - rate_ * (hub - last_.receipt));
+  const double residual_if_continued = std::abs(change - rate_ * (receipt - last_.receipt));
   const double residual_if_restarted = std::abs(counted(0, reading.count) - rate_ * 1e-6 * reading.device_us);
   return residual_if_restarted < residual_if_continued;
 }

@@ -72,7 +72,7 @@ class PlateTiming {
   void take(const Reading& next);
   void classify_jump(const Reading& next);
   bool has_jumped(const Reading& from, const Reading& to) const;
-  bool has_lost_zero(const PlateReading& reading, double hub) const;
+  bool has_lost_zero(const PlateReading& reading, double receipt) const;
   static bool is_continuous(const Latest& from, const PlateReading& reading);
 
   double counts_per_revolution_;

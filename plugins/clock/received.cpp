@@ -25,8 +25,10 @@ std::size_t device_of(const Received& item) {
 
 DeviceStamp stamp_of(const Received& item) {
   const Scan* scan = scan_of(item);
-  return {.receipt_ns = receipt_of(item),
-          .device_us = scan ? scan->transmission_time_us : std::get<PlateReading>(item).device_us};
+  if (scan) return {.receipt_ns = scan->receipt_ns, .device_us = scan->transmission_time_us};
+  const auto& reading = std::get<PlateReading>(item);
+  return {.receipt_ns = reading.receipt_ns,
+          .device_us = reading.device_us + static_cast<std::uint32_t>(reading.handover_us)};
 }
 
 void set_back(Received& item, std::int64_t step_ns) {

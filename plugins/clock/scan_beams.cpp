@@ -44,6 +44,31 @@ void for_each_of(std::int32_t count, T* to, Value value) {
   for (std::int32_t i = 0; i < count; ++i) to[i] = static_cast<T>(value(i));
 }
 
+/// All echoes of each beam.
+void append_echoes(const std::vector<Echo>& echoes, std::size_t beams, Measurements& out) {
+  for (std::size_t k = 0; k < beams; ++k) {
+    for (const Echo& echo : echoes) {
+      if (!came_back(echo.ranges[k])) continue;
+      out.range.push_back(echo.ranges[k]);
+      out.remission.push_back(k < echo.remissions.size() ? echo.remissions[k] : 0);
+      out.beam.push_back(static_cast<std::uint16_t>(k));
+    }
+  }
+}
+
+/// Fills the measurements of a scan of several echoes.
+void fill_echoes(const TimedScan& timed, const RigLaser& laser, Measurements& out) {
+  const Scan& scan = *timed.scan;
+  resize(out, 0);
+  append_echoes(scan.echoes, std::min(scan.echoes.front().ranges.size(), kMaxBeams), out);
+  for (const std::uint16_t k : out.beam) {
+    out.mirror_angle.push_back(
+        static_cast<float>(wrapped_mirror_angle(scan.start_angle - laser.mount + k * scan.angle_step)));
+    out.time.push_back(timed.beam_time(k));
+  }
+  out.laser.assign(out.size(), scan.laser);
+}
+
 }  // namespace
 
 double TimedScan::beam_interval() const {
@@ -70,6 +95,7 @@ void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64
 
   out.epoch_ns = epoch_ns;
   out.cos_incidence.clear();
+  if (scan.echoes.size() > 1) return fill_echoes(timed, laser, out);
   resize(out, beams);
   std::size_t n = 0;
   for (std::size_t k = 0; k < beams; ++k) {

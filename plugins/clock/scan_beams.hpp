@@ -22,9 +22,10 @@ struct TimedScan {
   double beam_interval() const;  ///< [s] from beam to beam
 };
 
-/// The measurements of a scan: one for each beam that came back, in the order of firing.
+/// The measurements of a scan: one for each echo of each beam that came back, in the order of firing; those
+/// of one beam have its time.
 ///
-/// @param timed   with at least one echo; the first is taken
+/// @param timed   with at least one echo
 /// @param laser   gives the offset of the reported angles from θ
 /// @param epoch_ns [ns since the Unix epoch]
 /// @param out     holds them afterwards, and nothing else

@@ -10,9 +10,10 @@
 namespace crisp {
 namespace {
 
-std::vector<PlateReading> find(ByteView stream, std::size_t piece) {
+std::vector<PlateReading> find(ByteView stream, std::size_t piece,
+                               const std::optional<EncoderLine>& own = {}) {
   std::vector<PlateReading> found;
-  PlateFramer framer;
+  PlateFramer framer(own);
   for (std::size_t at = 0; at < stream.size(); at += piece) {
     framer.feed(stream.subspan(at, std::min(piece, stream.size() - at)), 0,
                 [&](const PlateReading& reading) { found.push_back(reading); });
@@ -36,6 +37,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!same(whole[i], pieces[i])) std::abort();
     const auto again = find(as_bytes(encode_plate_sentence(whole[i])), 100);
     if (again.size() != 1 || !same(again[0], whole[i])) std::abort();
+  }
+  const EncoderLine own{.begin = "E", .count_column = 2, .time_column = 1, .checksum = LineChecksum::crc8};
+  for (const auto& format : {own, EncoderLine{.separators = " "}}) {
+    const auto at_once = find(stream, size + 1, format), bytewise = find(stream, 1, format);
+    if (at_once.size() != bytewise.size()) std::abort();
+    for (std::size_t i = 0; i < at_once.size(); ++i) {
+      if (!same(at_once[i], bytewise[i])) std::abort();
+    }
   }
   return 0;
 }

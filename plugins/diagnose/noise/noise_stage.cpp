@@ -8,6 +8,7 @@
 #include <span>
 
 #include "pipeline/clocks/unwrap.hpp"
+#include "pipeline/data/rig_echoes.hpp"
 #include "pipeline/plot/write_plot.hpp"
 #include "plugins/diagnose/noise/common_mode_range_error.hpp"
 #include "plugins/diagnose/noise/likelihood_gain.hpp"
@@ -62,7 +63,7 @@ void DiagnoseNoiseStage::describe(StageDescription<DiagnoseNoiseStage>& d) {
 void DiagnoseNoiseStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const Findings* before = in.find<Findings>()) all_.append(*before);
   if (const PlateReading* reading = in.find<PlateReading>()) plate_.add(*reading);
-  const Scan* scan = in.find<Scan>();
+  const auto scan = with_used_echoes(in.share<Scan>(), context.rig());
   if (!scan) return;
   if (lasers_.empty()) {
     lasers_.resize(context.rig().lasers.size());

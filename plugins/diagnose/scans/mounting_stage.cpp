@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "pipeline/data/degree.hpp"
+#include "pipeline/data/rig_echoes.hpp"
 
 namespace crisp {
 namespace {
@@ -102,10 +103,11 @@ void DiagnoseMountingStage::describe(StageDescription<DiagnoseMountingStage>& d)
       .range(0.01, 2);
 }
 
-void DiagnoseMountingStage::process(const Inputs& in, Outputs&, Context&) {
+void DiagnoseMountingStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const Findings* before = in.find<Findings>()) findings_.append(*before);
   if (const auto* reading = in.find<PlateReading>()) series_.add(*reading);
-  if (auto scan = in.share<Scan>(); scan && scan->laser == 0) series_.add(std::move(scan));
+  if (auto scan = in.share<Scan>(); scan && scan->laser == 0)
+    series_.add(with_used_echoes(std::move(scan), context.rig()));
 }
 
 void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pipeline/data/degree.hpp"
+#include "pipeline/data/rig_echoes.hpp"
 #include "pipeline/plot/write_plot.hpp"
 #include "plugins/diagnose/scans/homogeneity_test.hpp"
 #include "plugins/diagnose/scans/pass_fit_test.hpp"
@@ -198,11 +199,12 @@ void DiagnosePassesStage::describe(StageDescription<DiagnosePassesStage>& d) {
       .writes_into({"*_passes.svg"});
 }
 
-void DiagnosePassesStage::process(const Inputs& in, Outputs&, Context&) {
+void DiagnosePassesStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const Findings* before = in.find<Findings>()) findings_.append(*before);
   if (auto plate = in.share<PlateTrajectory>()) plate_ = std::move(plate);
   if (const auto* reading = in.find<PlateReading>()) series_.add(*reading);
-  if (auto scan = in.share<Scan>(); scan && scan->laser == 0) series_.add(std::move(scan));
+  if (auto scan = in.share<Scan>(); scan && scan->laser == 0)
+    series_.add(with_used_echoes(std::move(scan), context.rig()));
   if (auto beams = in.share<Measurements>()) beams_.push_back(std::move(beams));
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pipeline/data/degree.hpp"
+#include "pipeline/data/rig_echoes.hpp"
 #include "pipeline/plot/write_plot.hpp"
 #include "plugins/diagnose/scans/scan_prediction_errors.hpp"
 #include "plugins/diagnose/scans/stationary_profiles.hpp"
@@ -90,7 +91,7 @@ void DiagnoseStationaryStage::process(const Inputs& in, Outputs&, Context& conte
     for (auto& laser : lasers_) laser.series.add(*reading);
     items_.emplace_back(*reading);
   }
-  if (auto scan = in.share<Scan>()) {
+  if (auto scan = with_used_echoes(in.share<Scan>(), context.rig())) {
     if (scan->echoes.empty() || scan->echoes.front().ranges.empty()) {
       context.count("scans without ranges");
       return;

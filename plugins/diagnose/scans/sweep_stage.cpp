@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "pipeline/data/rig_echoes.hpp"
 #include "pipeline/plot/write_plot.hpp"
 #include "plugins/diagnose/scans/bursts.hpp"
 #include "plugins/diagnose/scans/range_jump.hpp"
@@ -171,7 +172,7 @@ void DiagnoseSweepStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const auto* reading = in.find<PlateReading>()) {
     for (auto& laser : lasers_) laser.add(*reading);
   }
-  if (auto scan = in.share<Scan>()) {
+  if (auto scan = with_used_echoes(in.share<Scan>(), context.rig())) {
     ScanSeries& laser = lasers_.at(scan->laser);
     laser.add(std::move(scan));
   }

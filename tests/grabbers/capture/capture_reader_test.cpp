@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/capture/capture_reader.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -51,6 +52,59 @@ TEST(CaptureReader, GivesEveryItemInTheOrderOfItsReceipt) {
 TEST(CaptureReader, ReadsBothLanguages) {
   const Scenario scenario{.language = ColaLanguage::A};
   EXPECT_THAT(read_capture(pcap_file(scenario.frames())).items, ElementsAreArray(describe(scenario.items())));
+}
+
+/// A telegram of CoLa-A as SICK's telegram listing has it, with an encoder: five beams of 1.5 m.
+std::string telegram_with_encoder(unsigned k, std::uint32_t position) {
+  return fmt::format(
+      "\2sSN LMDscandata 0 1 ABCDE 0 0 {:X} {:X} {:X} {:X} 0 0 0 0 0 9C4 168 1 {:X} 0 1 DIST1 3F800000 00000000 "
+      "FFF92230 1388 5 5DC 5DC 5DC 5DC 5DC 0 0 0 0 0 0\3",
+      k, 100 + k, 1'000'000 + 40'000 * k, 1'012'345 + 40'000 * k, position);
+}
+
+TEST(CaptureReader, ReadsThePlatesCountsInALasersTelegrams) {
+  std::vector<Frame> frames;
+  TcpConversation laser(kLaser1, kHub, into(frames));
+  laser.open(kStart);
+  const std::vector<std::uint32_t> positions = {2, 1, 0, 4294967295, 4294967294};
+  for (unsigned k = 0; k < positions.size(); ++k) {
+    laser.send(TcpSide::Server, as_bytes(telegram_with_encoder(k, positions[k])),
+               kStart + (50 + 40 * k) * kMillisecond);
+  }
+  Rig rig = default_rig();
+  rig.lasers.resize(1);
+  rig.plate.address = {};
+  rig.plate.encoder_of = 0;
+  const auto reading = read_capture(MemoryFile(pcap_file(frames)).path(), rig);
+  ASSERT_EQ(reading.items.size(), 10U);
+  EXPECT_EQ(reading.items[0], "50000000 plate 0 1000000 2") << "before the scan that it came with";
+  EXPECT_THAT(reading.items[1], testing::StartsWith("50000000 laser 0"));
+  EXPECT_EQ(reading.items[6], "170000000 plate 3 1120000 4294967295");
+  EXPECT_EQ(reading.device("plate").items, 5U);
+  EXPECT_EQ(reading.device("plate").counted_down, 4U);
+  EXPECT_EQ(reading.device("laser1").counted_down, 4U) << "for people who look for an encoder";
+}
+
+TEST(CaptureReader, ReadsEncoderLinesOfTheRigsFormatInDatagramsAndStreams) {
+  Rig rig = default_rig();
+  rig.plate.line = EncoderLine{.begin = "ENC", .count_column = 2, .time_column = 1, .time_unit = 1e-3};
+  const std::vector<std::string> expected = {"5000000 plate 0 10000 77", "7000000 plate 1 12000 78",
+                                             "7000000 plate 2 14000 79"};
+  const auto send = [](const auto& sender) {
+    sender("ENC 10 77\n", 5 * kMillisecond);
+    sender("ENC 12 78\nENC 14 79\n", 7 * kMillisecond);
+  };
+  std::vector<Frame> datagrams;
+  DatagramSender udp(kPlate, kHubPlate, into(datagrams));
+  send([&](std::string_view text, std::int64_t ns) { udp.send(as_bytes(text), kStart + ns); });
+  EXPECT_EQ(read_capture(MemoryFile(pcap_file(datagrams)).path(), rig).items, expected);
+  std::vector<Frame> segments;
+  TcpConversation tcp(kPlate, kHub, into(segments));
+  tcp.open(kStart);
+  send([&](std::string_view text, std::int64_t ns) {
+    tcp.send(TcpSide::Server, as_bytes(text), kStart + ns);
+  });
+  EXPECT_EQ(read_capture(MemoryFile(pcap_file(segments)).path(), rig).items, expected);
 }
 
 TEST(CaptureReader, FindsTheSameInEveryLinkLayer) {

@@ -30,6 +30,36 @@ TEST_F(CaptureRecorderTest, IsReadBackItemForItemWithItsTimes) {
   expect_same(read(folder_ / "hub.pcap"), items);
 }
 
+TEST_F(CaptureRecorderTest, RecordsAnEncoderThatIsWiredToALaserInItsScansAlone) {
+  Rig rig = default_rig();
+  rig.plate.address = {};
+  rig.plate.encoder_of = 0;
+  CaptureRecorder recorder(folder_ / "hub.pcap", rig, {});
+  for (const HubItem& item : test::simulated_items(0.2)) {
+    const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item);
+    if (scan == nullptr || (*scan)->laser != 0) continue;
+    auto counted = std::make_shared<Scan>(**scan);
+    counted->encoders = {{.position = 70'000U + counted->scan_counter}};
+    recorder.write(PlateReading{.count = 1, .receipt_ns = counted->receipt_ns});
+    recorder.write(std::shared_ptr<const Scan>(std::move(counted)));
+  }
+  recorder.close();
+  CaptureReader reader(folder_ / "hub.pcap", rig);
+  std::size_t scans = 0, readings = 0;
+  std::uint32_t count = 0;
+  while (const auto item = reader.next()) {
+    if (const auto* reading = std::get_if<PlateReading>(&*item)) {
+      ++readings;
+      count = reading->count;
+    } else {
+      ++scans;
+      EXPECT_EQ(count, 70'000U + std::get<std::shared_ptr<const Scan>>(*item)->scan_counter);
+    }
+  }
+  EXPECT_GT(scans, 5U);
+  EXPECT_EQ(readings, scans);
+}
+
 TEST_F(CaptureRecorderTest, HoldsWhatWasWrittenASecondBeforeAPowerCut) {
   const auto items = test::simulated_items(0.5);
   CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {.safe_after = 0});

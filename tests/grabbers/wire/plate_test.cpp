@@ -110,5 +110,97 @@ TEST(PlateFramer, StampsAReadingWithTheLatestOfItsBytes) {
   EXPECT_FALSE(framer.waiting());
 }
 
+PlateReading read_line(std::string_view line, const EncoderLine& format,
+                       PlateFailure expected = PlateFailure::None) {
+  PlateReading reading;
+  EXPECT_EQ(decode_encoder_line(line, format, reading), expected) << line;
+  return reading;
+}
+
+TEST(EncoderLine, ReadsColumnsByTheirSeparators) {
+  const EncoderLine commas{.count_column = 2, .time_column = 1, .time_unit = 1e-3};
+  for (const auto* line : {"1500,42", "1500, 42", " 1500 ;\t42 ", "1500\t42", "+1500.0,+42,more"}) {
+    const auto reading = read_line(line, commas);
+    EXPECT_EQ(reading.count, 42U) << line;
+    EXPECT_EQ(reading.device_us, 1'500'000U) << line;
+  }
+  EXPECT_EQ(read_line("E:17:-1", {.begin = "E", .separators = ":", .count_column = 2}).count, 4294967295U);
+  EXPECT_EQ(read_line("$ENC,8589934597", {.begin = "$ENC"}).count, 5U) << "modulo 2^32";
+  EXPECT_EQ(read_line("5;;7", {.separators = ";", .count_column = 3}).count, 7U) << "the second is empty";
+}
+
+TEST(EncoderLine, ReadsTimesModulo2To32Microseconds) {
+  const auto time = [](std::string_view text, double unit) {
+    return read_line(std::string(text) + ",1", {.count_column = 2, .time_column = 1, .time_unit = unit})
+        .device_us;
+  };
+  EXPECT_EQ(time("4294967297", 1e-6), 1U);
+  EXPECT_EQ(time("4294968", 1e-3), 704U) << "4294968000 - 2^32";
+  EXPECT_EQ(time("2.000001", 1), 2'000'001U);
+}
+
+TEST(EncoderLine, ChecksItsChecksum) {
+  // 0x04 is the exclusive or of PPLT,7,1523342,1004211, as of the built-in sentence; F4 the check value of
+  // CRC-8/SMBUS for 123456789 in the catalogue of CRC algorithms.
+  const EncoderLine exclusive{.begin = "$PPLT", .count_column = 3, .checksum = LineChecksum::exclusive_or};
+  EXPECT_EQ(read_line("$PPLT,7,1523342,1004211*04", exclusive).count, 1004211U);
+  read_line("$PPLT,7,1523342,1004211*05", exclusive, PlateFailure::BadChecksum);
+  read_line("$PPLT,7,1523342,1004211", exclusive, PlateFailure::BadChecksum);
+  const EncoderLine crc{.checksum = LineChecksum::crc8};
+  EXPECT_EQ(read_line("123456789*F4", crc).count, 123456789U);
+  EXPECT_EQ(read_line("123456789*f4", crc).count, 123456789U);
+  read_line("123456780*F4", crc, PlateFailure::BadChecksum);
+  EXPECT_EQ(read_line("12*00", {}).count, 12U) << "not checked";
+}
+
+TEST(EncoderLine, RefusesWhatIsNoReading) {
+  const EncoderLine format{.begin = "E", .count_column = 2, .time_column = 1};
+  read_line("F1,2", format, PlateFailure::OtherSentence);
+  for (const auto* line :
+       {"E", "E1", "E1,", "E1,x", "E1,2.5", "Enan,2", "E1e300,2", "E1,99999999999999999999"}) {
+    read_line(line, format, PlateFailure::BadField);
+  }
+}
+
+TEST(PlateFramer, ReadsLinesOfTheUsersOwnFormatHoweverTheStreamIsCut) {
+  const std::string text = "56,7\r\n100,1\n200,2\r\n\nrubbish\n" + sentence(9) + "300,3\n400,4";
+  for (std::size_t piece = 1; piece <= text.size(); ++piece) {
+    PlateFramer framer(EncoderLine{.count_column = 2, .time_column = 1});
+    std::vector<std::uint32_t> times;
+    for (std::size_t i = 0; i < text.size(); i += piece)
+      framer.feed(as_bytes(std::string_view(text).substr(i, piece)), 0,
+                  [&](const PlateReading& r) { times.push_back(r.device_us); });
+    framer.gap();
+    EXPECT_THAT(times, ElementsAre(100, 200, 4294967295U, 300)) << "the first line may have lost its begin";
+    EXPECT_EQ(framer.counts().skipped_bytes, 5U);
+    EXPECT_EQ(framer.counts().of(PlateFailure::BadField), 1U);
+    EXPECT_EQ(framer.counts().of(PlateFailure::Truncated), 1U);
+  }
+}
+
+TEST(PlateFramer, TakesADatagramsLastLineWithoutALineFeed) {
+  PlateFramer framer(EncoderLine{}, PlateBytes::datagrams);
+  std::vector<PlateReading> readings;
+  const auto take = [&](const PlateReading& r) { readings.push_back(r); };
+  for (const std::int64_t ms : {7, 8}) {
+    framer.feed(as_bytes(std::string_view("5\n6")), ms * 1'000'000, take);
+    framer.gap(take);
+  }
+  ASSERT_EQ(readings.size(), 4U);
+  EXPECT_EQ(readings[3].count, 6U);
+  EXPECT_EQ(readings[3].device_us, 8000U) << "the receipt, without a time of its own";
+  EXPECT_EQ(readings[3].sequence, 3);
+  EXPECT_FALSE(readings[3].numbered);
+}
+
+TEST(PlateFramer, BoundsALineOfTheUsersOwnFormat) {
+  PlateFramer framer(EncoderLine{}, PlateBytes::datagrams);
+  std::size_t readings = 0;
+  const auto take = [&](const PlateReading&) { ++readings; };
+  framer.feed(as_bytes(std::string(100'000, '1') + "\n5\n"), 0, take);
+  EXPECT_EQ(readings, 1U);
+  EXPECT_EQ(framer.counts().of(PlateFailure::Truncated), 1U);
+}
+
 }  // namespace
 }  // namespace crisp

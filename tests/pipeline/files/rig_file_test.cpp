@@ -112,6 +112,51 @@ TEST(RigFile, ReadsWhereABagHasItsDevices) {
   EXPECT_THAT(errors_of_rig(rig("joint: a, field: b")), ElementsAre(HasSubstr("remove one of them")));
 }
 
+TEST(RigFile, ReadsTheChoiceOfEchoes) {
+  const auto rig = [](const std::string& echo) {
+    return "crisp: 1\nlasers: {a: {" + echo + "nominal: {lambda: 0, tau: 0}}}\nplate: {}\n";
+  };
+  EXPECT_EQ(parse_rig(parse_yaml(rig(""), "rig.yaml")).lasers[0].echo, EchoChoice::first);
+  EXPECT_EQ(parse_rig(parse_yaml(rig("echo: all, "), "rig.yaml")).lasers[0].echo, EchoChoice::all);
+  EXPECT_THAT(errors_of_rig(rig("echo: second, ")),
+              ElementsAre(HasSubstr("write first, last, strongest or all")));
+}
+
+TEST(RigFile, ReadsTheLaserThatTheEncoderIsWiredTo) {
+  const auto rig = [](const std::string& plate) {
+    return "crisp: 1\nplate: {" + plate +
+           "}\nlasers: {a: {nominal: {lambda: 0, tau: 0}}, b: {nominal: {lambda: 1, tau: 0}}}\n";
+  };
+  EXPECT_EQ(parse_rig(parse_yaml(rig("encoder_of: b"), "rig.yaml")).plate.encoder_of, 1);
+  EXPECT_THAT(errors_of_rig(rig("encoder_of: c")), ElementsAre(HasSubstr("there is no laser 'c'")));
+  EXPECT_THAT(errors_of_rig(rig("encoder_of: a, address: 10.0.0.1")),
+              ElementsAre(HasSubstr("remove one of them")));
+}
+
+TEST(RigFile, ReadsTheLineOfAnEncodersOwn) {
+  const auto rig = [](const std::string& line) {
+    return "crisp: 1\nlasers: {a: {nominal: {lambda: 0, tau: 0}}}\nplate: {line: {" + line + "}}\n";
+  };
+  const EncoderLine line =
+      *parse_rig(
+           parse_yaml(
+               rig("begin: $ENC, separators: ';', time_column: 1, time_unit: ms, count_column: 3, checksum: crc8"),
+               "rig.yaml"))
+           .plate.line;
+  EXPECT_EQ(line.begin, "$ENC");
+  EXPECT_EQ(line.separators, ";");
+  EXPECT_EQ(line.time_column, 1U);
+  EXPECT_EQ(line.count_column, 3U);
+  EXPECT_EQ(line.time_unit, 1e-3);
+  EXPECT_EQ(line.checksum, LineChecksum::crc8);
+  EXPECT_THAT(errors_of_rig(rig("begin: E")), ElementsAre(HasSubstr("'count_column' is missing")));
+  EXPECT_THAT(errors_of_rig(rig("count_column: 2, time_column: 2")), ElementsAre(HasSubstr("are the same")));
+  EXPECT_THAT(errors_of_rig(rig("count_column: 2, separators: '-'")),
+              ElementsAre(HasSubstr("characters of numbers")));
+  EXPECT_THAT(errors_of_rig(rig("count_column: 2, checksum: md5")),
+              ElementsAre(HasSubstr("write none, xor or crc8")));
+}
+
 TEST(RigFile, ReportsEveryMistakeWithItsPlace) {
   EXPECT_THAT(
       errors_of_rig(R"(crisp: 1

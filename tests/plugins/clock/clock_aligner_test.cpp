@@ -48,6 +48,60 @@ TEST(ClockAligner, GivesThePlatesAngleOnTheHubsClock) {
   }
 }
 
+TEST(ClockAligner, PlacesTheCountsInALasersTelegramsAtItsScansStamps) {
+  SimulatedLaser laser;
+  laser.clock.skew = [](double) { return 120e-6; };
+  const auto angle = [](double t) { return 3 * std::sin(1.1 * t) - 2 * t; };
+  const auto turns = laser.turns(4, 0, 30);
+  std::vector<PlateReading> readings;  // one a scan, on the laser's clock, sent 23 ms after its stamp
+  for (const auto& turn : turns) {
+    const Scan& scan = turn.scan;
+    readings.push_back(
+        {.sequence = scan.telegram_counter,
+         .device_us = scan.scan_time_us,
+         .count =
+             static_cast<std::uint32_t>(std::llround(angle(turn.begin) * 16384 / (2 * std::numbers::pi))),
+         .receipt_ns = scan.receipt_ns,
+         .handover_us = static_cast<std::int32_t>(scan.transmission_time_us - scan.scan_time_us)});
+  }
+  for (const auto source : {TimeSource::clock, TimeSource::receipt}) {
+    const auto aligned = align({turns}, readings, {.source = source});
+    const double delay =
+        laser.minimum_delay + (source == TimeSource::receipt ? 1e-4 : 0);  // and the mean one
+    double worst = 0;
+    for (const auto& turn : turns) {
+      if (turn.begin < 1 || turn.begin > 29) continue;
+      const auto state = aligned.stretches.front().plate.at(kStart + turn.begin + delay);
+      ASSERT_TRUE(state);
+      worst =
+          std::max(worst, std::abs(std::remainder(state->angle - angle(turn.begin), 2 * std::numbers::pi)));
+    }
+    // Half a step is 0.2 mrad. By receipt, delays of 100 us on the mean and a millisecond at most move the
+    // plate of 5.3 rad/s by as many mrad.
+    EXPECT_LT(worst, source == TimeSource::clock ? 0.4e-3 : 6e-3);
+  }
+}
+
+TEST(ClockAligner, UsesTheRigsChoiceOfEchoesAndCountsWhatIsNotTheFirst) {
+  SimulatedLaser laser;
+  laser.beams = 3;
+  auto turns = laser.turns(6, 0, 2);
+  for (auto& turn : turns) turn.scan.echoes = {{.ranges = {1, 0, 0}}, {.ranges = {4, 5, 0}}};
+  const auto ranges = [&](EchoChoice choice) {
+    Rig rig = default_rig();
+    rig.lasers[0].echo = choice;
+    const auto aligned = align({turns}, SimulatedPlate{}.readings(6, 2), {}, rig);
+    EXPECT_EQ(aligned.report.counts.at("laser1: beams with a later echo only"), turns.size());
+    EXPECT_EQ(aligned.report.counts.at("laser1: beams without echo"), turns.size());
+    EXPECT_EQ(aligned.report.counts.at("laser1: echoes that the rig's choice leaves out"),
+              choice == EchoChoice::all ? 0 : turns.size());
+    return aligned.of_laser(0).front()->range;
+  };
+  EXPECT_THAT(ranges(EchoChoice::first), ElementsAre(1, 5));
+  EXPECT_THAT(ranges(EchoChoice::last), ElementsAre(4, 5));
+  EXPECT_THAT(ranges(EchoChoice::all), ElementsAre(1, 4, 5));
+}
+
 TEST(ClockAligner, TakesTheEpochAtTheWholeSecondBeforeTheFirstReceipt) {
   const auto aligned = align({SimulatedLaser{}.turns(1, 0, 1)}, SimulatedPlate{}.readings(1, 1));
   EXPECT_EQ(aligned.stretches.front().plate.epoch_ns(), 1'700'000'000'000'000'000);

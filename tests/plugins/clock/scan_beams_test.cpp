@@ -36,5 +36,22 @@ TEST(ScanBeams, OfOtherScansFollowTheMirrorFromMinus45Degrees) {
   EXPECT_THAT(beams.time, ElementsAre(DoubleNear(first, 1e-12), DoubleNear(first + 2, 1e-12)));
 }
 
+TEST(ScanBeams, OfSeveralEchoesAreBeamsOfOneInstant) {
+  auto scan = std::make_shared<Scan>();
+  scan->laser = 2;
+  scan->angle_step = 0.25;
+  scan->timing = BeamTiming::stated;
+  scan->beam_interval = 0.001;
+  scan->echoes = {{.ranges = {1, 0, 2}, .remissions = {7, 0, 8}}, {.ranges = {3, 0, 0}}};
+  Measurements beams;
+  fill_measurements({.scan = std::move(scan), .begin = 10, .period = 8}, RigLaser{.mount = 0.5}, 0, beams);
+  EXPECT_THAT(beams.range, ElementsAre(1, 3, 2));
+  EXPECT_THAT(beams.remission, ElementsAre(7, 0, 8));
+  EXPECT_THAT(beams.beam, ElementsAre(0, 0, 2));
+  EXPECT_THAT(beams.time, ElementsAre(10, 10, DoubleNear(10.002, 1e-12)));
+  EXPECT_THAT(beams.mirror_angle, ElementsAre(-0.5F, -0.5F, 0));
+  EXPECT_THAT(beams.laser, ElementsAre(2, 2, 2));
+}
+
 }  // namespace
 }  // namespace crisp

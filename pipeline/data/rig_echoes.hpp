@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "pipeline/data/echoes.hpp"
+#include "pipeline/data/rig.hpp"
+
+namespace crisp {
+
+/// The scan with the echoes that the rig chooses for its laser.
+inline std::shared_ptr<const Scan> with_used_echoes(std::shared_ptr<const Scan> scan, const Rig& rig) {
+  EchoCounts counts;
+  if (!scan || scan->laser >= rig.lasers.size()) return scan;
+  const EchoChoice choice = rig.lasers[scan->laser].echo;
+  return with_used_echoes(std::move(scan), choice, counts);
+}
+
+}  // namespace crisp
