@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/bag/bag_items.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <utility>
 
 #include "grabbers/table/append_beams.hpp"
+#include "pipeline/data/mirror_angle.hpp"
 
 namespace crisp {
 namespace {
@@ -62,7 +65,15 @@ std::shared_ptr<const Scan> BagItems::add(ScanMessage message, std::int64_t rece
   scan->timing = BeamTiming::stated;
   scan->beam_interval = message.time_increment;
   scan->echoes = std::move(message.echoes);
-  scans_.push_back({scan, seconds(message.stamp_ns) + rig_.lasers[laser].time_offset});
+  EchoCounts counts;
+  const auto used = with_used_echoes(scan, rig_.lasers[laser].echo, counts);
+  const auto note = [&](const char* what, std::uint64_t n) {
+    if (n > 0) losses_[fmt::format("{}: {}", rig_.lasers[laser].name, what)] += n;
+  };
+  note("beams with a later echo only", counts.later);
+  note("echoes that the rig's choice leaves out", counts.unused);
+  scans_.push_back(
+      {.scan = used, .time = seconds(message.stamp_ns) + rig_.lasers[laser].time_offset, .points = nullptr});
   return scan;
 }
 
@@ -71,7 +82,8 @@ std::optional<PlateReading> BagItems::add(const AngleMessage& message, std::int6
   const std::int64_t stamp_ns = message.stamp_ns.value_or(receipt_ns);
   if (!advance(last_angle_ns_, stamp_ns, "angles that are not later than the one before"))
     return std::nullopt;
-  const double angle = angles_.unwrap(message.angle);
+  const double reported = message.rotation ? rotation_.angle(*message.rotation) : message.angle;
+  const double angle = angles_.unwrap(reported);
   angles_.add(seconds(stamp_ns), angle);
   if (lasts > 0) angles_.add(seconds(stamp_ns) + lasts, angle);
   return PlateReading{.sequence = readings_++,
@@ -81,18 +93,46 @@ std::optional<PlateReading> BagItems::add(const AngleMessage& message, std::int6
                       .numbered = false};
 }
 
+bool BagItems::add(const PointMessage& message, std::uint16_t laser) {
+  if (!advance(last_scan_ns_[laser], message.stamp_ns, "scans that are not later than the one before"))
+    return false;
+  if (message.outside > 0) losses_["points outside of the scan plane z = 0"] += message.outside;
+  if (!message.timed) ++losses_["point clouds without times of the points, which are placed at the stamp"];
+  const double begin = seconds(message.stamp_ns) + rig_.lasers[laser].time_offset;
+  auto beams = std::make_shared<Measurements>();
+  beams->epoch_ns = *epoch_ns_;
+  for (const PlanarPoint& point : message.points) {
+    beams->range.push_back(point.range);
+    beams->mirror_angle.push_back(
+        static_cast<float>(wrapped_mirror_angle(point.angle - rig_.lasers[laser].mount)));
+    beams->time.push_back(begin + point.time);
+    beams->laser.push_back(laser);
+    beams->remission.push_back(point.remission);
+    beams->beam.push_back(static_cast<std::uint16_t>(beams->beam.size()));
+  }
+  scans_.push_back({.scan = nullptr, .time = begin, .points = std::move(beams)});
+  return true;
+}
+
+std::shared_ptr<const Measurements> BagItems::measured(const Stamped& stamped) const {
+  if (stamped.points) return stamped.points;
+  const Scan& scan = *stamped.scan;
+  std::vector<BeamEchoes> echoes;
+  for (const Echo& echo : scan.echoes) echoes.push_back({echo.ranges, echo.remissions});
+  auto beams = std::make_shared<Measurements>();
+  beams->epoch_ns = *epoch_ns_;
+  append_beams({.first_angle = scan.start_angle - rig_.lasers[scan.laser].mount,
+                .angle_step = scan.angle_step,
+                .first_time = stamped.time,
+                .interval = scan.beam_interval,
+                .laser = scan.laser},
+               echoes, *beams);
+  return beams;
+}
+
 void BagItems::for_each_measured(const std::function<void(std::shared_ptr<const Measurements>)>& use) const {
-  for (const auto& [scan, time] : scans_) {
-    if (scan->echoes.empty()) continue;
-    auto beams = std::make_shared<Measurements>();
-    beams->epoch_ns = *epoch_ns_;
-    append_beams({.first_angle = scan->start_angle - rig_.lasers[scan->laser].mount,
-                  .angle_step = scan->angle_step,
-                  .first_time = time,
-                  .interval = scan->beam_interval,
-                  .laser = scan->laser},
-                 scan->echoes.front().ranges, scan->echoes.front().remissions, *beams);
-    if (beams->size() > 0) use(std::move(beams));
+  for (const Stamped& scan : scans_) {
+    if (auto beams = measured(scan); beams->size() > 0) use(std::move(beams));
   }
 }
 

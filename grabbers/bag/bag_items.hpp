@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "grabbers/bag/joint_rotation.hpp"
+#include "grabbers/bag/point_cloud.hpp"
 #include "grabbers/bag/ros_sensor_messages.hpp"
 #include "grabbers/table/actuator_angles.hpp"
 #include "pipeline/data/measurements.hpp"
@@ -29,6 +31,8 @@ class BagItems {
 
   /// @return nothing for a scan that is earlier than the one before or of its time, which is counted
   std::shared_ptr<const Scan> add(ScanMessage message, std::int64_t receipt_ns, std::uint16_t laser);
+  /// @return whether the points are later than the scan before of this laser; else they are counted
+  bool add(const PointMessage& message, std::uint16_t laser);
   /// @return nothing for an angle that is earlier than the one before or of its time, which is counted
   /// @param lasts  [s] how long the plate stands at that angle; 0 where it moves
   std::optional<PlateReading> add(const AngleMessage& message, std::int64_t receipt_ns, double lasts = 0);
@@ -43,8 +47,10 @@ class BagItems {
  private:
   struct Stamped {
     std::shared_ptr<const Scan> scan;
-    double time;  ///< [s since the epoch] of beam 0
+    double time;                                 ///< [s since the epoch] of beam 0
+    std::shared_ptr<const Measurements> points;  ///< in place of a scan
   };
+  std::shared_ptr<const Measurements> measured(const Stamped& scan) const;
   /// [µs] since the epoch, which the first stamp makes.
   std::int64_t device_us(std::int64_t stamp_ns) const;
   double seconds(std::int64_t stamp_ns) const;
@@ -54,6 +60,7 @@ class BagItems {
   Rig rig_;
   double max_gap_;
   std::optional<std::int64_t> epoch_ns_;
+  JointRotation rotation_;
   ActuatorAngles angles_;
   std::uint16_t readings_ = 0;  ///< wraps, as a device's counter does
   std::map<std::uint16_t, std::uint16_t> counters_;

@@ -32,12 +32,13 @@ BagRoute BagRoutes::route(const BagConnection& connection) {
   if (const auto laser = laser_of(connection)) {
     const RigLaser& of = rig_.lasers[*laser];
     route.scans = ScanDecoder::of(connection);
-    if (route.scans) route.laser = laser;
+    if (!of.topic.empty()) route.points = PointDecoder::of(connection);
+    if (route.scans || route.points) route.laser = laser;
     if (route.scans && of.topic.empty()) take(guessed_laser_, connection, of.name, of.name.c_str());
-    if (!route.scans && !of.topic.empty()) {
+    if (!route.laser && !of.topic.empty()) {
       throw Error(fmt::format("messages of {}, the topic of {}, are {}, which is no type of scans", of.topic,
                               of.name, connection.type),
-                  "scans are sensor_msgs/LaserScan or MultiEchoLaserScan");
+                  "scans are sensor_msgs/LaserScan, MultiEchoLaserScan or PointCloud2");
     }
   }
   const RigPlate& plate = rig_.plate;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "grabbers/bag/point_cloud.hpp"
 #include "grabbers/bag/ros_sensor_messages.hpp"
 
 namespace crisp {
@@ -17,6 +18,7 @@ namespace crisp {
 struct BagRoute {
   std::optional<std::uint16_t> laser;  ///< whose scans they are, or hold
   std::optional<ScanDecoder> scans;
+  std::optional<PointDecoder> points;  ///< of the laser, in their place
   std::optional<AngleDecoder> angles;  ///< of the plate
 };
 

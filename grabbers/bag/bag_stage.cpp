@@ -30,7 +30,7 @@ void BagStage::describe(StageDescription<BagStage>& d) {
   d.name("grabber.bag").summary("reads scans and the plate's angles from a bag of ROS 1 or ROS 2");
   d.details(
       "ROS is not required. Supported bags are those of ROS 1 (.bag, chunks plain, bz2 or lz4), MCAP (chunks plain, lz4 or zstd) and ROS 2's in SQLite (.db3); a folder stands for the files in it, as ROS 2 writes them.\n\n"
-      "Scans are sensor_msgs/LaserScan or MultiEchoLaserScan, or a message that holds one. The plate's angle is a joint of a sensor_msgs/JointState, the number of a std_msgs message, or a field of another message. The rig names topics: `laser1: {topic: /tilt_scan, …}`, `plate: {topic: /joint_states, joint: laser_tilt_mount_joint}`, `plate: {topic: /encoder, unit: counts}`, `plate: {topic: /slice, field: stepAngle, unit: deg}`; without a name, the only topic of such a type is used. `crisp info BAG` lists topics, types and joints.\n\n"
+      "Scans are sensor_msgs/LaserScan or MultiEchoLaserScan, or a message that holds one. On a topic that the rig names they may be the points of a 2D laser (sensor_msgs/PointCloud2, in the plane z = 0): each then has its own time, and a clock stage cannot align them. The plate's angle is a joint of a sensor_msgs/JointState, the number of a std_msgs message, the rotation of a frame of tf, or a field of another message, a number or a quaternion. The rig names topics: `laser1: {topic: /tilt_scan, …}`, `plate: {topic: /joint_states, joint: laser_tilt_mount_joint}`, `plate: {topic: /encoder, unit: counts}`, `plate: {topic: /slice, field: stepAngle, unit: deg}`; without a name, the only topic of such a type is used. `crisp info BAG` lists topics, types and joints.\n\n"
       "A header's stamp is the firing time of beam 0, or the time of the angle; beams follow by the scan's time_increment. Scans and readings carry it as their device's time, and the time of receipt as the hub's, for a clock stage below. Where one computer stamped laser and plate, the stage's measurements can be placed without a clock stage. Angles are rounded to the plate's `counts_per_revolution`.");
   d.gives<Scan>().gives<PlateReading>().gives<PlateTrajectory>().gives<Measurements>();
   d.option("file", &BagStage::file_, "bag, or folder of its files").required();
@@ -81,6 +81,8 @@ void BagStage::use(const BagRoute& route, const BagMessage& message, Run& run) c
     if (reading) run.out.give(*reading);
     run.angles += reading.has_value();
   }
+  if (route.points)
+    run.scans[*route.laser] += run.items.add(route.points->decode(message.data), *route.laser);
   if (!scan) return;
   if (auto given = run.items.add(std::move(*scan), message.receipt_ns, *route.laser)) {
     run.out.give(std::move(given));
@@ -102,7 +104,7 @@ void BagStage::read(const std::filesystem::path& file, Run& run) const {
       run.context.progress(Progress{static_cast<double>(messages), 0, "messages", "reading the bag"});
     }
     const BagRoute& route = routes[message->connection];
-    if ((!route.scans && !route.angles) || !is_requested(message->receipt_ns, run)) continue;
+    if ((!route.laser && !route.angles) || !is_requested(message->receipt_ns, run)) continue;
     try {
       use(route, *message, run);
     } catch (const BagDamage& damage) {

@@ -124,12 +124,36 @@ ScanMessage ScanDecoder::decode(std::string_view message) const {
   return scan;
 }
 
+/// Finds the quaternion that holds the angle: of a frame of tf, or the field that the rig names.
+bool AngleDecoder::find_rotation(const BagConnection& connection, const RigPlate& plate) {
+  const bool is_tf = connection.type == "tf2_msgs/TFMessage" || connection.type == "tf/tfMessage";
+  const auto field = layout_.find(is_tf ? "transforms.transform.rotation" : plate.field);
+  if (!field || layout_.fields[*field].name != "geometry_msgs/Quaternion") return false;
+  if (!is_tf && layout_.fields[*field].is_in_list) return false;
+  quaternion_ = layout_.fields[*field].parts.at(0);
+  if (!is_tf) return true;
+  frames_ = layout_.find("transforms.child_frame_id");
+  sec_ = layout_.find("transforms.header.stamp.sec");
+  nanosec_ = layout_.find("transforms.header.stamp.nanosec");
+  if (plate.topic == connection.topic && plate.joint.empty())
+    throw Error(
+        fmt::format("{}, the topic of {}, holds transforms of several frames", plate.topic, plate.name),
+        "name the frame that turns as 'joint' in the rig: its child_frame_id");
+  return frames_ && sec_ && nanosec_;
+}
+
 std::optional<AngleDecoder> AngleDecoder::of(const BagConnection& connection, const RigPlate& plate) {
   auto layout = parse_ros_layout(connection.type, connection.definition);
   if (!layout || connection.encoding == RosEncoding::other) return std::nullopt;
   AngleDecoder decoder;
   decoder.encoding_ = connection.encoding;
   decoder.joint_ = plate.joint;
+  decoder.layout_ = *layout;
+  if (const RosField* stamp = layout->stamp()) {
+    decoder.sec_ = stamp->parts.at(0);
+    decoder.nanosec_ = stamp->parts.at(1);
+  }
+  if (decoder.find_rotation(connection, plate)) return decoder;
   const bool is_joint_state = connection.type == "sensor_msgs/JointState";
   if (is_joint_state) decoder.joints_ = layout->find("name");
   const std::string path = is_joint_state ? "position" : plate.field.empty() ? "data" : plate.field;
@@ -146,15 +170,31 @@ std::optional<AngleDecoder> AngleDecoder::of(const BagConnection& connection, co
   const AngleUnit unit = plate.unit.value_or(is_whole ? AngleUnit::counts : AngleUnit::rad);
   if (unit == AngleUnit::deg) decoder.scale_ = std::numbers::pi / 180;
   if (unit == AngleUnit::counts) decoder.scale_ = std::abs(plate.angle_per_count());
-  if (const RosField* stamp = layout->stamp()) {
-    decoder.sec_ = stamp->parts.at(0);
-    decoder.nanosec_ = stamp->parts.at(1);
-  }
-  decoder.layout_ = std::move(*layout);
   return decoder;
 }
 
+std::optional<AngleMessage> AngleDecoder::decode_rotation(std::string_view message) const {
+  std::int64_t sec = 0, nanosec = 0;
+  bool is_joint = !frames_;
+  std::array<double, 4> xyzw{};
+  for (const RosValue& value : decode_ros(layout_, encoding_, message)) {
+    const RosType type = layout_.fields[value.field].type;
+    if (value.field == sec_) sec = value.integer(type) & 0xffffffff;
+    if (value.field == nanosec_) nanosec = value.integer(type);
+    if (value.field == frames_) is_joint = value.bytes == joint_ || value.bytes == "/" + joint_;
+    const std::size_t i = value.field - *quaternion_;
+    if (!is_joint || value.field < *quaternion_ || i >= xyzw.size()) continue;
+    xyzw[i] = value.number(type);
+    if (i + 1 < xyzw.size()) continue;
+    AngleMessage reading{.rotation = xyzw};
+    if (sec_) reading.stamp_ns = kSecondInNs * sec + nanosec;
+    return reading;
+  }
+  return std::nullopt;
+}
+
 std::optional<AngleMessage> AngleDecoder::decode(std::string_view message) const {
+  if (quaternion_) return decode_rotation(message);
   AngleMessage reading;
   std::int64_t stamp = 0;
   std::size_t joints = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -44,11 +45,13 @@ class ScanDecoder {
 
 /// One encoder reading's angle.
 struct AngleMessage {
-  std::optional<std::int64_t> stamp_ns;  ///< [ns] of its header, if it has one
-  double angle = 0;                      ///< [rad] as the device counts it
+  std::optional<std::int64_t> stamp_ns;           ///< [ns] of its header, if it has one
+  double angle = 0;                               ///< [rad] as the device counts it
+  std::optional<std::array<double, 4>> rotation;  ///< in its place: x, y, z, w
 };
 
-/// Reads the plate's angle out of messages: of a JointState, or any field of another message.
+/// Reads the plate's angle out of messages: of a JointState, of a frame of tf, or any field of another
+/// message, a number or a quaternion.
 class AngleDecoder {
  public:
   /// @return nothing if such messages hold no angle
@@ -60,13 +63,18 @@ class AngleDecoder {
   std::optional<AngleMessage> decode(std::string_view message) const;
 
  private:
+  bool find_rotation(const BagConnection& connection, const RigPlate& plate);
+  std::optional<AngleMessage> decode_rotation(std::string_view message) const;
+
   RosMessageSchema layout_;
   RosEncoding encoding_ = RosEncoding::other;
   std::optional<std::size_t> sec_, nanosec_;
   std::optional<std::size_t> joints_;  ///< names of a JointState
   std::string joint_;                  ///< empty: the only one
   std::size_t value_ = 0;
-  double scale_ = 1;  ///< [rad] of one
+  double scale_ = 1;                       ///< [rad] of one
+  std::optional<std::size_t> quaternion_;  ///< its x: y, z and w follow
+  std::optional<std::size_t> frames_;      ///< names of the frames of tf: joint_ is the one
 };
 
 }  // namespace crisp

@@ -18,21 +18,23 @@ void resize(Measurements& to, std::size_t n) {
 
 }  // namespace
 
-void append_beams(const BeamSequence& sequence, std::span<const float> ranges,
-                  std::span<const float> remissions, Measurements& to) {
+void append_beams(const BeamSequence& sequence, std::span<const BeamEchoes> echoes, Measurements& to) {
   std::size_t at = to.size();
-  resize(to, at + ranges.size());
-  for (std::size_t k = 0; k < ranges.size(); ++k) {
-    if (!(ranges[k] > 0)) continue;
+  const std::size_t beams = echoes.empty() ? 0 : echoes.front().ranges.size();
+  resize(to, at + echoes.size() * beams);
+  for (std::size_t k = 0; k < beams; ++k) {
     const auto n = static_cast<double>(k);
-    to.range[at] = ranges[k];
-    to.mirror_angle[at] =
-        static_cast<float>(wrapped_mirror_angle(sequence.first_angle + n * sequence.angle_step));
-    to.time[at] = sequence.first_time + n * sequence.interval;
-    to.laser[at] = sequence.laser;
-    to.remission[at] = remissions.empty() ? 0.0F : remissions[k];
-    to.beam[at] = static_cast<std::uint16_t>(k);
-    ++at;
+    for (const auto& [ranges, remissions] : echoes) {
+      if (!(ranges[k] > 0)) continue;
+      to.range[at] = ranges[k];
+      to.mirror_angle[at] =
+          static_cast<float>(wrapped_mirror_angle(sequence.first_angle + n * sequence.angle_step));
+      to.time[at] = sequence.first_time + n * sequence.interval;
+      to.laser[at] = sequence.laser;
+      to.remission[at] = remissions.empty() ? 0.0F : remissions[k];
+      to.beam[at] = static_cast<std::uint16_t>(k);
+      ++at;
+    }
   }
   resize(to, at);
 }

@@ -17,10 +17,14 @@ struct BeamSequence {
   std::uint16_t laser = 0;
 };
 
-/// Adds the beams that came back.
-/// @param ranges      [m], 0 where there is no echo
-/// @param remissions  as many, or none
-void append_beams(const BeamSequence& sequence, std::span<const float> ranges,
-                  std::span<const float> remissions, Measurements& to);
+/// One echo of each beam of a scan.
+struct BeamEchoes {
+  std::span<const float> ranges;      ///< [m], 0 where there is none
+  std::span<const float> remissions;  ///< as many, or none
+};
+
+/// Adds the beams that came back; of several echoes each as a beam of the same instant.
+/// @param echoes  of the same number of beams
+void append_beams(const BeamSequence& sequence, std::span<const BeamEchoes> echoes, Measurements& to);
 
 }  // namespace crisp

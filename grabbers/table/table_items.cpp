@@ -74,12 +74,13 @@ void TableItems::add_beams(const TableRow& row, double time) {
   Measurements& beams = *beams_.back();
   const double first = (single ? row.mirror : settings_.start_angle) - rig_.lasers[row.laser].mount;
   const std::size_t before = beams.size();
+  const BeamEchoes echo{.ranges = row.ranges, .remissions = row.remissions};
   append_beams({.first_angle = first,
                 .angle_step = settings_.angle_step,
                 .first_time = time,
                 .interval = settings_.beam_interval,
                 .laser = row.laser},
-               row.ranges, row.remissions, beams);
+               {&echo, 1}, beams);
   beam_count_ += beams.size() - before;
 }
 

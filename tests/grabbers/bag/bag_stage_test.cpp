@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cmath>
+
 #include "tests/grabbers/bag/bag_writer.hpp"
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -109,6 +112,33 @@ TEST_F(BagStageTest, PlacesBeamsOnTheHeadersTime) {
   EXPECT_NEAR(plate->at(0.05)->angle, 1.0, 1e-5);
 }
 
+TEST_F(BagStageTest, UsesTheRigsChoiceOfAMultiEchoScansEchoes) {
+  rig_.plate.joint = "tilt";
+  bag_.topics[0] = {"/scan", "sensor_msgs/MultiEchoLaserScan", test::kMultiEchoDefinition};
+  add_joint(0, 0.5);
+  test::RosBytes scan(false);
+  scan.header(kBegin);
+  for (const float number : {1.0F, 2.0F, 0.25F, 0.0009765625F, 0.025F, 0.5F, 100.0F}) scan.put(number);
+  scan.put(std::uint32_t{3});  // beams: two echoes, one, and the second alone
+  for (const auto& ranges : {std::vector<float>{1, 3}, {2}, {0, 4}}) scan.list(ranges);
+  scan.put(std::uint32_t{3});
+  for (const auto& intensities : {std::vector<float>{10, 30}, {20}, {0, 40}}) scan.list(intensities);
+  bag_.messages.push_back({0, kBegin + 30 * kMs, scan.bytes()});
+  add_joint(100, 1.5);
+  const auto beams = [&](EchoChoice choice) {
+    rig_.lasers[0].echo = choice;
+    return run().given<Measurements>().at(0);
+  };
+  EXPECT_THAT(beams(EchoChoice::first)->range, ElementsAre(1, 2, 4));
+  EXPECT_THAT(beams(EchoChoice::last)->range, ElementsAre(3, 2, 4));
+  EXPECT_THAT(beams(EchoChoice::strongest)->remission, ElementsAre(30, 20, 40));
+  const auto all = beams(EchoChoice::all);
+  EXPECT_THAT(all->range, ElementsAre(1, 3, 2, 4));
+  EXPECT_THAT(all->beam, ElementsAre(0, 0, 1, 2));
+  EXPECT_THAT(all->time, ElementsAre(0, 0, 0.0009765625, 2 * 0.0009765625));
+  EXPECT_EQ(run().report().counts.at("front: beams with a later echo only"), 1U);
+}
+
 TEST_F(BagStageTest, TakesTheRigsTimeOffsetForTheFirstBeams) {
   rig_.plate.joint = "tilt";
   rig_.lasers[0].time_offset = -0.5;
@@ -125,6 +155,131 @@ TEST_F(BagStageTest, ReadsCountsOfATopicThatTheRigNames) {
   }
   auto stage = run();
   EXPECT_EQ(stage.given<PlateReading>().at(1)->count, 250'000U);
+}
+
+struct TestPoint {
+  float x, y, z, intensity;
+  std::uint32_t t;  ///< [ns]
+};
+
+/// A PointCloud2 whose points of 20 bytes are as `TestPoint` in a struct.
+std::string point_cloud(std::int64_t stamp_ns, const std::vector<TestPoint>& points) {
+  constexpr std::uint8_t kUnsigned32 = 6, kFloat32 = 7;
+  test::RosBytes bytes(false);
+  bytes.header(stamp_ns)
+      .put(std::uint32_t{1})
+      .put(static_cast<std::uint32_t>(points.size()))
+      .put(std::uint32_t{5});
+  std::uint32_t offset = 0;
+  for (const char* name : {"x", "y", "z", "intensity", "t"}) {
+    bytes.text(name).put(offset).put(*name == 't' ? kUnsigned32 : kFloat32).put(std::uint32_t{1});
+    offset += 4;
+  }
+  bytes.put(std::uint8_t{0}).put(std::uint32_t{20}).put(static_cast<std::uint32_t>(20 * points.size()));
+  std::vector<std::uint8_t> data(20 * points.size());
+  std::memcpy(data.data(), points.data(), data.size());
+  return bytes.list(data).put(std::uint8_t{1}).bytes();
+}
+
+TEST_F(BagStageTest, ReadsThePointsOfA2DLaserWithTheirTimes) {
+  rig_.plate.joint = "tilt";
+  rig_.lasers[0].topic = "/points";
+  bag_.topics.push_back({"/points", "sensor_msgs/PointCloud2", ""});
+  bag_.topics.back().definition =
+      "Header header\nuint32 height\nuint32 width\nPointField[] fields\nbool is_bigendian\nuint32 point_step\n"
+      "uint32 row_step\nuint8[] data\nbool is_dense\n===\nMSG: sensor_msgs/PointField\nuint8 INT8=1\nstring name\n"
+      "uint32 offset\nuint8 datatype\nuint32 count\n===\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\n"
+      "string frame_id\n";
+  add_joint(0, 0.5);
+  const float nan = std::nanf("");
+  bag_.messages.push_back({3, kBegin + 40 * kMs,
+                           point_cloud(kBegin, {{0, 2, 0, 7, 3'000'000},
+                                                {3, 0, 0, 8, 1'000'000},
+                                                {nan, nan, nan, 0, 0},
+                                                {1, 1, 1, 9, 2'000'000}})});
+  add_joint(100, 1.5);
+  auto stage = run();
+  const auto beams = stage.given<Measurements>().at(0);
+  EXPECT_THAT(beams->range, ElementsAre(3, 2));
+  EXPECT_THAT(beams->time, ElementsAre(0.001, 0.003));
+  EXPECT_THAT(beams->mirror_angle, ElementsAre(-0.5F, testing::FloatEq(1.5707964F - 0.5F)))
+      << "less the mount";
+  EXPECT_THAT(beams->remission, ElementsAre(8, 7));
+  EXPECT_EQ(stage.report().counts.at("points outside of the scan plane z = 0"), 1U);
+  bag_.messages[1].bytes.resize(100);
+  EXPECT_THAT(complaint(), "nothing");
+  EXPECT_EQ(run().report().counts.at("messages that end before their content"), 1U);
+}
+
+constexpr const char* kTransformsDefinition =
+    "geometry_msgs/TransformStamped[] transforms\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/TransformStamped\nHeader header\nstring child_frame_id\nTransform transform\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/Transform\nVector3 translation\nQuaternion rotation\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n";
+
+/// Transforms of the base, and of a frame that is turned by a quarter about z, and then by `tilt` about y.
+std::string transforms(std::int64_t stamp_ns, double tilt) {
+  constexpr double kHalf = 0.70710678118654752;  // √½
+  const double s = std::sin(tilt / 2), c = std::cos(tilt / 2);
+  test::RosBytes bytes(false);
+  bytes.put(std::uint32_t{2});
+  for (const bool is_base : {true, false}) {
+    bytes.header(stamp_ns + (is_base ? 5 * kMs : 0)).text(is_base ? "base" : "tilt");
+    for (int i = 0; i < 3; ++i) bytes.put(1.5);
+    // (0, 0, √½, √½)·(0, s, 0, c) after Hamilton
+    const std::array<double, 4> of_frame = {-kHalf * s, kHalf * s, kHalf * c, kHalf * c};
+    for (const double part : is_base ? std::array<double, 4>{0, 0, 0, 1} : of_frame) bytes.put(part);
+  }
+  return bytes.bytes();
+}
+
+TEST_F(BagStageTest, ReadsTheAngleOfAFrameOfTf) {
+  rig_.plate.topic = "/tf";
+  rig_.plate.joint = "tilt";
+  bag_.topics.push_back({"/tf", "tf2_msgs/TFMessage", kTransformsDefinition});
+  const std::vector<double> angles = {0.25, 0.5, -0.75, -3, -4, 2 * 3.14159265358979 - 6};
+  for (std::size_t k = 0; k < angles.size(); ++k) {
+    const std::int64_t stamp = kBegin + static_cast<std::int64_t>(k) * 100 * kMs;
+    bag_.messages.push_back({3, stamp + kMs, transforms(stamp, angles[k])});
+  }
+  auto stage = run();
+  const auto plate = stage.given<PlateTrajectory>().at(0);
+  for (std::size_t k = 0; k + 1 < angles.size(); ++k) {
+    EXPECT_NEAR(plate->at(0.1 * static_cast<double>(k))->angle, angles[k] - angles[0], 1e-5) << k;
+  }
+  EXPECT_NEAR(plate->at(0.5)->angle, -6 - angles[0], 1e-5) << "whole turns are continued";
+  rig_.plate.joint = "";
+  EXPECT_THAT(complaint(), HasSubstr("name the frame that turns as 'joint'"));
+}
+
+TEST_F(BagStageTest, ReadsTheAngleOfAQuaternionThatTheRigNames) {
+  rig_.plate.topic = "/turn";
+  rig_.plate.field = "quaternion";
+  bag_.topics.push_back(
+      {"/turn", "geometry_msgs/QuaternionStamped",
+       "Header header\nQuaternion quaternion\n===\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\n"
+       "string frame_id\n===\nMSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\n"
+       "float64 w\n"});
+  for (const int k : {0, 1, 2}) {
+    test::RosBytes bytes(false);
+    bytes.header(kBegin + k * 100 * kMs);
+    for (const double part : {0.0, 0.0, -2 * std::sin(0.2 * k), -2 * std::cos(0.2 * k)}) bytes.put(part);
+    bag_.messages.push_back({3, kBegin + k * 100 * kMs, bytes.bytes()});
+  }
+  test::RosBytes none(false);
+  none.header(kBegin + 300 * kMs);
+  for (int i = 0; i < 4; ++i) none.put(0.0);
+  bag_.messages.push_back({3, kBegin + 300 * kMs, none.bytes()});
+  auto stage = run();
+  EXPECT_NEAR(stage.given<PlateTrajectory>().at(0)->at(0.2)->angle, 0.8, 1e-5);
+  EXPECT_EQ(stage.report().counts.at("rotations that are no unit quaternions"), 1U);
 }
 
 TEST_F(BagStageTest, CountsWhatIsLeftOut) {
