@@ -2,6 +2,7 @@
 #include "grabbers/emulate/emulate_stage.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 
@@ -28,7 +29,7 @@ void EmulateStage::describe(StageDescription<EmulateStage>& d) {
   d.name("emulate.rig")
       .summary("serves recorded scans and encoder readings as SICK devices on this machine's network");
   d.details(
-      "Each laser of the rig becomes a TCP server at its address, which must be one of this machine, with CoLa-A and CoLa-B: login, configuration, states, errors, and scans for subscribers. The plate becomes a sender of datagrams. Items are sent at the pace of their receipt; nothing is sent before each laser has a client.\n\n"
+      "Each laser of the rig becomes a TCP server at its address, which must be one of this machine, with CoLa-A and CoLa-B: login, configuration, states, errors, and scans for subscribers. The plate becomes a sender of datagrams. Items are sent at the pace of their receipt; nothing is sent before each laser has a client. While it waits it reports where the lasers listen, and which of them miss a client.\n\n"
       "Faults are drawn for each telegram from the run's seed. A laser that is `restarted` closes its connections, and its clock and counters begin at zero.\n\n"
       "A client that does not read misses scans, as with real devices; they are counted.");
   d.takes<Scan>().takes<PlateReading>();
@@ -62,17 +63,39 @@ void EmulateStage::describe(StageDescription<EmulateStage>& d) {
 
 void EmulateStage::check(const RunSettings&) const { parse_address(plate_to_); }
 
+/// Reports where the lasers listen, and whenever it changes, which of them still miss a client.
+void EmulateStage::report_missing(Context& context) {
+  if (!context.is_watched()) return;
+  auto missing = emulator_->without_client();
+  if (missing_ == missing) return;
+  StageStatus status;
+  for (const RigLaser& laser : emulator_->rig().lasers) {
+    if (missing_) break;
+    status.events.push_back(
+        fmt::format("{} listens at {}:{}", laser.name, laser.address.ip, laser.address.port));
+  }
+  status.line = missing.empty() ? "each laser has a client"
+                                : fmt::format("waits for somebody who requests the scans of {}",
+                                              fmt::join(missing, ", "));
+  status.events.push_back(status.line);
+  context.set_status(status);
+  missing_ = std::move(missing);
+}
+
 void EmulateStage::process(const Inputs& in, Outputs&, Context& context) {
   if (!emulator_) {
     settings_.plate_to = parse_address(plate_to_);
     settings_.faults.seed = context.seed();
     emulator_ = std::make_unique<Emulator>(context.rig(), settings_);
   }
-  const auto interrupted = [&] { return context.interrupted(); };
+  const auto interrupted = [&] {
+    if (settings_.wait_for_clients && scans_ + readings_ == 0) report_missing(context);
+    return context.interrupted();
+  };
   if (auto scan = in.share<Scan>()) {
     emulator_->send(std::move(scan), interrupted);
     ++scans_;
-  } else {
+  } else if (!context.rig().plate.encoder_of) {  // else in the laser's telegrams
     emulator_->send(in.get<PlateReading>(), interrupted);
     ++readings_;
   }

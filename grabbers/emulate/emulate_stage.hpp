@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "grabbers/emulate/emulator.hpp"
 #include "pipeline/stage/context.hpp"
@@ -22,9 +24,12 @@ class EmulateStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
+  void report_missing(Context& context);
+
   EmulatorSettings settings_;
   std::string plate_to_ = "127.0.0.1:4000";
   std::unique_ptr<Emulator> emulator_;
+  std::optional<std::vector<std::string>> missing_;  ///< lasers without a client, as they were reported
   std::uint64_t scans_ = 0;
   std::uint64_t readings_ = 0;
 };

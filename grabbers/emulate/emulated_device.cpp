@@ -24,6 +24,29 @@ void crop(ChannelBlock& channel, const OutputRange& range) {
 
 bool is_remission(const ChannelBlock& channel) { return channel.name.starts_with("RSSI"); }
 
+/// Moves remissions to the other width; their values stay, but for what 8 bits cannot hold.
+void widen_remissions(ScanData& scan, bool wide) {
+  constexpr std::uint16_t kStep = 256;
+  auto& from = wide ? scan.channels8 : scan.channels16;
+  auto& to = wide ? scan.channels16 : scan.channels8;
+  for (ChannelBlock& channel : from) {
+    if (!is_remission(channel)) continue;
+    channel.scale = wide ? channel.scale / kStep : channel.scale * kStep;
+    for (auto& raw : channel.raw) raw = static_cast<std::uint16_t>(wide ? raw * kStep : raw / kStep);
+    to.push_back(channel);
+  }
+  std::erase_if(from, is_remission);
+}
+
+/// The calendar clock of a device that nobody has set: since 1970 at its start, in whole milliseconds.
+TimeBlock since_start(std::uint32_t scan_time_us) {
+  constexpr std::uint32_t kMs = 1000, kSecond = 1000 * kMs, kMinute = 60 * kSecond, kHour = 60 * kMinute;
+  return {.hour = static_cast<std::uint8_t>(scan_time_us / kHour),
+          .minute = static_cast<std::uint8_t>(scan_time_us / kMinute % 60),
+          .second = static_cast<std::uint8_t>(scan_time_us / kSecond % 60),
+          .microsecond = scan_time_us % kSecond / kMs * kMs};
+}
+
 }  // namespace
 
 ScanSettings EmulatedDevice::settings() const {
@@ -46,6 +69,10 @@ ScanData EmulatedDevice::sent(ScanData scan) const {
   if (content && !content->remission) {
     std::erase_if(scan.channels16, is_remission);
     std::erase_if(scan.channels8, is_remission);
+  }
+  if (content) {
+    widen_remissions(scan, content->wide);
+    scan.time = content->time ? std::optional(since_start(scan.scan_time_us)) : std::nullopt;
   }
   if (range) {
     for (ChannelBlock& channel : scan.channels16) crop(channel, *range);

@@ -115,14 +115,18 @@ std::size_t Emulator::waiting_bytes() {
   return most;
 }
 
+std::vector<std::string> Emulator::without_client() {
+  std::vector<std::string> names;
+  in_thread([&] {
+    for (std::size_t i = 0; i < lasers_.size(); ++i) {
+      if (lasers_[i]->subscribers() == 0) names.push_back(rig_.lasers[i].name);
+    }
+  });
+  return names;
+}
+
 void Emulator::await_clients(const Interrupted& interrupted) {
-  bool all = false;
-  while (!all && !interrupted()) {
-    in_thread([&] {
-      all = std::ranges::all_of(lasers_, [](const auto& laser) { return laser->subscribers() > 0; });
-    });
-    if (!all) std::this_thread::sleep_for(kNap);
-  }
+  while (!interrupted() && !without_client().empty()) std::this_thread::sleep_for(kNap);
 }
 
 void Emulator::await_time(std::int64_t item_ns, const Interrupted& interrupted) {

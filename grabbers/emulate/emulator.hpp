@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -48,6 +49,9 @@ class Emulator {
   /// At speed 0, once each laser has somebody to send it to, and who has taken most of what was sent before.
   /// Returns earlier, without sending it, once `interrupted`.
   void send(const HubItem& item, const Interrupted& interrupted);
+
+  /// Lasers of which nobody has requested scans, by name.
+  std::vector<std::string> without_client();
 
   /// Waits until the clients have taken all that was sent, for 2 s at most.
   void finish();

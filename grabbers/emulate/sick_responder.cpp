@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/emulate/sick_responder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <functional>
 #include <map>
 
@@ -51,12 +54,26 @@ const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, s
       {"LMPoutputRange", [](const auto& device) { return to_values(device.output_range()); }},
       {"LMDscandatacfg",
        [](const auto& device) { return to_values(device.content.value_or(ScanContent())); }},
-      {"LIDinputstate",
+      {"SerialNumber",
+       [](const auto& device) { return Values{fmt::format("{:08}", device.last.serial_number)}; }},
+      {"LFErec", [](const EmulatedDevice&) { return Values{word(0)}; }},
+      {"LIDinputstate",  // version, system counter, four inputs, no time
        [](const auto&) {
-         return Values{byte(0), byte(0), byte(0), byte(0)};
+         return Values{word(0), std::uint32_t{0}, byte(0), byte(0), byte(0), byte(0), word(0)};
        }},
   };
   return kAll;
+}
+
+/// "field000" to "field047": the evaluation fields of an LMS1xx, none of which is configured here.
+bool is_field(std::string_view name) {
+  constexpr std::string_view kField = "field";
+  constexpr std::size_t kDigits = 3;
+  constexpr unsigned kFields = 48;
+  if (!name.starts_with(kField) || name.size() != kField.size() + kDigits) return false;
+  unsigned number = kFields;
+  const char* end = name.data() + name.size();
+  return std::from_chars(name.data() + kField.size(), end, number).ptr == end && number < kFields;
 }
 
 bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
@@ -93,6 +110,7 @@ Bytes SickResponder::read(const ColaTelegram& request) const {
     append_scan_data(device_->sent(device_->last), request.language, "sRA", EncoderWidths::Position32, out);
     return out;
   }
+  if (is_field(request.name)) return cola_message("sRA", request.name, {byte(0)}, request.language);
   const auto known = variables().find(request.name);
   if (known == variables().end()) return cola_error(kUnknownVariable, request.language);
   return cola_message("sRA", request.name, known->second(*device_), request.language);

@@ -59,8 +59,14 @@ TEST(SickResponder, RunsTheBinaryDialogueOfSickScanXdToItsEnd) {
   EXPECT_EQ(b("sRN LocationName"), "sRA LocationName \0\x0bnot defined"s);
   EXPECT_EQ(b("sRN LMPoutputRange"), "sRA LMPoutputRange \0\x01\0\0\x13\x88\xff\xf9\x22\x30\0\x22\x55\x10"s);
   EXPECT_EQ(b("sWN LMPoutputRange \0\x01\0\0\x13\x88\xff\xf9\x22\x30\0\x22\x55\x10"s), "sWA LMPoutputRange ");
-  EXPECT_EQ(b("sRN field000"), "sFA\0\x03"s);
-  EXPECT_THAT(b("sRN LIDinputstate"), testing::StartsWith("sRA LIDinputstate "));
+  EXPECT_EQ(b("sRN field000"), "sRA field000 \0"s) << "as a real LMS111 does; a driver gives up on an error";
+  EXPECT_EQ(b("sRN field047"), "sRA field047 \0"s);
+  EXPECT_EQ(b("sRN field048"), "sFA\0\x03"s);
+  EXPECT_EQ(b("sRN field0xx"), "sFA\0\x03"s);
+  EXPECT_EQ(b("sRN LIDinputstate"), "sRA LIDinputstate "s + std::string(12, '\0'));
+  EXPECT_EQ(b("sRN LFErec"), "sRA LFErec \0\0"s);
+  device.last.serial_number = 11110042;
+  EXPECT_EQ(b("sRN SerialNumber"), "sRA SerialNumber \0\x08"s + "11110042");
   EXPECT_EQ(b("sWN LMDscandatacfg \x01\0\0\0\0\0\0\0\0\0\0\0\x01"s), "sWA LMDscandatacfg ");
   EXPECT_THAT(b("sRN LMDscandatacfg"), testing::SizeIs(19 + 13));
   EXPECT_THAT(b("sMN mLMPsetscancfg \0\0\x13\x88\0\x01\0\0\x13\x88\xff\xf9\x22\x30\0\x22\x55\x10"s),
@@ -113,6 +119,29 @@ TEST(SickResponder, PutsInForceWhatIsConfiguredAsFarAsItsScansAllow) {
   ASSERT_EQ(sent.channels16.size(), 1U) << "no remissions";
   EXPECT_EQ(sent.channels16[0].start_angle, 0);
   EXPECT_EQ(sent.channels16[0].raw.size(), 4U) << "0, 0.5, 1 and 1.5 degrees";
+}
+
+TEST(SickResponder, SendsRemissionsAndTimeAsConfigured) {
+  EmulatedDevice device;
+  device.last.scan_time_us = 3'723'456'789;  // 1 h 2 min 3.456789 s
+  device.last.channels16 = {{.name = "DIST1", .angle_step = 5000, .raw = {1000, 2000}}};
+  device.last.channels8 = {{.name = "RSSI1", .angle_step = 5000, .raw = {7, 254}}};
+  SickResponder responder(device);
+  const auto a = [&](const std::string& request) { return answer_to(responder, request, ColaLanguage::A); };
+  a("sMN SetAccessMode 03 F4724744");
+  a("sWN LMDscandatacfg 1 0 1 1 0 0 0 0 0 0 1 1");
+  const ScanData wide = device.sent(device.last);
+  ASSERT_EQ(wide.channels16.size(), 2U);
+  EXPECT_TRUE(wide.channels8.empty());
+  EXPECT_EQ(wide.channels16[1].raw[1] * wide.channels16[1].scale, 254);
+  ASSERT_TRUE(wide.time);
+  EXPECT_EQ(*wide.time, (TimeBlock{.hour = 1, .minute = 2, .second = 3, .microsecond = 456'000}));
+  a("sWN LMDscandatacfg 1 0 1 0 0 0 0 0 0 0 0 1");
+  const ScanData narrow = device.sent(wide);
+  ASSERT_EQ(narrow.channels8.size(), 1U);
+  EXPECT_THAT(narrow.channels8[0].raw, testing::ElementsAre(7, 254));
+  EXPECT_EQ(narrow.channels8[0].scale, 1);
+  EXPECT_FALSE(narrow.time);
 }
 
 TEST(SickResponder, AnswersTheLastScanToWhoRequestsOne) {
