@@ -18,6 +18,11 @@ constexpr std::array<std::string_view, 7> kKept = {"x", "y", "z", "intensity", "
 
 bool is_same_letter(unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); }
 
+bool mentions_time(std::string_view name) {
+  constexpr std::string_view kTime = "time";
+  return !std::ranges::search(name, kTime, is_same_letter).empty();
+}
+
 /// The table's name of a field: other programs write X or Intensity. The name itself if there
 /// is none.
 std::string_view own_name(const PcdTable& table, std::string_view field) {
@@ -108,7 +113,11 @@ std::vector<std::string> dropped_fields(const PcdTable& table) {
   for (const auto& field : table.header().fields) {
     if (field.name != kPadding && !is_kept(field.name)) fields.push_back(field.name);
   }
-  if (!fields.empty()) lost.push_back(fmt::format("the fields {}", fmt::join(fields, ", ")));
+  const bool has_times = std::ranges::any_of(fields, mentions_time);
+  if (!fields.empty())
+    lost.push_back(
+        fmt::format("the fields {}{}", fmt::join(fields, ", "),
+                    has_times ? " (rename the points' times to 'time' in FIELDS to keep them)" : ""));
   if (table.header().rows > 1) lost.push_back(fmt::format("the order in {} rows", table.header().rows));
   if (table.header().has_pose) lost.emplace_back("the VIEWPOINT");
   return lost;

@@ -138,7 +138,9 @@ TEST(PcdTable, FieldsInCapitalsAreACloudsToo) {
   const auto cloud = cloud_of(table).cloud;
   EXPECT_EQ(cloud->at(0).y, 2);
   EXPECT_EQ(cloud->at(0).intensity, 4);
-  EXPECT_THAT(dropped_fields(table), testing::ElementsAre("the fields GpsTime"));
+  EXPECT_THAT(
+      dropped_fields(table),
+      testing::ElementsAre("the fields GpsTime (rename the points' times to 'time' in FIELDS to keep them)"));
 }
 
 TEST(PcdTable, AValueThatIsNotANumberIsShown) {
