@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "grabbers/wire/cola_message.hpp"
+#include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_data.hpp"
 #include "pipeline/data/error.hpp"
 
@@ -42,10 +43,9 @@ Address with_port(Address address, std::uint16_t usual) {
 }  // namespace
 
 HubTraffic::HubTraffic(const Rig& rig, ColaLanguage language, FrameSink sink)
-    : language_(language),
-      sink_(std::move(sink)),
-      lasers_(rig.lasers.size()),
-      plate_(with_port(rig.plate.address, kPlatePort), hub_for(rig.plate.address, kPlatePort), sink_) {
+    : language_(language), sink_(std::move(sink)), lasers_(rig.lasers.size()) {
+  const Address& plate = rig.plate.address;
+  if (!rig.plate.encoder_of) plate_.emplace(with_port(plate, kPlatePort), hub_for(plate, kPlatePort), sink_);
   for (const RigLaser& laser : rig.lasers) addresses_.push_back(with_port(laser.address, kLaserPort));
 }
 
@@ -64,6 +64,10 @@ void HubTraffic::connect(std::size_t laser, std::int64_t time_ns) {
 
 void HubTraffic::telegram(std::size_t laser, ByteView bytes, std::int64_t time_ns) {
   lasers_.at(laser)->send(TcpSide::Server, bytes, time_ns);
+}
+
+void HubTraffic::reading(const PlateReading& reading) {
+  if (plate_) plate_->send(as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
 }
 
 void HubTraffic::close(std::int64_t time_ns) {

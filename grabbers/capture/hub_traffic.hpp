@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "grabbers/capture/network_frames.hpp"
 #include "grabbers/wire/cola.hpp"
 #include "pipeline/data/rig.hpp"
+#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 
@@ -23,7 +25,9 @@ class HubTraffic {
   void connect(std::size_t laser, std::int64_t time_ns);
   /// A framed telegram of a connected laser, complete at time_ns.
   void telegram(std::size_t laser, ByteView bytes, std::int64_t time_ns);
-  void datagram(ByteView bytes, std::int64_t time_ns) { plate_.send(bytes, time_ns); }
+  /// The plate's datagram of a reading; nothing where its encoder is wired to a laser, whose telegrams hold
+  /// it.
+  void reading(const PlateReading& reading);
   /// Ends all connections.
   void close(std::int64_t time_ns);
 
@@ -33,7 +37,7 @@ class HubTraffic {
   FrameSink sink_;
   std::vector<std::unique_ptr<TcpConversation>> lasers_;
   std::size_t connections_ = 0;
-  DatagramSender plate_;
+  std::optional<DatagramSender> plate_;
 };
 
 }  // namespace crisp

@@ -176,6 +176,7 @@ void DeviceLog::note_count(std::uint32_t count) {
 }
 
 std::optional<PlateReading> DeviceLog::take(const PlateReading& reading, std::string_view kind) {
+  if (kind.empty()) kind = reading.numbered ? "PPLT" : "lines of an encoder";
   count_telegram(kind);
   if (!is_new(reading.sequence, reading.device_us, reading.receipt_ns, !reading.numbered)) return {};
   note_time(reading.device_us, reading.receipt_ns);

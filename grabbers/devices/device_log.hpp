@@ -29,8 +29,8 @@ class DeviceLog {
   /// A telegram of a laser; gives a scan if it holds one that did not come before, otherwise nullptr.
   std::shared_ptr<const Scan> take(const ColaFrame& frame, EncoderWidths widths);
   /// A reading of a plate; gives it if it did not come before.
-  /// @param kind  what it came as
-  std::optional<PlateReading> take(const PlateReading& reading, std::string_view kind = "PPLT");
+  /// @param kind  what it came as; empty: a sentence, or a line of the user's own
+  std::optional<PlateReading> take(const PlateReading& reading, std::string_view kind = {});
   /// A telegram that TCP sent again after it had come.
   void note_repeated(const ColaFrame& frame);
 

@@ -11,7 +11,6 @@
 #include "grabbers/capture/capture_file.hpp"
 #include "grabbers/capture/file_window.hpp"
 #include "grabbers/capture/pcap_extent.hpp"
-#include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 #include "pipeline/data/error.hpp"
 #include "pipeline/data/internal_error.hpp"
@@ -83,8 +82,7 @@ void refuse_foreign(const std::filesystem::path& file) {
 /// One capture that is being written.
 struct CaptureRecorder::File {
   File(const std::filesystem::path& path, const Rig& rig)
-      : is_wired(rig.plate.encoder_of.has_value()),
-        pcap(path, PcapMode::Grow),
+      : pcap(path, PcapMode::Grow),
         sorter([this](std::int64_t ns, ByteView frame) { pcap.write(ns, frame); }, kHold),
         hub(rig, ColaLanguage::B, [this](std::int64_t ns, ByteView frame) { sorter.push(ns, frame); }),
         connected(rig.lasers.size()) {}
@@ -95,11 +93,7 @@ struct CaptureRecorder::File {
     hub.telegram(scan.laser, encode_scan_data(to_scan_data(scan), ColaLanguage::B), scan.receipt_ns);
   }
 
-  /// Of an encoder wired to a laser, the laser's telegram holds the reading.
-  void write(const PlateReading& reading) {
-    if (is_wired) return;
-    hub.datagram(as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
-  }
+  void write(const PlateReading& reading) { hub.reading(reading); }
 
   void end() {
     hub.close(latest_ns.value_or(0) + kMillisecond);
@@ -107,7 +101,6 @@ struct CaptureRecorder::File {
     pcap.close();
   }
 
-  bool is_wired;
   PcapWriter pcap;
   FrameSorter sorter;
   HubTraffic hub;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_data.hpp"
 #include "pipeline/data/error.hpp"
 
@@ -88,9 +87,7 @@ void RecordedCapture::write(const LaserTelegram& telegram) {
                 telegram.receipt_ns);
 }
 
-void RecordedCapture::write(const PlateReading& reading) {
-  hub_.datagram(as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
-}
+void RecordedCapture::write(const PlateReading& reading) { hub_.reading(reading); }
 
 void RecordedCapture::close() {
   hub_.close(latest_ns_ + 10 * kMillisecond);

@@ -9,6 +9,7 @@
 #include "grabbers/capture/loss_warnings.hpp"
 #include "grabbers/devices/device_log.hpp"
 #include "grabbers/devices/framing_losses.hpp"
+#include "grabbers/devices/wired_encoder.hpp"
 #include "grabbers/telegrams/sick_scan_xd_json.hpp"
 #include "pipeline/files/byte_stream.hpp"
 
@@ -28,8 +29,8 @@ std::optional<std::size_t> laser_named(const std::string& name, const Rig& rig) 
 void TelegramsStage::describe(StageDescription<TelegramsStage>& d) {
   d.name("grabber.telegrams").summary("reads scans of a SICK laser from a list of its telegrams (JSON)");
   d.details(
-      "Reads the lists that pcap_json_converter of sick_scan_xd makes of captures for its emulator: the bytes of each telegram in hexadecimal, and the receipt time [s] of its first packet since the recording's start. They hold no addresses: all telegrams are of one laser of the rig. Damaged, repeated and missing telegrams are counted, as for captures.");
-  d.gives<Scan>();
+      "Reads the lists that pcap_json_converter of sick_scan_xd makes of captures for its emulator: the bytes of each telegram in hexadecimal, and the receipt time [s] of its first packet since the recording's start. They hold no addresses: all telegrams are of one laser of the rig. Readings of the plate come of them where its encoder is wired to that laser (`encoder_of` in the rig). Damaged, repeated and missing telegrams are counted, as for captures.");
+  d.gives<Scan>().gives<PlateReading>();
   d.option("file", &TelegramsStage::file_, "the list").required();
   d.option("laser", &TelegramsStage::laser_, "name of the laser in the rig; empty: the first");
 }
@@ -50,9 +51,15 @@ void TelegramsStage::process(const Inputs&, Outputs& out, Context& context) {
   const std::size_t laser = *laser_named(laser_, context.rig());
   const RigLaser& own = context.rig().lasers.at(laser);
   DeviceLog log(DeviceKind::Laser, own.name, own.address, static_cast<std::uint16_t>(laser));
+  std::optional<WiredEncoder> encoder;
+  if (context.rig().plate.encoder_of) encoder.emplace(context.rig());
   ColaFramer framer;
   const auto take = [&](const ColaFrame& frame) {
-    if (auto scan = log.take(frame, EncoderWidths::Position32)) out.give(std::move(scan));
+    auto scan = log.take(frame, EncoderWidths::Position32);
+    if (!scan) return;
+    if (const auto reading = encoder ? encoder->read(*scan, EncoderWidths::Position32) : std::nullopt)
+      out.give(*reading);
+    out.give(std::move(scan));
   };
   std::uint64_t telegrams = 0;
   read_telegram_list(text, file_.string(), losses, [&](const ListedTelegram& telegram) {

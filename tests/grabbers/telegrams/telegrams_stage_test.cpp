@@ -33,8 +33,9 @@ class List {
         R"({}{{"_source": {{"layers": {{"tcp": {{"Timestamps": {{"tcp.time_relative": "{}"}}, "tcp.payload": "{}"}}}}}}}})",
         text_.empty() ? "" : ",\n", 0.02 * count_++, hexadecimal);
   }
-  void add_scan(std::uint16_t counter) {
+  void add_scan(std::uint16_t counter, std::vector<EncoderBlock> encoders = {}) {
     ScanData data;
+    data.encoders = std::move(encoders);
     data.telegram_counter = data.scan_counter = counter;
     data.scan_time_us = 20'000U * counter;
     data.transmission_time_us = data.scan_time_us + 3000;
@@ -59,6 +60,20 @@ class TelegramsStageTest : public testing::Test {
 
   test::TemporaryFolder folder_;
 };
+
+TEST_F(TelegramsStageTest, GivesTheReadingsOfAnEncoderThatIsWiredToTheLaser) {
+  List list;
+  for (const std::uint16_t k : {1, 2, 3}) list.add_scan(k, {{.position = 4294967294U + k}});
+  auto driver = stage(list.text());
+  driver.run().rig.plate.encoder_of = 0;
+  driver.feed();
+  const auto readings = driver.given<PlateReading>();
+  ASSERT_EQ(readings.size(), 3U);
+  EXPECT_EQ(readings[0]->count, 4294967295U);
+  EXPECT_EQ(readings[2]->count, 1U);
+  EXPECT_EQ(readings[2]->device_us, 60'000U);
+  EXPECT_EQ(driver.given<Scan>().size(), 3U);
+}
 
 TEST_F(TelegramsStageTest, GivesEachScanOnce) {
   List list;
