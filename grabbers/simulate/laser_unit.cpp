@@ -80,20 +80,23 @@ std::optional<LaserTelegram> LaserUnit::send(const Sweep& sweep) {
   return telegram;
 }
 
+/// The rig defines the offset of the device's stamp from the first possible beam: inverts exactly that.
+double LaserUnit::stamp_of(const Sweep& sweep) const {
+  return sweep.revolution.begin - rig_.period_offset * sweep.revolution.period - rig_.time_offset +
+         truth_.stamp_lag;
+}
+
 void LaserUnit::fill_header(ScanData& data, const Sweep& sweep, double sent) {
   if (const auto restarts = truth_.clock.resets_before(sent); restarts != restarts_) {
     restarts_ = restarts;
     scan_counter_ = 0;
     scans_since_start_ = 0;
   }
-  // The rig defines the offset of the device's stamp from the first possible beam: invert exactly that.
-  const double stamp = sweep.revolution.begin - rig_.period_offset * sweep.revolution.period -
-                       rig_.time_offset + truth_.stamp_lag;
   data.serial_number = kFirstSerialNumber + index_;
   data.device_status = scans_since_start_++ < settings_.telegrams.settling_scans ? 1 : 0;
   data.scan_counter = scan_counter_++;
   data.telegram_counter = static_cast<std::uint16_t>(data.scan_counter + counter_difference_);
-  data.scan_time_us = truth_.clock.microseconds(stamp);
+  data.scan_time_us = truth_.clock.microseconds(stamp_of(sweep));
   data.transmission_time_us = truth_.clock.microseconds(sent);
   data.scan_frequency = static_cast<std::uint32_t>(std::lround(pattern_.frequency * 100));
   const double beams_a_turn = 2 * std::numbers::pi / pattern_.field.step;

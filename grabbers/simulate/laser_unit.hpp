@@ -28,6 +28,8 @@ class LaserUnit {
 
   /// The telegram of the next sweep; nothing if it is lost, the device is silent, or started again meanwhile.
   std::optional<LaserTelegram> send(const Sweep& sweep);
+  /// [s] Hub time of the sweep's stamp.
+  double stamp_of(const Sweep& sweep) const;
 
  private:
   void fill_header(ScanData& data, const Sweep& sweep, double sent);

@@ -43,14 +43,33 @@ std::optional<HubEvent> RecordingSimulator::next() {
   return std::move(in_flight_.extract(in_flight_.begin()).mapped());
 }
 
+/// The count is as old as a reading with the plate's least delay would be, so that η is that of the truth.
+PlateReading RecordingSimulator::count_into(LaserTelegram& telegram) const {
+  const double latched = lasers_[telegram.laser].stamp_of(upcoming_) +
+                         truth_.lasers[telegram.laser].minimum_delay - truth_.plate.minimum_delay;
+  const double angle = motion_.at(latched).value_or(PlateState{}).angle;
+  const double step = settings_.scanner.rig.plate.angle_per_count();
+  ScanData& data = telegram.data;
+  data.encoders = {{.position = static_cast<std::uint32_t>(std::llround(angle / step))}};
+  return {.sequence = data.telegram_counter,
+          .device_us = data.scan_time_us,
+          .count = data.encoders.front().position,
+          .receipt_ns = telegram.receipt_ns,
+          .handover_us = static_cast<std::int32_t>(data.transmission_time_us - data.scan_time_us)};
+}
+
 bool RecordingSimulator::fire() {
+  const auto encoder_of = settings_.scanner.rig.plate.encoder_of;
   const double sweep = upcoming_.revolution.begin;
   const double end = settings_.scanner.duration;
   if (sweep >= end && plate_.next_time() > end + kPlateMargin) return false;
   if (sweep < end && sweep <= plate_.next_time()) {
-    if (auto telegram = lasers_[upcoming_.laser].send(upcoming_)) hold(std::move(*telegram));
+    if (auto telegram = lasers_[upcoming_.laser].send(upcoming_)) {
+      if (encoder_of == upcoming_.laser) hold(count_into(*telegram));
+      hold(std::move(*telegram));
+    }
     upcoming_ = sweeps_.next();
-  } else if (const auto reading = plate_.send()) {
+  } else if (const auto reading = plate_.send(); reading && !encoder_of) {
     hold(*reading);
   }
   now_ = std::min(upcoming_.revolution.begin, plate_.next_time());

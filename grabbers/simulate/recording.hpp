@@ -44,6 +44,8 @@ class RecordingSimulator {
  private:
   bool fire();  ///< simulates the next sweep or reading; false after the last one
   void hold(HubEvent event);
+  /// Puts the count of an encoder that is wired to the laser into the telegram. @return its reading
+  PlateReading count_into(LaserTelegram& telegram) const;
 
   RecordingSettings settings_;
   RecordingTruth truth_;

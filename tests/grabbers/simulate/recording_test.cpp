@@ -43,6 +43,26 @@ TEST(DrawDevices, GivesEachLaserItsEtaByHandWorkedDelays) {
   EXPECT_NEAR(truth.lasers[2].minimum_delay, 0.008, 1e-12);
 }
 
+TEST(RecordingSimulator, PutsTheCountOfAWiredEncoderIntoItsLasersTelegrams) {
+  RecordingSettings settings = plain_settings();
+  settings.scanner.rig.plate.encoder_of = 1;
+  settings.scanner.truth.lasers[1].eta.value = 0.004;
+  const auto recording = simulate_recording(settings, office());
+  const RecordingSimulator simulator(settings, office());
+  std::size_t counted = 0;
+  for (const Scan& scan : recording.scans) {
+    ASSERT_EQ(scan.encoders.size(), scan.laser == 1 ? 1U : 0U);
+    if (scan.laser != 1) continue;
+    // Its clock shows 100 s at hub time 0, and the plate's delay exceeds its own by eta.
+    const double latched = 1e-6 * scan.scan_time_us - 100 - 0.004;
+    const double steps = simulator.motion().at(latched)->angle / settings.scanner.rig.plate.angle_per_count();
+    EXPECT_NEAR(static_cast<double>(static_cast<std::int32_t>(scan.encoders[0].position)), steps, 0.55);
+    ++counted;
+  }
+  EXPECT_EQ(recording.readings.size(), counted) << "the plate sends none of its own";
+  EXPECT_GT(counted, 40U);
+}
+
 TEST(DrawDevices, DrawsClocksWithinTheirBounds) {
   RecordingSettings settings;
   settings.clocks.drift = 1e-9;
