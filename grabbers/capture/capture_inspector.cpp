@@ -29,7 +29,7 @@ void name_devices(CaptureStatistics& statistics, const Rig& rig) {
 }
 
 Inspection inspect(const std::filesystem::path& file, const Rig& rig) {
-  auto statistics = inspect_capture(file);
+  auto statistics = inspect_capture(file, {}, rig.plate);
   name_devices(statistics, rig);
   Inspection inspection;
   inspection.text = to_text(statistics);

@@ -6,6 +6,7 @@
 #include <map>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 #include "grabbers/capture/dissect.hpp"
 #include "grabbers/capture/fragments.hpp"
@@ -190,8 +191,11 @@ CaptureStatistics CaptureReader::statistics() const {
 
 void check_addresses(const Rig& rig) { const Devices devices(rig); }
 
-CaptureStatistics inspect_capture(const std::filesystem::path& file, const CaptureSettings& settings) {
-  CaptureReader reader(std::make_unique<CaptureReader::Traffic>(file, Devices(), settings));
+CaptureStatistics inspect_capture(const std::filesystem::path& file, const CaptureSettings& settings,
+                                  const RigPlate& plate) {
+  Devices devices;
+  if (plate.line) devices.add(plate);
+  CaptureReader reader(std::make_unique<CaptureReader::Traffic>(file, std::move(devices), settings));
   while (reader.next()) {
   }
   return reader.statistics();

@@ -37,7 +37,8 @@ class CaptureReader final : public ItemSource {
   std::int64_t first_ns() const;  ///< [ns since the Unix epoch] time of the first packet; 0 before next()
 
  private:
-  friend CaptureStatistics inspect_capture(const std::filesystem::path&, const CaptureSettings&);
+  friend CaptureStatistics inspect_capture(const std::filesystem::path&, const CaptureSettings&,
+                                           const RigPlate&);
   struct Traffic;
   explicit CaptureReader(std::unique_ptr<Traffic> traffic);
   std::unique_ptr<Traffic> traffic_;
@@ -49,6 +50,8 @@ void check_addresses(const Rig& rig);
 
 /// Describes a capture's content, from any sender: reads all of it without a rig, and recognises lasers and
 /// plates by their telegrams. @throws Error as CaptureReader
-CaptureStatistics inspect_capture(const std::filesystem::path& file, const CaptureSettings& settings = {});
+/// @param plate  whose encoder is read if it sends lines of its own, which nothing else identifies
+CaptureStatistics inspect_capture(const std::filesystem::path& file, const CaptureSettings& settings = {},
+                                  const RigPlate& plate = {});
 
 }  // namespace crisp

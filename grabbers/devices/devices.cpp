@@ -16,10 +16,13 @@ Devices::Devices(const Rig& rig) {
     add(DeviceKind::Laser, rig.lasers[i].name, rig.lasers[i].address, static_cast<std::uint16_t>(i));
   }
   if (rig.plate.encoder_of) wired_encoder_ = std::make_unique<WiredEncoder>(rig, pauses_.get());
-  if (!rig.plate.address.ip.empty()) {
-    add(DeviceKind::Plate, rig.plate.name, rig.plate.address, 0);
-    known_.back()->line = rig.plate.line;
-  }
+  add(rig.plate);
+}
+
+void Devices::add(const RigPlate& plate) {
+  if (plate.address.ip.empty()) return;
+  add(DeviceKind::Plate, plate.name, plate.address, 0);
+  known_.back()->line = plate.line;
 }
 
 void Devices::add(DeviceKind kind, const std::string& name, const Address& address, std::uint16_t index) {

@@ -30,6 +30,8 @@ class Devices {
   /// @throws Error if an address of the rig is none, or two devices have the same
   explicit Devices(const Rig& rig);
   Devices() = default;  ///< without a rig: all devices are others
+  /// Adds a plate that sends readings of its own; one without an address is left out.
+  void add(const RigPlate& plate);
 
   /// The rig's device from which a flow's packets come, or nullptr. A plate is known by its own port or by
   /// the one that it sends to.

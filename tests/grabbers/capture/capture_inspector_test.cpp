@@ -34,5 +34,18 @@ TEST(CaptureInspector, NamesDevicesAsTheRigDoes) {
   EXPECT_EQ(inspection.data["devices"][0]["name"], "left");
 }
 
+TEST(CaptureInspector, FindsAnEncodersOwnLinesByTheRig) {
+  std::vector<Frame> frames;
+  DatagramSender plate(kPlate, kHubPlate, into(frames));
+  for (const int k : {0, 1, 2})
+    plate.send(as_bytes("10," + std::to_string(7 - 2 * k) + "\n"), kStart + k * 1'000'000);
+  const MemoryFile file(pcap_file(frames));
+  auto rig = default_rig();
+  EXPECT_TRUE(capture_inspector().inspect(file.path(), rig).data["devices"].empty());
+  rig.plate.line = EncoderLine{.count_column = 2};
+  EXPECT_THAT(capture_inspector().inspect(file.path(), rig).text,
+              HasSubstr("encoder: counted 0 up and 4 down"));
+}
+
 }  // namespace
 }  // namespace crisp
