@@ -260,8 +260,7 @@ TEST_P(RealRequests, AreAnsweredByTheEmulatedLaserAsByTheRealOne) {
     subscribed = subscribed || answer == "sEA LMDscandata";
   }
   EXPECT_TRUE(subscribed);
-  EXPECT_THAT(refused, testing::ElementsAre("field"))
-      << "which the real one refuses as well, beyond the 30th";
+  EXPECT_THAT(refused, testing::IsEmpty()) << "some drivers give up where a laser refuses a field";
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, RealRequests,
