@@ -45,6 +45,9 @@ void run_with_progress(RecordedRun& run, const RunRequest& request) {
   }
   if (!request.quiet) {
     hooks.progress = [&](const std::string& tag, const Progress& progress) { printer.show(tag, progress); };
+    hooks.caveat = [&](const std::string& tag, const std::string& caveat) {
+      printer.log(fmt::format("untrusted so far: {}: {}", tag, caveat));
+    };
   }
   run.run(std::move(hooks));
 }

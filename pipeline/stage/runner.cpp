@@ -30,6 +30,7 @@ struct Worker {
     std::size_t input;
   };
   std::vector<Edge> edges;
+  std::size_t announced = 0;   ///< of its caveats
   std::optional<Outputs> out;  ///< what each call is given, as is the context
   std::optional<Context> context;
 };
@@ -332,7 +333,16 @@ class Runner {
       throw Reported(worker.node->tag + ": it threw something that is no std::exception",
                      "let it throw crisp::Error", worker.node->place);
     }
+    announce_caveats(worker);
     if (is_stopped()) throw Interrupted();
+  }
+
+  void announce_caveats(Worker& worker) const {
+    const auto& caveats = worker.result.report.caveats;
+    if (!hooks_.caveat || worker.announced == caveats.size()) return;
+    const std::lock_guard lock(reported_);
+    for (; worker.announced < caveats.size(); ++worker.announced)
+      hooks_.caveat(worker.node->tag, caveats[worker.announced]);
   }
 
   ProgressSink progress_of(const Worker& worker) const {

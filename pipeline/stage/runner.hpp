@@ -29,6 +29,8 @@ struct RunHooks {
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string& tag, const Progress& progress)> progress = {};
   std::function<void(const std::string& tag, const StageStatus& status)> status = {};
+  /// Called with each caveat once the call in which a stage gave it has ended; a stage below may resolve it.
+  std::function<void(const std::string& tag, const std::string& caveat)> caveat = {};
   /// Called with each item before it runs through the stages below.
   std::function<void(const std::string& tag, const Item& item)> given = {};
   /// The stages' results up to a failure or a stop request; called before run_pipeline throws.

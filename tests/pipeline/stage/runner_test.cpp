@@ -115,6 +115,19 @@ TEST_F(RunnerTest, TurnsCaveatsOfReplacedItemsIntoWarnings) {
   }
 }
 
+TEST_F(RunnerTest, ReportsEachCaveatAtOnce) {
+  RunHooks hooks;
+  hooks.caveat = [](const std::string& tag, const std::string& caveat) {
+    toy::log().push_back(tag + ": " + caveat);
+  };
+  run({{.stage = "toy.count", .with = {{"n", number(1)}}},
+       {.stage = "toy.caveat", .tag = "early"},
+       {.stage = "toy.log", .tag = "late"}},
+      hooks);
+  EXPECT_THAT(toy::log(),
+              ElementsAre("number 1", "count finishes", "early: are these numbers?", "log finishes"));
+}
+
 TEST_F(RunnerTest, KeepsCaveatsOfItemsThatGoElsewhereToo) {
   const auto results = run({{.stage = "toy.count"},
                             {.stage = "toy.caveat", .tag = "first"},
