@@ -43,6 +43,16 @@ SensorModel with_nominal(const SensorModel& model, const std::vector<Unobservabl
   return result;
 }
 
+/// The parameters that are held by request.
+std::vector<std::size_t> fixed_parameters(const SensorModel& model, const Sample& sample,
+                                          const RefinementSettings& settings) {
+  std::vector<std::size_t> all = free_parameters(model, sample.beams, {}).free;
+  const auto estimated = free_parameters(model, sample.beams, settings.fixed).free;
+  std::erase_if(
+      all, [&](std::size_t parameter) { return std::ranges::find(estimated, parameter) != estimated.end(); });
+  return all;
+}
+
 Refinement refine_once(const SensorModel& start, const Sample& sample, const RefinementSettings& settings,
                        const RoundReporter& report) {
   const LagRange lag = refined_lags(start, settings.prior);
@@ -70,10 +80,13 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
   }
   refiner.widen_by_shared_errors();
   refiner.consider_held(parameters.unobservable);
+  const auto caveat_of_fixed = refiner.consider_fixed(fixed_parameters(start, sample, settings));
   Refinement result = refiner.result();
   if (round > 0) check_errors(result.outcome, sample.beams, settings.surfels.floor, settings.prior);
   result.outcome.unobservable = std::move(parameters.unobservable);
-  if (caveat) result.outcome.caveats.push_back(*caveat);
+  for (const auto& each : {caveat, caveat_of_fixed}) {
+    if (each) result.outcome.caveats.push_back(*each);
+  }
   result.rounds = round;
   result.converged = converged;
   if (!converged && round == settings.max_rounds) {

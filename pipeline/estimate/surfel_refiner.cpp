@@ -4,20 +4,14 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "pipeline/data/error.hpp"
 #include "pipeline/estimate/base_parameters.hpp"
-#include "pipeline/estimate/consider_covariance.hpp"
-#include "pipeline/estimate/encoder_quantization.hpp"
 #include "pipeline/estimate/incidence.hpp"
-#include "pipeline/estimate/observability.hpp"
 #include "pipeline/estimate/relative_noise.hpp"
-#include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/estimate/static_surfaces.hpp"
 #include "pipeline/estimate/surfel_jacobian.hpp"
-#include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp {
 
@@ -88,62 +82,6 @@ void SurfelRefiner::update_damping(const Eigen::VectorXd& step) {
   damping_ = slope > 1 ? 1 / slope : 1;
 }
 
-std::vector<Unobservable> SurfelRefiner::hold_unobservable() {
-  if (!surfaces_->is_settled()) return {};
-  // The rig's knowledge is one more observation, and never has to be held.
-  constexpr double kNeverHeld = 10;
-  Eigen::MatrixXd information = information_;
-  Eigen::VectorXd ranges = ranges_of(settings_.prior, model_, free_);
-  for (std::size_t k = 0; k < free_.size(); ++k) {
-    if (!settings_.prior.nominal.contains(model_.names()[free_[k]])) continue;
-    const auto i = static_cast<Eigen::Index>(k);
-    information(i, i) += 1 / (ranges[i] * ranges[i]);
-    ranges[i] *= kNeverHeld;
-  }
-  auto determined = observability(information, free_, model_.names(), ranges);
-  if (determined.unobservable.empty()) return {};
-  const SensorModel found = model_;
-  model_ = with(start_, determined.known, picked(found, determined.known));
-  free_ = determined.known;
-  return determined.unobservable;
-}
-
-void SurfelRefiner::widen_by_shared_errors() {
-  if (found_.surfels.empty()) return;
-  const PlacedBeams placed(model_, sample_);
-  const auto equations =
-      normal_equations(found_, placed.view(noise_), free_.size(), surfel_rows(model_, sample_, free_),
-                       settings_.surfels, shared_errors(sample_.beams, found_, placed.view(noise_)));
-  covariance_ = widened(covariance_, widening(equations));
-  if (settings_.angle_step > 0) covariance_ = widened(covariance_, widening_by_quantization(equations));
-}
-
-void SurfelRefiner::consider_held(std::vector<Unobservable>& unobservable) {
-  if (unobservable.empty() || found_.surfels.empty()) return;
-  std::vector<std::size_t> all = free_;
-  std::vector<std::string> names;
-  Eigen::VectorXd prior(static_cast<Eigen::Index>(unobservable.size()));
-  bool is_from_rig = true;
-  for (const Unobservable& held : unobservable) {
-    prior[static_cast<Eigen::Index>(all.size() - free_.size())] = prior_of_held(held.parameter);
-    is_from_rig = is_from_rig && settings_.prior.nominal.contains(held.parameter);
-    all.push_back(model_.index(held.parameter));
-  }
-  for (const std::size_t parameter : all) names.push_back(model_.names()[parameter]);
-  const PlacedBeams placed(model_, sample_);
-  const auto equations = normal_equations(found_, placed.view(noise_), all.size(),
-                                          surfel_rows(model_, sample_, all), settings_.surfels);
-  ConsiderCovariance considered = consider(covariance_, equations.matrix, names, prior);
-  covariance_ = std::move(considered.covariance);
-  if (is_from_rig) return;  // then the standard errors state the uncertainty of all parameters
-  for (Unobservable& lost : considered.dependent) {
-    const std::size_t at =
-        static_cast<std::size_t>(std::ranges::find(free_, model_.index(lost.parameter)) - free_.begin());
-    remove(at);
-    unobservable.push_back(std::move(lost));
-  }
-}
-
 Refinement SurfelRefiner::result() const {
   Refinement result{.outcome = {.model = model_,
                                 .free = free_,
@@ -165,23 +103,6 @@ Refinement SurfelRefiner::result() const {
   return result;
 }
 
-/// The factors by which standard errors grow since beams share the errors of the encoder's steps.
-///
-/// @param without  the equations as if they did not
-Eigen::VectorXd SurfelRefiner::widening_by_quantization(const NormalEquations& without) const {
-  const PlacedBeams placed(model_, sample_);
-  const auto noise = noise_with_quantization(found_, placed.view(noise_), sample_, settings_.angle_step,
-                                             settings_.surfels.noise);
-  const auto with = normal_equations(found_, placed.view(noise), free_.size(),
-                                     surfel_rows(model_, sample_, free_), settings_.surfels);
-  const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
-  const auto variances = [&](const NormalEquations& equations) -> Eigen::VectorXd {
-    const Eigen::MatrixXd information = equations.matrix / without.covariance_factor();
-    return inverse(information + Eigen::MatrixXd(prior.asDiagonal())).diagonal();
-  };
-  return variances(with).cwiseQuotient(variances(without)).cwiseSqrt().cwiseMax(1);
-}
-
 /// Clamps each η to where encoder readings cover the beams.
 Eigen::VectorXd SurfelRefiner::keep_covered(Eigen::VectorXd values) const {
   const LagRange lag = refined_lags(start_, settings_.prior);
@@ -191,20 +112,6 @@ Eigen::VectorXd SurfelRefiner::keep_covered(Eigen::VectorXd values) const {
     eta = std::clamp(eta, lag.earliest, lag.latest);
   }
   return values;
-}
-
-double SurfelRefiner::prior_of_held(const std::string& name) const {
-  const auto known = settings_.prior.nominal.find(name);
-  return known != settings_.prior.nominal.end() ? known->second.std_error : range_of(ParameterPrior{}, name);
-}
-
-/// Removes a parameter from the free ones.
-void SurfelRefiner::remove(std::size_t at) {
-  std::vector<std::size_t> rest(free_.size());
-  std::iota(rest.begin(), rest.end(), std::size_t{0});
-  rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(at));
-  covariance_ = Eigen::MatrixXd(covariance_(rest, rest));
-  free_.erase(free_.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
 /// Estimates the beams' relative noise on the surfaces as first found, and once more on the static ones.

@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "pipeline/estimate/consider_covariance.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
@@ -43,6 +45,12 @@ class SurfelRefiner {
   /// @param unobservable  the held parameters; gets those that hang on them
   void consider_held(std::vector<Unobservable>& unobservable);
 
+  /// Adds to the covariance what parameters that were fixed by request may be off by, by the rig's standard
+  /// deviations.
+  ///
+  /// @return  a caveat if free parameters hang on fixed ones whose standard deviation the rig does not give
+  std::optional<std::string> consider_fixed(const std::vector<std::size_t>& fixed);
+
   const std::vector<std::size_t>& free() const { return free_; }
   double last_step() const { return last_step_; }  ///< [standard errors] of the parameter that moved most
 
@@ -54,6 +62,7 @@ class SurfelRefiner {
   Eigen::VectorXd widening_by_quantization(const NormalEquations& without) const;
   Eigen::VectorXd keep_covered(Eigen::VectorXd values) const;
   double prior_of_held(const std::string& name) const;
+  ConsiderCovariance consider_with(const std::vector<std::size_t>& held, const Eigen::VectorXd& prior) const;
   void remove(std::size_t at);
   bool update_noise(const BeamsView& placed);
   Surfels select_static(const Surfels& found, const BeamsView& beams);

@@ -107,6 +107,29 @@ TEST(SurfelRefinement, TakesTheRigsValuesAsObservations) {
   EXPECT_NEAR(laser2_tau(elsewhere, 1e-3 * error).first, elsewhere, 0.1 * error);
 }
 
+TEST(SurfelRefinement, CountsWhatFixedParametersMayBeOffBy) {
+  const auto recording = simulate_measurements(misplaced_scanner(1, 2.0), office());
+  const SensorModel truth(recording.truth);
+  constexpr double kOff = 1 * kDegree;
+  const SensorModel start =
+      with_one(truth, truth.index("laser2.alpha"),
+               truth.values()[static_cast<Eigen::Index>(truth.index("laser2.alpha"))] + kOff);
+  RefinementSettings settings;
+  settings.fixed = {"laser2.alpha"};
+  const auto refined = [&] { return refine_by_surfels(start, sample_of(recording), settings).outcome; };
+  const auto conditional = testing::HasSubstr("combinations with fixed parameters only");
+  EXPECT_THAT(refined().caveats,
+              testing::Contains(testing::AllOf(conditional, testing::HasSubstr("laser2.alpha"))));
+
+  settings.prior.nominal["laser2.alpha"] = {.value = 0, .std_error = kOff};
+  const Outcome outcome = refined();
+  EXPECT_THAT(outcome.caveats, testing::Not(testing::Contains(conditional)));
+  const Eigen::VectorXd error = picked(outcome.model, outcome.free) - picked(truth, outcome.free);
+  const Eigen::VectorXd errors = outcome.covariance.diagonal().cwiseSqrt();
+  EXPECT_GT(error.cwiseAbs().maxCoeff(), 0.1 * kDegree) << "of laser2's lambda";
+  EXPECT_LT(error.cwiseQuotient(errors).cwiseAbs().maxCoeff(), 4);
+}
+
 TEST(SurfelRefinement, WhatTheRigKnowsOfALagIsInTheStandardErrorsAtConstantSpeed) {
   auto scanner = misplaced_scanner(1, 3.0);
   scanner.motion = {.kind = MotionKind::constant, .max_rate = 0.91};
