@@ -83,9 +83,9 @@ void report_losses(const DeviceReport& device, AlignmentReport& report) {
   const double share =
       lost / static_cast<double>(std::max<std::uint64_t>(1, device.received - device.repeated));
   if (device.by_receipt) {
-    report.warnings.push_back(
-        fmt::format("{}: its clock stands still; {} of {} telegrams are placed by their receipt",
-                    device.device, device.received - device.left_out(), device.received));
+    report.caveats.push_back(fmt::format(
+        "{}: its clock stands still; {} of {} telegrams are placed by their receipt. Their delays are unknown and become part of eta, which is off by more than its standard error: use this calibration for recordings of the same kind only, or switch on the device's time stamps",
+        device.device, device.received - device.left_out(), device.received));
     return;
   }
   if (share <= kFew) return;

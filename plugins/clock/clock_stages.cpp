@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace crisp {
 namespace {
@@ -63,6 +64,12 @@ std::string table_of(const std::vector<DeviceReport>& devices) {
                         1e6 * clock.residual_median, 1e6 * clock.residual_95, device.lost, device.resets);
   }
   return text;
+}
+
+/// The map with the delays that receipts keep, and a lag takes up, in its standard error.
+ClockMap with_delays(ClockMap clock) {
+  clock.std_error = std::hypot(clock.std_error, clock.residual_median);
+  return clock;
 }
 
 }  // namespace
@@ -188,7 +195,7 @@ void OnlineStage::report(Context& context) {
 void ReceiptStage::describe(StageDescription<ReceiptStage>& d) {
   d.name("clock.receipt").summary("uses the hub's receipt times, delays included (baseline)");
   d.details(
-      "The baseline for comparisons: each scan is placed by the receipt of its telegram, less the time from its stamp to its transmission, and each encoder reading by its receipt. Clocks are fitted only to report the delays that are neglected here.");
+      "The baseline for comparisons: each scan is placed by the receipt of its telegram, less the time from its stamp to its transmission, and each encoder reading by its receipt. Clocks are fitted only to report the delays that are neglected here. They become part of eta: their median counts in its standard error, and a clock that stands still, whose delays are unknown, makes the result untrusted.");
   describe_alignment(d);
   describe_windows(d);
 }
@@ -225,7 +232,8 @@ void AlignStage::finish(Outputs& out, Context& context) {
        {"hub_clock", {{"deviation", report.hub_deviation}, {"steps", to_json(report.hub_steps)}}}});
   context.print(table_of(report.devices));
   for (const auto& device : report.devices) {
-    if (device.clock) out.give(*device.clock);
+    if (device.clock)
+      out.give(settings_.source == TimeSource::receipt ? with_delays(*device.clock) : *device.clock);
   }
 }
 

@@ -43,6 +43,7 @@ class SimulatedHub final : public Stage {
 
 struct Seen {
   std::size_t maps = 0;
+  double least_std_error = 1;  // [s] of the maps
   std::size_t trajectories = 0;
   std::size_t measurements = 0;
   bool trajectory_first = true;
@@ -56,7 +57,10 @@ class Watcher final : public Stage {
     d.takes<PlateTrajectory>().takes<Measurements>().takes<ClockMap>();
   }
   void process(const Inputs& in, Outputs&, Context&) override {
-    if (in.find<ClockMap>()) ++seen.maps;
+    if (const auto* map = in.find<ClockMap>()) {
+      ++seen.maps;
+      seen.least_std_error = std::min(seen.least_std_error, map->std_error);
+    }
     if (in.find<PlateTrajectory>()) ++seen.trajectories;
     if (const auto* measurements = in.find<Measurements>()) {
       seen.measurements += measurements->size();
@@ -105,6 +109,15 @@ TEST_P(ClockStages, GivesTheTrajectoryThenAllMeasurementsAndTheMaps) {
 
 INSTANTIATE_TEST_SUITE_P(All, ClockStages, ::testing::Values("clock.convex_hull", "clock.receipt"),
                          [](const auto& name) { return std::string(name.param).substr(6); });
+
+TEST_F(ClockStages, CountTheDelaysThatReceiptsKeepInTheStandardErrors) {
+  constexpr double kMedianDelay = 1e-4 * 0.693;
+  run("clock.convex_hull", 3);
+  EXPECT_LT(seen.least_std_error, kMedianDelay / 4);
+  seen = {};
+  run("clock.receipt", 3);
+  EXPECT_GT(seen.least_std_error, kMedianDelay * 0.4) << "the plate's delays are shorter";
+}
 
 TEST_F(ClockStages, WarnsOfAMissingLaserAndRefusesToGoOnWithoutAny) {
   EXPECT_THAT(run("clock.convex_hull", 2).warnings, ::testing::Contains("laser3: no data of it"));
