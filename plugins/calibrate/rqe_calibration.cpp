@@ -72,19 +72,11 @@ class RqeCalibration {
   }
 
   Outcome run() {
-    in_plane();
-    Sample used = crisp::in_plane(sample_, settings_.in_plane.half_width, Half::kBoth);
-    if (settings_.full_field) used = full_field_from_each_minimum();
-    refuse_a_lag_without_end();
-    report(0.8, "standard errors");
-    Eigen::MatrixXd covariance = scatter(used);
-    const auto known = observability(inverse(covariance), parameters_.free, model_.names(),
-                                     ranges_of(settings_.in_plane.range, model_, parameters_.free));
-    if (known.known.size() < parameters_.free.size()) {
-      parameters_.free = known.known;
-      parameters_.unobservable.insert(parameters_.unobservable.end(), known.unobservable.begin(),
-                                      known.unobservable.end());
-      covariance = parameters_.free.empty() ? Eigen::MatrixXd() : scatter(used);
+    const SensorModel start = model_;
+    Eigen::MatrixXd covariance = minimize();
+    while (hold_unobservable(covariance)) {  // at the start's value, so that the others are found with that
+      model_ = start;
+      covariance = parameters_.free.empty() ? Eigen::MatrixXd() : minimize();
     }
     return {.model = model_,
             .free = parameters_.free,
@@ -96,6 +88,27 @@ class RqeCalibration {
   }
 
  private:
+  /// Minimizes over the free parameters, and returns their covariance.
+  Eigen::MatrixXd minimize() {
+    in_plane();
+    Sample used = crisp::in_plane(sample_, settings_.in_plane.half_width, Half::kBoth);
+    if (settings_.full_field) used = full_field_from_each_minimum();
+    refuse_a_lag_without_end();
+    report(0.8, "standard errors");
+    return scatter(used);
+  }
+
+  /// Holds the parameters that are less well determined than by their ranges; whether there were any.
+  bool hold_unobservable(const Eigen::MatrixXd& covariance) {
+    if (parameters_.free.empty()) return false;
+    auto known = observability(inverse(covariance), parameters_.free, model_.names(),
+                               ranges_of(settings_.in_plane.range, model_, parameters_.free));
+    parameters_.free = std::move(known.known);
+    parameters_.unobservable.insert(parameters_.unobservable.end(), known.unobservable.begin(),
+                                    known.unobservable.end());
+    return !known.unobservable.empty();
+  }
+
   /// The beams that encoder readings cover at every η of the search; sets the range's ends.
   static Sample with_margin(const SensorModel& start, const Sample& sample, InPlaneSettings& settings) {
     ParameterPrior& range = settings.range;

@@ -58,6 +58,22 @@ TEST(CalibrateByRqe, ReportsThatAConstantSpeedDoesNotDetermineTheLags) {
   }
 }
 
+TEST(CalibrateByRqe, LeavesWhatItDoesNotDetermineAtItsStart) {
+  const auto recording = simulate_measurements(misplaced_scanner(1, 3.0), office());
+  const SensorModel start(nominal_calibration(default_rig()));
+  RqeCalibrationSettings settings = quick();
+  settings.full_field = false;
+  settings.in_plane.range.tau = 1e-5;  // known better than any optimum of two beams
+  const auto measure = rqe_measure();
+  const Outcome outcome = calibrate_by_rqe(start, sample_of(recording), *measure, settings);
+  ASSERT_EQ(outcome.unobservable.size(), 3U);
+  for (const auto& lost : outcome.unobservable) {
+    EXPECT_THAT(lost.parameter, testing::EndsWith(".tau"));
+    const auto place = static_cast<Eigen::Index>(outcome.model.index(lost.parameter));
+    EXPECT_EQ(outcome.model.values()[place], start.values()[place]) << lost.parameter;
+  }
+}
+
 TEST(CalibrateByRqe, SeesOnlySpotsAtCommensurateRates) {
   auto scanner = misplaced_scanner(1, 3.0);
   scanner.motion = {.kind = MotionKind::constant, .max_rate = 2};  // 25 scans a turn
