@@ -122,12 +122,12 @@ void RefineStage::finish(Outputs& out, Context& context) {
     context.warn(kCountsClockwise);
     calibration = std::move(*turned);
   }
+  calibration.provenance = start_->provenance;
+  calibration.provenance["refinement"] = "calibrate.refine";
   judge(sample, refined, calibration, context);
   if (context.interrupted()) return;
   report(halves, context);
   if (halves) calibration.quality["cross_validation"] = halves->ratio();
-  calibration.provenance = start_->provenance;
-  calibration.provenance["refinement"] = "calibrate.refine";
   report(calibration, *start_, context);
   out.give(std::move(calibration));
 }
@@ -186,6 +186,8 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
       context.print("probably for that reason: " + caveat);
   }
   const RigCheck check = check_with_rig(calibration, context.rig(), {});
+  note_direction(calibration, check);
+  report_direction(calibration, *start_, context);
   if (of_rig.empty() && of_fit.empty() && are_resolved(start_->caveats, check)) {
     context.resolve_caveats(KindName<Calibration>::value,
                             "the refined calibration fits, and agrees with the rig");

@@ -11,6 +11,7 @@
 #include "pipeline/estimate/free_parameters.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/correlations.hpp"
+#include "plugins/calibrate/rig_check.hpp"
 
 namespace crisp {
 namespace {
@@ -80,6 +81,26 @@ void report(const Calibration& calibration, const Calibration& start, Context& c
   context.report({{"lasers", lasers}, {"quality", calibration.quality}, {"unobservable", unobservable}});
   report_correlations(calibration, context);
   report_rqe(calibration.quality, context);
+}
+
+void report_direction(const Calibration& calibration, const Calibration& start, Context& context) {
+  const auto source_of = [](const Calibration& one) {
+    const auto found = one.provenance.find(kDirectionSource);
+    return found == one.provenance.end() ? std::string() : found->second;
+  };
+  const std::string direction =
+      calibration.direction == CountDirection::clockwise ? "clockwise" : "counter_clockwise";
+  const std::string source = source_of(calibration);
+  context.report({{kDirectionSource, source}});
+  if (source == source_of(start)) return;
+  if (source == kFromRig) {
+    context.warn(fmt::format(
+        "plate.direction: {} is known from the rig only, since the mirror image agrees with the nominal values as well. If it is wrong, the cloud is the mirror image of the scene: compare both once, or find the direction by hand",
+        direction));
+  } else if (source_of(start) == kFromRig) {
+    context.print(
+        "plate.direction: the refined values contradict the mirror image, so that the recording confirms it");
+  }
 }
 
 void report(const std::optional<CrossValidation>& halves, Context& context) {

@@ -28,6 +28,10 @@ std::vector<double> rqe_of(const std::vector<SensorModel>& models, const Sample&
 /// warning for each unobservable parameter, unless a stage above has reported it for `start`.
 void report(const Calibration& calibration, const Calibration& start, Context& context);
 
+/// What determines the plate's direction (note_direction()), for programs; for people if that is the rig
+/// alone, unless a stage above has reported it for `start`.
+void report_direction(const Calibration& calibration, const Calibration& start, Context& context);
+
 /// The recordings, and each one's lags, for people and for programs.
 void report(const RecordingLags& lags, const PlateTrajectory& plate, Context& context);
 

@@ -275,7 +275,17 @@ RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const Pa
 std::optional<Calibration> in_direction_of_rig(const Calibration& calibration, const Rig& rig,
                                                const RigCheck& check) {
   if (rig.plate.direction != CountDirection::automatic || !check.is_mirrored) return std::nullopt;
-  return match_form_of_rig(with_lambdas_near(mirrored(calibration), rig), rig);
+  Calibration turned = match_form_of_rig(with_lambdas_near(mirrored(calibration), rig), rig);
+  turned.provenance[kDirectionSource] = kFromRecording;
+  return turned;
+}
+
+void note_direction(Calibration& calibration, const RigCheck& check) {
+  calibration.provenance.erase(kDirectionSource);
+  if (check.knows_direction)
+    calibration.provenance[kDirectionSource] = kFromRecording;
+  else if (!check.is_explained)
+    calibration.provenance[kDirectionSource] = kFromRig;
 }
 
 }  // namespace crisp

@@ -45,7 +45,17 @@ RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const Pa
 std::optional<Calibration> in_direction_of_rig(const Calibration& calibration, const Rig& rig,
                                                const RigCheck& check);
 
-/// The message then.
+/// The entry of a calibration's provenance that states what determines the plate's direction: kFromRecording,
+/// or kFromRig where the mirror image agrees with the nominal values as well.
+inline constexpr const char* kDirectionSource = "direction_from";
+inline constexpr const char* kFromRecording = "recording";
+inline constexpr const char* kFromRig = "rig";
+
+/// Sets that entry of a calibration that check_with_rig() has compared; removes it where the rig is
+/// contradicted.
+void note_direction(Calibration& calibration, const RigCheck& check);
+
+/// The message of in_direction_of_rig().
 inline constexpr const char* kCountsClockwise =
     "the encoder counts clockwise, by the signs of tau and alpha and the order of the lasers; the calibration takes it so. Set plate.direction: clockwise in the rig";
 

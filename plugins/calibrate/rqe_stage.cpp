@@ -101,12 +101,11 @@ Calibration RqeStage::compared_with_rig(Calibration calibration, Context& contex
       return std::move(*turned);
     }
   }
+  note_direction(calibration, check);
+  report_direction(calibration, {}, context);
   if (finds_direction && !check.knows_direction) {
     calibration.caveats.emplace_back(kDirectionIsOpen);
     context.mark_untrusted(calibration.caveats.back());
-  } else if (!check.knows_direction && !start_) {
-    context.print(
-        "plate.direction is determined by the rig only: the mirror image agrees with the nominal values as well");
   }
   // Values that the data do not determine lie anywhere in their ranges: they show no mistake of the rig.
   const bool is_determined = calibration.unobservable.empty();

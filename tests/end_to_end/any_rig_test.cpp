@@ -3,8 +3,6 @@
 // wrong, or right and untrusted.
 #include <gmock/gmock.h>
 
-#include <sstream>
-
 #include "pipeline/files/calibration_file.hpp"
 #include "tests/end_to_end/drawn_rig.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
@@ -69,6 +67,13 @@ TEST_F(AnyRig, DelaysThatThinOutTowardsTheLeastLeaveEtaHonest) { is_right_and_tr
 
 TEST_F(AnyRig, ADirectionThatNothingShowsIsNotGuessed) {
   is_untrusted_with(11, {}, "the encoder's sense of rotation is undetermined");
+}
+
+TEST_F(AnyRig, ADirectionThatOnlyTheRigKnowsIsCalledSo) {
+  const auto outcome = calibrate(573, {"duration=6"});  // stated wrongly, and a mirror image agrees as well
+  EXPECT_THAT(outcome.console, HasSubstr("counter_clockwise is known from the rig only"));
+  EXPECT_EQ(read_calibration(fixture_ / "out/calibration.yaml").provenance.at("direction_from"), "rig");
+  EXPECT_EQ(outcome.stage("calibrate.refine").at("report").at("direction_from"), "rig");
 }
 
 TEST_F(AnyRig, AMountThatIsOffByDegreesIsFound) {

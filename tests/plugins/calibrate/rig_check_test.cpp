@@ -70,11 +70,17 @@ TEST(RigCheck, TheOrderOfTheLasersDeterminesTheDirectionOfRadialScanPlanes) {
   Rig rig = default_rig();
   for (auto& laser : rig.lasers) laser.nominal.alpha.value = 90 * kDegree;
   EXPECT_TRUE(check(found(4, rig), rig).knows_direction);
+  Calibration three = found(4, rig);
+  note_direction(three, check(three, rig));
+  EXPECT_EQ(three.provenance.at(kDirectionSource), kFromRecording);
   EXPECT_TRUE(check(mirrored(found(4, rig)), rig).is_mirrored);
   rig.lasers.resize(2);
   rig.lasers[1].nominal.lambda.value = 180 * kDegree;
   const RigCheck two = check(found(4, rig), rig);
   EXPECT_FALSE(two.knows_direction) << "two radial lasers opposite one another are their own mirror image";
+  Calibration noted = found(4, rig);
+  note_direction(noted, two);
+  EXPECT_EQ(noted.provenance.at(kDirectionSource), kFromRig);
   EXPECT_THAT(two.caveats, IsEmpty());
 }
 
