@@ -18,6 +18,7 @@ LISTS = {"caveats", "other_minima"}
 MAKERS = (
     "grabbers/capture/loss_warnings.cpp",
     "pipeline/estimate/surfel_refinement.cpp",
+    "pipeline/estimate/surfel_refiner_covariance.cpp",
     "pipeline/estimate/view_consistency.cpp",
     "plugins/calibrate/fit_check.cpp",
     "plugins/calibrate/rig_check.cpp",

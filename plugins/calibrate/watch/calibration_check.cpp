@@ -109,10 +109,17 @@ class Checker {
     return refine_by_surfels(start_, thinned_, settings, [this](int) { return keep_running_(); });
   }
 
-  /// With the geometry as it is.
+  /// With the geometry as it is, known as well as the calibration states.
   Recalibration lags(const Sample& few) const {
     RefinementSettings settings = settings_.refinement;
     for (const char* geometry : {"lambda", "tau", "alpha"}) settings.fixed.emplace_back(geometry);
+    for (const LaserCalibration& laser : calibration_.lasers) {
+      for (const auto& [name, known] : {std::pair("lambda", &laser.lambda), std::pair("tau", &laser.tau),
+                                        std::pair("alpha", &laser.alpha)}) {
+        settings.prior.nominal[laser.name + "." + name] = {.value = known->value,
+                                                           .std_error = known->std_error};
+      }
+    }
     const Outcome outcome = refine(settings).outcome;
     Recalibration recalibration = whole(outcome, rqe_of(outcome.model, few, settings_.sigma));
     recalibration.calibration = with_lags_of(calibration_, recalibration.calibration);
