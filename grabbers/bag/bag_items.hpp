@@ -50,7 +50,7 @@ class BagItems {
     double time;                                 ///< [s since the epoch] of beam 0
     std::shared_ptr<const Measurements> points;  ///< in place of a scan
   };
-  std::shared_ptr<const Measurements> measured(const Stamped& scan) const;
+  std::shared_ptr<const Measurements> measured(const Stamped& stamped) const;
   /// [µs] since the epoch, which the first stamp makes.
   std::int64_t device_us(std::int64_t stamp_ns) const;
   double seconds(std::int64_t stamp_ns) const;

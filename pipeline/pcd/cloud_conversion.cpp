@@ -20,7 +20,7 @@ bool is_same_letter(unsigned char a, unsigned char b) { return std::tolower(a) =
 
 bool mentions_time(std::string_view name) {
   constexpr std::string_view kTime = "time";
-  return !std::ranges::search(name, kTime, is_same_letter).empty();
+  return std::search(name.begin(), name.end(), kTime.begin(), kTime.end(), is_same_letter) != name.end();
 }
 
 /// The table's name of a field: other programs write X or Intensity. The name itself if there

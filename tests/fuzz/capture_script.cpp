@@ -78,8 +78,8 @@ class CaptureScript::Network {
     hub.telegram(laser, telegram, ns);
     sorter_.finish();
   }
-  void send_reading(bool is_unknown, ByteView sentence, std::int64_t ns) {
-    (is_unknown ? other_ : own_).datagram(sentence, ns);
+  void send_reading(bool is_unknown, const PlateReading& reading) {
+    (is_unknown ? other_ : own_).reading(reading);
     sorter_.finish();
   }
   std::vector<Frame> frames() { return std::move(frames_); }
@@ -145,7 +145,7 @@ void CaptureScript::send(const ItemSequence& items, std::size_t index, Network& 
   }
   if (scan == nullptr) {
     const auto& reading = std::get<PlateReading>(items[index]);
-    return network.send_reading(is_unknown, as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
+    return network.send_reading(is_unknown, reading);
   }
   const auto data = telegram_of(**scan);
   if (!data) return;

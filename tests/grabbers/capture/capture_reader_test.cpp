@@ -18,7 +18,7 @@ namespace {
 using testing::ElementsAreArray;
 using testing::SizeIs;
 
-constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::int64_t kNsPerMillisecond = 1'000'000;
 
 std::vector<Frame> in_link_layer(std::vector<Frame> frames, Bytes (*convert)(ByteView)) {
   for (auto& frame : frames) frame.bytes = convert(frame.bytes);
@@ -69,7 +69,7 @@ TEST(CaptureReader, ReadsThePlatesCountsInALasersTelegrams) {
   const std::vector<std::uint32_t> positions = {2, 1, 0, 4294967295, 4294967294};
   for (unsigned k = 0; k < positions.size(); ++k) {
     laser.send(TcpSide::Server, as_bytes(telegram_with_encoder(k, positions[k])),
-               kStart + (50 + 40 * k) * kMillisecond);
+               kStart + (50 + 40 * k) * kNsPerMillisecond);
   }
   Rig rig = default_rig();
   rig.lasers.resize(1);
@@ -91,8 +91,8 @@ TEST(CaptureReader, ReadsEncoderLinesOfTheRigsFormatInDatagramsAndStreams) {
   const std::vector<std::string> expected = {"5000000 plate 0 10000 77", "7000000 plate 1 12000 78",
                                              "7000000 plate 2 14000 79"};
   const auto send = [](const auto& sender) {
-    sender("ENC 10 77\n", 5 * kMillisecond);
-    sender("ENC 12 78\nENC 14 79\n", 7 * kMillisecond);
+    sender("ENC 10 77\n", 5 * kNsPerMillisecond);
+    sender("ENC 12 78\nENC 14 79\n", 7 * kNsPerMillisecond);
   };
   std::vector<Frame> datagrams;
   DatagramSender udp(kPlate, kHubPlate, into(datagrams));
@@ -137,7 +137,7 @@ TEST(CaptureReader, StampsATelegramWithThePacketThatCompletesIt) {
   const auto repeat = [&](std::size_t i, std::int64_t delay) {
     frames.push_back({frames[i].time_ns + delay, frames[i].bytes});
   };
-  for (const auto i : segments) repeat(i, 3 * kMillisecond);  // every segment once more
+  for (const auto i : segments) repeat(i, 3 * kNsPerMillisecond);  // every segment once more
   std::stable_sort(frames.begin(), frames.end(),
                    [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; });
   const auto again = read_capture(pcap_file(frames));
@@ -151,7 +151,7 @@ TEST(CaptureReader, StampsATelegramThatARetransmissionCompletesWithThat) {
   const auto segments = segments_of(frames, 1);
   const auto late =
       segments[segments.size() / 2];  // of scan 2: comes 7 ms later, behind everything else of it
-  frames[late].time_ns += 7 * kMillisecond;
+  frames[late].time_ns += 7 * kNsPerMillisecond;
   const auto time = frames[late].time_ns;
   std::stable_sort(frames.begin(), frames.end(),
                    [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; });
@@ -275,11 +275,12 @@ TEST(CaptureReader, CountsTelegramsByTheirWholeName) {
   std::vector<Frame> frames;
   TcpConversation laser(kLaser1, kHub, into(frames));
   const auto send = [&](const char* text, std::int64_t t) {
-    laser.send(TcpSide::Server, cola_frame(as_bytes(text), ColaLanguage::A), kStart + t * kMillisecond);
+    laser.send(TcpSide::Server, cola_frame(as_bytes(text), ColaLanguage::A), kStart + t * kNsPerMillisecond);
   };
   send("sSN LMDscandatamon 1 1 1", 1);
   send("sFA 3", 2);
-  laser.send(TcpSide::Server, encode_scan_data(numbered_scan(0), ColaLanguage::B), kStart + 3 * kMillisecond);
+  laser.send(TcpSide::Server, encode_scan_data(numbered_scan(0), ColaLanguage::B),
+             kStart + 3 * kNsPerMillisecond);
   send("sSN LMDscandata 1 1 89A27F 0", 4);  // ends too early
   const auto reading = read_capture(pcap_file(frames));
   EXPECT_THAT(reading.items, SizeIs(1));
@@ -294,8 +295,8 @@ TEST(CaptureReader, GivesReadingsOnceThatWereCapturedTwice) {
   std::vector<Frame> frames;
   DatagramSender plate(kPlate, kHubPlate, into(frames));
   for (std::uint16_t k = 0; k < 20; ++k) {
-    plate.send(as_bytes(encode_plate_sentence(numbered_reading(k))), kStart + k * kMillisecond);
-    frames.push_back({kStart + k * kMillisecond + 5000, frames.back().bytes});  // as on two interfaces
+    plate.send(as_bytes(encode_plate_sentence(numbered_reading(k))), kStart + k * kNsPerMillisecond);
+    frames.push_back({kStart + k * kNsPerMillisecond + 5000, frames.back().bytes});  // as on two interfaces
   }
   const auto reading = read_capture(pcap_file(frames));
   EXPECT_THAT(reading.items, SizeIs(20));
@@ -322,7 +323,7 @@ TEST(CaptureReader, CountsLostReadingsAndDamagedSentences) {
     if (k == 65510) sentence[7] ^= 1;
     if (k == 65511) sentence.resize(12);
     if (k != 20 && k != 21)
-      plate.send(as_bytes(sentence), kStart + static_cast<std::uint16_t>(k - 65500) * 2 * kMillisecond);
+      plate.send(as_bytes(sentence), kStart + static_cast<std::uint16_t>(k - 65500) * 2 * kNsPerMillisecond);
   }
   const auto reading = read_capture(pcap_file(frames));
   EXPECT_THAT(reading.items, SizeIs(132));
@@ -337,10 +338,10 @@ TEST(CaptureReader, NamesTheRestartOfADeviceAndItsSilence) {
   TcpConversation laser(kLaser1, kHub, into(frames));
   for (std::uint16_t k = 0; k < 100; ++k) {
     auto data = numbered_scan(k);
-    std::int64_t time = kStart + k * 20 * kMillisecond;
+    std::int64_t time = kStart + k * 20 * kNsPerMillisecond;
     if (k >= 50) {
       data = numbered_scan(static_cast<std::uint16_t>(k - 50));
-      time += 30'000 * kMillisecond;
+      time += 30'000 * kNsPerMillisecond;
     }
     laser.send(TcpSide::Server, encode_scan_data(data, ColaLanguage::B), time);
   }
@@ -350,7 +351,7 @@ TEST(CaptureReader, NamesTheRestartOfADeviceAndItsSilence) {
   EXPECT_EQ(device.notes.of("restarts of the device's clock"), 1U);
   EXPECT_EQ(device.losses.of("lost telegrams, by their counter"), 0U);
   EXPECT_NEAR(device.longest_silence, 30.02, 1e-6);
-  EXPECT_EQ(device.silence_ns, kStart + 49 * 20 * kMillisecond);
+  EXPECT_EQ(device.silence_ns, kStart + 49 * 20 * kNsPerMillisecond);
 }
 
 /// Two recordings, one behind the other in a file, each of whose connections begins with the same number.
@@ -364,7 +365,7 @@ std::vector<Frame> recorded_twice(const Scenario& scenario, std::int64_t apart_n
 
 TEST(CaptureReader, GivesAllOfARecordingThatWasAppendedToAnother) {
   const Scenario scenario{.scans = 30, .beams = 541};
-  const auto reading = read_capture(pcap_file(recorded_twice(scenario, 3600'000 * kMillisecond)));
+  const auto reading = read_capture(pcap_file(recorded_twice(scenario, 3600'000 * kNsPerMillisecond)));
   EXPECT_THAT(reading.items, SizeIs(2 * scenario.items().size()));
   for (const auto* name : {"laser1", "laser2"}) {
     EXPECT_EQ(reading.device(name).items, 60U);
@@ -374,7 +375,7 @@ TEST(CaptureReader, GivesAllOfARecordingThatWasAppendedToAnother) {
 
 TEST(CaptureReader, TakesAPauseBetweenRecordingsForNoLoss) {
   const Scenario scenario{.scans = 30};
-  const auto reading = read_capture(pcap_file(recorded_twice(scenario, 3600'000 * kMillisecond)));
+  const auto reading = read_capture(pcap_file(recorded_twice(scenario, 3600'000 * kNsPerMillisecond)));
   EXPECT_EQ(reading.statistics.pauses, 1U);
   EXPECT_NEAR(reading.statistics.paused, 3600 - 0.6, 0.1);
   for (const auto* name : {"laser1", "laser2", "plate"}) {
@@ -388,8 +389,8 @@ TEST(CaptureReader, TakesTheSilenceOfOneDeviceForALoss) {
   const Scenario scenario{.scans = 500, .handshake = false};
   auto frames = scenario.frames();
   std::erase_if(frames, [](const Frame& frame) {  // of the plate, for 8 s
-    return frame.bytes[29] == 10 && frame.time_ns > kStart + 1000 * kMillisecond &&
-           frame.time_ns < kStart + 9000 * kMillisecond;
+    return frame.bytes[29] == 10 && frame.time_ns > kStart + 1000 * kNsPerMillisecond &&
+           frame.time_ns < kStart + 9000 * kNsPerMillisecond;
   });
   const auto reading = read_capture(pcap_file(frames));
   EXPECT_EQ(reading.statistics.pauses, 0U);
