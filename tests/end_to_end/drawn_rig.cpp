@@ -48,6 +48,11 @@ DrawnRig::DrawnRig(const std::filesystem::path& folder, std::uint64_t seed,
   if (std::system((command + " > /dev/null").c_str()) != 0) throw std::runtime_error(command + " failed");
   const YAML::Node truth = YAML::LoadFile(folder / "truth.yaml");
   fault_ = truth["fault"].as<std::string>();
+  const YAML::Node& effect = truth["effect"];
+  effect_ = {.cause = effect["cause"].as<std::string>(),
+             .form = effect["form"].as<std::string>(),
+             .scope = effect["scope"].as<std::string>(),
+             .rms = effect["rms"].as<double>()};
   words_ = fmt::format("{}, {}, {:.0f} s;", truth["scene"].as<std::string>(),
                        truth["motion"].as<std::string>(), truth["duration"].as<double>());
   for (const auto& entry : truth["lasers"]) {

@@ -21,6 +21,14 @@ struct FoundParameter {
   bool is_wrong() const;
 };
 
+/// The effect that the simulator injected, in a form of its own.
+struct InjectedEffect {
+  std::string cause;  ///< as docs/effects.md calls it; "none", "shape"
+  std::string form;
+  std::string scope;  ///< of a laser, or "all"
+  double rms = 0;     ///< [m] by which it changes ranges
+};
+
 /// A rig and its recording as tests/independent draws them from a seed, which shares nothing with crisp.
 class DrawnRig {
  public:
@@ -33,6 +41,7 @@ class DrawnRig {
   std::filesystem::path capture() const { return folder_ / "capture.pcap"; }
   std::filesystem::path rig() const { return folder_ / "rig.yaml"; }
   const std::string& fault() const { return fault_; }  ///< what is wrong in the rig's file; "none"
+  const InjectedEffect& effect() const { return effect_; }
   const std::string& words() const {
     return words_;
   }  ///< "office, varied, 12 s; lms1xx at 45, lms5xx at 90 deg"
@@ -52,6 +61,7 @@ class DrawnRig {
 
   std::filesystem::path folder_;
   std::string fault_;
+  InjectedEffect effect_;
   std::string words_;
   std::vector<Laser> lasers_;
 };

@@ -89,8 +89,13 @@ double Link::arrival(double sent) {
   return last_;
 }
 
-Traffic send_scans(const Setup& setup, const LaserSetup& laser, const std::vector<Scan>& scans,
-                   std::mt19937_64 random) {
+Traffic send_scans(const Setup& setup, std::size_t index, const std::vector<Scan>& scans,
+                   const Effect& effect, std::mt19937_64 random) {
+  const LaserSetup& laser = setup.lasers[index];
+  const auto clock_at = [&](double time) {
+    const bool acts = effect.clock && effect.acts_on(index);
+    return read_clock(laser.clock, time + (acts ? effect.size * effect.clock(time) : 0));
+  };
   Traffic traffic;
   const int hub_port = std::uniform_int_distribution<>(32768, 60999)(random);
   Connection connection({laser.address, laser.port}, {setup.wire.hub, hub_port}, setup.wire.loss, random,
@@ -107,8 +112,8 @@ Traffic send_scans(const Setup& setup, const LaserSetup& laser, const std::vecto
   header.scan_counter = static_cast<std::uint16_t>(random());
   const double powered_up = -std::uniform_real_distribution<>(20, 20000)(random);
   for (const auto& scan : scans) {
-    header.stamp_us = read_clock(laser.clock, scan.stamp);
-    header.transmission_us = read_clock(laser.clock, scan.transmission);
+    header.stamp_us = clock_at(scan.stamp);
+    header.transmission_us = clock_at(scan.transmission);
     header.seconds_since_start = scan.transmission - powered_up;
     const double arrival = link.arrival(scan.transmission);
     connection.deliver(arrival, arrival - scan.transmission,
@@ -120,7 +125,8 @@ Traffic send_scans(const Setup& setup, const LaserSetup& laser, const std::vecto
   return traffic;
 }
 
-Traffic send_readings(const Setup& setup, const PlateMotion& motion, std::mt19937_64 random) {
+Traffic send_readings(const Setup& setup, const PlateMotion& motion, const Effect& effect,
+                      std::mt19937_64 random) {
   const auto& plate = setup.plate;
   Traffic traffic;
   Link link(plate.link, random);
@@ -134,7 +140,7 @@ Traffic send_readings(const Setup& setup, const PlateMotion& motion, std::mt1993
   int joined = 0;
   for (int i = 0; i * interval < setup.duration; ++i) {
     const double time = interval * (i + std::clamp(kReadingJitter * normal(random), -0.2, 0.2));
-    double angle = motion.angle(time);
+    double angle = motion.angle(time) + (effect.encoder ? effect.size * effect.encoder(time) : 0);
     for (const auto& [begin, jump] : plate.slips) angle += time >= begin ? jump : 0;
     const double count = plate.start_count + std::floor(steps * angle);
     datagram += plate_sentence(sequence++, read_clock(plate.clock, time), modulo_2_32(count));

@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/independent/effects.hpp"
 #include "tests/independent/motion.hpp"
 #include "tests/independent/population.hpp"
 #include "tests/independent/scanner.hpp"
@@ -32,11 +33,12 @@ struct Traffic {
   double smallest_delay = 0;
 };
 
-/// Sends scans as CoLa telegrams over TCP, with the hub's acknowledgements.
-Traffic send_scans(const Setup& setup, const LaserSetup& laser, const std::vector<Scan>& scans,
-                   std::mt19937_64 random);
+/// Sends scans of a laser (its index) as CoLa telegrams over TCP, with the hub's acknowledgements.
+Traffic send_scans(const Setup& setup, std::size_t laser, const std::vector<Scan>& scans,
+                   const Effect& effect, std::mt19937_64 random);
 
 /// Reads the encoder throughout the capture, and sends the plate's sentences over UDP.
-Traffic send_readings(const Setup& setup, const PlateMotion& motion, std::mt19937_64 random);
+Traffic send_readings(const Setup& setup, const PlateMotion& motion, const Effect& effect,
+                      std::mt19937_64 random);
 
 }  // namespace independent

@@ -53,7 +53,7 @@ void write_rig(const std::string& path, const Setup& setup) {
   require_written(file, path);
 }
 
-void write_truth(const std::string& path, const Setup& setup, const Outcome& outcome) {
+void write_truth(const std::string& path, const Setup& setup, const Effect& effect, const Outcome& outcome) {
   std::ofstream file(path);
   const auto& plate = setup.plate;
   file << "arguments: \"" << outcome.arguments << "\"\n";
@@ -62,6 +62,10 @@ void write_truth(const std::string& path, const Setup& setup, const Outcome& out
   file << "turns: " << number(outcome.turns) << "\ntilt: " << number(setup.tilt)
        << "\nheight: " << number(setup.height) << "\n";
   file << "fault: " << setup.fault << "\nfault_detail: \"" << setup.fault_detail << "\"\n";
+  const bool is_of_one = effect.laser >= 0;
+  file << "effect: {cause: " << effect.cause << ", form: " << effect.form
+       << ", scope: " << (is_of_one ? setup.lasers[static_cast<std::size_t>(effect.laser)].name : "all")
+       << ", size: " << number(effect.size) << ", rms: " << number(outcome.effect_rms) << "}\n";
   file << "has_sd: " << yes_no(setup.sd.has_value()) << "\n";
   file << "plate: {direction: " << (plate.is_clockwise ? "clockwise" : "counter_clockwise")
        << ", counts: " << number(plate.counts) << ", rate: " << number(plate.rate)

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/independent/effects.hpp"
 #include "tests/independent/population.hpp"
 
 namespace independent {
@@ -18,12 +19,13 @@ struct Outcome {
   double smallest_plate_delay = 0;      ///< [s] of any datagram
   std::vector<double> smallest_delays;  ///< [s] of any telegram, for each laser
   std::vector<std::size_t> scans;
+  double effect_rms = 0;  ///< [m]
 };
 
 /// Writes the truth: one line a laser, in rad, m and s.
 ///
 /// `eta` follows from the links' minimum delays. `eta_sample` follows from the smallest delays that occurred
 /// in this capture: a lower envelope of the delays can determine no more.
-void write_truth(const std::string& path, const Setup& setup, const Outcome& outcome);
+void write_truth(const std::string& path, const Setup& setup, const Effect& effect, const Outcome& outcome);
 
 }  // namespace independent

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/independent/effects.hpp"
 #include "tests/independent/motion.hpp"
 #include "tests/independent/population.hpp"
 #include "tests/independent/world.hpp"
@@ -40,15 +41,16 @@ struct Scan {
   std::vector<std::uint8_t> remissions;
 };
 
-/// The plate's frame in the scene: z is the spin axis.
-struct Pose {
-  Vector origin;
-  Axes axes;
-};
 Pose plate_pose(const Setup& setup);
 
-/// All scans that begin and end within the capture, each beam fired at its own instant.
-std::vector<Scan> simulate_scans(const Setup& setup, const LaserSetup& laser, const World& world,
-                                 const PlateMotion& motion, std::mt19937_64 random);
+/// All scans of a laser (its index) that begin and end within the capture, each beam fired at its own
+/// instant.
+std::vector<Scan> simulate_scans(const Setup& setup, std::size_t laser, const World& world,
+                                 const PlateMotion& motion, const Effect& effect, std::mt19937_64 random);
+
+/// RMS by which the effect changes what beams measure, against a plain scanner that reports the same times
+/// and angles [m]. Beams drawn at random; those that it moves across an edge do not count.
+double effect_rms(const Setup& setup, const World& world, const PlateMotion& motion, const Effect& effect,
+                  std::mt19937_64 random);
 
 }  // namespace independent

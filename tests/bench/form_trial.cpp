@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rate at which the diagnosis names an effect whose form is not the catalogue's: tests/independent simulates
+// captures with effects in forms of its own, and configs/diagnose.yaml gets the capture and the rig's file.
+// Prints a line for each capture, and counts in the end.
+//
+//     form_trial FIRST DRAWS [NAME=VALUE...]      as independent_scanner has them: effect=rocks, scene=hall
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/files/findings_file.hpp"
+#include "tests/end_to_end/drawn_rig.hpp"
+#include "tests/end_to_end/pipeline_fixture.hpp"
+
+namespace crisp {
+namespace {
+
+using Names = std::vector<std::string>;
+
+class FormTrial {
+ public:
+  void run(std::uint64_t seed, const Names& fixed) {
+    const test::PipelineFixture fixture;
+    Names draws = {"fault=none", "has_mixed_pixels=0", "duration=10", "has_effect=1"};
+    draws.insert(draws.end(), fixed.begin(), fixed.end());
+    const test::DrawnRig drawn(fixture / "drawn", seed, draws);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto outcome = fixture.run("diagnose.yaml", drawn.capture(), "out", {}, drawn.rig());
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    const auto& effect = drawn.effect();
+    fmt::print("{:<5} {:<14} {:<20} {:<6} {:4.1f} mm {:3.0f} s; {}", seed, effect.form, effect.cause,
+               effect.scope, 1e3 * effect.rms, took.count(), drawn.words());
+    if (std::ranges::count(outcome.files, "diagnosis.json") == 0)
+      count(effect.cause, "refused");
+    else
+      judge(effect, read_findings(fixture / "out/diagnosis.json"));
+    fmt::print("{}\n", outcome.status == ExitStatus::done ? "" : "; untrusted");
+    std::fflush(stdout);
+  }
+
+  void print() const {
+    for (const auto& [cause, verdicts] : verdicts_) {
+      fmt::print("{}:", cause);
+      for (const auto& [verdict, captures] : verdicts) fmt::print("  {} {}", captures, verdict);
+      fmt::print("\n");
+    }
+  }
+
+ private:
+  void count(const std::string& cause, const std::string& verdict) {
+    ++verdicts_[cause][verdict];
+    ++verdicts_["all"][verdict];
+    fmt::print("; {}", verdict);
+  }
+
+  void judge(const test::InjectedEffect& effect, const Findings& findings) {
+    Names right, in_class, wrong, all;
+    for (const Finding& finding : findings.findings) {
+      all.push_back(fmt::format(
+          "{}.{}{}{}", finding.scope, finding.cause, finding.accepted ? "" : " rejected",
+          finding.confounded_with.empty() ? ""
+                                          : fmt::format(" [{}]", fmt::join(finding.confounded_with, " "))));
+      if (!finding.accepted) continue;
+      const bool holds = std::ranges::any_of(finding.confounded_with, [&](const std::string& name) {
+        return name == effect.cause || name.ends_with("." + effect.cause);
+      });
+      (finding.cause == effect.cause ? right : holds ? in_class : wrong).push_back(finding.cause);
+    }
+    for (const UnnamedFinding& unnamed : findings.unnamed)
+      all.push_back(fmt::format("{}: {} over {} {:.1f} mm", unnamed.scope, unnamed.quantity,
+                                unnamed.covariate, 1e3 * unnamed.amplitude));
+    const bool is_plain = effect.cause == "none" || effect.cause == "shape";
+    const std::string beside = wrong.empty() ? "" : is_plain ? "false name" : " and a false name";
+    if (is_plain)
+      count(effect.cause, !beside.empty()            ? beside
+                          : effect.cause == "none"   ? "nothing"
+                          : findings.unnamed.empty() ? "missed"
+                                                     : "unnamed");
+    else if (!right.empty() || !in_class.empty())
+      count(effect.cause, (right.empty() ? "class" : "right") + beside);
+    else
+      count(effect.cause, !wrong.empty() ? "wrong name" : findings.unnamed.empty() ? "missed" : "unnamed");
+    fmt::print(": {}", fmt::join(all, ", "));
+  }
+
+  std::map<std::string, std::map<std::string, int>> verdicts_;  // by cause
+};
+
+}  // namespace
+}  // namespace crisp
+
+int main(int argc, char** argv) {
+  const std::span<char*> arguments(argv, static_cast<std::size_t>(argc));
+  if (arguments.size() < 3) {
+    fmt::print(stderr, "usage: form_trial FIRST DRAWS [NAME=VALUE...]\n");
+    return 2;
+  }
+  const std::uint64_t first = std::strtoull(arguments[1], nullptr, 10);
+  const std::uint64_t draws = std::strtoull(arguments[2], nullptr, 10);
+  const std::vector<std::string> fixed(arguments.begin() + 3, arguments.end());
+  try {
+    crisp::FormTrial trial;
+    for (std::uint64_t seed = first; seed < first + draws; ++seed) trial.run(seed, fixed);
+    trial.print();
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+  return 0;
+}
