@@ -36,6 +36,8 @@ struct EffectParameter {
   /// search has to step through it.
   bool shape = false;
   Tries tries = {};  ///< for a form; count 0: it is left at its neutral value
+  /// An amplitude of an effect with a form: whether what it does is the same in every form.
+  bool is_the_same_in_every_form = false;
 };
 
 /// One departure of a real scanner from equation (2), its clocks, its noise or its scene from the plain ones.

@@ -27,12 +27,23 @@ struct TermInfo {
   std::string resolvable_by = {};  ///< see EffectInfo
   CountsFrom counts_from = CountsFrom::kNothing;
   bool needs_incidence = false;  ///< it does nothing where nobody has found how beams met their surfaces
-  /// For an empirical term, which describes a departure by its shape instead of naming a cause: the covariate
-  /// of the shape ("mirror angle"). Empty for the others.
+  /// For an empirical term, which describes a departure by its shape: the covariate of the shape ("mirror
+  /// angle"). Empty for the others.
   std::string covariate = {};
+  /// For a term that is another member of a cause's family: the cause, which a departure of this term is
+  /// reported as. See family_of().
+  std::string family = {};
+  /// The zero of its quantity is a convention, so that a constant of the same kind belongs to it.
+  bool has_free_level = false;
   bool is_fine =
       false;  ///< for an empirical term: it has many parameters, and is fitted only to the others' residual
 };
+
+/// The cause whose family the term belongs to: all forms that the same physics can take, with the same
+/// invariances. Empty for an empirical term whose invariances are those of no cause.
+inline const std::string& family_of(const TermInfo& info) {
+  return info.family.empty() && info.covariate.empty() ? info.name : info.family;
+}
 
 /// One departure of a real scanner from equation (2): parameters, and how they change a beam. Immutable.
 /// Derive from DifferentiableTerm, not from this.

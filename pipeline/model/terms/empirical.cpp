@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "pipeline/data/degree.hpp"
@@ -36,6 +37,8 @@ OnName describe(On on) {
       return {"lag", "s", 0.01, Phase::kTime, Scope::kLaser};
     case On::kBase:
       return {"base", "m", 0.5, Phase::kBase, Scope::kPlate};
+    case On::kTilt:
+      return {"tilt", "rad", 0.1, Phase::kBase, Scope::kPlate};
   }
   return {};
 }
@@ -78,8 +81,9 @@ EffectParameter span_of_time() {
 
 std::vector<EffectParameter> parameters(On on, Over over, const Shape& shape) {
   const OnName what = describe(on);
-  const std::vector<std::string> axes =
-      on == On::kBase ? std::vector<std::string>{"x_", "y_", "z_"} : std::vector<std::string>{""};
+  const std::vector<std::string> axes = on == On::kBase || on == On::kTilt
+                                            ? std::vector<std::string>{"x_", "y_", "z_"}
+                                            : std::vector<std::string>{""};
   std::vector<EffectParameter> all;
   for (const std::string& axis : axes) {
     for (std::size_t k = 0; k < shape.coefficients(); ++k) {
@@ -111,7 +115,11 @@ std::vector<double> finer_ranges() {
 
 Shape Shape::fourier(int first, int last) { return {Kind::kFourier, first, last, {}}; }
 Shape Shape::hats(std::vector<double> knots) { return {Kind::kHats, 0, 0, std::move(knots)}; }
-Shape Shape::splines(int n) { return {Kind::kSplines, 0, n, {}}; }
+Shape Shape::splines(int n, double from, double to, double zero) {
+  const double pieces = n - 2;
+  const int nearest = 1 + static_cast<int>(std::lround((zero - from) / (to - from) * pieces));
+  return {Kind::kSplines, nearest, n + 1, {from, to, zero}};
+}
 Shape Shape::powers() { return {Kind::kPowers, 0, 0, {}}; }
 Shape Shape::curve() { return {Kind::kCurve, 0, 0, {}}; }
 
@@ -122,7 +130,7 @@ std::size_t Shape::coefficients() const {
     case Kind::kHats:
       return knots_.size();
     case Kind::kSplines:
-      return static_cast<std::size_t>(last_);
+      return static_cast<std::size_t>(last_) - 1;
     case Kind::kPowers:
       return 3;
     case Kind::kCurve:
@@ -159,9 +167,11 @@ std::string Shape::summary(std::size_t coefficient) const {
              std::to_string(first_ + static_cast<int>(coefficient / 2)) + "x";
     case Kind::kHats:
       return fmt::format("at x = {:.2f}", knots_[coefficient]);
-    case Kind::kSplines:
+    case Kind::kSplines: {
+      const auto spline = static_cast<double>(coefficient + (coefficient < omitted() ? 0 : 1));
       return fmt::format("of the B-spline about x = {:.2f}",
-                         (static_cast<double>(coefficient) - 1) / (last_ - 3));
+                         std::lerp(knots_[0], knots_[1], (spline - 1) / (last_ - 3)));
+    }
     case Kind::kPowers:
       return std::vector<std::string>{"of x²", "of x abs(x)", "of x³"}.at(coefficient);
     case Kind::kCurve:
@@ -170,20 +180,26 @@ std::string Shape::summary(std::size_t coefficient) const {
   return {};
 }
 
-EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape) : on_(on), over_(over), shape_(std::move(shape)) {
+EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape, std::string family)
+    : on_(on), over_(over), shape_(std::move(shape)) {
   const OnName what = describe(on);
   const std::string of = name_of(over);
   info_ = {
       .name = "empirical." + underscored(what.name) + "_by_" + underscored(of) + shape_.suffix(),
-      .summary = what.name + " is off by a function of " + of + " that no cause explains",
+      .summary = what.name + " is off by a function of " + of +
+                 (family.empty() ? " that no cause explains" : ": the general form of " + family),
       .phase = what.phase,
       .scope = what.scope,
       .parameters = parameters(on, over, shape_),
       .details =
-          "An empirical shape without a cause, for departures that no other effect of the catalogue describes; x is the " +
-          of +
+          (family.empty()
+               ? "An empirical shape without a cause, for departures that no other effect of the catalogue describes"
+               : "An empirical shape, reported as " + family +
+                     ": for departures of this cause that its own formula does not describe") +
+          "; x is the " + of +
           (over == Over::kTime        ? " as a share of `span`"
            : over == Over::kRemission ? "'s logarithm"
+           : over == Over::kIncidence ? " β as √(−ln cos β), in which both 1/cos β and β are smooth"
            : over == Over::kRange     ? " [m]"
            : over == Over::kPlateRate ? " [rad/s]"
                                       : " [rad]") +
@@ -193,36 +209,43 @@ EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape) : on_(on), over_(ove
                                                  : CountsFrom::kNothing,
       .needs_incidence = over == Over::kIncidence,
       .covariate = of,
+      .family = std::move(family),
       .is_fine = shape_.is_fine()};
 }
 
 void register_empirical_terms(TermRegistry& terms) {
-  const auto add = [&](On on, Over over, Shape shape) {
-    terms.add(std::make_shared<EmpiricalTerm>(on, over, std::move(shape)));
+  const auto add = [&](On on, Over over, Shape shape, const std::string& family = {}) {
+    terms.add(std::make_shared<EmpiricalTerm>(on, over, std::move(shape), family));
   };
-  const Shape in_time = Shape::splines(9);
+  const Shape in_time = Shape::splines(8, 0, 1, 0.5);
+  constexpr double kGrazing = 1.8;  // of 87.7°
+  const double dark = std::log(8.0), usual = std::log(100.0), bright = std::log(254.0);
+  // General members of families, by what they act on and what over.
+  add(On::kRange, Over::kIncidence, Shape::splines(6, 0, kGrazing, 0), "range.incidence");
+  add(On::kRange, Over::kRemission, Shape::splines(6, dark, bright, usual), "range.intensity");
+  add(On::kRange, Over::kTime, in_time, "range.warmup");
+  add(On::kMirrorAngle, Over::kMirrorAngle, Shape::fourier(1, 4), "mirror.eccentricity");
+  add(On::kElevation, Over::kMirrorAngle, Shape::fourier(1, 4), "mirror.cone");
+  add(On::kLag, Over::kTime, in_time, "clock.drift");
+  add(On::kPlateAngle, Over::kPlateAngle, Shape::fourier(1, 6), "encoder.eccentricity");
+  add(On::kPlateAngle, Over::kPlateRate, Shape::powers(), "encoder.speed_lag");
+  add(On::kBase, Over::kPlateAngle, Shape::fourier(1, 2), "plate.wobble");
+  add(On::kTilt, Over::kPlateAngle, Shape::fourier(1, 2), "plate.wobble");
+  add(On::kBase, Over::kTime, in_time, "base.motion");
+  add(On::kTilt, Over::kTime, in_time, "base.motion");
+  // Departures whose invariances are those of no cause.
   add(On::kRange, Over::kMirrorAngle, Shape::fourier(1, 4));
   add(On::kRange, Over::kPlateAngle, Shape::fourier(1, 4));
   add(On::kRange, Over::kRange, Shape::curve());
   add(On::kRange, Over::kRange, Shape::hats({1, 2, 3, 4, 6, 8, 12, 20}));
-  add(On::kRange, Over::kIncidence, Shape::hats(evenly(0, 80 * kDegree, 6)));
-  add(On::kRange, Over::kRemission, Shape::hats(evenly(std::log(10.0), std::log(250.0), 5)));
-  add(On::kRange, Over::kTime, in_time);
   add(On::kRange, Over::kPlateRate, Shape::powers());
+  add(On::kPlateAngle, Over::kTime, in_time);
   add(On::kRange, Over::kMirrorAngle, Shape::hats(evenly(-180 * kDegree, 180 * kDegree, 49)).finely());
   add(On::kRange, Over::kRange, Shape::hats(finer_ranges()).finely());
-  add(On::kRange, Over::kIncidence, Shape::hats(evenly(0, 80 * kDegree, 17)).finely());
-  add(On::kRange, Over::kRemission, Shape::hats(evenly(std::log(10.0), std::log(250.0), 17)).finely());
-  add(On::kRange, Over::kTime, Shape::splines(35).finely());
+  add(On::kRange, Over::kIncidence, Shape::splines(16, 0, kGrazing, 0).finely(), "range.incidence");
+  add(On::kRange, Over::kRemission, Shape::splines(16, dark, bright, usual).finely(), "range.intensity");
+  add(On::kRange, Over::kTime, Shape::splines(34, 0, 1, 0.5).finely());
   add(On::kRange, Over::kPlateRate, Shape::hats(evenly(-12.5, 12.5, 26)).finely());
-  add(On::kMirrorAngle, Over::kMirrorAngle, Shape::fourier(1, 4));
-  add(On::kElevation, Over::kMirrorAngle, Shape::fourier(1, 4));
-  add(On::kLag, Over::kTime, in_time);
-  add(On::kPlateAngle, Over::kPlateAngle, Shape::fourier(1, 6));
-  add(On::kPlateAngle, Over::kTime, in_time);
-  add(On::kPlateAngle, Over::kPlateRate, Shape::powers());
-  add(On::kBase, Over::kPlateAngle, Shape::fourier(1, 2));
-  add(On::kBase, Over::kTime, in_time);
 }
 
 }  // namespace crisp

@@ -4,6 +4,7 @@
 // and y of the base, which do not turn, and may be of different size there.
 #include <cmath>
 
+#include "pipeline/model/rotation.hpp"
 #include "pipeline/model/terms/families.hpp"
 
 namespace crisp {
@@ -38,18 +39,7 @@ struct Wobble final : DifferentiableTerm<Wobble> {
   }
   template <class T>
   void change(Beam<T>& beam, std::span<const T> p) const {
-    using std::cos;
-    using std::sin;
-    const T about_x = once_a_turn(beam, p[0], p[1]);
-    const T about_y = once_a_turn(beam, p[2], p[3]);
-    const T cx = cos(about_x), sx = sin(about_x);
-    const T cy = cos(about_y), sy = sin(about_y);
-    const auto tilt = [&](const Vector3<T>& v) {
-      const T z = cy * v.z() - sy * v.x();
-      return Vector3<T>(cy * v.x() + sy * v.z(), cx * v.y() - sx * z, sx * v.y() + cx * z);
-    };
-    beam.origin = tilt(beam.origin);
-    beam.direction = tilt(beam.direction);
+    rotate(beam, Rotation<T>(once_a_turn(beam, p[0], p[1]), once_a_turn(beam, p[2], p[3]), T(0)));
   }
 };
 

@@ -96,7 +96,8 @@ struct RangeIntensity final : DifferentiableTerm<RangeIntensity> {
                        {.name = "b", .unit = "m", .lower = -0.2, .upper = 0.2, .summary = "of u²"}},
         .details =
             "`r + a u + b u²` with `u = ln(I / 100)`, I the remission in the device's units; nothing where it is unknown (0). Millimetres to centimetres. As the remission falls with the incidence, it is confounded with range.incidence; neighbouring dark and light patches distinguish them.",
-        .resolvable_by = "dark and light patches side by side"};
+        .resolvable_by = "dark and light patches side by side",
+        .has_free_level = true};
     return kInfo;
   }
   template <class T>

@@ -27,7 +27,8 @@ struct RangeWarmup final : DifferentiableTerm<RangeWarmup> {
         .details =
             "`r + c (1 − exp(−t/T))`, t since the run's epoch. Millimetres to centimetres over minutes to hours. In a short run it is confounded with range.offset and a linear drift.",
         .resolvable_by = "a longer recording, from a cold start",
-        .counts_from = CountsFrom::kRunsEpoch};
+        .counts_from = CountsFrom::kRunsEpoch,
+        .has_free_level = true};
     return kInfo;
   }
   template <class T>

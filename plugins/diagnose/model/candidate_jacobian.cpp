@@ -39,14 +39,7 @@ CandidateJacobian::CandidateJacobian(const SensorModel& model, std::vector<std::
                                      std::vector<Candidate> candidates, const TermRegistry& terms)
     : candidates_(std::move(candidates)), terms_(terms), base_(base.size()), parameters_(base.size()) {
   for (const std::size_t parameter : base) names_.push_back(model.names()[parameter]);
-  for (const Candidate& candidate : candidates_) {
-    const auto own = sizes(terms.get(candidate.term.term)->info());
-    for (const std::size_t k : own)
-      names_.push_back(candidate.name + "." + candidate.term.parameters[k].name);
-    auto& columns = of_.emplace_back(own.size());
-    std::iota(columns.begin(), columns.end(), parameters_);
-    parameters_ += columns.size();
-  }
+  for (std::size_t c = 0; c < candidates_.size(); ++c) add_columns(c);
   std::vector<std::size_t> columns(base_);
   std::iota(columns.begin(), columns.end(), std::size_t{0});
   pages_.push_back({.model = model, .free = std::move(base), .columns = std::move(columns)});
@@ -63,18 +56,36 @@ CandidateJacobian::CandidateJacobian(const SensorModel& model, std::vector<std::
   }
 }
 
+void CandidateJacobian::add_columns(std::size_t candidate) {
+  const Candidate& one = candidates_[candidate];
+  const TermInfo& info = terms_.get(one.term.term)->info();
+  const bool is_another_form = candidate > 0 && candidates_[candidate - 1].is_form_of(one);
+  first_form_.push_back(is_another_form ? first_form_[candidate - 1] : candidate);
+  owned_.push_back(0);
+  auto& columns = of_.emplace_back();
+  for (const std::size_t k : sizes(info)) {
+    if (is_another_form && info.parameters[k].is_the_same_in_every_form) {
+      columns.push_back(of_[first_form_[candidate]][columns.size()]);
+      continue;
+    }
+    names_.push_back(one.name + "." + one.term.parameters[k].name);
+    columns.push_back(parameters_++);
+    ++owned_[candidate];
+  }
+}
+
 /// Groups the candidates of one owner by what one pass of automatic differentiation takes.
 std::vector<std::vector<std::size_t>> CandidateJacobian::pages_of(std::size_t owner) const {
   std::vector<std::vector<std::size_t>> pages;
   std::size_t taken = 0;
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     if (candidates_[c].owner != owner) continue;
-    if (pages.empty() || taken + of_[c].size() > static_cast<std::size_t>(Jet::DIMENSION)) {
+    if (pages.empty() || taken + owned_[c] > static_cast<std::size_t>(Jet::DIMENSION)) {
       pages.emplace_back();
       taken = 0;
     }
     pages.back().push_back(c);
-    taken += of_[c].size();
+    taken += owned_[c];
   }
   return pages;
 }
@@ -100,9 +111,12 @@ void CandidateJacobian::add_page(const SensorModel& model, const std::vector<std
     const auto& slots = page.model.chain(candidate.laser().value_or(0)).slots;
     const std::size_t first = first_slot(calibration, candidate.owner, place[k]);
     const auto own = sizes(terms_.get(candidate.term.term)->info());
+    const std::size_t first_form = first_form_[some[k]];
     for (std::size_t i = 0; i < own.size(); ++i) {
+      const std::size_t column = of_[some[k]][i];
+      if (first_form != some[k] && column == of_[first_form][i]) continue;
       page.free.push_back(slots[first + own[i]]);
-      page.columns.push_back(of_[some[k]][i]);
+      page.columns.push_back(column);
     }
   }
   pages_.push_back(std::move(page));

@@ -25,7 +25,8 @@ class CandidateJacobian {
     return names_;
   }  ///< per column: "laser2.mirror.cone.kappa"
   const std::vector<Candidate>& candidates() const { return candidates_; }
-  /// Columns of one candidate's size parameters. Shape parameters (forms) have no column.
+  /// Columns of one candidate's size parameters. Shape parameters (forms) have no column. Forms of one
+  /// candidate share the columns of what is the same in all of them.
   const std::vector<std::size_t>& of(std::size_t candidate) const { return of_[candidate]; }
   /// Size parameters of the candidate less their neutral values, in the current model.
   Eigen::VectorXd sizes_of(std::size_t candidate) const;
@@ -43,10 +44,13 @@ class CandidateJacobian {
   };
   void add_page(const SensorModel& model, const std::vector<std::size_t>& some);
   std::vector<std::vector<std::size_t>> pages_of(std::size_t owner) const;
+  void add_columns(std::size_t candidate);
 
   std::vector<Candidate> candidates_;
   const TermRegistry& terms_;
   std::vector<std::vector<std::size_t>> of_;
+  std::vector<std::size_t> first_form_;  // of each candidate, the first form of the same candidate
+  std::vector<std::size_t> owned_;       // of each candidate, the number of columns that no earlier form has
   std::vector<std::string> names_;
   std::size_t base_ = 0;
   std::size_t parameters_ = 0;

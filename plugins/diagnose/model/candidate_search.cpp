@@ -29,9 +29,9 @@ std::vector<Hypothesis::Competitor> competitors(const SelectedCandidate& choice,
   for (const CompetingCandidate& other : choice.alternatives) {
     if (result.size() == kMax) break;
     const Candidate& candidate = jacobian.candidates()[other.candidate];
-    result.push_back({.name = candidate.name,
+    result.push_back({.name = candidate.cause_name(),
                       .behind = other.behind,
-                      .term = candidate.term.term,
+                      .term = candidate.family,
                       .owner = candidate.owner});
   }
   return result;
@@ -118,16 +118,23 @@ std::vector<Hypothesis> CandidateSearch::needs(const std::set<std::string>& reje
   return needs_in(all_, settings_.selection, rejected);
 }
 
-/// Screens candidates for the refined search: the model's own, and those whose gain exceeds its expectation
-/// under the null hypothesis, given the model's candidates or all but one of them.
+/// Screens candidates for the refined search: the model's own, and the best forms of those whose gain exceeds
+/// its expectation under the null hypothesis, given the model's candidates or all but one of them.
 std::vector<Candidate> CandidateSearch::promising() const {
   const auto& all = all_.jacobian.candidates();
   const auto taken = in_model(all);
   std::set<std::size_t> some(taken.begin(), taken.end());
   const auto add_conditionally_significant = [&](const std::vector<std::size_t>& others) {
     const auto tests = score_tests_given(others, all_.jacobian, all_.equations);
+    const auto excess = [&](std::size_t c) {
+      return tests[c] ? tests[c]->gain - static_cast<double>(tests[c]->value.size()) : 0.0;
+    };
     for (std::size_t c = 0; c < all.size(); ++c) {
-      if (tests[c] && tests[c]->gain > static_cast<double>(tests[c]->value.size())) some.insert(c);
+      // Of the forms of a candidate, those that no neighbour on the grid surpasses.
+      const bool is_surpassed =
+          (c > 0 && all[c - 1].is_form_of(all[c]) && excess(c - 1) > excess(c)) ||
+          (c + 1 < all.size() && all[c + 1].is_form_of(all[c]) && excess(c + 1) > excess(c));
+      if (excess(c) > 0 && !is_surpassed) some.insert(c);
     }
   };
   add_conditionally_significant(taken);
@@ -146,7 +153,7 @@ std::vector<Hypothesis> CandidateSearch::refine_search(const std::set<std::strin
   selection.visible = settings_.min_effect;
   auto needs = needs_in(view(promising(), settings_.refine_beams), selection, rejected);
   std::erase_if(needs, [](const Hypothesis& hypothesis) {
-    return !hypothesis.candidate.is_cause() && !hypothesis.candidate.in_model;
+    return hypothesis.candidate.is_shape() && !hypothesis.candidate.in_model;
   });
   return needs;
 }
@@ -168,10 +175,10 @@ std::vector<Limit> CandidateSearch::unobservable(const std::vector<Hypothesis>& 
   const auto tests = score_tests_given(taken, all_.jacobian, all_.equations);
   std::map<std::string, Least> limits;
   for (std::size_t c = 0; c < tests.size(); ++c) {
-    if (!tests[c] || !all[c].is_cause()) continue;
+    if (!tests[c] || all[c].is_shape()) continue;
     const Least own{.limit = limit_of(all[c], *tests[c], settings_.selection, all_.equations.beams),
                     .candidate = c};
-    const auto [known, is_new] = limits.try_emplace(all[c].name, own);
+    const auto [known, is_new] = limits.try_emplace(all[c].cause_name(), own);
     if (own.limit < known->second.limit) known->second = own;
   }
   std::vector<Limit> hidden;

@@ -40,6 +40,7 @@ void append(std::vector<Candidate>& all, Candidate as, const std::vector<TermPar
   const std::size_t form = form_of(info);
   const bool has_forms = form < info.parameters.size();
   as.covariate = info.covariate;
+  as.family = family_of(info);
   as.is_fine = info.is_fine;
   as.forms = has_forms ? static_cast<std::size_t>(info.parameters[form].tries.count) : 1;
   if (const TermParameters* here = find_term(present, info.name)) {
@@ -93,7 +94,8 @@ std::vector<std::string> unshared_causes(const TermRegistry& terms, const Covera
   std::vector<std::string> causes;
   for (const std::string& name : terms.names()) {
     const TermInfo& info = terms.get(name)->info();
-    if (info.covariate.empty() && !coverage.shares(info.counts_from)) causes.push_back(name);
+    const bool is_cause = info.covariate.empty() && info.family.empty();  // not one more form of another
+    if (is_cause && !coverage.shares(info.counts_from)) causes.push_back(name);
   }
   return causes;
 }

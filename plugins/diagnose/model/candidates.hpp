@@ -27,16 +27,25 @@ struct Candidate {
   };
   std::vector<OtherForm> other_forms;  ///< the evaluated forms of the grid
   std::string name;                    ///< "laser2.mirror.cone", "encoder.eccentricity"
-  std::string covariate;               ///< see TermInfo: empty for a term that names a cause
+  std::string covariate;               ///< see TermInfo: empty for a term with a formula of its own
+  std::string family;                  ///< see family_of(): the cause, or empty
 
   bool is_fine = false;  ///< see TermInfo
 
   bool in_model = false;  ///< whether the calibration has it
 
-  bool is_cause() const { return covariate.empty(); }
+  bool is_cause() const { return !family.empty(); }
+  bool is_shape() const { return !covariate.empty(); }
 
   /// The laser this candidate affects; empty for plate terms, which affect all lasers.
   std::optional<std::size_t> laser() const { return name == term.term ? std::nullopt : std::optional(owner); }
+
+  /// The cause with its owner: "laser2.range.incidence".
+  std::string cause_name() const {
+    return name.substr(0, name.size() - term.term.size()) + (is_cause() ? family : term.term);
+  }
+  /// Whether both are members of one cause's family, of one owner.
+  bool is_of_family(const Candidate& other) const { return cause_name() == other.cause_name(); }
 
   /// Whether both are forms of one term of one owner.
   bool is_form_of(const Candidate& other) const { return name == other.name; }

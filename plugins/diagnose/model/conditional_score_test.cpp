@@ -40,16 +40,40 @@ NormalEquations eliminate_base(const std::vector<std::size_t>& taken, const Cand
   return equations.reduced(all, estimated_with(taken, jacobian));
 }
 
+namespace {
+
+std::vector<std::size_t> columns_of(const std::vector<std::size_t>& some, const CandidateJacobian& jacobian) {
+  std::vector<std::size_t> columns;
+  for (const std::size_t c : some)
+    columns.insert(columns.end(), jacobian.of(c).begin(), jacobian.of(c).end());
+  return columns;
+}
+
+/// A form that was chosen from a grid counts as a parameter.
+double price_of_forms(const std::vector<std::size_t>& some, const CandidateJacobian& jacobian,
+                      std::size_t beams) {
+  const auto forms =
+      std::ranges::count_if(some, [&](std::size_t c) { return jacobian.candidates()[c].forms > 1; });
+  return static_cast<double>(forms) * std::log(static_cast<double>(beams));
+}
+
+}  // namespace
+
 ScoreTest joint_score_test(const std::vector<std::size_t>& some, const CandidateJacobian& jacobian,
                            const NormalEquations& left) {
-  std::vector<std::size_t> parameters;
-  double forms = 0;
-  for (const std::size_t c : some) {
-    parameters.insert(parameters.end(), jacobian.of(c).begin(), jacobian.of(c).end());
-    forms += jacobian.candidates()[c].forms > 1 ? 1 : 0;
-  }
-  ScoreTest test = score_test(left, parameters);
-  test.bic -= forms * std::log(static_cast<double>(left.beams));
+  ScoreTest test = score_test(left, columns_of(some, jacobian));
+  test.bic -= price_of_forms(some, jacobian, left.beams);
+  return test;
+}
+
+ScoreTest joint_score_test_given(const std::vector<std::size_t>& taken, const std::vector<std::size_t>& some,
+                                 const CandidateJacobian& jacobian, const NormalEquations& equations) {
+  const std::vector<std::size_t> own = columns_of(some, jacobian);
+  const NormalEquations left = equations.reduced(own, estimated_with(taken, jacobian));
+  std::vector<std::size_t> all(own.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  ScoreTest test = score_test(left, all);
+  test.bic -= price_of_forms(some, jacobian, left.beams);
   return test;
 }
 

@@ -36,6 +36,10 @@ std::vector<std::optional<ScoreTest>> score_tests_given(const std::vector<std::s
                                                         const CandidateJacobian& jacobian,
                                                         const NormalEquations& equations);
 
+/// Joint score test of some candidates given those in `taken`, among which they are not.
+ScoreTest joint_score_test_given(const std::vector<std::size_t>& taken, const std::vector<std::size_t>& some,
+                                 const CandidateJacobian& jacobian, const NormalEquations& equations);
+
 /// Identifiable combinations of a hardly observable candidate with the base parameters and those in `taken`:
 /// see known_with(). Empty where those explain less than nearly all of the candidate's effect, because the
 /// planes of the surfaces absorb it or the data are few.

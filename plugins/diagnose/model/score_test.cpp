@@ -5,6 +5,7 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "pipeline/statistics/dense_solvers.hpp"
 
@@ -28,6 +29,7 @@ struct StepSpread {
   Eigen::MatrixXd covariance;
   double wald = std::numeric_limits<double>::infinity();
   double p_value = 1;
+  bool is_testable = false;
 };
 
 /// Effective number of equally distributed squares in a sum (Satterthwaite's approximation): their number if
@@ -41,30 +43,32 @@ double alike(const Eigen::VectorXd& values) {
 /// freedom. It exceeds the p-value by χ².
 ///
 /// @param steps  p > 0 steps; the effective number of blocks along them counts
-double by_hotelling(const Eigen::MatrixXd& block_scores, const Eigen::VectorXd& steps,
-                    const Eigen::VectorXd& solved) {
+/// @return nothing if the blocks are too few
+std::optional<double> by_hotelling(const Eigen::MatrixXd& block_scores, const Eigen::VectorXd& steps,
+                                   const Eigen::VectorXd& solved) {
   const auto p = static_cast<double>(steps.size());
   const double n =
       std::min(alike(block_scores.transpose() * solved), static_cast<double>(block_scores.cols()));
   const double left = n - 2 * p + 1;
-  if (!(left > 0)) return 1;
+  if (!(left > 0)) return std::nullopt;
   return cdf(complement(boost::math::fisher_f(p, left), steps.dot(solved) * left / (n * p)));
 }
 
 /// p-value with Rao and Scott's first-order correction (1984): independent beam errors scatter equally in all
 /// directions, so the excess is estimated along the steps alone, for which few blocks suffice. It is
 /// conservative where the excess differs between directions.
-double by_rao_and_scott(const Eigen::MatrixXd& block_scores, const Eigen::VectorXd& steps) {
+std::optional<double> by_rao_and_scott(const Eigen::MatrixXd& block_scores, const Eigen::VectorXd& steps) {
   const auto p = static_cast<double>(steps.size());
   const Eigen::VectorXd along = block_scores.transpose() * steps.normalized();
   const double n = std::min(alike(along), static_cast<double>(block_scores.cols()));
   const double left = n - p;
-  if (!(left > 0 && along.squaredNorm() > 0)) return 1;
+  if (!(left > 0 && along.squaredNorm() > 0)) return std::nullopt;
   const double ratio = steps.squaredNorm() / along.squaredNorm();
   return cdf(complement(boost::math::fisher_f(p, left), ratio * left / (n * p)));
 }
 
-/// Statistics of the division into blocks that gives the largest p-value.
+/// Statistics of the division into blocks that gives the largest p-value. A division with fewer blocks than
+/// steps tests nothing.
 StepSpread widest(const NormalEquations& equations, const std::vector<std::size_t>& of,
                   const Eigen::MatrixXd& directions, const Eigen::VectorXd& steps) {
   if (steps.size() == 0) return {.covariance = Eigen::MatrixXd(0, 0), .wald = 0};
@@ -73,8 +77,12 @@ StepSpread widest(const NormalEquations& equations, const std::vector<std::size_
     const Eigen::MatrixXd block_scores = equations.scores_along(division, of, directions);
     const Eigen::MatrixXd covariance = block_scores * block_scores.transpose();
     const Eigen::VectorXd solved = minimum_norm_least_squares(covariance, steps);
-    widest.p_value = std::max(widest.p_value, std::min(by_hotelling(block_scores, steps, solved),
-                                                       by_rao_and_scott(block_scores, steps)));
+    const auto first = by_hotelling(block_scores, steps, solved);
+    const auto second = by_rao_and_scott(block_scores, steps);
+    if (first || second) {
+      widest.p_value = std::max(widest.p_value, std::min(first.value_or(1), second.value_or(1)));
+      widest.is_testable = true;
+    }
     if (steps.dot(solved) > widest.wald) continue;
     widest.wald = steps.dot(solved);
     widest.covariance = covariance;
@@ -111,7 +119,8 @@ ScoreTest score_test(const NormalEquations& equations, const std::vector<std::si
   test.ranges_error = seen.cols() < matrix.cols() ? std::numeric_limits<double>::infinity()
                                                   : std::sqrt(in_ranges.dot(test.covariance.diagonal()));
   test.wald = spread.wald;
-  test.p_value = spread.p_value;
+  test.p_value = spread.is_testable ? spread.p_value : 1;
+  test.is_testable = spread.is_testable;
   return test;
 }
 

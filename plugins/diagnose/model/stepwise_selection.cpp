@@ -31,7 +31,7 @@ std::vector<std::vector<std::size_t>> causes_of_all_lasers(const std::vector<Can
   std::set<std::size_t> lasers;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     const Candidate& candidate = candidates[c];
-    if (!candidate.laser() || !candidate.is_cause()) continue;
+    if (!candidate.laser() || !candidate.is_cause() || candidate.is_fine) continue;
     lasers.insert(candidate.owner);
     OfTerm& term = terms[candidate.term.term];
     (candidate.in_model ? term.in_model : term.in_form[candidate.form])[candidate.owner] = c;
@@ -57,6 +57,8 @@ struct Together {
 
 /// Stepwise selection: conditional score tests of the candidates given a selected set.
 class Chooser {
+  static constexpr double kSmall = 0.05;  ///< share of `rough` below which a gain waits
+
  public:
   Chooser(const CandidateJacobian& jacobian, const NormalEquations& equations,
           const SelectionSettings& settings, const std::set<std::string>& rejected, std::size_t tests)
@@ -71,13 +73,16 @@ class Chooser {
     return score_tests_given(taken, jacobian_, equations_);
   }
 
-  /// Whether the candidate was rejected, or is in the model without being significant. Fine shapes are
-  /// exempt: they have about as many parameters as there are blocks, and cross-validation decides on them.
+  /// Whether the candidate was rejected, or is not significant although its p-value is valid: it is in the
+  /// model, or too small to make the blocks scatter by itself. Shapes with about as many parameters as there
+  /// are blocks are exempt: cross-validation decides on them.
   bool is_rejected(std::size_t candidate, const ScoreTest& test) const {
     const Candidate& which = jacobian_.candidates()[candidate];
-    const bool is_requested = which.in_model && !which.is_fine;
+    constexpr double kSmallGain = 50;  // half of what a hundred blocks gain by chance
+    const bool is_exempt = which.is_fine || (which.is_shape() && !test.is_testable);
+    const bool has_valid_p = (which.in_model || test.gain < kSmallGain) && !is_exempt;
     return rejected_.contains(which.name) ||
-           (is_requested && !(test.p_value * static_cast<double>(tests_) < settings_.p_value));
+           (has_valid_p && !(test.p_value * static_cast<double>(tests_) < settings_.p_value));
   }
 
   bool is_needed(std::size_t candidate, const ScoreTest& test) const {
@@ -99,29 +104,35 @@ class Chooser {
     });
   }
 
-  /// The needed candidate with the largest decrease of the BIC. A cause takes precedence over a description
-  /// unless the description gains much more: an actual cause gains about as much as its description.
+  /// The needed candidate with the largest decrease of the BIC. A cause's own formula takes precedence over
+  /// its family's general shape, and that over a shape without a cause, unless the latter gains much more: an
+  /// actual cause gains about as much as its description.
   ///
-  /// @param rough  BIC gained by candidates whose forms are still on the coarse grid. A much smaller gain may
-  ///               be their approximation error, and waits for the refined forms
+  /// @param rough  BIC gained by shapes, and by candidates whose forms are still on the coarse grid, that the
+  ///               model does not have yet. A much smaller gain may be their approximation error, and waits
+  ///               until they are refined
   std::optional<std::size_t> best(const std::vector<std::optional<ScoreTest>>& tests, double rough) const {
-    constexpr double kSmall = 0.05;
-    std::array<std::optional<std::size_t>, 2> best;
+    std::array<std::optional<std::size_t>, 3> best;  // by rank
     for (std::size_t c = 0; c < tests.size(); ++c) {
       if (!tests[c] || !is_needed(c, *tests[c]) || tests[c]->bic < kSmall * rough) continue;
-      auto& of_kind = best[jacobian_.candidates()[c].is_cause() ? 0 : 1];
-      if (!of_kind || tests[c]->bic > tests[*of_kind]->bic) of_kind = c;
+      const Candidate& candidate = jacobian_.candidates()[c];
+      auto& of_rank = best[candidate.is_cause() ? (candidate.is_shape() ? 1 : 0) : 2];
+      if (!of_rank || tests[c]->bic > tests[*of_rank]->bic) of_rank = c;
     }
-    constexpr double kMuchMore = 2;
-    const bool is_cause = best[0] && (!best[1] || tests[*best[1]]->bic < kMuchMore * tests[*best[0]]->bic);
-    return is_cause ? best[0] : best[1];
+    constexpr double kMuchMore = 1.4;  // about twice for two ranks
+    std::optional<std::size_t> chosen;
+    for (const auto& of_rank : best) {
+      const bool is_better = of_rank && (!chosen || tests[*of_rank]->bic >= kMuchMore * tests[*chosen]->bic);
+      if (is_better) chosen = of_rank;
+    }
+    return chosen;
   }
 
   /// The best cause that all lasers share, if it is needed and no part of it is selected.
   ///
   /// @param left  normal equations after eliminate_base()
-  std::optional<Together> best_of_all(const std::vector<std::size_t>& taken,
-                                      const NormalEquations& left) const {
+  std::optional<Together> best_of_all(const std::vector<std::size_t>& taken, const NormalEquations& left,
+                                      double rough) const {
     const auto& candidates = jacobian_.candidates();
     std::optional<Together> best;
     for (const auto& members : of_all_) {
@@ -133,7 +144,8 @@ class Chooser {
       Together one{.members = members, .test = joint_score_test(members, jacobian_, left)};
       const bool is_needed_everywhere =
           std::ranges::all_of(members, [&](std::size_t m) { return is_needed(m, one.test); });
-      if (is_needed_everywhere && (!best || one.test.bic > best->test.bic)) best = std::move(one);
+      const bool is_large = one.test.bic >= kSmall * rough;
+      if (is_needed_everywhere && is_large && (!best || one.test.bic > best->test.bic)) best = std::move(one);
     }
     return best;
   }
@@ -148,7 +160,7 @@ class Chooser {
       tests[*one].reset();
       one = best(tests, rough);
     }
-    auto all = best_of_all(taken, left);
+    auto all = best_of_all(taken, left, rough);
     if (all && (!one || all->test.bic > kMore * tests[*one]->bic)) return all;
     if (!one) return std::nullopt;
     return Together{.members = {*one}, .test = *tests[*one]};
@@ -203,7 +215,7 @@ class Chooser {
       if (!candidates[one].in_model || !candidates[one].is_cause() || candidates[one].forms < 2) continue;
       const auto tests = given(without(taken, one));
       for (std::size_t c = 0; c < tests.size(); ++c) {
-        if (candidates[c].is_cause() || !tests[c] || !is_needed(c, *tests[c])) continue;
+        if (!candidates[c].is_shape() || !tests[c] || !is_needed(c, *tests[c])) continue;
         const bool is_simpler =
             tests[c]->value.size() <= tests[one]->value.size() + 1;  // the form counts as a parameter
         const double ahead = (tests[c]->bic - tests[one]->bic) / tests[one]->design_effect();
@@ -216,6 +228,31 @@ class Chooser {
     return false;
   }
 
+  /// A selected candidate with the families that these data do not resolve from its own. Families compete by
+  /// their general members, whatever formula suffices here: one that leaves nothing for the selected
+  /// candidate to explain could be the cause as well. (The reverse holds by the selection: it ended where no
+  /// other family gains anything.) Lasers of one make have the same cause, so that a cause of several lasers
+  /// also competes with the other family in all of them.
+  SelectedCandidate with_competing_families(const std::vector<std::size_t>& taken, std::size_t one) const {
+    SelectedCandidate choice = with_competitors(taken, one);
+    const auto& candidates = jacobian_.candidates();
+    if (!candidates[one].is_cause()) return choice;
+    const double sharing = candidates[one].in_model ? choice.test.design_effect() : 1;
+    const auto own =
+        members_where(taken, [&](std::size_t t) { return candidates[t].is_of_family(candidates[one]); });
+    const auto alike = members_where(taken, [&](std::size_t t) {
+      return candidates[t].laser() && candidates[t].family == candidates[one].family;
+    });
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      if (!is_general_member(c) || !could_replace(c, one) || is_taken(c, taken)) continue;
+      add_competitor(choice, c, remaining(own, {c}, taken) / sharing);
+      if (alike.size() > own.size())
+        add_competitor(choice, c, remaining(alike, in_each_laser(c, alike), taken) / sharing);
+    }
+    std::ranges::sort(choice.alternatives, {}, &CompetingCandidate::behind);
+    return choice;
+  }
+
   SelectedCandidate with_competitors(const std::vector<std::size_t>& taken, std::size_t one) const {
     const auto tests = given(without(taken, one));
     const auto& candidates = jacobian_.candidates();
@@ -223,22 +260,67 @@ class Chooser {
     // The design effect reduces the evidence of correlated beams for all candidates alike.
     const double sharing = candidates[one].in_model ? choice.test.design_effect() : 1;
     for (std::size_t c = 0; c < tests.size(); ++c) {
-      if (!tests[c] || candidates[c].is_form_of(candidates[one]) || !candidates[c].is_cause()) continue;
-      const double behind = (choice.test.bic - tests[c]->bic) / sharing;
-      const auto other = std::ranges::find_if(choice.alternatives, [&](const CompetingCandidate& a) {
-        return candidates[a.candidate].is_form_of(candidates[c]);
-      });
-      if (other == choice.alternatives.end()) {
-        choice.alternatives.push_back({.candidate = c, .behind = behind});
-      } else if (behind < other->behind) {
-        *other = {.candidate = c, .behind = behind};
-      }
+      if (!tests[c] || candidates[c].is_of_family(candidates[one]) || !candidates[c].is_cause()) continue;
+      add_competitor(choice, c, (choice.test.bic - tests[c]->bic) / sharing);
     }
     std::ranges::sort(choice.alternatives, {}, &CompetingCandidate::behind);
     return choice;
   }
 
  private:
+  template <class Predicate>
+  static std::vector<std::size_t> members_where(const std::vector<std::size_t>& taken, Predicate is_one) {
+    std::vector<std::size_t> some;
+    std::ranges::copy_if(taken, std::back_inserter(some), is_one);
+    return some;
+  }
+  /// Decrease of the BIC by some selected candidates where others stand in their place.
+  double remaining(const std::vector<std::size_t>& some, const std::vector<std::size_t>& instead,
+                   const std::vector<std::size_t>& taken) const {
+    auto with = members_where(taken, [&](std::size_t t) { return std::ranges::find(some, t) == some.end(); });
+    with.insert(with.end(), instead.begin(), instead.end());
+    return joint_score_test_given(with, some, jacobian_, equations_).bic;
+  }
+  /// The same term in each laser of some candidates.
+  std::vector<std::size_t> in_each_laser(std::size_t candidate, const std::vector<std::size_t>& some) const {
+    const auto& candidates = jacobian_.candidates();
+    std::vector<std::size_t> all;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      const bool is_same_term = candidates[c].term.term == candidates[candidate].term.term;
+      const bool is_there = std::ranges::any_of(
+          some, [&](std::size_t s) { return candidates[s].owner == candidates[c].owner; });
+      if (is_same_term && is_there) all.push_back(c);
+    }
+    return all;
+  }
+  bool is_general_member(std::size_t candidate) const {
+    const Candidate& one = jacobian_.candidates()[candidate];
+    return one.is_cause() && one.is_shape() && !one.is_fine;
+  }
+  /// Whether the candidate acts on the same beams, and is of another family.
+  bool could_replace(std::size_t candidate, std::size_t one) const {
+    const Candidate& other = jacobian_.candidates()[candidate];
+    const Candidate& selected = jacobian_.candidates()[one];
+    return other.laser() == selected.laser() && !other.is_of_family(selected);
+  }
+  bool is_taken(std::size_t candidate, const std::vector<std::size_t>& taken) const {
+    const auto& candidates = jacobian_.candidates();
+    return std::ranges::any_of(
+        taken, [&](std::size_t t) { return candidates[t].is_of_family(candidates[candidate]); });
+  }
+
+  /// Adds a competitor, or brings one of its family nearer.
+  void add_competitor(SelectedCandidate& choice, std::size_t candidate, double behind) const {
+    const auto& candidates = jacobian_.candidates();
+    const auto known = std::ranges::find_if(choice.alternatives, [&](const CompetingCandidate& a) {
+      return candidates[a.candidate].is_of_family(candidates[candidate]);
+    });
+    if (known == choice.alternatives.end())
+      choice.alternatives.push_back({.candidate = candidate, .behind = behind});
+    else if (behind < known->behind)
+      *known = {.candidate = candidate, .behind = behind};
+  }
+
   /// The few best rejected candidates that gain no less than this one; one form of each.
   std::vector<std::size_t> rejected_like(const ScoreTest& own,
                                          const std::vector<std::optional<ScoreTest>>& tests) const {
@@ -287,13 +369,14 @@ std::vector<SelectedCandidate> choose(const CandidateJacobian& jacobian, const N
     }
     for (const std::size_t member : next->members) {
       const Candidate& one = jacobian.candidates()[member];
-      if (!one.in_model && one.forms > 1) rough = std::max(rough, next->test.bic);
+      const bool is_rough = !one.in_model && (one.forms > 1 || one.is_shape());
+      if (is_rough) rough = std::max(rough, next->test.bic);
       taken.push_back(member);
     }
     chooser.eliminate_needless(taken);
   }
   std::vector<SelectedCandidate> choices;
-  for (const std::size_t t : taken) choices.push_back(chooser.with_competitors(taken, t));
+  for (const std::size_t t : taken) choices.push_back(chooser.with_competing_families(taken, t));
   return choices;
 }
 

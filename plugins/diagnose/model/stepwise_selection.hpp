@@ -22,7 +22,9 @@ struct SelectionSettings {
 /// A candidate that could replace a selected one.
 struct CompetingCandidate {
   std::size_t candidate = 0;
-  double behind = 0;  ///< BIC of the selected candidate less this one's, for independent beam errors
+  /// BIC of the selected candidate less this one's, for independent beam errors. For the general member of
+  /// another family: what the selected candidate still gains once that member is in the model.
+  double behind = 0;
 };
 
 /// A selected candidate with its competitors.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <sstream>
 
@@ -67,7 +68,7 @@ double p_value_of(const Hypothesis& hypothesis, const Diagnosis& diagnosis) {
 
 Finding finding_of(const Hypothesis& hypothesis, const Calibration& calibration, const Diagnosis& diagnosis,
                    const TermRegistry& terms, double odds, double noise) {
-  Finding finding{.cause = hypothesis.candidate.term.term,
+  Finding finding{.cause = hypothesis.candidate.family,
                   .scope = name_of(hypothesis.candidate.owner, calibration),
                   .parameters = parameters_of(hypothesis, calibration),
                   .explained_fraction = explained_by(hypothesis, diagnosis, noise),
@@ -88,6 +89,54 @@ Finding finding_of(const Hypothesis& hypothesis, const Calibration& calibration,
   }
   finding.resolvable_by = resolvable_by(finding, terms);
   return finding;
+}
+
+/// Whether an accepted hypothesis is the level of another one: of the same laser, in a family whose zero is a
+/// convention.
+bool is_level_of(const Hypothesis& one, const Hypothesis& other, const TermRegistry& terms) {
+  return one.accepted && other.accepted && one.candidate.family == "range.offset" &&
+         one.candidate.owner == other.candidate.owner && other.candidate.is_cause() &&
+         terms.get(other.candidate.family)->info().has_free_level;
+}
+
+/// The hypothesis as part of which one is reported: the first member of its family, or that whose level it
+/// is.
+const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothesis>& all,
+                                const TermRegistry& terms) {
+  const auto whole =
+      std::ranges::find_if(all, [&](const Hypothesis& other) { return is_level_of(one, other, terms); });
+  const Hypothesis& member = whole == all.end() ? one : *whole;
+  return *std::ranges::find_if(all, [&](const Hypothesis& other) {
+    return other.accepted == member.accepted && other.candidate.is_of_family(member.candidate);
+  });
+}
+
+/// Adds another member of the same family to a finding.
+void merge(Finding& finding, const Finding& other) {
+  finding.parameters.insert(finding.parameters.end(), other.parameters.begin(), other.parameters.end());
+  finding.explained_fraction = std::min(1.0, finding.explained_fraction + other.explained_fraction);
+  finding.p_value = std::min(finding.p_value, other.p_value);
+  finding.log10_bayes_factor = std::max(finding.log10_bayes_factor, other.log10_bayes_factor);
+}
+
+/// The causes, each with all accepted members of its family.
+std::vector<Finding> causes_of(const Diagnosis& diagnosis, const Calibration& calibration,
+                               const TermRegistry& terms, double odds, double noise) {
+  const std::vector<Hypothesis>& all = diagnosis.hypotheses;
+  std::vector<Finding> findings;
+  std::map<const Hypothesis*, std::size_t> place;
+  for (const Hypothesis& hypothesis : all) {
+    if (!hypothesis.candidate.is_cause() || &reported_with(hypothesis, all, terms) != &hypothesis) continue;
+    place.emplace(&hypothesis, findings.size());
+    findings.push_back(finding_of(hypothesis, calibration, diagnosis, terms, odds, noise));
+  }
+  for (const Hypothesis& hypothesis : all) {
+    if (!hypothesis.candidate.is_cause()) continue;
+    const Hypothesis& with = reported_with(hypothesis, all, terms);
+    if (&with == &hypothesis) continue;
+    merge(findings[place.at(&with)], finding_of(hypothesis, calibration, diagnosis, terms, odds, noise));
+  }
+  return findings;
 }
 
 UnnamedFinding unnamed_of(const Hypothesis& hypothesis, const Calibration& calibration,
@@ -165,7 +214,7 @@ std::string scope_of(const Profile& profile, const Calibration& calibration) {
 
 Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration, const TermRegistry& terms,
                      const SelectionSettings& settings, double noise) {
-  Findings all{.findings = {},
+  Findings all{.findings = causes_of(diagnosis, calibration, terms, settings.odds, noise),
                .unnamed = {},
                .departures = departures_of(diagnosis, calibration),
                .unobservable = {},
@@ -173,11 +222,8 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
                .before_p = diagnosis.left_before.p_value,
                .after_p = diagnosis.left_after.p_value};
   for (const Hypothesis& hypothesis : diagnosis.hypotheses) {
-    if (hypothesis.candidate.is_cause()) {
-      all.findings.push_back(finding_of(hypothesis, calibration, diagnosis, terms, settings.odds, noise));
-    } else {
+    if (!hypothesis.candidate.is_cause())
       all.unnamed.push_back(unnamed_of(hypothesis, calibration, diagnosis, noise));
-    }
   }
   add_left_over(diagnosis.left_after, calibration, settings.visible * noise, all);
   for (const Limit& limit : diagnosis.unobservable) {

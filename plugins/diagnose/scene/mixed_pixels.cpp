@@ -5,8 +5,10 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <cstddef>
+#include <map>
 
 #include "pipeline/statistics/bootstrap.hpp"
+#include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
 namespace {
@@ -122,17 +124,39 @@ double Crossings::share() const {
              : static_cast<double>(std::ranges::count(mixed, true)) / static_cast<double>(mixed.size());
 }
 
+double Crossings::median_share() const {
+  struct Edge {
+    std::size_t crossings = 0, mixed = 0;
+    double share() const { return static_cast<double>(mixed) / static_cast<double>(crossings); }
+  };
+  std::map<std::size_t, Edge> all;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    ++all[edges[k]].crossings;
+    all[edges[k]].mixed += mixed[k] ? 1 : 0;
+  }
+  std::vector<double> shares;
+  for (const auto& [number, edge] : all) shares.insert(shares.end(), edge.crossings, edge.share());
+  return shares.empty() ? 0 : median_in_place(shares);
+}
+
 Crossings crossings_of(std::size_t laser, const Measurements& beams, const PointsView& points,
                        const BeamAssociation& association, const PointDensity& density, double usual,
                        const NoiseModel& noise) {
   const EdgeFinder finder(beams, points, association, density, usual, noise);
   Crossings crossings;
+  std::map<std::array<long, 3>, std::size_t> edges;
   for (std::size_t i = 0; i + 1 < beams.size(); ++i) {
     if (beams.laser[i] != laser || !finder.is_on(i)) continue;
     const std::size_t far = finder.far_side(i);
     if (far == i || finder.is_noisy(i) || finder.is_noisy(far)) continue;
     const auto place = finder.in_the_air(i, far);
     crossings.mixed.push_back(place.has_value());
+    const std::size_t near = beams.range[i] < beams.range[far] ? i : far;
+    constexpr double kEdge = 0.5;  // [m]
+    const std::array<long, 3> cell = {std::lround(points.x[near] / kEdge),
+                                      std::lround(points.y[near] / kEdge),
+                                      std::lround(points.z[near] / kEdge)};
+    crossings.edges.push_back(edges.try_emplace(cell, edges.size()).first->second);
     if (place) crossings.places.push_back(*place);
   }
   return crossings;
@@ -154,7 +178,7 @@ std::optional<Finding> mixed_pixels(const std::string& scope, const Crossings& c
       });
   const double error = std::max(spread.std_error, 1 / static_cast<double>(n));
   const double p = cdf(complement(boost::math::normal(), (crossings.share() - kOfThinThings) / error));
-  if (!(p < kRare)) return std::nullopt;
+  if (!(p < kRare) || crossings.median_share() <= kOfThinThings) return std::nullopt;
   return Finding{.cause = "noise.mixed_pixels",
                  .scope = scope,
                  .parameters = {{.name = "share_of_edges",

@@ -35,10 +35,14 @@ class PointDensity {
 
 /// Edges that one laser's scans cross, from one flat surface to another one behind it.
 struct Crossings {
-  std::vector<bool> mixed;     ///< per crossing: whether a mixed pixel lies there
-  std::vector<double> places;  ///< of the mixed pixels: 0 at the near side to 1 at the far side
+  std::vector<bool> mixed;         ///< per crossing: whether a mixed pixel lies there
+  std::vector<std::size_t> edges;  ///< per crossing: number of the edge, a cell of half a metre
+  std::vector<double> places;      ///< of the mixed pixels: 0 at the near side to 1 at the far side
 
   double share() const;  ///< of the crossings that are mixed
+  /// Median over the edges, weighted by their crossings, of the share that is mixed. A wide beam mixes at all
+  /// edges alike, clutter at those where it lies.
+  double median_share() const;
 };
 
 /// Detects edge crossings: a beam that ends on a surface, up to three that end on none, one that ends on
@@ -54,8 +58,8 @@ Crossings crossings_of(std::size_t laser, const Measurements& beams, const Point
                        const BeamAssociation& association, const PointDensity& density, double usual,
                        const NoiseModel& noise);
 
-/// Tests whether a laser reports mixed pixels at edges (noise.mixed_pixels), at more than the 3 % of edges
-/// that thin objects explain.
+/// Tests whether a laser reports mixed pixels at edges (noise.mixed_pixels), at more than the 3 % of
+/// crossings that thin objects explain, and at more than 3 % of those of the median edge.
 ///
 /// @return  a finding that is significant at p < 0.002, with the share of mixed crossings
 std::optional<Finding> mixed_pixels(const std::string& scope, const Crossings& crossings, std::uint64_t seed);

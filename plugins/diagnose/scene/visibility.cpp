@@ -223,7 +223,8 @@ double p_value(const ChangingDirections& directions, std::uint64_t seed) {
 std::optional<Finding> moving(const ChangingDirections& directions, std::uint64_t seed) {
   constexpr std::size_t kFewDirections = 20;
   constexpr double kByChance = 0.002;
-  if (directions.views.size() < kFewDirections) return std::nullopt;
+  constexpr double kMinShare = 5e-4;  // of the beams: a cat three metres away
+  if (directions.views.size() < kFewDirections || directions.hidden < kMinShare) return std::nullopt;
   const double p = p_value(directions, seed);
   if (!(p < kByChance)) return std::nullopt;
   return Finding{.cause = "scene.moving",

@@ -40,7 +40,8 @@ double p_value(const ChangingDirections& directions, std::uint64_t seed);
 
 /// Tests for moving objects (scene.moving).
 ///
-/// @return  a finding that is significant at p < 0.002 and covers at least twenty directions
+/// @return  a finding that is significant at p < 0.002, covers at least twenty directions and hides at least
+///          0.05 % of the beams
 std::optional<Finding> moving(const ChangingDirections& directions, std::uint64_t seed);
 
 }  // namespace crisp

@@ -22,6 +22,7 @@ TEST(Catalogue, HasEveryNameThatReportsAndProgramsUse) {
     if (!effect.name.starts_with("empirical.")) names.push_back(effect.name);
   }
   EXPECT_EQ(names, (std::vector<std::string>{"base.motion",
+                                             "base.tilt",
                                              "clock.drift",
                                              "clock.step",
                                              "encoder.backlash",

@@ -15,6 +15,7 @@ Hypothesis of_laser(std::size_t laser, double takes, const std::string& over = "
   one.candidate.term.term = over.empty() ? "range.scale" : "empirical.range_by_" + over;
   one.candidate.name = "laser" + std::to_string(laser + 1) + "." + one.candidate.term.term;
   one.candidate.covariate = over;
+  one.candidate.family = over.empty() ? "range.scale" : "";
   one.test.visible = takes / kRangeNoise;
   return one;
 }
@@ -22,7 +23,7 @@ Hypothesis of_laser(std::size_t laser, double takes, const std::string& over = "
 Hypothesis of_plate(double takes) {
   Hypothesis one;
   one.candidate.owner = 2;
-  one.candidate.term.term = one.candidate.name = "plate.wobble";
+  one.candidate.term.term = one.candidate.name = one.candidate.family = "plate.wobble";
   one.test.visible = takes / kRangeNoise;
   return one;
 }

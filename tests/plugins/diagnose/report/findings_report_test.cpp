@@ -98,12 +98,14 @@ TEST(FindingsReport, ListsAnUnnamedDeviationOnce) {
 
 TEST(FindingsReport, PrintsWhyACauseWasRejected) {
   Diagnosis diagnosis = without_candidates(with_a_third_harmonic());
-  Hypothesis hypothesis{
-      .candidate = {.owner = 2, .term = {.term = "range.step"}, .name = "laser3.range.step"},
-      .test = {},
-      .competitors = {},
-      .gains = {},
-      .accepted = false};
+  Hypothesis hypothesis{.candidate = {.owner = 2,
+                                      .term = {.term = "range.step"},
+                                      .name = "laser3.range.step",
+                                      .family = "range.step"},
+                        .test = {},
+                        .competitors = {},
+                        .gains = {},
+                        .accepted = false};
   diagnosis.hypotheses = {hypothesis};
   ASSERT_THAT(reported(diagnosis).findings, SizeIs(1));
   EXPECT_THAT(in_words(reported(diagnosis).findings[0]),
