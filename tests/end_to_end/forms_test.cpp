@@ -54,8 +54,7 @@ TEST_P(Forms, HaveTheNameOfTheirCause) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Forms,
-                         testing::Values(Form{8, {"effect=sinks", "effect_amount=4", "scene=hall"}},
-                                         Form{6,
+                         testing::Values(Form{6,
                                               {"effect=third_harmonic", "effect_amount=3", "scene=office"}}));
 
 }  // namespace
