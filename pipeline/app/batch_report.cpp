@@ -10,6 +10,7 @@
 #include "pipeline/app/own_pipelines.hpp"
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/batch/trend.hpp"
+#include "pipeline/data/error.hpp"
 #include "pipeline/files/atomic_file.hpp"
 
 namespace crisp {
@@ -23,12 +24,18 @@ nlohmann::ordered_json batch_summary(const BatchRows& rows, const std::vector<Pa
   return json;
 }
 
-/// As `crisp report` does. What goes wrong is printed; the batch's tables are complete without the report.
+/// As `crisp report` does, which prints its own errors.
+/// @throws Error if the report was not written
 void write_report(const fs::path& output, const Registrar& registrar) {
   RunRequest request{
       .file = "report.yaml", .text = kReportPipeline, .arguments = {}, .quiet = true, .metrics = {}};
   request.arguments.input = output;
-  run_command(request, registrar);
+  const ExitStatus status = run_command(request, registrar);
+  if (status == ExitStatus::done || status == ExitStatus::not_trusted) return;
+  throw Error(
+      fmt::format("{} was not written; {} and {} are complete", kBatchReport, kBatchTable, kBatchSummary),
+      fmt::format("the message above says why: `crisp batch table {}` writes it when that is mended",
+                  output.string()));
 }
 
 }  // namespace
@@ -81,7 +88,8 @@ std::string trouble_text(const BatchRows& rows) {
 
 bool are_tables_current(const fs::path& output) {
   std::error_code missing;
-  for (const char* name : {kBatchTable, kBatchSummary}) {
+  const std::string last = std::string(kBatchReport) + kProvenance;
+  for (const auto& name : {std::string(kBatchTable), std::string(kBatchSummary), last}) {
     const auto written = fs::last_write_time(output / name, missing);
     if (missing) return false;
     for (const auto& manifest : manifests_of(output)) {
@@ -124,8 +132,8 @@ BatchRows write_results(const fs::path& output, const Registrar& registrar, std:
   summary.commit();
   write_report(output, registrar);
   if (out) {
-    *out << fmt::format("{}\n{}{}wrote {} and report.html\n", in_words(tally_of(rows)), trouble_text(rows),
-                        trend_text(rows), (output / kBatchTable).string());
+    *out << fmt::format("{}\n{}{}wrote {} and {}\n", in_words(tally_of(rows)), trouble_text(rows),
+                        trend_text(rows), (output / kBatchTable).string(), kBatchReport);
   }
   return rows;
 }

@@ -36,13 +36,14 @@ std::string trouble_text(const BatchRows& rows);
 /// Which recordings stand out in which parameters, a line each, the first of many.
 std::string trend_text(const BatchRows& rows);
 
-/// Whether the tables were written after the last event of every manifest.
+/// Whether the tables and the report were written after the last event of every manifest.
 bool are_tables_current(const std::filesystem::path& output);
 
 /// Reads the manifests and writes table.csv, batch.json, report.html and, where there are calibrations,
 /// trend.svg.
 /// @param registrar  of the stage that writes the report
 /// @param out  where a summary is printed; nullptr: nowhere
+/// @throws Error if a file cannot be written; the tables are written before the report
 BatchRows write_results(const std::filesystem::path& output, const Registrar& registrar, std::ostream* out);
 
 }  // namespace crisp

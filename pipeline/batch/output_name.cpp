@@ -35,7 +35,7 @@ std::string output_name(std::string_view path) {
 }
 
 bool is_reserved_output(std::string_view name) {
-  constexpr std::array kReserved = {kBatchManifest, kBatchSummary, kBatchTable, kBatchTrend};
+  constexpr std::array kReserved = {kBatchManifest, kBatchSummary, kBatchTable, kBatchTrend, kBatchReport};
   return std::ranges::find(kReserved, name.substr(0, name.find('/'))) != kReserved.end();
 }
 

@@ -10,6 +10,7 @@ namespace crisp {
 inline constexpr const char* kBatchManifest = "manifest";  ///< a folder, in it a folder a task
 inline constexpr const char* kBatchSummary = "batch.json";
 inline constexpr const char* kBatchTable = "table.csv";
+inline constexpr const char* kBatchReport = "report.html";
 inline constexpr const char* kBatchTrend = "trend.svg";
 
 /// A recording's path as a name: control characters and invalid UTF-8 become %XX, as does "%" where one of
