@@ -38,7 +38,7 @@ void widen_remissions(ScanData& scan, bool wide) {
   std::erase_if(from, is_remission);
 }
 
-/// The calendar clock of a device that nobody has set: since 1970 at its start, in whole milliseconds.
+/// The calendar clock of a device before it is set: it starts at 1970, in whole milliseconds.
 TimeBlock since_start(std::uint32_t scan_time_us) {
   constexpr std::uint32_t kMs = 1000, kSecond = 1000 * kMs, kMinute = 60 * kSecond, kHour = 60 * kMinute;
   return {.hour = static_cast<std::uint8_t>(scan_time_us / kHour),

@@ -50,7 +50,7 @@ class Emulator {
   /// Returns earlier, without sending it, once `interrupted`.
   void send(const HubItem& item, const Interrupted& interrupted);
 
-  /// Lasers of which nobody has requested scans, by name.
+  /// Names of the lasers whose scans no client has requested.
   std::vector<std::string> without_client();
 
   /// Waits until the clients have taken all that was sent, for 2 s at most.

@@ -38,10 +38,8 @@ std::optional<PlateReading> PlateFramer::take(char c) {
   return {};
 }
 
-std::optional<PlateReading> PlateFramer::finish_line() {
-  if (line_.back() == '\r') line_.pop_back();
-  PlateReading reading{.receipt_ns = latest_ns_};
-  const auto failure = decode_plate_sentence(line_, reading);
+/// Ends a line, and counts it as a reading or by why it is none.
+std::optional<PlateReading> PlateFramer::end_line(PlateFailure failure, const PlateReading& reading) {
   line_.clear();
   if (failure != PlateFailure::None) {
     ++counts_.failures[static_cast<std::size_t>(failure)];
@@ -49,6 +47,13 @@ std::optional<PlateReading> PlateFramer::finish_line() {
   }
   ++counts_.readings;
   return reading;
+}
+
+std::optional<PlateReading> PlateFramer::finish_line() {
+  if (line_.back() == '\r') line_.pop_back();
+  PlateReading reading{.receipt_ns = latest_ns_};
+  const auto failure = decode_plate_sentence(line_, reading);
+  return end_line(failure, reading);
 }
 
 PlateFailure PlateFramer::decode_own(PlateReading& reading) {
@@ -73,13 +78,7 @@ std::optional<PlateReading> PlateFramer::finish_own_line() {
   if (line_.empty()) return {};
   PlateReading reading{.receipt_ns = latest_ns_};
   const PlateFailure failure = decode_own(reading);
-  line_.clear();
-  if (failure != PlateFailure::None) {
-    ++counts_.failures[static_cast<std::size_t>(failure)];
-    return {};
-  }
-  ++counts_.readings;
-  return reading;
+  return end_line(failure, reading);
 }
 
 }  // namespace crisp

@@ -93,6 +93,7 @@ class PlateFramer {
 
   std::size_t lengthen(ByteView bytes);
   std::optional<PlateReading> take(char c);
+  std::optional<PlateReading> end_line(PlateFailure failure, const PlateReading& reading);
   std::optional<PlateReading> finish_line();
   std::optional<PlateReading> finish_own_line();
   PlateFailure decode_own(PlateReading& reading);

@@ -46,6 +46,7 @@ SensorModel with_nominal(const SensorModel& model, const std::vector<Unobservabl
 /// The parameters that are held by request.
 std::vector<std::size_t> fixed_parameters(const SensorModel& model, const Sample& sample,
                                           const RefinementSettings& settings) {
+  if (settings.fixed.empty()) return {};
   std::vector<std::size_t> all = free_parameters(model, sample.beams, {}).free;
   const auto estimated = free_parameters(model, sample.beams, settings.fixed).free;
   std::erase_if(

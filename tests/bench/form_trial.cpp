@@ -78,14 +78,14 @@ class FormTrial {
       all.push_back(fmt::format("{}: {} over {} {:.1f} mm", unnamed.scope, unnamed.quantity,
                                 unnamed.covariate, 1e3 * unnamed.amplitude));
     const bool is_plain = effect.cause == "none" || effect.cause == "shape";
-    const std::string beside = wrong.empty() ? "" : is_plain ? "false name" : " and a false name";
+    const std::string false_name = wrong.empty() ? "" : is_plain ? "false name" : " and a false name";
     if (is_plain)
-      count(effect.cause, !beside.empty()            ? beside
+      count(effect.cause, !false_name.empty()        ? false_name
                           : effect.cause == "none"   ? "nothing"
                           : findings.unnamed.empty() ? "missed"
                                                      : "unnamed");
     else if (!right.empty() || !in_class.empty())
-      count(effect.cause, (right.empty() ? "class" : "right") + beside);
+      count(effect.cause, (right.empty() ? "class" : "right") + false_name);
     else
       count(effect.cause, !wrong.empty() ? "wrong name" : findings.unnamed.empty() ? "missed" : "unnamed");
     fmt::print(": {}", fmt::join(all, ", "));
