@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/estimate/surfel_jacobian.hpp"
 
-namespace crisp {
-namespace {
+#include <numeric>
 
-Measurements picked_beams(const Measurements& from, std::span<const std::uint32_t> beams,
-                          std::span<const double> range_change) {
+namespace crisp {
+
+Measurements with_range_changes(const Measurements& from, std::span<const std::uint32_t> beams,
+                                std::span<const double> range_change) {
   Measurements to;
   to.epoch_ns = from.epoch_ns;
   to.reserve(beams.size());
@@ -16,23 +17,29 @@ Measurements picked_beams(const Measurements& from, std::span<const std::uint32_
   return to;
 }
 
-}  // namespace
+void fill_surfel_rows(const SensorModel& model, const Measurements& beams, const PlateTrajectory& plate,
+                      const std::vector<std::size_t>& free, const Eigen::Vector3d& normal,
+                      const std::vector<std::size_t>& columns, std::size_t stride, std::span<double> rows) {
+  PointDerivatives derivatives;
+  const Placed placed = model.place(beams, plate, free, derivatives);
+  for (std::size_t k = 0; k < placed.index.size(); ++k) {
+    const std::size_t row = placed.index[k];
+    const auto& own = derivatives.columns[beams.laser[row]];
+    for (std::size_t c = 0; c < own.size(); ++c) {
+      const auto column = static_cast<Eigen::Index>(k * derivatives.stride + c);
+      rows[row * stride + columns[own[c]]] = normal.dot(derivatives.values.col(column));
+    }
+  }
+}
 
 DerivativeRows surfel_rows(const SensorModel& model, const Sample& sample,
                            const std::vector<std::size_t>& free) {
-  return [&](const Surfel& surfel, std::span<const std::uint32_t> beams, std::span<const double> range_change,
-             std::span<double> rows) {
-    PointDerivatives derivatives;
-    const Measurements some = picked_beams(sample.beams, beams, range_change);
-    const Placed placed = model.place(some, *sample.plate, free, derivatives);
-    for (std::size_t k = 0; k < placed.index.size(); ++k) {
-      const std::size_t row = placed.index[k];
-      const auto& columns = derivatives.columns[some.laser[row]];
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        const auto column = static_cast<Eigen::Index>(k * derivatives.stride + c);
-        rows[row * free.size() + columns[c]] = surfel.normal.dot(derivatives.values.col(column));
-      }
-    }
+  std::vector<std::size_t> columns(free.size());
+  std::iota(columns.begin(), columns.end(), std::size_t{0});
+  return [&, columns](const Surfel& surfel, std::span<const std::uint32_t> beams,
+                      std::span<const double> range_change, std::span<double> rows) {
+    fill_surfel_rows(model, with_range_changes(sample.beams, beams, range_change), *sample.plate, free,
+                     surfel.normal, columns, free.size(), rows);
   };
 }
 

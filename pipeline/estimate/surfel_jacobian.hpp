@@ -15,4 +15,17 @@ namespace crisp {
 DerivativeRows surfel_rows(const SensorModel& model, const Sample& sample,
                            const std::vector<std::size_t>& free);
 
+/// Some beams of `from`, with changed ranges.
+///
+/// @param range_change  [m] for each of `beams`
+Measurements with_range_changes(const Measurements& from, std::span<const std::uint32_t> beams,
+                                std::span<const double> range_change);
+
+/// Sets rows[row of the beam · stride + column] to normal · ∂x/∂θ [m] for the parameters `free`.
+///
+/// @param columns  one for each of `free`
+void fill_surfel_rows(const SensorModel& model, const Measurements& beams, const PlateTrajectory& plate,
+                      const std::vector<std::size_t>& free, const Eigen::Vector3d& normal,
+                      const std::vector<std::size_t>& columns, std::size_t stride, std::span<double> rows);
+
 }  // namespace crisp

@@ -28,6 +28,12 @@ void apply_phase(const LaserChain& chain, Phase phase, std::span<const T> parame
   }
 }
 
+/// Does nothing after a phase of trace().
+struct NothingAfter {
+  template <class T>
+  void operator()(Phase, std::span<Beam<T>>) const {}
+};
+
 /// Applies the whole chain to beams of one laser. Beams at whose time the plate's angle is unknown are marked
 /// false in `known` and have no point.
 ///
@@ -35,14 +41,20 @@ void apply_phase(const LaserChain& chain, Phase phase, std::span<const T> parame
 /// @param parameters  in the order of chain.slots
 /// @param beams       with the measurements filled in; the rest is set here
 /// @param plate       φ(t) [rad] on the hub's clock
-template <class T, PlateMotion Plate>
+/// @param after       after(phase, beams) is called at the end of each phase, and may change what that has
+/// set
+template <class T, PlateMotion Plate, class After = NothingAfter>
 [[gnu::flatten]] void trace(const LaserChain& chain, std::span<const T> parameters, std::span<Beam<T>> beams,
-                            Plate& plate, std::span<bool> known) {
+                            Plate& plate, std::span<bool> known, const After& after = {}) {
+  const auto end = [&](Phase phase) {
+    apply_phase(chain, phase, parameters, beams);
+    after(phase, beams);
+  };
   const Mounting<T> laser{.lambda = parameters[0], .tau = parameters[1], .alpha = parameters[2]};
   const T& eta = parameters[3];
 
   for (auto& beam : beams) beam.time = beam.hub_time + eta;
-  apply_phase(chain, Phase::kTime, parameters, beams);
+  end(Phase::kTime);
 
   for (std::size_t i = 0; i < beams.size(); ++i) {
     auto& beam = beams[i];
@@ -55,22 +67,22 @@ template <class T, PlateMotion Plate>
     beam.plate_rate = plate_then.rate + plate_then.acceleration * since;
     beam.plate_angle = beam.encoder_angle;
   }
-  apply_phase(chain, Phase::kPlate, parameters, beams);
+  end(Phase::kPlate);
 
   for (auto& beam : beams) beam.mirror_angle = T(beam.measured_mirror);
-  apply_phase(chain, Phase::kMirror, parameters, beams);
+  end(Phase::kMirror);
 
   for (auto& beam : beams) aim(beam);
-  apply_phase(chain, Phase::kBeam, parameters, beams);
+  end(Phase::kBeam);
 
   for (auto& beam : beams) mount(beam, laser);
-  apply_phase(chain, Phase::kMount, parameters, beams);
+  end(Phase::kMount);
 
   for (auto& beam : beams) spin(beam, T(beam.plate_angle + laser.lambda));
-  apply_phase(chain, Phase::kBase, parameters, beams);
+  end(Phase::kBase);
 
   for (auto& beam : beams) beam.range = T(beam.measured_range);
-  apply_phase(chain, Phase::kRange, parameters, beams);
+  end(Phase::kRange);
 }
 
 }  // namespace crisp

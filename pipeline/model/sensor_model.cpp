@@ -13,7 +13,6 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kPhases = static_cast<std::size_t>(Phase::kRange) + 1;
 constexpr std::size_t kBaseParameters = 4;  // λ, τ, α, η
 
 void add_terms(LaserChain& chain, const std::vector<TermParameters>& terms, std::size_t first_value,

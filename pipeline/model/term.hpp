@@ -13,6 +13,7 @@ namespace crisp {
 
 /// The phase of the chain in which a term acts: see the table at Beam.
 enum class Phase { kTime, kPlate, kMirror, kBeam, kMount, kBase, kRange };
+inline constexpr std::size_t kPhases = static_cast<std::size_t>(Phase::kRange) + 1;
 
 /// Origin of a term's covariate. Recordings with different origins do not share its parameters.
 enum class CountsFrom { kNothing, kRunsEpoch, kEncodersZero };

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/model/terms/families.hpp"
@@ -113,73 +112,6 @@ std::vector<double> finer_ranges() {
 
 }  // namespace
 
-Shape Shape::fourier(int first, int last) { return {Kind::kFourier, first, last, {}}; }
-Shape Shape::hats(std::vector<double> knots) { return {Kind::kHats, 0, 0, std::move(knots)}; }
-Shape Shape::splines(int n, double from, double to, double zero) {
-  const double pieces = n - 2;
-  const int nearest = 1 + static_cast<int>(std::lround((zero - from) / (to - from) * pieces));
-  return {Kind::kSplines, nearest, n + 1, {from, to, zero}};
-}
-Shape Shape::powers() { return {Kind::kPowers, 0, 0, {}}; }
-Shape Shape::curve() { return {Kind::kCurve, 0, 0, {}}; }
-
-std::size_t Shape::coefficients() const {
-  switch (kind_) {
-    case Kind::kFourier:
-      return 2 * static_cast<std::size_t>(last_ - first_ + 1);
-    case Kind::kHats:
-      return knots_.size();
-    case Kind::kSplines:
-      return static_cast<std::size_t>(last_) - 1;
-    case Kind::kPowers:
-      return 3;
-    case Kind::kCurve:
-      return 2;
-  }
-  return 0;
-}
-
-double Shape::scale() const {
-  constexpr double kOfPowers = 1e-3;  // a plate turns at ten radians a second
-  constexpr double kOfCurve = 1e-2;   // a range is some metres
-  return kind_ == Kind::kPowers ? kOfPowers : kind_ == Kind::kCurve ? kOfCurve : 1;
-}
-
-std::string Shape::name(std::size_t coefficient) const {
-  const std::string order = std::to_string(first_ + static_cast<int>(coefficient / 2));
-  switch (kind_) {
-    case Kind::kFourier:
-      return (coefficient % 2 == 0 ? "cos" : "sin") + order;
-    case Kind::kHats:
-    case Kind::kSplines:
-      return "at" + std::to_string(coefficient);
-    case Kind::kPowers:
-    case Kind::kCurve:
-      return std::string(1, static_cast<char>('a' + coefficient));
-  }
-  return {};
-}
-
-std::string Shape::summary(std::size_t coefficient) const {
-  switch (kind_) {
-    case Kind::kFourier:
-      return (coefficient % 2 == 0 ? "of cos " : "of sin ") +
-             std::to_string(first_ + static_cast<int>(coefficient / 2)) + "x";
-    case Kind::kHats:
-      return fmt::format("at x = {:.2f}", knots_[coefficient]);
-    case Kind::kSplines: {
-      const auto spline = static_cast<double>(coefficient + (coefficient < omitted() ? 0 : 1));
-      return fmt::format("of the B-spline about x = {:.2f}",
-                         std::lerp(knots_[0], knots_[1], (spline - 1) / (last_ - 3)));
-    }
-    case Kind::kPowers:
-      return std::vector<std::string>{"of x²", "of x abs(x)", "of x³"}.at(coefficient);
-    case Kind::kCurve:
-      return std::vector<std::string>{"of x²", "of x³"}.at(coefficient);
-  }
-  return {};
-}
-
 EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape, std::string family)
     : on_(on), over_(over), shape_(std::move(shape)) {
   const OnName what = describe(on);
@@ -224,18 +156,18 @@ void register_empirical_terms(TermRegistry& terms) {
   add(On::kRange, Over::kIncidence, Shape::splines(6, 0, kGrazing, 0), "range.incidence");
   add(On::kRange, Over::kRemission, Shape::splines(6, dark, bright, usual), "range.intensity");
   add(On::kRange, Over::kTime, in_time, "range.warmup");
-  add(On::kMirrorAngle, Over::kMirrorAngle, Shape::fourier(1, 4), "mirror.eccentricity");
-  add(On::kElevation, Over::kMirrorAngle, Shape::fourier(1, 4), "mirror.cone");
+  add(On::kMirrorAngle, Over::kMirrorAngle, Shape::fourier(4), "mirror.eccentricity");
+  add(On::kElevation, Over::kMirrorAngle, Shape::fourier(4), "mirror.cone");
   add(On::kLag, Over::kTime, in_time, "clock.drift");
-  add(On::kPlateAngle, Over::kPlateAngle, Shape::fourier(1, 6), "encoder.eccentricity");
+  add(On::kPlateAngle, Over::kPlateAngle, Shape::fourier(6), "encoder.eccentricity");
   add(On::kPlateAngle, Over::kPlateRate, Shape::powers(), "encoder.speed_lag");
-  add(On::kBase, Over::kPlateAngle, Shape::fourier(1, 2), "plate.wobble");
-  add(On::kTilt, Over::kPlateAngle, Shape::fourier(1, 2), "plate.wobble");
+  add(On::kBase, Over::kPlateAngle, Shape::fourier(2), "plate.wobble");
+  add(On::kTilt, Over::kPlateAngle, Shape::fourier(2), "plate.wobble");
   add(On::kBase, Over::kTime, in_time, "base.motion");
   add(On::kTilt, Over::kTime, in_time, "base.motion");
   // Departures whose invariances are those of no cause.
-  add(On::kRange, Over::kMirrorAngle, Shape::fourier(1, 4));
-  add(On::kRange, Over::kPlateAngle, Shape::fourier(1, 4));
+  add(On::kRange, Over::kMirrorAngle, Shape::fourier(4));
+  add(On::kRange, Over::kPlateAngle, Shape::fourier(4));
   add(On::kRange, Over::kRange, Shape::curve());
   add(On::kRange, Over::kRange, Shape::hats({1, 2, 3, 4, 6, 8, 12, 20}));
   add(On::kRange, Over::kPlateRate, Shape::powers());

@@ -37,23 +37,19 @@ std::size_t first_slot(const Calibration& calibration, std::size_t owner, std::s
 
 CandidateJacobian::CandidateJacobian(const SensorModel& model, std::vector<std::size_t> base,
                                      std::vector<Candidate> candidates, const TermRegistry& terms)
-    : candidates_(std::move(candidates)), terms_(terms), base_(base.size()), parameters_(base.size()) {
-  for (const std::size_t parameter : base) names_.push_back(model.names()[parameter]);
+    : candidates_(std::move(candidates)),
+      terms_(terms),
+      base_(base.size()),
+      parameters_(base.size()),
+      model_(model),
+      free_(std::move(base)),
+      columns_(base_),
+      added_(model, {}) {
+  for (const std::size_t parameter : free_) names_.push_back(model.names()[parameter]);
+  std::iota(columns_.begin(), columns_.end(), std::size_t{0});
   for (std::size_t c = 0; c < candidates_.size(); ++c) add_columns(c);
-  std::vector<std::size_t> columns(base_);
-  std::iota(columns.begin(), columns.end(), std::size_t{0});
-  pages_.push_back({.model = model, .free = std::move(base), .columns = std::move(columns)});
-  for (const auto& page : pages_of(model.lasers())) add_page(model, page);
-  // Each beam is of one laser, so groups of different lasers cost no more than one of them.
-  for (std::size_t k = 0;; ++k) {
-    std::vector<std::size_t> some;
-    for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
-      const auto own = pages_of(laser);
-      if (k < own.size()) some.insert(some.end(), own[k].begin(), own[k].end());
-    }
-    if (some.empty()) break;
-    add_page(model, some);
-  }
+  add_terms_of_model();
+  added_ = terms_to_add();
 }
 
 void CandidateJacobian::add_columns(std::size_t candidate) {
@@ -61,7 +57,6 @@ void CandidateJacobian::add_columns(std::size_t candidate) {
   const TermInfo& info = terms_.get(one.term.term)->info();
   const bool is_another_form = candidate > 0 && candidates_[candidate - 1].is_form_of(one);
   first_form_.push_back(is_another_form ? first_form_[candidate - 1] : candidate);
-  owned_.push_back(0);
   auto& columns = of_.emplace_back();
   for (const std::size_t k : sizes(info)) {
     if (is_another_form && info.parameters[k].is_the_same_in_every_form) {
@@ -70,56 +65,44 @@ void CandidateJacobian::add_columns(std::size_t candidate) {
     }
     names_.push_back(one.name + "." + one.term.parameters[k].name);
     columns.push_back(parameters_++);
-    ++owned_[candidate];
   }
 }
 
-/// Groups the candidates of one owner by what one pass of automatic differentiation takes.
-std::vector<std::vector<std::size_t>> CandidateJacobian::pages_of(std::size_t owner) const {
-  std::vector<std::vector<std::size_t>> pages;
-  std::size_t taken = 0;
+void CandidateJacobian::add_terms_of_model() {
+  const Calibration calibration = model_.calibration();
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    if (candidates_[c].owner != owner) continue;
-    if (pages.empty() || taken + owned_[c] > static_cast<std::size_t>(Jet::DIMENSION)) {
-      pages.emplace_back();
-      taken = 0;
+    const Candidate& candidate = candidates_[c];
+    if (!candidate.in_model) continue;
+    const auto& present = terms_of(calibration, candidate.owner);
+    const auto place = find_term(present, candidate.term.term) - present.data();
+    const std::size_t first = first_slot(calibration, candidate.owner, static_cast<std::size_t>(place));
+    const auto own = sizes(terms_.get(candidate.term.term)->info());
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      free_.push_back(model_.chain(candidate.laser().value_or(0)).slots[first + own[i]]);
+      columns_.push_back(of_[c][i]);
     }
-    pages.back().push_back(c);
-    taken += owned_[c];
   }
-  return pages;
 }
 
-void CandidateJacobian::add_page(const SensorModel& model, const std::vector<std::size_t>& some) {
-  const Calibration before = model.calibration();
-  Calibration calibration = before;
-  std::map<std::size_t, std::size_t> added;  // number of added terms, by owner
-  std::vector<std::size_t> place;            // index of each candidate among its owner's terms
-  for (const std::size_t c : some) {
+AddedTerms CandidateJacobian::terms_to_add() const {
+  std::vector<std::vector<AddedTerm>> of_laser(model_.lasers());
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const Candidate& candidate = candidates_[c];
-    if (candidate.in_model) {
-      const auto& own = terms_of(before, candidate.owner);
-      place.push_back(static_cast<std::size_t>(find_term(own, candidate.term.term) - own.data()));
-      continue;
-    }
-    place.push_back(terms_of(before, candidate.owner).size() + added[candidate.owner]++);
-    add_to(calibration, candidate);
-  }
-  Page page{.model = SensorModel(calibration, terms_), .free = {}, .columns = {}};
-  for (std::size_t k = 0; k < some.size(); ++k) {
-    const Candidate& candidate = candidates_[some[k]];
-    const auto& slots = page.model.chain(candidate.laser().value_or(0)).slots;
-    const std::size_t first = first_slot(calibration, candidate.owner, place[k]);
-    const auto own = sizes(terms_.get(candidate.term.term)->info());
-    const std::size_t first_form = first_form_[some[k]];
+    if (candidate.in_model) continue;
+    AddedTerm added{.term = terms_.get(candidate.term.term), .values = {}, .parameters = {}, .columns = {}};
+    for (const Parameter& parameter : candidate.term.parameters) added.values.push_back(parameter.value);
+    const auto own = sizes(added.term->info());
     for (std::size_t i = 0; i < own.size(); ++i) {
-      const std::size_t column = of_[some[k]][i];
-      if (first_form != some[k] && column == of_[first_form][i]) continue;
-      page.free.push_back(slots[first + own[i]]);
-      page.columns.push_back(column);
+      const bool is_of_first_form = first_form_[c] != c && of_[c][i] == of_[first_form_[c]][i];
+      if (is_of_first_form) continue;
+      added.parameters.push_back(own[i]);
+      added.columns.push_back(of_[c][i]);
+    }
+    for (std::size_t laser = 0; laser < of_laser.size(); ++laser) {
+      if (candidate.laser().value_or(laser) == laser) of_laser[laser].push_back(added);
     }
   }
-  pages_.push_back(std::move(page));
+  return {model_, of_laser};
 }
 
 Eigen::VectorXd CandidateJacobian::sizes_of(std::size_t candidate) const {
@@ -136,16 +119,9 @@ Eigen::VectorXd CandidateJacobian::sizes_of(std::size_t candidate) const {
 DerivativeRows CandidateJacobian::rows(const Sample& sample) const {
   return [this, &sample](const Surfel& surfel, std::span<const std::uint32_t> beams,
                          std::span<const double> range_change, std::span<double> rows) {
-    std::vector<double> some;
-    for (const Page& page : pages_) {
-      some.assign(beams.size() * page.free.size(), 0);
-      surfel_rows(page.model, sample, page.free)(surfel, beams, range_change, some);
-      for (std::size_t i = 0; i < beams.size(); ++i) {
-        for (std::size_t k = 0; k < page.columns.size(); ++k) {
-          rows[i * parameters_ + page.columns[k]] = some[i * page.columns.size() + k];
-        }
-      }
-    }
+    const Measurements met = with_range_changes(sample.beams, beams, range_change);
+    fill_surfel_rows(model_, met, *sample.plate, free_, surfel.normal, columns_, parameters_, rows);
+    added_.fill_rows(met, *sample.plate, surfel.normal, parameters_, rows);
   };
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/estimate/sample.hpp"
+#include "pipeline/model/added_terms.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
 #include "plugins/diagnose/model/candidates.hpp"
 
@@ -36,25 +37,21 @@ class CandidateJacobian {
   DerivativeRows rows(const Sample& sample) const;
 
  private:
-  /// A group of candidates in a model of their own: one pass of automatic differentiation (Jet).
-  struct Page {
-    SensorModel model;
-    std::vector<std::size_t> free;     // parameters of the model
-    std::vector<std::size_t> columns;  // of the Jacobian, for each of `free`
-  };
-  void add_page(const SensorModel& model, const std::vector<std::size_t>& some);
-  std::vector<std::vector<std::size_t>> pages_of(std::size_t owner) const;
   void add_columns(std::size_t candidate);
+  void add_terms_of_model();
+  AddedTerms terms_to_add() const;
 
   std::vector<Candidate> candidates_;
   const TermRegistry& terms_;
   std::vector<std::vector<std::size_t>> of_;
   std::vector<std::size_t> first_form_;  // of each candidate, the first form of the same candidate
-  std::vector<std::size_t> owned_;       // of each candidate, the number of columns that no earlier form has
   std::vector<std::string> names_;
   std::size_t base_ = 0;
   std::size_t parameters_ = 0;
-  std::vector<Page> pages_;
+  SensorModel model_;
+  std::vector<std::size_t> free_;     // parameters of the model: the base's and its terms'
+  std::vector<std::size_t> columns_;  // of the Jacobian, for each of `free_`
+  AddedTerms added_;                  // the candidates that the model does not have
 };
 
 }  // namespace crisp

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "pipeline/model/sensor_model.hpp"
+
+namespace crisp {
+
+/// A term that a model does not have, at neutral values, which change no beam.
+struct AddedTerm {
+  std::shared_ptr<const ModelTerm> term;
+  std::vector<double> values;           ///< of all its parameters
+  std::vector<std::size_t> parameters;  ///< those with respect to which is differentiated
+  std::vector<std::size_t> columns;     ///< of the Jacobian, one for each of `parameters`
+};
+
+/// Derivatives of beams' ends with respect to parameters of terms that a model does not have. They equal
+/// those of a model with these terms. Each term is differentiated by itself, in the state that the beam has
+/// in the term's phase; the chain then carries the change of that state to the beam's end. So the chain is
+/// differentiated with respect to a few quantities of the beam instead of hundreds of parameters.
+class AddedTerms {
+ public:
+  /// @param of_laser  for each laser of the model, its own terms and the plate's; none for those beyond its
+  /// end
+  AddedTerms(const SensorModel& model, const std::vector<std::vector<AddedTerm>>& of_laser);
+
+  /// Sets rows[row of the beam · stride + column] to normal · ∂x/∂parameter [m] for beams that the encoder
+  /// readings cover. Thread-safe.
+  ///
+  /// @param normal  in the base's frame
+  void fill_rows(const Measurements& beams, const PlateTrajectory& plate, const Eigen::Vector3d& normal,
+                 std::size_t stride, std::span<double> rows) const;
+
+ private:
+  /// A term with some of its parameters seeded in a Jet's derivatives.
+  struct Seeded {
+    std::shared_ptr<const ModelTerm> term;
+    std::vector<Jet> parameters;
+  };
+  /// Terms of one phase that are differentiated in one pass.
+  struct Pass {
+    Phase phase;
+    std::vector<Seeded> terms;
+    std::vector<std::size_t> columns;
+  };
+  static std::vector<Pass> passes_of(const std::vector<AddedTerm>& terms);
+
+  std::vector<LaserChain> chains_;
+  std::vector<std::vector<double>> values_;  // by laser, of the chain's parameters
+  std::vector<std::vector<Pass>> passes_;    // by laser, in order of phases
+};
+
+}  // namespace crisp
