@@ -10,16 +10,13 @@
 namespace crisp {
 namespace {
 
-// From a degree off, walls that lie apart come together one after the other.
-constexpr int kSearches = 12;
-
 class Patches final : public FlatSurfaces {
  public:
-  explicit Patches(const SurfelSettings& settings) : settings_(settings) {}
+  Patches(const SurfelSettings& settings, int searches) : settings_(settings), searches_(searches) {}
 
   const Surfels& update(const BeamsView& beams, double last_step) override {
     if (!is_searching_) return surfels_;
-    is_searching_ = last_step > kSmallStep && round_++ < kSearches;
+    is_searching_ = last_step > kSmallStep && round_++ < searches_;
     if (is_searching_) {
       // Cells along edges belong to no surface of their own, but their beams carry much information.
       surfels_ = find_surfels(beams, settings_);
@@ -48,6 +45,7 @@ class Patches final : public FlatSurfaces {
   }
 
   SurfelSettings settings_;
+  int searches_;
   Surfels surfels_;
   int round_ = 0;
   bool is_searching_ = true;
@@ -55,11 +53,11 @@ class Patches final : public FlatSurfaces {
 
 class UprightWalls final : public FlatSurfaces {
  public:
-  explicit UprightWalls(const SurfelSettings& settings) : settings_(settings) {}
+  UprightWalls(const SurfelSettings& settings, int searches) : settings_(settings), searches_(searches) {}
 
   const Surfels& update(const BeamsView& beams, double last_step) override {
     if (!is_searching_) return walls_;
-    is_searching_ = widening_ > 1 || (last_step > kSmallStep && round_++ < kSearches);
+    is_searching_ = widening_ > 1 || (last_step > kSmallStep && round_++ < searches_);
     if (is_searching_) {
       walls_ = wall_lines(beams, {.noise = widening_ * settings_.noise});
       widening_ = std::max(1.0, widening_ / 2);
@@ -72,6 +70,7 @@ class UprightWalls final : public FlatSurfaces {
 
  private:
   SurfelSettings settings_;
+  int searches_;
   Surfels walls_;
   double widening_ = 8;  // of the noise, for what views disagree by; halved from one round to the next
   int round_ = 0;
@@ -80,12 +79,12 @@ class UprightWalls final : public FlatSurfaces {
 
 }  // namespace
 
-std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings) {
-  return std::make_unique<Patches>(settings);
+std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings, int searches) {
+  return std::make_unique<Patches>(settings, searches);
 }
 
-std::unique_ptr<FlatSurfaces> upright_walls(const SurfelSettings& settings) {
-  return std::make_unique<UprightWalls>(settings);
+std::unique_ptr<FlatSurfaces> upright_walls(const SurfelSettings& settings, int searches) {
+  return std::make_unique<UprightWalls>(settings, searches);
 }
 
 }  // namespace crisp

@@ -27,9 +27,11 @@ class FlatSurfaces {
 };
 
 /// Patches and walls that beams of a full field of view see: see find_surfels().
-std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings);
+///
+/// @param searches  rounds after which they are kept, at the latest
+std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings, int searches);
 
 /// Upright walls that beams in the plate's plane see as lines: see wall_lines().
-std::unique_ptr<FlatSurfaces> upright_walls(const SurfelSettings& settings);
+std::unique_ptr<FlatSurfaces> upright_walls(const SurfelSettings& settings, int searches);
 
 }  // namespace crisp

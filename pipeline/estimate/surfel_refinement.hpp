@@ -23,6 +23,9 @@ struct RefinementSettings {
   double angle_step = 0;   ///< [rad] of the encoder, for the standard errors; 0: none
   double angle_error = 0;  ///< [rad] standard deviation of the plate's angle at a beam's time: see ViewErrors
   int max_rounds = 20;
+  /// Rounds in which surfaces are searched for, at most. From a degree off, walls that lie apart come
+  /// together one after the other.
+  int searches = 12;
   double tolerance = 0.02;  ///< [standard errors] steps below which the refinement has converged
 };
 

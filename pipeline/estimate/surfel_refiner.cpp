@@ -28,7 +28,8 @@ SurfelRefiner::SurfelRefiner(const SensorModel& start, Sample sample, std::vecto
       sample_(std::move(sample)),
       free_(std::move(free)),
       settings_(settings),
-      surfaces_(is_in_plane(sample_) ? upright_walls(settings.surfels) : patches(settings.surfels)) {}
+      surfaces_(is_in_plane(sample_) ? upright_walls(settings.surfels, settings.searches)
+                                     : patches(settings.surfels, settings.searches)) {}
 
 bool SurfelRefiner::step() {
   const PlacedBeams placed(model_, sample_);

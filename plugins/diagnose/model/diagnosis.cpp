@@ -16,6 +16,7 @@
 #include "plugins/diagnose/model/cross_validation.hpp"
 #include "plugins/diagnose/model/generalization.hpp"
 #include "plugins/diagnose/model/nonlinear_parameters.hpp"
+#include "plugins/diagnose/model/per_model.hpp"
 #include "plugins/diagnose/model/residual_variance.hpp"
 #include "plugins/diagnose/model/significance.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
@@ -51,14 +52,19 @@ class Diagnoser {
     extend(result);
     if (!result.hypotheses.empty()) {
       report(0.8, "cross-validating on held-out turns");
-      const CrossValidator held_out(halves_of(inside_), result.before.outcome.model,
-                                    settings_.refinement.surfels);
-      const CrossValidator::Score plain_score = score_on(held_out, result.before);
+      const CrossValidator validator(halves_of(inside_), result.before.outcome.model,
+                                     settings_.refinement.surfels);
+      PerModel<CrossValidator::Score> scores;
+      const HeldOutScore held_out = [&](const Calibration& start) {
+        return scores.of(SensorModel(start, terms_),
+                         [&] { return validator.score(refined(start, validator.fitted()).outcome.model); });
+      };
+      const CrossValidator::Score plain_score = held_out(result.before.outcome.model.calibration());
       judge(held_out, plain_score, result);
       compare(result);
       reject_causes_below_residual(result);
       if (std::ranges::any_of(result.hypotheses, &Hypothesis::accepted))
-        result.gains = CrossValidator::gains(plain_score, score_on(held_out, result.after));
+        result.gains = CrossValidator::gains(plain_score, held_out(result.after.outcome.model.calibration()));
     } else {
       compare(result);
     }
@@ -67,10 +73,14 @@ class Diagnoser {
   }
 
  private:
+  /// The start is a calibration. Where the model lacks a large effect, searches never agree with one another.
+  static constexpr int kSearches = 4;
+
   Refinement refined(const Calibration& calibration, const Sample& sample) const {
     RefinementSettings settings = settings_.refinement;
     settings.terms = terms_in(calibration, terms_);
     settings.forms = true;
+    settings.searches = kSearches;
     settings.prior.earliest_eta = lags_.earliest;
     settings.prior.latest_eta = lags_.latest;
     return refine_by_surfels(SensorModel(calibration, terms_), sample, settings, [this](int) {
@@ -115,12 +125,12 @@ class Diagnoser {
   CandidateSearch test(const SurfaceObservations& observations, SearchState& state, Diagnosis& result) const {
     const bool may_be_fine = !state.rejected.empty() && !state.is_close;
     ProfileComparison left;
-    if (may_be_fine) left = compare_with_simulation(observations, settings_.refinement.surfels, 1);
+    if (may_be_fine) left = compared(result.after.outcome.model, observations);
     CandidateSearch search(observations, result.after, terms_, settings_, left);
     if (!state.is_close) {
       result.hypotheses = search.needs(state.rejected);
       if (names_of(result.hypotheses) != names_of(state.chosen)) return search;
-      if (!may_be_fine) left = compare_with_simulation(observations, settings_.refinement.surfels, 1);
+      if (!may_be_fine) left = compared(result.after.outcome.model, observations);
       state.is_close = needs_refinement(result.hypotheses, left);
       if (!state.is_close) {
         if (may_be_fine) return search;
@@ -189,12 +199,9 @@ class Diagnoser {
   }
 
   /// Cross-validates each hypothesis on held-out turns, then tests the accepted ones in the joint fit.
-  void judge(const CrossValidator& held_out, const CrossValidator::Score& plain, Diagnosis& result) const {
+  void judge(const HeldOutScore& held_out, const CrossValidator::Score& plain, Diagnosis& result) const {
     reject_scene_artifacts(result.hypotheses);
-    accept_if_it_generalizes(held_out, result.hypotheses, plain, result.after.outcome.model.calibration(),
-                             [this](const Calibration& start, const Sample& sample) {
-                               return refined(start, sample).outcome.model;
-                             });
+    accept_if_it_generalizes(result.hypotheses, plain, result.after.outcome.model.calibration(), held_out);
     if (!std::ranges::all_of(result.hypotheses, &Hypothesis::accepted)) refine_with_accepted(result);
     while (
         reject_insignificant(result.hypotheses, result.after.outcome, terms_, settings_.selection.p_value)) {
@@ -211,15 +218,17 @@ class Diagnoser {
     result.after = refined(with_terms(found, with_values_of(found, kept)), sample_);
   }
 
-  /// Held-out score of a model with the same terms, fitted to the training turns alone.
-  CrossValidator::Score score_on(const CrossValidator& held_out, const Refinement& all) const {
-    return held_out.score(refined(all.outcome.model.calibration(), held_out.fitted()).outcome.model);
+  const ProfileComparison& compared(const SensorModel& model, const SurfaceObservations& observations) const {
+    return comparisons_.of(
+        model, [&] { return compare_with_simulation(observations, settings_.refinement.surfels, 1); });
   }
 
   ProfileComparison left_by(const Refinement& refinement) const {
-    const SurfaceObservations observations(refinement.outcome.model, inside_, settings_.refinement.surfels,
-                                           settings_.beams);
-    return compare_with_simulation(observations, settings_.refinement.surfels, 1);
+    const SensorModel& model = refinement.outcome.model;
+    return comparisons_.of(model, [&] {
+      const SurfaceObservations observations(model, inside_, settings_.refinement.surfels, settings_.beams);
+      return compare_with_simulation(observations, settings_.refinement.surfels, 1);
+    });
   }
 
   void compare(Diagnosis& result) const {
@@ -244,6 +253,7 @@ class Diagnoser {
   LagRange lags_{.earliest = -std::numeric_limits<double>::infinity(),
                  .latest = std::numeric_limits<double>::infinity()};
   Sample inside_;
+  mutable PerModel<ProfileComparison> comparisons_;
 };
 
 }  // namespace

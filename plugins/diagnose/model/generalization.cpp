@@ -18,16 +18,15 @@ bool generalizes(const std::vector<Gain>& gains) {
 /// Set of accepted hypotheses, extended one test at a time.
 class ForwardSelection {
  public:
-  ForwardSelection(const CrossValidator& held_out, CrossValidator::Score plain, const Calibration& found,
-                   const RefinedOn& refined)
-      : held_out_(held_out), found_(found), refined_(refined), score_(std::move(plain)) {}
+  ForwardSelection(CrossValidator::Score plain, const Calibration& found, const HeldOutScore& held_out)
+      : found_(found), held_out_(held_out), score_(std::move(plain)) {}
 
   /// Tests whether some hypotheses jointly raise the held-out likelihood, and accepts them if so.
   bool accepts(const std::vector<Hypothesis*>& some) {
     auto tried = accepted_;
     for (const Hypothesis* hypothesis : some) tried.push_back(hypothesis->candidate);
     tried = with_values_of(found_, tried);
-    auto score = held_out_.score(refined_(with_terms(found_, tried), held_out_.fitted()));
+    auto score = held_out_(with_terms(found_, tried));
     const auto gains = CrossValidator::gains(score_, score);
     const bool does_generalize = generalizes(gains);
     for (Hypothesis* hypothesis : some) {
@@ -42,19 +41,17 @@ class ForwardSelection {
   }
 
  private:
-  const CrossValidator& held_out_;
   const Calibration& found_;
-  const RefinedOn& refined_;
+  const HeldOutScore& held_out_;
   std::vector<Candidate> accepted_;
   CrossValidator::Score score_;
 };
 
 }  // namespace
 
-void accept_if_it_generalizes(const CrossValidator& held_out, std::vector<Hypothesis>& hypotheses,
-                              const CrossValidator::Score& plain, const Calibration& found,
-                              const RefinedOn& refined) {
-  ForwardSelection selection(held_out, plain, found, refined);
+void accept_if_it_generalizes(std::vector<Hypothesis>& hypotheses, const CrossValidator::Score& plain,
+                              const Calibration& found, const HeldOutScore& held_out) {
+  ForwardSelection selection(plain, found, held_out);
   std::vector<Hypothesis*> open;
   for (Hypothesis& hypothesis : hypotheses) {
     if (hypothesis.accepted) open.push_back(&hypothesis);

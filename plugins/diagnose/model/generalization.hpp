@@ -9,8 +9,8 @@
 
 namespace crisp {
 
-/// Fits a calibration with its terms to all beams of a sample.
-using RefinedOn = std::function<SensorModel(const Calibration& start, const Sample& sample)>;
+/// Held-out score of a calibration with its terms, fitted to the training turns alone.
+using HeldOutScore = std::function<CrossValidator::Score(const Calibration& start)>;
 
 /// Accepts hypotheses that generalize to held-out turns (forward cross-validation): adds them one by one,
 /// fits each model to the training turns and compares the held-out likelihood. If a cause of several lasers
@@ -19,8 +19,7 @@ using RefinedOn = std::function<SensorModel(const Calibration& start, const Samp
 /// @param hypotheses  their gains and acceptance are set, except of those already rejected
 /// @param plain       score of the model without hypotheses
 /// @param found       calibration with all hypotheses; start of the other fits
-void accept_if_it_generalizes(const CrossValidator& held_out, std::vector<Hypothesis>& hypotheses,
-                              const CrossValidator::Score& plain, const Calibration& found,
-                              const RefinedOn& refined);
+void accept_if_it_generalizes(std::vector<Hypothesis>& hypotheses, const CrossValidator::Score& plain,
+                              const Calibration& found, const HeldOutScore& held_out);
 
 }  // namespace crisp

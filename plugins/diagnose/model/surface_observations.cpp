@@ -20,7 +20,7 @@ namespace crisp {
 namespace {
 
 Surfels surfaces(const BeamsView& beams, const SurfelSettings& settings) {
-  const Surfels found = patches(settings)->update(beams, std::numeric_limits<double>::infinity());
+  const Surfels found = patches(settings, 1)->update(beams, std::numeric_limits<double>::infinity());
   if (found.surfels.empty()) {
     throw Error("no beam meets a flat surface, so the sensor model cannot be tested",
                 "reduce `min_cell`, or record in a place with walls");

@@ -31,7 +31,7 @@ struct Reported {
   explicit Reported(const ScannerSettings& scanner)
       : recording(simulate_measurements(scanner, office())), sample(sample_of(recording)) {
     const PlacedBeams placed(SensorModel(recording.truth), sample);
-    surfels = patches({})->update(placed.view(), std::numeric_limits<double>::infinity());
+    surfels = patches({}, 1)->update(placed.view(), std::numeric_limits<double>::infinity());
     sample.beams.cos_incidence = incidences(surfels, placed.view());
     noise = relative_noise(surfels, placed.view(), sample.beams, {});
   }
