@@ -63,9 +63,9 @@ set(CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/${CRISP_LIB_FROM_BIN}")
 add_custom_target(crisp_installed)
 
 # crisp_library(<folder's name> [SHARED|STATIC|INTERFACE] [SOURCES ...] [PUBLIC ...] [PRIVATE ...])
-# makes the target crisp_<name> with the alias crisp::<name>, and installs it with the folder's headers.
-# Includes are written from the top of the tree ("pipeline/data/scan.hpp"), here and in an installed package
-# alike.
+# makes the target crisp_<name> with the alias crisp::<name>, and installs it. The public headers are in
+# pipeline/include: <crisp/scan.hpp>, here and in an installed package alike. Headers in the folders are internal, not
+# installed, and included from the top of the tree: "pipeline/model/chain.hpp".
 function(crisp_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "SHARED;STATIC;INTERFACE" "" "SOURCES;PUBLIC;PRIVATE")
   set(target crisp_${name})
@@ -82,7 +82,8 @@ function(crisp_library name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
                         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(${target} ${public}
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/crisp>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/pipeline/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} ${public} cxx_std_20)
   target_link_libraries(${target} ${public} ${arg_PUBLIC})
   if(NOT arg_INTERFACE)
@@ -91,12 +92,9 @@ function(crisp_library name)
     add_dependencies(crisp_installed ${target})
   endif()
 
-  file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
   install(TARGETS ${target} EXPORT crispTargets
           LIBRARY COMPONENT libraries NAMELINK_COMPONENT development
           ARCHIVE COMPONENT development)
-  install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/crisp/${folder}"
-          COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN page EXCLUDE PATTERN slurm EXCLUDE)
 endfunction()
 
 # crisp_test(<name> [THREADS] [SLOW <filter>] [SMOKE <filter>] [LONG <filter>] [CLUSTER <filter>] SOURCES ... LIBRARIES ...)

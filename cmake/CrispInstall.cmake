@@ -8,6 +8,7 @@ configure_package_config_file(cmake/crispConfig.cmake.in "${CMAKE_BINARY_DIR}/cr
                               INSTALL_DESTINATION "${package}")
 write_basic_package_version_file("${CMAKE_BINARY_DIR}/crispConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(EXPORT crispTargets NAMESPACE crisp:: DESTINATION "${package}" COMPONENT development)
+install(DIRECTORY pipeline/include/crisp DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT development)
 install(FILES "${CMAKE_BINARY_DIR}/crispConfig.cmake" "${CMAKE_BINARY_DIR}/crispConfigVersion.cmake"
               cmake/CrispPackages.cmake cmake/CrispPlugin.cmake DESTINATION "${package}" COMPONENT development)
 install(DIRECTORY configs/ DESTINATION "${CMAKE_INSTALL_DATADIR}/crisp/configs" COMPONENT program)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # crisp_add_plugin(<name> SOURCES ... [LIBRARIES ...]) makes the plugin <name>.so: stages, terms, measures or
 # searches that `crisp` loads by --plugin or CRISP_PLUGINS, or, once installed, from
-# <libdir>/crisp/plugins. One of the sources holds CRISP_PLUGIN(...) of pipeline/stage/plugin.hpp.
+# <libdir>/crisp/plugins. One of the sources holds CRISP_PLUGIN(...) of crisp/plugin.hpp.
 function(crisp_add_plugin name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIBRARIES")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)

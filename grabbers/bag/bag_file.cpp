@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <fstream>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/bag/mcap_reader.hpp"
 #include "grabbers/bag/rosbag1_reader.hpp"
 #include "grabbers/bag/sqlite_reader.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/files/list_files.hpp"
 
 namespace crisp {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "grabbers/table/append_beams.hpp"
+#include "pipeline/data/echoes.hpp"
 #include "pipeline/data/mirror_angle.hpp"
 
 namespace crisp {

@@ -9,12 +9,13 @@
 #include <string>
 #include <vector>
 
+#include <crisp/measurements.hpp>
+#include <crisp/plate_trajectory.hpp>
+
 #include "grabbers/bag/joint_rotation.hpp"
 #include "grabbers/bag/point_cloud.hpp"
 #include "grabbers/bag/ros_sensor_messages.hpp"
 #include "grabbers/table/actuator_angles.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
 
 namespace crisp {
 

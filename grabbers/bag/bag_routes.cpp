@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 

@@ -6,8 +6,9 @@
 
 #include <algorithm>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/bag/byte_cursor.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 

@@ -4,12 +4,13 @@
 #include <filesystem>
 #include <optional>
 
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/bag/bag_file.hpp"
 #include "grabbers/bag/bag_items.hpp"
 #include "grabbers/bag/bag_routes.hpp"
 #include "grabbers/table/table_items.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 
 namespace crisp {
 

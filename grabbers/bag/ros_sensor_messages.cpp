@@ -7,9 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/bag/byte_cursor.hpp"
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

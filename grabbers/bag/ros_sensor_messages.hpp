@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include <crisp/rig.hpp>
+#include <crisp/scan.hpp>
+
 #include "grabbers/bag/ros_message_schema.hpp"
-#include "pipeline/data/rig.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 

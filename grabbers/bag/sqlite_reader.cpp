@@ -3,8 +3,9 @@
 
 #include <sqlite3.h>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/bag/ros_names.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

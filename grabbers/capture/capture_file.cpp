@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 

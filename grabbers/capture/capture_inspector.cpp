@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/capture/capture_inspector.hpp"
 
-#include "grabbers/capture/capture_reader.hpp"
+#include <crisp/capture_reader.hpp>
+
 #include "grabbers/capture/capture_report.hpp"
 #include "grabbers/capture/captures_in.hpp"
 #include "grabbers/capture/pcap_records.hpp"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/capture/capture_reader.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <map>
@@ -8,7 +6,10 @@
 #include <unordered_map>
 #include <utility>
 
+#include <crisp/capture_reader.hpp>
+
 #include "grabbers/capture/dissect.hpp"
+#include "grabbers/capture/flow.hpp"
 #include "grabbers/capture/fragments.hpp"
 #include "grabbers/capture/item_merge.hpp"
 #include "grabbers/capture/ordered_capture.hpp"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "grabbers/devices/capture_statistics.hpp"
+#include <crisp/capture_statistics.hpp>
 
 namespace crisp {
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <optional>
 
-#include "grabbers/capture/capture_reader.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/capture_reader.hpp>
+#include <crisp/context.hpp>
+#include <crisp/error.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp {
 

@@ -5,8 +5,9 @@
 #include <cstdint>
 #include <utility>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/capture/capture_file.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/files/list_files.hpp"
 
 namespace crisp {

@@ -6,19 +6,14 @@
 #include <optional>
 #include <vector>
 
+#include <crisp/capture_settings.hpp>
+#include <crisp/hub_item.hpp>
+
 #include "grabbers/capture/tcp_stream.hpp"
 #include "grabbers/devices/devices.hpp"
-#include "grabbers/wire/hub_item.hpp"
 #include "grabbers/wire/plate_framer.hpp"
 
 namespace crisp {
-
-/// Settings for parsing a capture.
-struct CaptureSettings {
-  EncoderWidths encoder_widths = EncoderWidths::Position32;
-  double max_wait = 5;                     ///< [s] of capture time that a lost TCP segment is waited for
-  std::function<bool()> interrupted = {};  ///< polled while a capture is read from a pipe: whether to give up
-};
 
 /// One direction of one conversation between two ends: finds out what it carries, and hands telegrams and
 /// readings to the device that sent them.

@@ -6,7 +6,8 @@
 #include <optional>
 #include <tuple>
 
-#include "grabbers/devices/counts.hpp"
+#include <crisp/capture_statistics.hpp>
+
 #include "grabbers/devices/network.hpp"
 
 namespace crisp {

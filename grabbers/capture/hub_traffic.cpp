@@ -4,10 +4,11 @@
 #include <string>
 #include <utility>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/wire/cola_message.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_data.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

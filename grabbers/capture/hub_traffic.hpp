@@ -7,10 +7,11 @@
 #include <optional>
 #include <vector>
 
+#include <crisp/rig.hpp>
+#include <crisp/scan.hpp>
+
 #include "grabbers/capture/network_frames.hpp"
 #include "grabbers/wire/cola.hpp"
-#include "pipeline/data/rig.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 

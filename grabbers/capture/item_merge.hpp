@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "grabbers/wire/hub_item.hpp"
+#include <crisp/hub_item.hpp>
 
 namespace crisp {
 

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <array>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

@@ -5,8 +5,9 @@
 #include <functional>
 #include <map>
 
+#include <crisp/rig.hpp>
+
 #include "grabbers/wire/bytes.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp {
 

@@ -5,8 +5,9 @@
 
 #include <bit>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/capture/pcap_records.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

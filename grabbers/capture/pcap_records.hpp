@@ -3,10 +3,11 @@
 
 #include <optional>
 
+#include <crisp/capture_statistics.hpp>
+
 #include "grabbers/capture/byte_order.hpp"
 #include "grabbers/capture/file_window.hpp"
 #include "grabbers/capture/packet.hpp"
-#include "grabbers/devices/counts.hpp"
 
 namespace crisp {
 

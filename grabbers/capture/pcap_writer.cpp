@@ -12,12 +12,13 @@
 #include <cstring>
 #include <optional>
 
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
+
 #include "grabbers/capture/file_window.hpp"
 #include "grabbers/capture/pcap_extent.hpp"
 #include "grabbers/capture/pcap_records.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/data/internal_error.hpp"
-#include "pipeline/files/atomic_file.hpp"
 
 namespace crisp {
 namespace {

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "grabbers/capture/capture_reader.hpp"
+#include <crisp/capture_reader.hpp>
 
 namespace crisp {
 

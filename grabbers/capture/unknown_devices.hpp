@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "grabbers/devices/capture_statistics.hpp"
+#include <crisp/capture_statistics.hpp>
 
 namespace crisp {
 

@@ -5,7 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "grabbers/devices/capture_statistics.hpp"
+#include <crisp/capture_statistics.hpp>
+#include <crisp/scan.hpp>
+
 #include "grabbers/devices/pauses.hpp"
 #include "grabbers/devices/rough_clock.hpp"
 #include "grabbers/devices/running_median.hpp"
@@ -13,7 +15,6 @@
 #include "grabbers/wire/cola_framer.hpp"
 #include "grabbers/wire/scan_conversion.hpp"
 #include "pipeline/data/pool.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 

@@ -8,8 +8,9 @@
 #include <string>
 #include <tuple>
 
+#include <crisp/rig.hpp>
+
 #include "grabbers/wire/bytes.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp {
 

@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <optional>
 
+#include <crisp/rig.hpp>
+
 #include "grabbers/devices/device_log.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp {
 

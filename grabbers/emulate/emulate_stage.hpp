@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
+#include <crisp/context.hpp>
+#include <crisp/registrar.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/emulate/emulator.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
-#include "pipeline/stage/registry.hpp"
 
 namespace crisp {
 

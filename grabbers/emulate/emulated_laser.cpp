@@ -11,8 +11,9 @@
 #include <deque>
 #include <utility>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/wire/cola_framer.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -9,10 +9,11 @@
 #include <memory>
 #include <vector>
 
+#include <crisp/rig.hpp>
+
 #include "grabbers/emulate/emulated_clock.hpp"
 #include "grabbers/emulate/emulated_faults.hpp"
 #include "grabbers/emulate/sick_responder.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp {
 

@@ -8,9 +8,10 @@
 #include <future>
 #include <utility>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

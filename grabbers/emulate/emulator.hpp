@@ -13,9 +13,10 @@
 #include <thread>
 #include <vector>
 
+#include <crisp/hub_item.hpp>
+#include <crisp/rig.hpp>
+
 #include "grabbers/emulate/emulated_laser.hpp"
-#include "grabbers/wire/hub_item.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp {
 

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 

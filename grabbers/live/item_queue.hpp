@@ -8,7 +8,7 @@
 #include <mutex>
 #include <optional>
 
-#include "grabbers/wire/hub_item.hpp"
+#include <crisp/hub_item.hpp>
 
 namespace crisp {
 

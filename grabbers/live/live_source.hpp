@@ -10,24 +10,16 @@
 #include <thread>
 #include <vector>
 
-#include "grabbers/devices/capture_statistics.hpp"
+#include <crisp/capture_statistics.hpp>
+#include <crisp/live_settings.hpp>
+#include <crisp/rig.hpp>
+
 #include "grabbers/devices/wired_encoder.hpp"
 #include "grabbers/live/item_queue.hpp"
 #include "grabbers/live/plate_receiver.hpp"
 #include "grabbers/live/sick_client.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp {
-
-struct LiveSettings {
-  bool lasers = true;
-  bool plate = true;
-  SickSettings sick;
-  PlateSettings plate_at;
-  std::size_t queue =
-      16384;  ///< items that may wait for the pipeline; then the oldest are dropped, and counted
-  HubClock clock = now_ns;  ///< stamps the receipts
-};
 
 /// The devices of a rig over the network: scans and readings in the order in which this process receives
 /// them. It retries unreachable devices; the source ends only when it is stopped.

@@ -7,12 +7,13 @@
 #include <chrono>
 #include <string_view>
 
+#include <crisp/all_errors.hpp>
+#include <crisp/error.hpp>
+
 #include "grabbers/capture/capture_report.hpp"
 #include "grabbers/capture/loss_warnings.hpp"
 #include "grabbers/live/endpoints.hpp"
 #include "grabbers/live/live_status.hpp"
-#include "pipeline/data/all_errors.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

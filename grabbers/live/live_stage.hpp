@@ -4,10 +4,11 @@
 #include <optional>
 #include <string>
 
+#include <crisp/context.hpp>
+#include <crisp/registrar.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/live/live_source.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
-#include "pipeline/stage/registry.hpp"
 
 namespace crisp {
 

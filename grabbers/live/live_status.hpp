@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "grabbers/devices/capture_statistics.hpp"
-#include "pipeline/stage/context.hpp"
+#include <crisp/capture_statistics.hpp>
+#include <crisp/context.hpp>
 
 namespace crisp {
 

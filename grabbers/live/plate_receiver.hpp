@@ -7,28 +7,13 @@
 #include <optional>
 #include <string>
 
+#include <crisp/live_settings.hpp>
+
 #include "grabbers/devices/device_log.hpp"
 #include "grabbers/live/endpoints.hpp"
 #include "grabbers/wire/plate_framer.hpp"
 
 namespace crisp {
-
-/// Transport of the plate's sentences.
-enum class PlateTransport : std::uint8_t {
-  Datagrams,  ///< by UDP, from the rig's plate
-  Tcp,        ///< the rig's plate is a TCP server
-  Serial,     ///< over a serial line of this machine: 8 data bits, no parity, 1 stop bit
-};
-
-struct PlateSettings {
-  PlateTransport transport = PlateTransport::Datagrams;
-  std::string listen = "127.0.0.1";   ///< the hub's address that datagrams are taken at; 0.0.0.0: all of them
-  std::optional<std::uint16_t> port;  ///< of the hub; 0: any that is free; nothing: the rig's, or 4000
-  std::string serial = "/dev/ttyUSB0";
-  unsigned baud = 115200;          ///< [bit/s] of the serial line
-  double silence = 2;              ///< [s] without a reading after which a connection or line is opened anew
-  double max_reconnect_delay = 5;  ///< [s] between two tries; the first are quicker
-};
 
 /// From the plate's bytes, however they came, to its readings.
 class PlateReadings {

@@ -7,22 +7,14 @@
 #include <optional>
 #include <string>
 
+#include <crisp/live_settings.hpp>
+
 #include "grabbers/devices/device_log.hpp"
 #include "grabbers/live/endpoints.hpp"
 #include "grabbers/live/restartable_timer.hpp"
 #include "grabbers/live/sick_dialogue.hpp"
 
 namespace crisp {
-
-struct SickSettings {
-  ColaLanguage language = ColaLanguage::B;  ///< that is tried first
-  bool start = true;                ///< log in and start the measurement; otherwise only request scans
-  SickConfiguration configuration;  ///< how lasers are to measure, where anything is wanted
-  double reply_timeout = 1;         ///< [s] for a connection, and for each answer
-  double silence = 2;               ///< [s] without a scan after which the connection is made anew
-  double max_reconnect_delay = 5;   ///< [s] between two tries; the first are quicker
-  EncoderWidths encoder_widths = EncoderWidths::Position32;
-};
 
 /// One laser on the network: connects, detects its language, requests scans, and reconnects whenever the
 /// connection breaks or falls silent. All of it happens in the thread that runs the io_context.

@@ -7,8 +7,9 @@
 #include <algorithm>
 #include <array>
 
+#include <crisp/cloud_conversion.hpp>
+
 #include "grabbers/pcd/surplus.hpp"
-#include "pipeline/pcd/cloud_conversion.hpp"
 #include "pipeline/pcd/parts.hpp"
 
 namespace crisp {

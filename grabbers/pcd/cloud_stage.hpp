@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp {
 

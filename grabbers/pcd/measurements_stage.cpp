@@ -5,8 +5,9 @@
 
 #include <algorithm>
 
+#include <crisp/measurement_tables.hpp>
+
 #include "grabbers/pcd/surplus.hpp"
-#include "pipeline/pcd/measurement_tables.hpp"
 #include "pipeline/pcd/parts.hpp"
 
 namespace crisp {

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/pcd/pcd_table.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/measurements.hpp>
+#include <crisp/pcd_table.hpp>
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp {
 

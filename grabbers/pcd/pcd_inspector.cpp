@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/pcd/pcd_table.hpp"
+#include <crisp/pcd_table.hpp>
 
 namespace crisp {
 namespace {

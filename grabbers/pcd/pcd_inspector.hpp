@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pipeline/stage/inspector.hpp"
+#include <crisp/inspector.hpp>
 
 namespace crisp {
 

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "pipeline/pcd/pcd_table.hpp"
-#include "pipeline/stage/context.hpp"
+#include <crisp/context.hpp>
+#include <crisp/pcd_table.hpp>
 
 namespace crisp {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/pcl/capture_grabber.hpp"
-
 #include <cmath>
 #include <utility>
 
+#include <crisp/capture_grabber.hpp>
+#include <crisp/error.hpp>
+
 #include "grabbers/pcl/paced_source.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/pcl/live_grabber.hpp"
-
 #include <utility>
+
+#include <crisp/live_grabber.hpp>
+
+#include "grabbers/live/live_source.hpp"
 
 namespace crisp {
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <mutex>
 
-#include "grabbers/wire/hub_item.hpp"
+#include <crisp/hub_item.hpp>
 
 namespace crisp {
 

@@ -3,9 +3,10 @@
 
 #include <cmath>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/pcl/paced_source.hpp"
 #include "grabbers/simulate/recording.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

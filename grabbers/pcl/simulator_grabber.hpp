@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "grabbers/pcl/source_grabber.hpp"
+#include <crisp/source_grabber.hpp>
+#include <crisp/term.hpp>
+
 #include "grabbers/simulate/recording_settings.hpp"
 #include "grabbers/simulate/scene.hpp"
-#include "pipeline/model/term.hpp"
 
 namespace crisp {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/pcl/source_grabber.hpp"
-
 #include <utility>
+
+#include <crisp/source_grabber.hpp>
 
 namespace crisp {
 

@@ -8,11 +8,12 @@
 #include <optional>
 #include <utility>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/capture/capture_file.hpp"
 #include "grabbers/capture/file_window.hpp"
 #include "grabbers/capture/pcap_extent.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/data/internal_error.hpp"
 
 namespace crisp {

@@ -9,11 +9,12 @@
 #include <string>
 #include <vector>
 
+#include <crisp/hub_item.hpp>
+#include <crisp/rig.hpp>
+
 #include "grabbers/capture/hub_traffic.hpp"
 #include "grabbers/capture/pcap_writer.hpp"
-#include "grabbers/wire/hub_item.hpp"
 #include "pipeline/data/batcher.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp {
 

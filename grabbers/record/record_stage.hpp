@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
+#include <crisp/context.hpp>
+#include <crisp/error.hpp>
+#include <crisp/registrar.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/record/capture_recorder.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
-#include "pipeline/stage/registry.hpp"
 
 namespace crisp {
 

@@ -6,7 +6,8 @@
 
 #include <algorithm>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/files/nearest.hpp"
 
 namespace crisp {

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include <crisp/scan.hpp>
+
 #include "grabbers/simulate/effects.hpp"
 #include "grabbers/simulate/recording_settings.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 

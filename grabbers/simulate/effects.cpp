@@ -7,7 +7,8 @@
 #include <algorithm>
 #include <variant>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/quantity.hpp"
 

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/data/rig.hpp"
-#include "pipeline/model/catalogue.hpp"
-#include "pipeline/stage/option.hpp"
+#include <crisp/effect_catalogue.hpp>
+#include <crisp/option.hpp>
+#include <crisp/rig.hpp>
 
 namespace crisp {
 

@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
+#include <crisp/findings.hpp>
+
 #include "grabbers/simulate/effects.hpp"
-#include "pipeline/data/findings.hpp"
 
 namespace crisp {
 

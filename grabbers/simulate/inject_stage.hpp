@@ -3,9 +3,10 @@
 
 #include <vector>
 
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/simulate/effect_injection.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 
 namespace crisp {
 

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/wire/scan_conversion.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

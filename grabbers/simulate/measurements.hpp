@@ -5,13 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include <crisp/calibration.hpp>
+#include <crisp/measurements.hpp>
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/term.hpp>
+
 #include "grabbers/simulate/motion.hpp"
 #include "grabbers/simulate/scene.hpp"
 #include "grabbers/simulate/settings.hpp"
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/model/term.hpp"
 
 namespace crisp {
 

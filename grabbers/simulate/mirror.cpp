@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 

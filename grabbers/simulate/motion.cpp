@@ -7,8 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/random.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/data/internal_error.hpp"
 
 namespace crisp {

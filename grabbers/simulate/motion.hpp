@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/data/plate_trajectory.hpp"
+#include <crisp/plate_trajectory.hpp>
 
 namespace crisp {
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

@@ -5,8 +5,9 @@
 
 #include <algorithm>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/random.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

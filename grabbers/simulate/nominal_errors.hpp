@@ -4,9 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include <crisp/calibration.hpp>
+#include <crisp/term.hpp>
+
 #include "grabbers/simulate/effects.hpp"
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/model/term.hpp"
 
 namespace crisp {
 

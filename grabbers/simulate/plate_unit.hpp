@@ -4,11 +4,12 @@
 #include <cstdint>
 #include <optional>
 
+#include <crisp/scan.hpp>
+
 #include "grabbers/simulate/link.hpp"
 #include "grabbers/simulate/motion.hpp"
 #include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/recording_settings.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 

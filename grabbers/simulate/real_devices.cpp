@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <map>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/built_in.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/files/yaml_map.hpp"
 #include "pipeline/stage/option_yaml.hpp"
 

@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/wire/scan_data.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -7,12 +7,13 @@
 #include <variant>
 #include <vector>
 
+#include <crisp/scan.hpp>
+
 #include "grabbers/simulate/laser_unit.hpp"
 #include "grabbers/simulate/plate_unit.hpp"
 #include "grabbers/simulate/recording_settings.hpp"
 #include "grabbers/simulate/scene.hpp"
 #include "grabbers/simulate/sweep.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 

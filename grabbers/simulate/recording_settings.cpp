@@ -6,8 +6,9 @@
 
 #include <algorithm>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/random.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/files/nearest.hpp"
 
 namespace crisp {

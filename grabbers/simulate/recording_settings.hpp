@@ -5,11 +5,12 @@
 #include <string>
 #include <vector>
 
+#include <crisp/calibration.hpp>
+
 #include "grabbers/simulate/device_clock.hpp"
 #include "grabbers/simulate/link.hpp"
 #include "grabbers/simulate/settings.hpp"
 #include "grabbers/wire/cola.hpp"
-#include "pipeline/data/calibration.hpp"
 
 namespace crisp {
 

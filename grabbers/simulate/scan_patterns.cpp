@@ -9,8 +9,9 @@
 #include <string>
 #include <variant>
 
-#include "pipeline/data/all_errors.hpp"
-#include "pipeline/data/error.hpp"
+#include <crisp/all_errors.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/quantity.hpp"
 

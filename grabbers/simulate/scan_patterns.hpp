@@ -3,9 +3,10 @@
 
 #include <vector>
 
+#include <crisp/option.hpp>
+#include <crisp/rig.hpp>
+
 #include "grabbers/simulate/settings.hpp"
-#include "pipeline/data/rig.hpp"
-#include "pipeline/stage/option.hpp"
 
 namespace crisp {
 

@@ -7,11 +7,12 @@
 #include <numbers>
 #include <vector>
 
+#include <crisp/calibration.hpp>
+#include <crisp/rig.hpp>
+
 #include "grabbers/simulate/mirror.hpp"
 #include "grabbers/simulate/motion.hpp"
 #include "grabbers/simulate/noise.hpp"
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp {
 

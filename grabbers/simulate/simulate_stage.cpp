@@ -8,11 +8,12 @@
 #include <iterator>
 #include <variant>
 
+#include <crisp/all_errors.hpp>
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/inject_stage.hpp"
 #include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/truth_file.hpp"
-#include "pipeline/data/all_errors.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/files/quantity.hpp"
 
 namespace crisp {

@@ -7,14 +7,15 @@
 #include <string>
 #include <vector>
 
+#include <crisp/context.hpp>
+#include <crisp/registrar.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/recorded_capture.hpp"
 #include "grabbers/simulate/recording.hpp"
 #include "grabbers/simulate/world.hpp"
 #include "pipeline/data/degree.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
-#include "pipeline/stage/registry.hpp"
 
 namespace crisp {
 

@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <crisp/calibration_file.hpp>
+
 #include "grabbers/simulate/device_effects.hpp"
-#include "pipeline/files/calibration_file.hpp"
 
 namespace crisp {
 namespace {

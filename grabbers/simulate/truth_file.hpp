@@ -4,8 +4,9 @@
 #include <filesystem>
 #include <string>
 
+#include <crisp/calibration.hpp>
+
 #include "grabbers/simulate/recording_settings.hpp"
-#include "pipeline/data/calibration.hpp"
 
 namespace crisp {
 

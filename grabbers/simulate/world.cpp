@@ -7,17 +7,18 @@
 #include <algorithm>
 #include <iterator>
 
+#include <crisp/calibration_file.hpp>
+#include <crisp/error.hpp>
+#include <crisp/registrar.hpp>
+
 #include "grabbers/simulate/found_effects.hpp"
 #include "grabbers/simulate/paper.hpp"
 #include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/scan_patterns.hpp"
 #include "grabbers/simulate/scene_file.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/findings_file.hpp"
 #include "pipeline/model/term_faults.hpp"
-#include "pipeline/stage/registry.hpp"
 
 namespace crisp {
 namespace {

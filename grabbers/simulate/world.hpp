@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
+#include <crisp/context.hpp>
+
 #include "grabbers/simulate/effects.hpp"
 #include "grabbers/simulate/nominal_errors.hpp"
 #include "grabbers/simulate/scene.hpp"
 #include "grabbers/simulate/settings.hpp"
-#include "pipeline/stage/context.hpp"
 
 namespace crisp {
 

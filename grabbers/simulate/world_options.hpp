@@ -6,10 +6,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/settings.hpp"
 #include "grabbers/simulate/world.hpp"
-#include "pipeline/stage/description.hpp"
 
 namespace crisp {
 

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/data/rig.hpp"
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/rig.hpp>
 
 namespace crisp {
 

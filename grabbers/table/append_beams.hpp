@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "pipeline/data/measurements.hpp"
+#include <crisp/measurements.hpp>
 
 namespace crisp {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/data/rig.hpp"
+#include <crisp/rig.hpp>
 
 namespace crisp {
 

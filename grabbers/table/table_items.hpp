@@ -8,12 +8,13 @@
 #include <string>
 #include <vector>
 
+#include <crisp/measurements.hpp>
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/rig.hpp>
+#include <crisp/scan.hpp>
+
 #include "grabbers/table/actuator_angles.hpp"
 #include "grabbers/table/table_format.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/data/rig.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

@@ -8,9 +8,10 @@
 #include <string>
 #include <string_view>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/table/table_format.hpp"
 #include "grabbers/table/table_lines.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 

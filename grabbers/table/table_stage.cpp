@@ -9,8 +9,9 @@
 #include <istream>
 #include <utility>
 
-#include "pipeline/data/all_errors.hpp"
-#include "pipeline/data/error.hpp"
+#include <crisp/all_errors.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/files/byte_stream.hpp"
 
 namespace crisp {

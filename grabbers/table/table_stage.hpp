@@ -4,10 +4,11 @@
 #include <filesystem>
 #include <optional>
 
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/table/table_items.hpp"
 #include "grabbers/table/table_reader.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 
 namespace crisp {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pipeline/stage/registry.hpp"
+#include <crisp/registrar.hpp>
 
 namespace crisp {
 

@@ -6,7 +6,8 @@
 #include <istream>
 #include <string>
 
-#include "grabbers/devices/counts.hpp"
+#include <crisp/capture_statistics.hpp>
+
 #include "grabbers/wire/bytes.hpp"
 
 namespace crisp {

@@ -9,9 +9,10 @@
 #include <limits>
 #include <numbers>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/capture/capture_file.hpp"
 #include "grabbers/capture/dissect.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -5,11 +5,12 @@
 #include <optional>
 #include <vector>
 
+#include <crisp/context.hpp>
+#include <crisp/measurements.hpp>
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/velodyne/velodyne_packet.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 
 namespace crisp {
 

@@ -8,9 +8,10 @@
 #include <functional>
 #include <numeric>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/wire/binary_fields.hpp"
 #include "grabbers/wire/text_fields.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -5,13 +5,11 @@
 #include <optional>
 #include <string_view>
 
+#include <crisp/cola_language.hpp>
+
 #include "grabbers/wire/bytes.hpp"
 
 namespace crisp {
-
-/// The two languages of SICK's devices: CoLa-A is ASCII between STX and ETX, CoLa-B is binary with a length
-/// and a checksum.
-enum class ColaLanguage : std::uint8_t { A, B };
 
 /// Longest plausible payload of one telegram [bytes].
 inline constexpr std::size_t kLargestColaPayload = 64 * 1024;

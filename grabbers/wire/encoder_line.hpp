@@ -3,8 +3,9 @@
 
 #include <string_view>
 
+#include <crisp/rig.hpp>
+
 #include "grabbers/wire/plate_sentence.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp {
 

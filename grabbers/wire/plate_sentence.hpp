@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/data/scan.hpp"
+#include <crisp/scan.hpp>
 
 namespace crisp {
 

@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <string_view>
 
+#include <crisp/scan.hpp>
+
 #include "grabbers/wire/scan_data.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 

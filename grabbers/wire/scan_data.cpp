@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <limits>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/wire/binary_fields.hpp"
 #include "grabbers/wire/text_fields.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <crisp/scan.hpp>
+
 #include "grabbers/wire/bytes.hpp"
 #include "grabbers/wire/cola.hpp"
 #include "grabbers/wire/fields.hpp"
@@ -24,12 +26,6 @@ struct EncoderBlock {
   std::uint32_t position = 0;  ///< [counts]
   std::int32_t speed = 0;      ///< device's units
   bool operator==(const EncoderBlock&) const = default;
-};
-
-/// How wide the fields of an encoder block are: sources disagree, and no public capture has one.
-enum class EncoderWidths : std::uint8_t {
-  Position32,  ///< position u32, speed i16 (the drivers)
-  Position16,  ///< position u16, speed u16 (the telegram listing of 2012)
 };
 
 /// One channel of a scan. Value k is raw[k] · scale + offset (mm for DISTn) at start_angle + k · angle_step.

@@ -7,9 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/wire/cola.hpp"
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <crisp/scan.hpp>
+
 #include "grabbers/wire/scan_data.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 

@@ -8,6 +8,8 @@
 #include <iostream>
 #include <thread>
 
+#include <crisp/atomic_file.hpp>
+
 #include "pipeline/app/batch_commands.hpp"
 #include "pipeline/app/batch_preparation.hpp"
 #include "pipeline/app/batch_progress.hpp"
@@ -15,7 +17,6 @@
 #include "pipeline/app/signals.hpp"
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/data/counted.hpp"
-#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/folder_lock.hpp"
 
 namespace crisp {

@@ -7,13 +7,14 @@
 #include <cstdlib>
 #include <iostream>
 
+#include <crisp/inspector.hpp>
+
 #include "pipeline/app/batch_report.hpp"
 #include "pipeline/batch/effective_settings.hpp"
 #include "pipeline/batch/last_batch.hpp"
 #include "pipeline/batch/slurm_environment.hpp"
 #include "pipeline/data/counted.hpp"
 #include "pipeline/files/quantity.hpp"
-#include "pipeline/stage/inspector.hpp"
 
 namespace crisp {
 namespace {

@@ -7,11 +7,12 @@
 #include <ostream>
 #include <system_error>
 
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/app/own_pipelines.hpp"
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/batch/trend.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/atomic_file.hpp"
 
 namespace crisp {
 namespace {

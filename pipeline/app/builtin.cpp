@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/app/builtin.hpp"
+#include <crisp/builtin.hpp>
+#include <crisp/effect_catalogue.hpp>
 
 #include "grabbers/bag/register.hpp"
 #include "grabbers/capture/register.hpp"
@@ -11,7 +12,6 @@
 #include "grabbers/table/register.hpp"
 #include "grabbers/telegrams/register.hpp"
 #include "grabbers/velodyne/register.hpp"
-#include "pipeline/model/catalogue.hpp"
 #include "plugins/assemble/register.hpp"
 #include "plugins/calibrate/register.hpp"
 #include "plugins/calibrate/watch/register.hpp"

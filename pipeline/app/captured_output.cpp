@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

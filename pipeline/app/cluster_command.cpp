@@ -9,13 +9,14 @@
 #include <iostream>
 #include <optional>
 
+#include <crisp/atomic_file.hpp>
+
 #include "pipeline/app/batch_preparation.hpp"
 #include "pipeline/app/captured_output.hpp"
 #include "pipeline/app/own_process.hpp"
 #include "pipeline/batch/manifest.hpp"
 #include "pipeline/batch/slurm_script.hpp"
 #include "pipeline/data/counted.hpp"
-#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/folder_lock.hpp"
 
 namespace crisp {

@@ -6,16 +6,19 @@
 #include <algorithm>
 #include <iostream>
 
+#include <crisp/atomic_file.hpp>
+#include <crisp/effect_catalogue.hpp>
+#include <crisp/rig_file.hpp>
+
 #include "pipeline/app/effect_reference.hpp"
 #include "pipeline/data/counted.hpp"
-#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/file_kind.hpp"
 #include "pipeline/files/folder_lock.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/renamed_names.hpp"
-#include "pipeline/files/rig_file.hpp"
-#include "pipeline/model/catalogue.hpp"
+#include "pipeline/files/rig_yaml.hpp"
+#include "pipeline/stage/pipeline_plan.hpp"
 #include "pipeline/stage/reference.hpp"
 #include "pipeline/stage/unknown_names.hpp"
 

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/stage/pipeline_file.hpp"
-#include "pipeline/stage/plugin_loader.hpp"
-#include "pipeline/stage/registry.hpp"
+#include <crisp/pipeline_file.hpp>
+#include <crisp/plugin_loader.hpp>
+#include <crisp/registrar.hpp>
 
 namespace crisp {
 

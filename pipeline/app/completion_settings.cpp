@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/app/completion_settings.hpp"
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/pipeline_file.hpp>
+
 #include "pipeline/files/yaml.hpp"
-#include "pipeline/stage/pipeline_file.hpp"
+#include "pipeline/stage/pipeline_plan.hpp"
 
 namespace crisp {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/stage/registry.hpp"
+#include <crisp/registrar.hpp>
 
 namespace crisp {
 

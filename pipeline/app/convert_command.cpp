@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <set>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/app/own_pipelines.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/files/list_files.hpp"
 #include "pipeline/pcd/parts.hpp"
 

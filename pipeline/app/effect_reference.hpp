@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/model/effect.hpp"
+#include <crisp/effect.hpp>
 
 namespace crisp {
 

@@ -7,11 +7,12 @@
 #include <optional>
 #include <utility>
 
+#include <crisp/rig_file.hpp>
+
 #include "pipeline/app/commands.hpp"
 #include "pipeline/files/byte_stream.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/list_files.hpp"
-#include "pipeline/files/rig_file.hpp"
 
 namespace crisp {
 namespace {

@@ -7,8 +7,9 @@
 #include <algorithm>
 #include <system_error>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/app/own_process.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/files/nearest.hpp"
 
 namespace crisp {

@@ -8,7 +8,8 @@
 #include <iostream>
 #include <sstream>
 
-#include "pipeline/app/builtin.hpp"
+#include <crisp/builtin.hpp>
+
 #include "pipeline/app/command_line.hpp"
 #include "pipeline/app/completion.hpp"
 #include "pipeline/app/completion_settings.hpp"

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

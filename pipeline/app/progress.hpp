@@ -5,7 +5,7 @@
 #include <ostream>
 #include <string>
 
-#include "pipeline/stage/context.hpp"
+#include <crisp/context.hpp>
 
 namespace crisp {
 

@@ -4,9 +4,10 @@
 #include <system_error>
 #include <utility>
 
+#include <crisp/all_errors.hpp>
+#include <crisp/atomic_file.hpp>
+
 #include "pipeline/app/terminal.hpp"
-#include "pipeline/data/all_errors.hpp"
-#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/process_identity.hpp"
 #include "pipeline/files/utc_now.hpp"
 #include "pipeline/pcd/parts.hpp"

@@ -4,10 +4,11 @@
 #include <functional>
 #include <memory>
 
+#include <crisp/runner.hpp>
+
 #include "pipeline/app/commands.hpp"
 #include "pipeline/app/run_record.hpp"
 #include "pipeline/files/folder_lock.hpp"
-#include "pipeline/stage/runner.hpp"
 
 namespace crisp {
 

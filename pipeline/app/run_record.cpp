@@ -7,8 +7,9 @@
 #include <system_error>
 #include <utility>
 
-#include "pipeline/data/all_errors.hpp"
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/all_errors.hpp>
+#include <crisp/atomic_file.hpp>
+
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/stage/files_written.hpp"
 

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include <crisp/pipeline_file.hpp>
+#include <crisp/runner.hpp>
+
 #include "pipeline/files/sha256.hpp"
-#include "pipeline/stage/pipeline_file.hpp"
-#include "pipeline/stage/runner.hpp"
 
 namespace crisp {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/stage/context.hpp"
+#include <crisp/context.hpp>
 
 namespace crisp {
 

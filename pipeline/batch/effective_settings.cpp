@@ -5,7 +5,8 @@
 
 #include <system_error>
 
-#include "pipeline/data/all_errors.hpp"
+#include <crisp/all_errors.hpp>
+
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/sha256.hpp"
 #include "pipeline/stage/reference.hpp"

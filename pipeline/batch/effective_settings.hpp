@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/stage/pipeline_file.hpp"
+#include <crisp/pipeline_file.hpp>
 
 namespace crisp {
 

@@ -7,8 +7,9 @@
 #include <cerrno>
 #include <cstring>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/batch/output_name.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/files/list_files.hpp"
 #include "pipeline/files/sha256.hpp"
 

@@ -5,8 +5,9 @@
 #include <system_error>
 #include <vector>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/calibration_file.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/files/findings_file.hpp"
 #include "pipeline/files/renamed_names.hpp"
 #include "pipeline/stage/files_written.hpp"

@@ -8,11 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/batch/job_results.hpp"
 #include "pipeline/batch/launcher.hpp"
 #include "pipeline/batch/manifest.hpp"
 #include "pipeline/batch/run_batch.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 

@@ -4,9 +4,10 @@
 #include <fstream>
 #include <string>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/batch/manifest.hpp"
 #include "pipeline/batch/manifest_line.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 

@@ -14,9 +14,10 @@
 #include <csignal>
 #include <cstring>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/batch/job_message.hpp"
 #include "pipeline/batch/job_table.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -15,10 +15,11 @@
 #include <fstream>
 #include <system_error>
 
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/batch/manifest_line.hpp"
 #include "pipeline/batch/output_name.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/json_text.hpp"
 
 namespace crisp {

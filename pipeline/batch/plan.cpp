@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

@@ -9,9 +9,10 @@
 #include <set>
 #include <system_error>
 
+#include <crisp/all_errors.hpp>
+
 #include "pipeline/batch/glob.hpp"
 #include "pipeline/batch/output_name.hpp"
-#include "pipeline/data/all_errors.hpp"
 #include "pipeline/files/list_files.hpp"
 
 namespace crisp {

@@ -3,9 +3,10 @@
 #include <limits>
 #include <unordered_map>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/batch/ledger.hpp"
 #include "pipeline/batch/table.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/files/folder_lock.hpp"
 
 namespace crisp {

@@ -7,8 +7,9 @@
 #include <map>
 #include <utility>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/batch/job_verdict.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

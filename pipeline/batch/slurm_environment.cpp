@@ -7,7 +7,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/data/calibration.hpp"
-
 #include <algorithm>
+
+#include <crisp/calibration.hpp>
 
 namespace crisp {
 

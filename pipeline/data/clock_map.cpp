@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/data/clock_map.hpp"
-
 #include <algorithm>
 #include <iterator>
+
+#include <crisp/clock_map.hpp>
 
 #include "pipeline/data/internal_error.hpp"
 

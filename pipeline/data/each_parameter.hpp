@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pipeline/data/calibration.hpp"
+#include <crisp/calibration.hpp>
 
 namespace crisp {
 

@@ -4,17 +4,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "pipeline/data/scan.hpp"
+#include <crisp/scan.hpp>
 
 namespace crisp {
-
-/// Which echoes of a beam are used, where a laser sends several.
-enum class EchoChoice : std::uint8_t {
-  first,      ///< the first that came back
-  last,       ///< the last that came back
-  strongest,  ///< the one of the largest remission; without remissions the first
-  all         ///< each as a beam of the same instant
-};
 
 /// Counts of a choice of echoes.
 struct EchoCounts {

@@ -4,10 +4,9 @@
 #include <span>
 #include <vector>
 
-namespace crisp {
+#include <crisp/plate_trajectory.hpp>
 
-/// [s] To either side of a moment. A plate has mass: its rate changes smoothly.
-inline constexpr double kEncoderSmoothing = 0.2;
+namespace crisp {
 
 /// Estimates a plate's angle between the steps of its encoder. A whole count is up to half a step from the
 /// angle, and all beams between two readings share that error: 0.2 mrad at 16384 counts a turn, 10 mm at 50
@@ -23,7 +22,7 @@ inline constexpr double kEncoderSmoothing = 0.2;
 /// @param times       [s] n, ascending
 /// @param angles      [rad] n readings, multiples of the step
 /// @param step        [rad] of the encoder
-/// @param half_width  [s] 0: the readings as they are
+/// @param half_width  [s] usually kEncoderSmoothing; 0: the readings as they are
 /// @return            [rad] n
 std::vector<double> between_steps(std::span<const double> times, std::span<const double> angles, double step,
                                   double half_width);

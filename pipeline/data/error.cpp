@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/data/error.hpp"
-
 #include <fmt/format.h>
+
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

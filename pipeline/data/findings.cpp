@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/data/findings.hpp"
-
 #include <cmath>
+
+#include <crisp/findings.hpp>
 
 #include "pipeline/statistics/multiple_testing.hpp"
 

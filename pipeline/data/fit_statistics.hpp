@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
 
 namespace crisp {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/data/measurements.hpp"
+#include <crisp/measurements.hpp>
 
 #include "pipeline/data/internal_error.hpp"
 

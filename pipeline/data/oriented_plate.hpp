@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/data/rig.hpp"
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/rig.hpp>
 
 namespace crisp {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/data/plate_trajectory.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +6,8 @@
 #include <functional>
 #include <numeric>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/plate_trajectory.hpp>
 
 namespace crisp {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pipeline/data/plate_trajectory.hpp"
+#include <crisp/plate_trajectory.hpp>
 
 namespace crisp {
 

@@ -4,7 +4,7 @@
 #include <exception>
 #include <optional>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/data/rig.hpp"
-
 #include <numbers>
+
+#include <crisp/rig.hpp>
 
 #include "pipeline/data/degree.hpp"
 

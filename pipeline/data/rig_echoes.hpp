@@ -4,8 +4,9 @@
 #include <memory>
 #include <utility>
 
+#include <crisp/rig.hpp>
+
 #include "pipeline/data/echoes.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp {
 

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/data/internal_error.hpp"
 #include "pipeline/estimate/encoder_error_blocks.hpp"
 #include "pipeline/estimate/placed_beams.hpp"

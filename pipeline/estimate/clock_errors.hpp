@@ -4,9 +4,10 @@
 #include <map>
 #include <string>
 
-#include "pipeline/data/clock_map.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/data/rig.hpp"
+#include <crisp/clock_map.hpp>
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/rig.hpp>
+
 #include "pipeline/estimate/outcome.hpp"
 
 namespace crisp {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/calibration.hpp"
+#include <crisp/calibration.hpp>
 
 namespace crisp {
 

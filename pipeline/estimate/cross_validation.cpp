@@ -6,7 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/estimate/displacement.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 

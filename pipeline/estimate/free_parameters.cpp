@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/estimate/requested_terms.hpp"
 
 namespace crisp {

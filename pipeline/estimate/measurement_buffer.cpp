@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 

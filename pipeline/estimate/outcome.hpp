@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/rig.hpp"
-#include "pipeline/model/sensor_model.hpp"
+#include <crisp/rig.hpp>
+#include <crisp/sensor_model.hpp>
 
 namespace crisp {
 

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/quality/blocks.hpp"
 

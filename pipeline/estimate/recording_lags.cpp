@@ -6,7 +6,8 @@
 #include <limits>
 #include <optional>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/base_parameters.hpp"
 

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pipeline/data/measurements.hpp"
+#include <crisp/measurements.hpp>
+
 #include "pipeline/quality/surfels.hpp"
 
 namespace crisp {

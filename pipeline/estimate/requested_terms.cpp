@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/model/catalogue.hpp"
+#include <crisp/effect_catalogue.hpp>
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

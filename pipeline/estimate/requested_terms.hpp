@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/model/sensor_model.hpp"
+#include <crisp/sensor_model.hpp>
 
 namespace crisp {
 

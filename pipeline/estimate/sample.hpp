@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "pipeline/model/sensor_model.hpp"
+#include <crisp/sensor_model.hpp>
 
 namespace crisp {
 

@@ -5,7 +5,8 @@
 
 #include <vector>
 
-#include "pipeline/data/measurements.hpp"
+#include <crisp/measurements.hpp>
+
 #include "pipeline/quality/surfel_equations.hpp"
 
 namespace crisp {

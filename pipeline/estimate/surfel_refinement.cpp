@@ -10,8 +10,9 @@
 #include <numbers>
 #include <optional>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/data/each_parameter.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/data/shown_unit.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/identifiability.hpp"

@@ -6,7 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/estimate/base_parameters.hpp"
 #include "pipeline/estimate/incidence.hpp"
 #include "pipeline/estimate/relative_noise.hpp"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/files/atomic_file.hpp"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,8 +7,11 @@
 #include <cstring>
 #include <system_error>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/files/process_identity.hpp"
+#include "pipeline/files/signal_cleanup.hpp"
 
 namespace crisp {
 namespace {
@@ -77,7 +78,7 @@ AtomicFile::AtomicFile(fs::path file) : file_(std::move(file)) {
   make_folder_of(file_);
   refuse_no_file(file_);
   stream_.reset(create_aside(file_, aside_));
-  at_signal_.emplace(aside_.string());
+  at_signal_ = std::make_unique<SignalCleanup>(aside_.string());
 }
 
 AtomicFile::~AtomicFile() {

@@ -13,8 +13,7 @@
 #include <cstring>
 #include <utility>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/data/interrupted.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

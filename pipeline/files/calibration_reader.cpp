@@ -3,8 +3,9 @@
 
 #include <cmath>
 
-#include "pipeline/files/calibration_file.hpp"
+#include "pipeline/files/calibration_yaml.hpp"
 #include "pipeline/files/file_kind.hpp"
+#include "pipeline/files/renamed_names.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
 namespace crisp {

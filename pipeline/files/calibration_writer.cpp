@@ -5,9 +5,10 @@
 #include <cmath>
 #include <set>
 
+#include <crisp/atomic_file.hpp>
+#include <crisp/calibration_file.hpp>
+
 #include "pipeline/data/internal_error.hpp"
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/files/calibration_file.hpp"
 
 namespace crisp {
 namespace {

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "pipeline/data/rig.hpp"
+#include <crisp/rig.hpp>
+
 #include "pipeline/files/yaml_map.hpp"
 
 namespace crisp {

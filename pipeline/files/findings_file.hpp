@@ -4,7 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
+
 #include "pipeline/files/renamed_names.hpp"
 #include "pipeline/files/yaml.hpp"
 

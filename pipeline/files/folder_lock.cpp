@@ -10,7 +10,8 @@
 #include <system_error>
 #include <vector>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/files/lock_file.hpp"
 
 namespace crisp {

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <system_error>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 

@@ -13,8 +13,9 @@
 #include <iterator>
 #include <system_error>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/utc_now.hpp"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/files/rig_file.hpp"
-
 #include <arpa/inet.h>
 #include <fmt/format.h>
 
@@ -10,8 +8,11 @@
 #include <cstdint>
 #include <numbers>
 
+#include <crisp/rig_file.hpp>
+
 #include "pipeline/files/encoder_line.hpp"
 #include "pipeline/files/file_kind.hpp"
+#include "pipeline/files/rig_yaml.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
 namespace crisp {

@@ -14,7 +14,8 @@
 #include <set>
 #include <sstream>
 
-#include "pipeline/data/interrupted.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/files/byte_stream.hpp"
 #include "pipeline/files/control_characters.hpp"
 

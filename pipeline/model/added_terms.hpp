@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/model/sensor_model.hpp"
+#include <crisp/sensor_model.hpp>
 
 namespace crisp {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/model/catalogue.hpp"
-
 #include <algorithm>
+
+#include <crisp/effect_catalogue.hpp>
 
 #include "pipeline/model/terms/families.hpp"
 

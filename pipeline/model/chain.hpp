@@ -5,8 +5,9 @@
 #include <optional>
 #include <span>
 
+#include <crisp/sensor_model.hpp>
+
 #include "pipeline/model/laser_pose.hpp"
-#include "pipeline/model/sensor_model.hpp"
 
 namespace crisp {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "pipeline/model/beam.hpp"
+#include <crisp/beam.hpp>
 
 namespace crisp {
 

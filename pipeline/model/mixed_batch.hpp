@@ -5,8 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
+#include <crisp/measurements.hpp>
+#include <crisp/plate_trajectory.hpp>
+
 #include "pipeline/model/base_kinematics.hpp"
 
 namespace crisp {

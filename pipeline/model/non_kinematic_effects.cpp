@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/model/catalogue.hpp"
+#include <crisp/effect_catalogue.hpp>
 
 namespace crisp {
 namespace {

@@ -3,8 +3,9 @@
 // differentiation.
 #include <algorithm>
 
+#include <crisp/sensor_model.hpp>
+
 #include "pipeline/model/mixed_batch.hpp"
-#include "pipeline/model/sensor_model.hpp"
 #include "pipeline/model/traced_runs.hpp"
 
 namespace crisp {
@@ -118,7 +119,7 @@ Placed SensorModel::place(const Measurements& beams, const PlateTrajectory& plat
   };
   if (std::ranges::all_of(fixed_->chains, &LaserChain::bare)) {
     room_for(beams.size());
-    return place_bare(beams, plate, fixed_->chains, bare_, slots, derivatives);
+    return place_bare(beams, plate, fixed_->chains, *bare_, slots, derivatives);
   }
   Placed result = place(beams, plate);
   room_for(result.index.size());

@@ -2,10 +2,11 @@
 // How measurements go through their lasers' chains: equation (2) alone by vectors, every other chain in
 // blocks.
 #include <cmath>
+#include <limits>
 
-#include "pipeline/model/mirror_angle_cache.hpp"
+#include <crisp/sensor_model.hpp>
+
 #include "pipeline/model/mixed_batch.hpp"
-#include "pipeline/model/sensor_model.hpp"
 #include "pipeline/model/traced_runs.hpp"
 
 namespace crisp {
@@ -38,7 +39,7 @@ class Gathering {
 
   /// Places a run of one laser that starts at `begin` by equation (2) alone. Returns the end of the run.
   std::size_t add_bare(const Measurements& beams, std::size_t begin, const simd::BareLaser& laser,
-                       const PlateTrajectory& plate, KnownMirrors& known) {
+                       const PlateTrajectory& plate, MirrorAngleCache& known) {
     const std::size_t end = run_end(beams, begin, kCapacity - size_);
     const auto mirrors = known.of(beams.laser[begin], beams.beam[end - 1] + std::size_t{1});
     for (std::size_t i = begin; i < end;) {
@@ -99,14 +100,25 @@ std::size_t bare_end(const std::vector<LaserChain>& chains, const Measurements& 
 
 }  // namespace
 
+simd::MirrorTable MirrorAngleCache::of(std::size_t laser, std::size_t beams) {
+  if (tables_.size() <= laser) tables_.resize(laser + 1);
+  Table& own = tables_[laser];
+  if (own.angle.size() < beams) {
+    own.angle.resize(beams, std::numeric_limits<float>::quiet_NaN());  // equal to no angle
+    own.sine.resize(beams);
+    own.cosine.resize(beams);
+  }
+  return {own.angle.data(), own.sine.data(), own.cosine.data(), own.angle.size()};
+}
+
 void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
                         const TakePlaced& take) const {
-  KnownMirrors known;
+  MirrorAngleCache known;
   place(beams, plate, take, known);
 }
 
 void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate, const TakePlaced& take,
-                        KnownMirrors& known) const {
+                        MirrorAngleCache& known) const {
   check_epochs(beams, plate);
   std::vector<std::vector<double>> parameters(fixed_->chains.size());
   for (std::size_t k = 0; k < fixed_->chains.size(); ++k) {
@@ -114,7 +126,7 @@ void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
   }
   Tracer<double> tracer(beams, plate);
   Gathering points(take);
-  MixedBeams mixed(bare_, plate);
+  MixedBeams mixed(*bare_, plate);
   for (std::size_t i = 0; i < beams.size();) {
     const LaserChain& chain = chain_of(fixed_->chains, beams, i);
     const std::size_t laser = beams.laser[i];
@@ -122,7 +134,7 @@ void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
       std::size_t end = run_end(beams, i, MixedBeams::kCapacity);
       if (are_dense(beams, i, end, plate)) {
         points.add(mixed);
-        i = points.add_bare(beams, i, bare_[laser], plate, known);
+        i = points.add_bare(beams, i, (*bare_)[laser], plate, known);
         continue;
       }
       // Where a run is shorter than a vector, those after it mostly are, too.

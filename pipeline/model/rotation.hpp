@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "pipeline/model/beam.hpp"
+#include <crisp/beam.hpp>
 
 namespace crisp {
 

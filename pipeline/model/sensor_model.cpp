@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/model/sensor_model.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/sensor_model.hpp>
+
 #include "pipeline/data/internal_error.hpp"
 #include "pipeline/model/term_faults.hpp"
 #include "pipeline/model/traced_runs.hpp"
@@ -93,7 +93,7 @@ SensorModel::SensorModel(Calibration calibration, const TermRegistry& terms)
   for_each_parameter(fixed_->calibration,
                      [&](const Parameter& parameter) { values.push_back(parameter.value); });
   values_ = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-  bare_ = bare_lasers(fixed_->chains, values_);
+  bare_ = std::make_shared<const std::vector<simd::BareLaser>>(bare_lasers(fixed_->chains, values_));
 }
 
 std::size_t SensorModel::index(const std::string& name) const {
@@ -107,7 +107,7 @@ void SensorModel::set_values(const Eigen::VectorXd& values) {
     throw internal_error(
         fmt::format("the sensor model has {} parameters and got {} values", values_.size(), values.size()));
   values_ = values;
-  bare_ = bare_lasers(fixed_->chains, values_);
+  bare_ = std::make_shared<const std::vector<simd::BareLaser>>(bare_lasers(fixed_->chains, values_));
 }
 
 Calibration SensorModel::calibration() const {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/model/term.hpp"
-
 #include <algorithm>
 #include <set>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/term.hpp>
+
 #include "pipeline/data/names.hpp"
 #include "pipeline/files/nearest.hpp"
 

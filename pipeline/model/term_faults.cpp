@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/model/term.hpp"
+#include <crisp/calibration.hpp>
+#include <crisp/term.hpp>
 
 namespace crisp {
 

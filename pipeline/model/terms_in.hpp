@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/model/term.hpp"
+#include <crisp/calibration.hpp>
+#include <crisp/term.hpp>
 
 namespace crisp {
 

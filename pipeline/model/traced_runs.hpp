@@ -9,11 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/sensor_model.hpp>
+
 #include "pipeline/data/internal_error.hpp"
 #include "pipeline/model/base_kinematics.hpp"
 #include "pipeline/model/chain.hpp"
-#include "pipeline/model/sensor_model.hpp"
 
 namespace crisp {
 

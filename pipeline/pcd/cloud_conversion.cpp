@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/pcd/cloud_conversion.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +6,8 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+
+#include <crisp/cloud_conversion.hpp>
 
 namespace crisp {
 namespace {

@@ -7,10 +7,11 @@
 #include <fstream>
 #include <optional>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
+#include <crisp/measurement_tables.hpp>
+
 #include "pipeline/files/list_files.hpp"
-#include "pipeline/pcd/measurement_tables.hpp"
 
 namespace crisp {
 namespace {

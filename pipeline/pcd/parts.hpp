@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/pcd/pcd_table.hpp"
+#include <crisp/pcd_table.hpp>
 
 namespace crisp {
 

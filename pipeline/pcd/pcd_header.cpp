@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/pcd/pcd_header.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,7 +11,9 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/pcd_header.hpp>
+
 #include "pipeline/files/control_characters.hpp"
 
 namespace crisp {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "pipeline/pcd/pcd_table.hpp"
+#include <crisp/pcd_table.hpp>
 
 namespace crisp {
 

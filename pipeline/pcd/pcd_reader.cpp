@@ -11,11 +11,12 @@
 #include <system_error>
 #include <utility>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/pcd_table.hpp>
+
 #include "pipeline/files/control_characters.hpp"
 #include "pipeline/files/yaml.hpp"
 #include "pipeline/pcd/pcd_number.hpp"
-#include "pipeline/pcd/pcd_table.hpp"
 
 namespace crisp {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/pcd/pcd_table.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/pcd_table.hpp>
+
 #include "pipeline/data/internal_error.hpp"
 #include "pipeline/files/sha256.hpp"
 #include "pipeline/pcd/pcd_number.hpp"

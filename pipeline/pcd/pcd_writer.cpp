@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <limits>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/pcd_table.hpp>
+
 #include "pipeline/pcd/lzf.hpp"
 #include "pipeline/pcd/pcd_number.hpp"
-#include "pipeline/pcd/pcd_table.hpp"
 
 namespace crisp {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/plot/write_plot.hpp"
 
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
 
 namespace crisp {
 

@@ -4,8 +4,9 @@
 #include <filesystem>
 #include <vector>
 
+#include <crisp/context.hpp>
+
 #include "pipeline/plot/plot.hpp"
-#include "pipeline/stage/context.hpp"
 
 namespace crisp {
 

@@ -12,15 +12,16 @@
 #include <thread>
 #include <vector>
 
-#include "pipeline/app/builtin.hpp"
+#include <crisp/builtin.hpp>
+#include <crisp/calibration_file.hpp>
+#include <crisp/rqe.hpp>
+
 #include "pipeline/app/installed_pipelines.hpp"
 #include "pipeline/app/recorded_run.hpp"
-#include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/findings_file.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/python/interruptible.hpp"
 #include "pipeline/python/to_python.hpp"
-#include "pipeline/quality/rqe.hpp"
 
 namespace crisp {
 namespace {

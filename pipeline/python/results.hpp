@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/data/findings.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/stage/pipeline.hpp"
+#include <crisp/calibration.hpp>
+#include <crisp/cloud.hpp>
+#include <crisp/findings.hpp>
+#include <crisp/measurements.hpp>
+#include <crisp/pipeline.hpp>
 
 namespace crisp {
 

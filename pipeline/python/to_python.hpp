@@ -5,7 +5,8 @@
 
 #include <string>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/python/results.hpp"
 
 namespace crisp {

@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "pipeline/quality/points.hpp"
+#include <crisp/points.hpp>
 
 namespace crisp {
 

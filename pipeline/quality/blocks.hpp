@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pipeline/data/interrupted.hpp"
+#include <crisp/error.hpp>
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/searches.hpp"
 #include "pipeline/quality/spatial_order.hpp"
 #include "pipeline/quality/sum_on_lattice.hpp"

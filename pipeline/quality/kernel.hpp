@@ -3,21 +3,11 @@
 
 #include <span>
 
+#include <crisp/neighbour_search.hpp>
+
 #include "pipeline/quality/spatial_order.hpp"
 
 namespace crisp {
-
-/// The kernel between two points of a cloud whose points are Gaussians of width σ each: the isotropic normal
-/// density of variance 2σ² in three dimensions, lowered by its value at the cut-off radius and 0 beyond.
-struct TruncatedGaussian {
-  TruncatedGaussian(double width, double cutoff);  ///< @throws Error unless 1e-6 ≤ σ ≤ 1e6 m, 1 ≤ cutoff ≤ 12
-
-  double sigma = 0;     ///< [m]
-  double radius = 0;    ///< [m] R
-  double exponent = 0;  ///< [1/m²] 1/(4σ²): G(d) = peak · exp(−exponent · d²)
-  double peak = 0;      ///< [1/m³] G(0)
-  double floor = 0;     ///< G(R) / G(0)
-};
 
 /// Bound of the truncated part of Σᵢ Σⱼ wᵢ wⱼ G(xᵢ − xⱼ) / G(0), the sum over all pairs.
 ///

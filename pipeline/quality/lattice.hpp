@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/quality/points.hpp"
+#include <crisp/points.hpp>
 
 namespace crisp {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pipeline/quality/points.hpp"
+#include <crisp/points.hpp>
 
 namespace crisp {
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/quality/measure.hpp"
-
 #include <utility>
 
-#include "pipeline/quality/rqe.hpp"
+#include <crisp/measure.hpp>
+#include <crisp/rqe.hpp>
 
 namespace crisp {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/quality/rqe.hpp"
-
 #include <cmath>
 #include <utility>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/rqe.hpp>
+
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/searches.hpp"

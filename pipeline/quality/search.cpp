@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/quality/search.hpp"
-
 #include <array>
 #include <cmath>
 
+#include <crisp/neighbour_search.hpp>
+
 #include "pipeline/quality/blocks.hpp"
+#include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/searches.hpp"
 
 namespace crisp {

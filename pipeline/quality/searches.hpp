@@ -3,7 +3,8 @@
 
 #include <optional>
 
-#include "pipeline/quality/search.hpp"
+#include <crisp/neighbour_search.hpp>
+
 #include "pipeline/quality/tiles.hpp"
 
 namespace crisp {

@@ -9,7 +9,8 @@
 #include <span>
 #include <utility>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 

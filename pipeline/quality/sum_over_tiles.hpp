@@ -3,9 +3,10 @@
 
 #include <span>
 
-#include "pipeline/quality/gaussian_sums.hpp"
+#include <crisp/neighbour_search.hpp>
+#include <crisp/points.hpp>
+
 #include "pipeline/quality/kernel.hpp"
-#include "pipeline/quality/points.hpp"
 #include "pipeline/quality/tiles.hpp"
 
 namespace crisp {

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_patches.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/stage/pipeline.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
+#include <crisp/pipeline.hpp>
 
 namespace crisp {
 

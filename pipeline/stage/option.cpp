@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/option.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <crisp/option.hpp>
 
 #include "pipeline/files/list_files.hpp"
 #include "pipeline/files/quantity.hpp"

@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <crisp/option.hpp>
+
 #include "pipeline/files/yaml.hpp"
-#include "pipeline/stage/option.hpp"
 
 namespace crisp {
 

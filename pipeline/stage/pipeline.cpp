@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/pipeline.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "pipeline/data/all_errors.hpp"
+#include <crisp/all_errors.hpp>
+#include <crisp/pipeline.hpp>
+
 #include "pipeline/stage/unknown_names.hpp"
 #include "pipeline/stage/wiring.hpp"
 

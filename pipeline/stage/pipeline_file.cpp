@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/pipeline_file.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <tuple>
 
-#include "pipeline/data/all_errors.hpp"
+#include <crisp/all_errors.hpp>
+#include <crisp/pipeline_file.hpp>
+#include <crisp/rig_file.hpp>
+
 #include "pipeline/files/file_kind.hpp"
 #include "pipeline/files/nearest.hpp"
-#include "pipeline/files/rig_file.hpp"
+#include "pipeline/files/rig_yaml.hpp"
 #include "pipeline/files/yaml_map.hpp"
 #include "pipeline/stage/files_written.hpp"
 #include "pipeline/stage/option_yaml.hpp"
+#include "pipeline/stage/pipeline_plan.hpp"
 #include "pipeline/stage/settings.hpp"
 #include "pipeline/stage/unknown_names.hpp"
 #include "pipeline/stage/variables.hpp"

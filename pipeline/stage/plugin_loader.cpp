@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/plugin_loader.hpp"
-
 #include <dlfcn.h>
 #include <fmt/format.h>
 
@@ -9,7 +7,9 @@
 #include <iterator>
 #include <system_error>
 
-#include "pipeline/stage/plugin.hpp"
+#include <crisp/plugin.hpp>
+#include <crisp/plugin_loader.hpp>
+
 #include "pipeline/stage/shared_object.hpp"
 
 namespace crisp {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "pipeline/stage/pipeline.hpp"
-#include "pipeline/stage/registry.hpp"
+#include <crisp/pipeline.hpp>
+#include <crisp/registrar.hpp>
 
 namespace crisp {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/registry.hpp"
-
 #include <cxxabi.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <set>
+
+#include <crisp/registrar.hpp>
 
 #include "pipeline/data/names.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/runner.hpp"
-
 #include <algorithm>
 #include <deque>
 #include <iterator>
 #include <mutex>
 #include <thread>
 #include <utility>
+
+#include <crisp/runner.hpp>
 
 #include "pipeline/data/resource_exhaustion.hpp"
 #include "pipeline/stage/stopwatch.hpp"

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
+#include <crisp/pipeline.hpp>
+
 #include "pipeline/files/yaml.hpp"
-#include "pipeline/stage/pipeline.hpp"
 
 namespace crisp {
 

@@ -5,9 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include <crisp/pipeline.hpp>
+#include <crisp/registrar.hpp>
+
 #include "pipeline/files/renamed_names.hpp"
-#include "pipeline/stage/pipeline.hpp"
-#include "pipeline/stage/registry.hpp"
 
 namespace crisp {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pipeline/stage/pipeline.hpp"
+#include <crisp/pipeline.hpp>
 
 namespace crisp {
 

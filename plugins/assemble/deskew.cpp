@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/assemble/deskew.hpp"
+#include <crisp/deskew.hpp>
 
 #include "plugins/assemble/pack_points.hpp"
 
 namespace crisp {
 
 Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model,
-                KnownMirrors& known, std::shared_ptr<Cloud> into) {
+                MirrorAngleCache& known, std::shared_ptr<Cloud> into) {
   const auto cloud = std::move(into);
   cloud->header.frame_id = "base";
   cloud->header.stamp = static_cast<std::uint64_t>(beams.epoch_ns / 1000);  // PCL's stamps are microseconds

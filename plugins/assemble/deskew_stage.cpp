@@ -6,10 +6,11 @@
 
 #include <algorithm>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/deskew.hpp>
+#include <crisp/error.hpp>
+#include <crisp/registrar.hpp>
+
 #include "pipeline/model/terms_in.hpp"
-#include "pipeline/stage/registry.hpp"
-#include "plugins/assemble/deskew.hpp"
 
 namespace crisp {
 namespace {

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/data/cloud.hpp"
+#include <crisp/calibration.hpp>
+#include <crisp/cloud.hpp>
+#include <crisp/context.hpp>
+#include <crisp/sensor_model.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/data/pool.hpp"
-#include "pipeline/model/mirror_angle_cache.hpp"
-#include "pipeline/model/sensor_model.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 
 namespace crisp {
 
@@ -34,7 +34,7 @@ class DeskewStage final : public Stage {
   std::vector<std::string> with_incidence_;  ///< terms of it that depend on the beams' incidence
   std::vector<std::string> blind_;           ///< those whose beams have no known incidence
   OrientedPlate oriented_;
-  KnownMirrors mirrors_;
+  MirrorAngleCache mirrors_;
   Pool<Cloud> clouds_;
   std::uint64_t beams_ = 0;
   std::uint64_t outside_ = 0;

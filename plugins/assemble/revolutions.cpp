@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/assemble/revolutions.hpp"
-
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include <crisp/revolutions.hpp>
 
 namespace crisp {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
-#include "plugins/assemble/revolutions.hpp"
+#include <crisp/context.hpp>
+#include <crisp/revolutions.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp {
 

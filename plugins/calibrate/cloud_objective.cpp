@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/cloud_objective.hpp"
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/estimate/placed_beams.hpp"
 
 namespace crisp {

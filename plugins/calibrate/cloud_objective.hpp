@@ -4,9 +4,10 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include <crisp/measure.hpp>
+#include <crisp/sensor_model.hpp>
+
 #include "pipeline/estimate/sample.hpp"
-#include "pipeline/model/sensor_model.hpp"
-#include "pipeline/quality/measure.hpp"
 
 namespace crisp {
 

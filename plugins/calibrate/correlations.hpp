@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/calibration.hpp"
+#include <crisp/calibration.hpp>
 
 namespace crisp {
 

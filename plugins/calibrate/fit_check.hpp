@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/rig.hpp"
+#include <crisp/calibration.hpp>
+#include <crisp/measurements.hpp>
+#include <crisp/rig.hpp>
+
 #include "pipeline/estimate/surfel_refinement.hpp"
 
 namespace crisp {

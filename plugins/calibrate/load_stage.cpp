@@ -6,10 +6,11 @@
 
 #include <algorithm>
 
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/calibration_file.hpp>
+#include <crisp/registrar.hpp>
+
 #include "pipeline/model/term_faults.hpp"
 #include "pipeline/model/terms_in.hpp"
-#include "pipeline/stage/registry.hpp"
 
 namespace crisp {
 

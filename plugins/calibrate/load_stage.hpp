@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/data/rig.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/calibration.hpp>
+#include <crisp/context.hpp>
+#include <crisp/rig.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp {
 

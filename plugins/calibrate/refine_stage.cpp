@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/data/all_errors.hpp"
+#include <crisp/all_errors.hpp>
+#include <crisp/registrar.hpp>
+
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/clock_errors.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
-#include "pipeline/stage/option_check.hpp"
-#include "pipeline/stage/registry.hpp"
 #include "plugins/calibrate/fit_check.hpp"
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"

@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/clock_map.hpp"
+#include <crisp/clock_map.hpp>
+#include <crisp/context.hpp>
+#include <crisp/measure.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/measurement_buffer.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
-#include "pipeline/quality/measure.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 
 namespace crisp {
 

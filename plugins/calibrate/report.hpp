@@ -4,13 +4,14 @@
 #include <optional>
 #include <vector>
 
+#include <crisp/context.hpp>
+#include <crisp/measure.hpp>
+
 #include "pipeline/estimate/cross_validation.hpp"
 #include "pipeline/estimate/outcome.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/estimate/view_consistency.hpp"
-#include "pipeline/quality/measure.hpp"
-#include "pipeline/stage/context.hpp"
 
 namespace crisp {
 

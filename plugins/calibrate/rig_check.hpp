@@ -6,7 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/data/rig.hpp"
+#include <crisp/rig.hpp>
+
 #include "pipeline/estimate/parameter_prior.hpp"
 
 namespace crisp {

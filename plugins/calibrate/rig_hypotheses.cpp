@@ -10,8 +10,9 @@
 #include <numbers>
 #include <utility>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/data/mirror_angle.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
 #include "pipeline/estimate/turn_period.hpp"

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/rig.hpp"
+#include <crisp/measure.hpp>
+#include <crisp/rig.hpp>
+
 #include "pipeline/estimate/surfel_refinement.hpp"
-#include "pipeline/quality/measure.hpp"
 #include "plugins/calibrate/rqe_calibration.hpp"
 
 namespace crisp {

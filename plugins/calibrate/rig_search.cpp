@@ -5,8 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/estimate/base_parameters.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pipeline/data/rig.hpp"
+#include <crisp/rig.hpp>
+
 #include "plugins/calibrate/rqe_calibration.hpp"
 
 namespace crisp {

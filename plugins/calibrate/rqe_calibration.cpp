@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <map>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/data/shown_unit.hpp"
 #include "pipeline/estimate/base_parameters.hpp"
 #include "pipeline/estimate/identifiability.hpp"

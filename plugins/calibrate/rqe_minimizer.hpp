@@ -4,10 +4,11 @@
 #include <functional>
 #include <vector>
 
+#include <crisp/measure.hpp>
+#include <crisp/sensor_model.hpp>
+
 #include "pipeline/estimate/parameter_prior.hpp"
 #include "pipeline/estimate/sample.hpp"
-#include "pipeline/model/sensor_model.hpp"
-#include "pipeline/quality/measure.hpp"
 #include "plugins/calibrate/ipopt_minimizer.hpp"
 
 namespace crisp {

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "pipeline/data/all_errors.hpp"
-#include "pipeline/stage/option_check.hpp"
-#include "pipeline/stage/registry.hpp"
+#include <crisp/all_errors.hpp>
+#include <crisp/registrar.hpp>
+
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"

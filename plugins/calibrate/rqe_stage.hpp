@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/measurement_buffer.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 #include "plugins/calibrate/rqe_calibration.hpp"
 
 namespace crisp {

@@ -8,8 +8,9 @@
 #include <cstdint>
 #include <limits>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

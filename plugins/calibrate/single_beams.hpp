@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/data/measurements.hpp"
+#include <crisp/calibration.hpp>
+#include <crisp/measurements.hpp>
 
 namespace crisp {
 

@@ -5,8 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include <crisp/sensor_model.hpp>
+
 #include "pipeline/estimate/sample.hpp"
-#include "pipeline/model/sensor_model.hpp"
 #include "plugins/calibrate/multistart_search.hpp"
 
 namespace crisp {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plugins/clock/aligner.hpp"
+#include "plugins/clock/hub_timings.hpp"
 
 namespace crisp {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/clock/clock_aligner.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include <crisp/clock_aligner.hpp>
+
+#include "pipeline/clocks/forward_step.hpp"
 #include "pipeline/data/recordings.hpp"
+#include "plugins/clock/hub_timings.hpp"
+#include "plugins/clock/received.hpp"
 
 namespace crisp {
 namespace {
@@ -49,19 +52,52 @@ void warn_of_hub_clock(AlignmentReport& report) {
 
 }  // namespace
 
-ClockAligner::ClockAligner(const Rig& rig, const AlignmentSettings& settings, AlignmentSink sink)
+class ClockAligner::Windows {
+ public:
+  Windows(const Rig& rig, const AlignmentSettings& settings, AlignmentSink sink);
+
+  void add(std::shared_ptr<const Scan> scan);
+  void add(const PlateReading& reading);
+  AlignmentReport finish();
+
+ private:
+  void receive(Received item);
+  void judge_gap();
+  void pass(const Received& item);
+  double arrive(std::int64_t receipt_ns);
+  void end_recording();
+  void advance_windows();
+  void take_out_hub_deviation();
+  void take_out_steps();
+  bool is_too_short() const;
+  void settle(double begin, double end);
+  void hand_out(double limit);
+  bool idle() const;
+
+  AlignmentSettings settings_;
+  AlignmentSink sink_;
+  HubTimings tracks_;
+  AlignmentReport report_;  ///< of recordings that have ended, and the hub's clock
+  ForwardStep forward_step_;
+  std::int64_t stepped_ns_ = 0;  ///< by how much the hub's clock was set forward, in all
+  std::vector<Received> held_;   ///< after a gap in the receipts, until its cause is known
+  double begin_ = 0;             ///< [s since the epoch] of the window that is being filled
+  double length_;                ///< [s] of it
+};
+
+ClockAligner::Windows::Windows(const Rig& rig, const AlignmentSettings& settings, AlignmentSink sink)
     : settings_(settings),
       sink_(std::move(sink)),
       tracks_(rig, settings),
       length_(settings.window.value_or(kWindow)) {}
 
-void ClockAligner::add(std::shared_ptr<const Scan> scan) {
+void ClockAligner::Windows::add(std::shared_ptr<const Scan> scan) {
   if (tracks_.track_of(*scan) != nullptr) receive(std::move(scan));
 }
 
-void ClockAligner::add(const PlateReading& reading) { receive(reading); }
+void ClockAligner::Windows::add(const PlateReading& reading) { receive(reading); }
 
-void ClockAligner::receive(Received item) {
+void ClockAligner::Windows::receive(Received item) {
   if (stepped_ns_ != 0) set_back(item, stepped_ns_);
   const std::int64_t receipt_ns = receipt_of(item);
   const bool is_gap = settings_.source == TimeSource::clock && tracks_.pause_before(receipt_ns) > kPause;
@@ -73,7 +109,7 @@ void ClockAligner::receive(Received item) {
 }
 
 /// Takes out a step of the hub's clock; without one, what is held begins another recording.
-void ClockAligner::judge_gap() {
+void ClockAligner::Windows::judge_gap() {
   const std::int64_t step_ns = forward_step_.size_ns().value_or(0);
   forward_step_.forget_after();
   if (step_ns > 0) {
@@ -88,7 +124,7 @@ void ClockAligner::judge_gap() {
   }
 }
 
-void ClockAligner::pass(const Received& item) {
+void ClockAligner::Windows::pass(const Received& item) {
   const double hub = arrive(receipt_of(item));
   forward_step_.before(device_of(item), stamp_of(item));
   if (const auto* reading = std::get_if<PlateReading>(&item)) {
@@ -99,14 +135,14 @@ void ClockAligner::pass(const Received& item) {
   }
 }
 
-double ClockAligner::arrive(std::int64_t receipt_ns) {
+double ClockAligner::Windows::arrive(std::int64_t receipt_ns) {
   if (tracks_.pause_before(receipt_ns) > kPause) end_recording();
   const double hub = tracks_.arrive(receipt_ns);
   advance_windows();
   return hub;
 }
 
-void ClockAligner::advance_windows() {
+void ClockAligner::Windows::advance_windows() {
   while (tracks_.now() >= begin_ + 1.5 * length_) {
     if (idle()) {
       begin_ = tracks_.now();
@@ -125,7 +161,7 @@ void ClockAligner::advance_windows() {
 }
 
 /// A deviation common to all devices' clocks is the hub's.
-void ClockAligner::take_out_hub_deviation() {
+void ClockAligner::Windows::take_out_hub_deviation() {
   std::vector<std::vector<ReceivedStamp>> stamps;
   for (const auto& laser : tracks_.lasers()) stamps.push_back(laser.clock().unsettled());
   stamps.push_back(tracks_.plate().clock().unsettled());
@@ -137,13 +173,13 @@ void ClockAligner::take_out_hub_deviation() {
   report_.hub_deviation = std::max(report_.hub_deviation, deviation->largest());
 }
 
-void ClockAligner::take_out_steps() {
+void ClockAligner::Windows::take_out_steps() {
   take_out_hub_deviation();
   for (auto& laser : tracks_.lasers()) laser.clock().take_out_steps();
   tracks_.plate().clock().take_out_steps();
 }
 
-bool ClockAligner::is_too_short() const {
+bool ClockAligner::Windows::is_too_short() const {
   if (settings_.window || length_ >= kLongestWindow) return false;
   const double drift =
       settings_.drift * length_ * length_ / 8;  // of a line through the window from its clock
@@ -153,12 +189,12 @@ bool ClockAligner::is_too_short() const {
   return is_uncertain(tracks_.plate()) || std::ranges::any_of(tracks_.lasers(), is_uncertain);
 }
 
-void ClockAligner::settle(double begin, double end) {
+void ClockAligner::Windows::settle(double begin, double end) {
   for (auto& laser : tracks_.lasers()) laser.clock().settle(begin, end);
   tracks_.plate().clock().settle(begin, end);
 }
 
-void ClockAligner::hand_out(double limit) {
+void ClockAligner::Windows::hand_out(double limit) {
   PlateTiming& plate = tracks_.plate();
   const std::int64_t epoch_ns = tracks_.epoch_ns();
   std::vector<TimedScan> scans;
@@ -181,12 +217,12 @@ void ClockAligner::hand_out(double limit) {
   plate.forget_before(limit - settings_.margin - kLate);
 }
 
-bool ClockAligner::idle() const {
+bool ClockAligner::Windows::idle() const {
   const auto is_idle = [](const auto& track) { return track.clock().idle(); };
   return is_idle(tracks_.plate()) && std::ranges::all_of(tracks_.lasers(), is_idle);
 }
 
-void ClockAligner::end_recording() {
+void ClockAligner::Windows::end_recording() {
   if (tracks_.has_scans() && tracks_.has_readings()) {
     take_out_steps();
     settle(begin_, std::nextafter(tracks_.now(), std::numeric_limits<double>::infinity()));
@@ -207,12 +243,23 @@ void ClockAligner::end_recording() {
   begin_ = tracks_.now();
 }
 
-AlignmentReport ClockAligner::finish() {
+AlignmentReport ClockAligner::Windows::finish() {
   judge_gap();
   if (report_.devices.empty()) tracks_.refuse_if_missing();
   end_recording();
   warn_of_hub_clock(report_);
   return report_;
 }
+
+ClockAligner::ClockAligner(const Rig& rig, const AlignmentSettings& settings, AlignmentSink sink)
+    : windows_(std::make_unique<Windows>(rig, settings, std::move(sink))) {}
+
+ClockAligner::~ClockAligner() = default;
+
+void ClockAligner::add(std::shared_ptr<const Scan> scan) { windows_->add(std::move(scan)); }
+
+void ClockAligner::add(const PlateReading& reading) { windows_->add(reading); }
+
+AlignmentReport ClockAligner::finish() { return windows_->finish(); }
 
 }  // namespace crisp

@@ -4,11 +4,11 @@
 #include <memory>
 #include <optional>
 
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
-#include "plugins/clock/clock_aligner.hpp"
-#include "plugins/clock/online_aligner.hpp"
+#include <crisp/calibration.hpp>
+#include <crisp/clock_aligner.hpp>
+#include <crisp/context.hpp>
+#include <crisp/online_aligner.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp {
 

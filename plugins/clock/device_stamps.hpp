@@ -6,40 +6,14 @@
 #include <string>
 #include <vector>
 
+#include <crisp/alignment.hpp>
+#include <crisp/clock_map.hpp>
+
 #include "pipeline/clocks/counted_time.hpp"
 #include "pipeline/clocks/unwrap.hpp"
-#include "pipeline/data/clock_map.hpp"
 #include "plugins/clock/fitted_clock.hpp"
 
 namespace crisp {
-
-/// A time in which nothing came from a device.
-struct SilentTime {
-  double begin = 0;     ///< [s since the epoch] receipt of the last item before it
-  double duration = 0;  ///< [s]
-};
-
-/// Counts of one device's telegrams or readings.
-struct DeviceReport {
-  std::string device;             ///< the rig's name of it
-  std::optional<ClockMap> clock;  ///< nothing where no stamp was of use
-  std::size_t stamps = 0;         ///< that its clock is fitted to
-  std::uint64_t received = 0;
-  std::uint64_t lost = 0;      ///< by the gaps of its counter; 0 where it has none
-  std::uint64_t repeated = 0;  ///< came twice: left out
-  std::uint64_t late = 0;      ///< came after later ones: left out
-  std::uint64_t standing = 0;  ///< carry the stamp of their predecessor, but another count: left out
-  std::uint64_t damaged = 0;   ///< with times that fit nothing before or after: left out
-  std::uint64_t resets = 0;    ///< of its clock
-  double standstill = 0;       ///< [s] for how long at most its clock stood still
-  bool by_receipt = false;     ///< its clock stands still: receipts count instead
-  std::vector<SilentTime> silences;
-  std::vector<StampStep> clock_steps;  ///< by how much its clock jumped: forwards
-  std::vector<StampStep> delay_steps;  ///< by how much its shortest delay grew
-
-  /// Number of received telegrams that were unusable.
-  std::uint64_t left_out() const { return repeated + late + standing + damaged; }
-};
 
 /// Treatment of a device whose clock stands still.
 enum class StandingClock {

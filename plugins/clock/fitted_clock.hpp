@@ -9,20 +9,16 @@
 #include <string>
 #include <vector>
 
+#include <crisp/alignment.hpp>
+#include <crisp/clock_map.hpp>
+
 #include "pipeline/clocks/clock_line.hpp"
 #include "pipeline/clocks/delay_step.hpp"
 #include "pipeline/clocks/hub_deviation.hpp"
 #include "pipeline/clocks/lower_hull.hpp"
-#include "pipeline/data/clock_map.hpp"
 #include "plugins/clock/delay_histogram.hpp"
 
 namespace crisp {
-
-/// A jump of a device's clock, or of its link's shortest delay.
-struct StampStep {
-  double at = 0;  ///< [s since the epoch] receipt of the first stamp after it
-  double by = 0;  ///< [s] forwards, or longer
-};
 
 /// One device's clock, fitted window by window while its stamps come in: the map from device time to hub
 /// time runs straight from the line of one window, at the window's middle, to that of the next.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "plugins/clock/hub_timings.hpp"
+
 #include <algorithm>
 
-#include "pipeline/data/error.hpp"
-#include "plugins/clock/aligner.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

@@ -14,12 +14,6 @@
 
 namespace crisp {
 
-/// Source of the measurements' hub times.
-enum class TimeSource {
-  clock,    ///< the device's time, through the map of its clock
-  receipt,  ///< the hub's receipt time, as it is
-};
-
 /// The scans of one laser on their way to being timed.
 class LaserTiming {
  public:

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/clock/online_aligner.hpp"
-
 #include <algorithm>
+#include <cstdint>
+#include <deque>
 #include <limits>
 #include <utility>
+
+#include <crisp/online_aligner.hpp>
+
+#include "plugins/clock/hub_timings.hpp"
 
 namespace crisp {
 namespace {
@@ -27,11 +31,35 @@ OnlineSettings with_lags(OnlineSettings settings, const Calibration& calibration
   return settings;
 }
 
-OnlineAligner::OnlineAligner(const Rig& rig, const AlignmentSettings& alignment, const OnlineSettings& online,
-                             AlignmentSink sink)
+class OnlineAligner::Queue {
+ public:
+  Queue(const Rig& rig, const AlignmentSettings& alignment, const OnlineSettings& online, AlignmentSink sink);
+
+  void add(std::shared_ptr<const Scan> scan);
+  void add(const PlateReading& reading);
+  AlignmentReport finish();
+  void set_lags(const Calibration& calibration) { settings_ = with_lags(settings_, calibration); }
+  const HubTimings& tracks() const { return tracks_; }
+  std::size_t waiting() const { return waiting_.size(); }
+
+ private:
+  bool is_covered(const TimedScan& scan) const;
+  void hand_out(const TimedScan& scan);
+  void release();
+
+  AlignmentSettings alignment_;
+  OnlineSettings settings_;
+  AlignmentSink sink_;
+  HubTimings tracks_;
+  std::deque<TimedScan> waiting_;
+  std::uint64_t impatient_ = 0;  ///< scans that went without the encoder readings
+};
+
+OnlineAligner::Queue::Queue(const Rig& rig, const AlignmentSettings& alignment, const OnlineSettings& online,
+                            AlignmentSink sink)
     : alignment_(alignment), settings_(online), sink_(std::move(sink)), tracks_(rig, alignment) {}
 
-void OnlineAligner::add(std::shared_ptr<const Scan> scan) {
+void OnlineAligner::Queue::add(std::shared_ptr<const Scan> scan) {
   const double hub = tracks_.arrive(scan->receipt_ns);
   LaserTiming* laser = tracks_.track_of(*scan);
   if (laser == nullptr) return;
@@ -45,7 +73,7 @@ void OnlineAligner::add(std::shared_ptr<const Scan> scan) {
   release();
 }
 
-void OnlineAligner::add(const PlateReading& reading) {
+void OnlineAligner::Queue::add(const PlateReading& reading) {
   const double hub = tracks_.arrive(reading.receipt_ns);
   PlateTiming& plate = tracks_.plate();
   if (plate.add(reading, hub)) plate.clock().follow(settings_.window);
@@ -53,14 +81,14 @@ void OnlineAligner::add(const PlateReading& reading) {
   release();
 }
 
-bool OnlineAligner::is_covered(const TimedScan& scan) const {
+bool OnlineAligner::Queue::is_covered(const TimedScan& scan) const {
   const PlateTiming& plate = tracks_.plate();
   if (plate.clock().followed() < settings_.warm_up) return false;
   const auto latest = plate.latest();
   return latest && *latest >= last_beam(scan) + settings_.greatest_lag;
 }
 
-void OnlineAligner::release() {
+void OnlineAligner::Queue::release() {
   while (!waiting_.empty()) {
     const TimedScan& scan = waiting_.front();
     const bool covered = is_covered(scan);
@@ -73,14 +101,14 @@ void OnlineAligner::release() {
   }
 }
 
-void OnlineAligner::hand_out(const TimedScan& scan) {
+void OnlineAligner::Queue::hand_out(const TimedScan& scan) {
   sink_.trajectory(tracks_.plate().piece(scan.begin + settings_.least_lag - settings_.margin,
                                          last_beam(scan) + settings_.greatest_lag + settings_.margin,
                                          tracks_.epoch_ns(), alignment_.plate));
   sink_.measurements(tracks_.measurements_of(scan));
 }
 
-AlignmentReport OnlineAligner::finish() {
+AlignmentReport OnlineAligner::Queue::finish() {
   tracks_.refuse_if_missing();
   std::vector<TimedScan> young;  // of clocks that were not warm yet
   for (auto& laser : tracks_.lasers()) laser.take_before(kForever, young);
@@ -91,5 +119,25 @@ AlignmentReport OnlineAligner::finish() {
   report.counts["scans passed on without encoder readings (timeout)"] = impatient_;
   return report;
 }
+
+OnlineAligner::OnlineAligner(const Rig& rig, const AlignmentSettings& alignment, const OnlineSettings& online,
+                             AlignmentSink sink)
+    : queue_(std::make_unique<Queue>(rig, alignment, online, std::move(sink))) {}
+
+OnlineAligner::~OnlineAligner() = default;
+
+void OnlineAligner::add(std::shared_ptr<const Scan> scan) { queue_->add(std::move(scan)); }
+
+void OnlineAligner::add(const PlateReading& reading) { queue_->add(reading); }
+
+AlignmentReport OnlineAligner::finish() { return queue_->finish(); }
+
+void OnlineAligner::set_lags(const Calibration& calibration) { queue_->set_lags(calibration); }
+
+std::vector<DeviceReport> OnlineAligner::devices() const { return queue_->tracks().reports(); }
+
+double OnlineAligner::now() const { return queue_->tracks().now(); }
+
+std::size_t OnlineAligner::waiting() const { return queue_->waiting(); }
 
 }  // namespace crisp

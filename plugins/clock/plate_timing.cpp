@@ -5,9 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/clocks/clock_line.hpp"
 #include "pipeline/clocks/unwrap.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -4,19 +4,14 @@
 #include <cstdint>
 #include <deque>
 
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/scan.hpp>
+
 #include "pipeline/data/encoder_smoothing.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/data/scan.hpp"
 #include "plugins/clock/device_stamps.hpp"
 #include "plugins/clock/laser_timing.hpp"
 
 namespace crisp {
-
-/// How readings become the motion between them.
-struct PlateMotionSettings {
-  double max_gap = 0.1;                  ///< [s] longest silence of the encoder to interpolate across
-  double smoothing = kEncoderSmoothing;  ///< [s] see between_steps()
-};
 
 /// The encoder readings on their way to a trajectory.
 class PlateTiming {

@@ -6,8 +6,9 @@
 #include <memory>
 #include <variant>
 
+#include <crisp/scan.hpp>
+
 #include "pipeline/clocks/forward_step.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 

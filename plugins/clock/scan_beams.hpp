@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/rig.hpp"
-#include "pipeline/data/scan.hpp"
+#include <crisp/measurements.hpp>
+#include <crisp/rig.hpp>
+#include <crisp/scan.hpp>
 
 namespace crisp {
 

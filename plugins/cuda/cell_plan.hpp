@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pipeline/quality/points.hpp"
+#include <crisp/points.hpp>
+
 #include "pipeline/quality/spatial_order.hpp"
 #include "plugins/cuda/rqe_kernel.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp::cuda {
 

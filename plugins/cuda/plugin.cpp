@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/plugin.hpp"
+#include <crisp/error.hpp>
+#include <crisp/measure.hpp>
+#include <crisp/plugin.hpp>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/quality/measure.hpp"
 #include "plugins/cuda/gpu.hpp"
 
 namespace {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "pipeline/quality/blocks.hpp"
+#include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/searches.hpp"
 
 namespace crisp::cuda {

@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/quality/search.hpp"
+#include <crisp/neighbour_search.hpp>
+
 #include "plugins/cuda/cell_plan.hpp"
 
 namespace crisp::cuda {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/data/measurements.hpp"
+#include <crisp/cloud.hpp>
+#include <crisp/measurements.hpp>
 
 namespace crisp {
 

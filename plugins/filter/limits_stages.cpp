@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "pipeline/data/all_errors.hpp"
-#include "pipeline/data/error.hpp"
+#include <crisp/all_errors.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/files/nearest.hpp"
-#include "pipeline/stage/option_check.hpp"
 
 namespace crisp {
 namespace {

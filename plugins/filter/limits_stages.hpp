@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "plugins/filter/limits.hpp"
 
 namespace crisp {

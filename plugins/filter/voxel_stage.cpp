@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "pipeline/data/cloud.hpp"
+#include <crisp/cloud.hpp>
 
 namespace crisp {
 

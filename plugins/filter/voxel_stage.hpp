@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
-#include "plugins/filter/voxels.hpp"
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+#include <crisp/voxels.hpp>
 
 namespace crisp {
 

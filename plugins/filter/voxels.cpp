@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/filter/voxels.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/voxels.hpp>
 
 namespace crisp {
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pipeline/data/calibration.hpp"
+#include <crisp/calibration.hpp>
 
 namespace crisp {
 

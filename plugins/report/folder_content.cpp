@@ -4,11 +4,12 @@
 #include <fstream>
 #include <system_error>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/calibration_file.hpp>
+#include <crisp/cloud_conversion.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/files/renamed_names.hpp"
 #include "pipeline/files/utc_now.hpp"
-#include "pipeline/pcd/cloud_conversion.hpp"
 #include "pipeline/pcd/parts.hpp"
 #include "pipeline/stage/files_written.hpp"
 #include "plugins/report/calibration_json.hpp"

@@ -5,7 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/data/calibration.hpp"
+#include <crisp/calibration.hpp>
+
 #include "plugins/report/page.hpp"
 
 namespace crisp {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/report/folder_stage.hpp"
 
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/calibration_file.hpp>
+
 #include "plugins/report/folder_content.hpp"
 
 namespace crisp {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp {
 

@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include <crisp/points.hpp>
+
 #include "pipeline/quality/plane.hpp"
-#include "pipeline/quality/points.hpp"
 #include "pipeline/quality/spatial_order.hpp"
 
 namespace crisp {

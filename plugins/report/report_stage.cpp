@@ -3,10 +3,11 @@
 
 #include <utility>
 
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/calibration_file.hpp>
+#include <crisp/registrar.hpp>
+
 #include "pipeline/files/findings_file.hpp"
-#include "pipeline/stage/registry.hpp"
 #include "plugins/report/calibration_json.hpp"
 #include "plugins/report/encoded_cloud.hpp"
 #include "plugins/report/motion_json.hpp"

@@ -5,12 +5,13 @@
 #include <memory>
 #include <optional>
 
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/data/findings.hpp"
+#include <crisp/calibration.hpp>
+#include <crisp/context.hpp>
+#include <crisp/findings.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/measurement_buffer.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 
 namespace crisp {
 

@@ -5,10 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "pipeline/data/cloud.hpp"
+#include <crisp/cloud.hpp>
+#include <crisp/points.hpp>
+#include <crisp/sensor_model.hpp>
+
 #include "pipeline/estimate/sample.hpp"
-#include "pipeline/model/sensor_model.hpp"
-#include "pipeline/quality/points.hpp"
 
 namespace crisp {
 

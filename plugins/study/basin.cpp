@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/random.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/estimate/base_parameters.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/study/basin_stage.hpp"
 
+#include <crisp/all_errors.hpp>
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/world_options.hpp"
-#include "pipeline/data/all_errors.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/stage/option_check.hpp"
 #include "plugins/study/basin_text.hpp"
 #include "plugins/study/rqe.hpp"
 #include "plugins/study/run_json.hpp"

@@ -3,9 +3,10 @@
 
 #include <filesystem>
 
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/simulate/world.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 #include "plugins/study/basin.hpp"
 #include "plugins/study/part_file.hpp"
 

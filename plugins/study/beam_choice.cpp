@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <crisp/all_errors.hpp>
+#include <crisp/atomic_file.hpp>
+
 #include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/world_options.hpp"
-#include "pipeline/data/all_errors.hpp"
-#include "pipeline/files/atomic_file.hpp"
 #include "plugins/study/bound_text.hpp"
 #include "plugins/study/parameter_kind.hpp"
 

@@ -4,9 +4,10 @@
 #include <filesystem>
 #include <optional>
 
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/simulate/world.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 #include "plugins/study/refinement_accuracy.hpp"
 #include "plugins/study/scene_bound.hpp"
 

@@ -3,7 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
+
 #include "plugins/study/figure_files.hpp"
 #include "plugins/study/rqe.hpp"
 

@@ -3,8 +3,9 @@
 
 #include <filesystem>
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "plugins/study/figures.hpp"
 
 namespace crisp {

@@ -3,14 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <crisp/all_errors.hpp>
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
+#include <crisp/registrar.hpp>
+
 #include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/real_devices.hpp"
 #include "grabbers/simulate/world_options.hpp"
-#include "pipeline/data/all_errors.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/stage/option_check.hpp"
-#include "pipeline/stage/registry.hpp"
 #include "plugins/study/rqe.hpp"
 #include "plugins/study/run_json.hpp"
 #include "plugins/study/table.hpp"

@@ -4,9 +4,10 @@
 #include <filesystem>
 #include <vector>
 
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "grabbers/simulate/world.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 #include "plugins/study/monte_carlo.hpp"
 #include "plugins/study/part_file.hpp"
 

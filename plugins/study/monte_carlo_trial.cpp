@@ -9,9 +9,10 @@
 #include <numbers>
 #include <utility>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/encoder_smoothing.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "plugins/study/outliers.hpp"
 #include "plugins/study/scene_bound.hpp"

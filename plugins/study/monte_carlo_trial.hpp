@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
+#include <crisp/measure.hpp>
+
 #include "grabbers/simulate/nominal_errors.hpp"
 #include "grabbers/simulate/paper.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
-#include "pipeline/quality/measure.hpp"
 #include "plugins/calibrate/rqe_calibration.hpp"
 #include "plugins/study/beam_choice.hpp"
 

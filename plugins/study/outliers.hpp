@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "pipeline/data/measurements.hpp"
+#include <crisp/measurements.hpp>
 
 namespace crisp {
 

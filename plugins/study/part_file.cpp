@@ -8,9 +8,10 @@
 #include <map>
 #include <set>
 
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/data/counted.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/atomic_file.hpp"
 #include "pipeline/files/json_text.hpp"
 
 namespace crisp {

@@ -8,7 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/stage/context.hpp"
+#include <crisp/context.hpp>
+
 #include "plugins/study/study_part.hpp"
 
 namespace crisp {

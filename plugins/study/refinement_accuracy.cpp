@@ -5,7 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/estimate/surfel_refinement.hpp"
 
 namespace crisp {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/registry.hpp"
+#include <crisp/context.hpp>
+#include <crisp/registrar.hpp>
+
 #include "plugins/study/monte_carlo_trial.hpp"
 
 namespace crisp {

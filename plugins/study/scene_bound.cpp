@@ -6,7 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/estimate/bound.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/observability.hpp"

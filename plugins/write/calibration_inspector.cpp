@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <crisp/calibration_file.hpp>
+
 #include "pipeline/data/each_parameter.hpp"
-#include "pipeline/files/calibration_file.hpp"
 #include "plugins/write/calibration_stage.hpp"
 #include "plugins/write/calibrations_compared.hpp"
 #include "plugins/write/urdf.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/write/calibration_stage.hpp"
 
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/calibration_file.hpp>
 
 namespace crisp {
 

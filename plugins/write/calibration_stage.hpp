@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
-#include "pipeline/stage/inspector.hpp"
+#include <crisp/calibration.hpp>
+#include <crisp/context.hpp>
+#include <crisp/inspector.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp {
 

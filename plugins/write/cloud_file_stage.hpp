@@ -7,10 +7,11 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/cloud.hpp>
+#include <crisp/context.hpp>
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "plugins/write/finite_points.hpp"
 #include "plugins/write/recording_borders.hpp"
 

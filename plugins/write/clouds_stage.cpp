@@ -5,7 +5,8 @@
 
 #include <system_error>
 
-#include "pipeline/pcd/cloud_conversion.hpp"
+#include <crisp/cloud_conversion.hpp>
+
 #include "pipeline/pcd/parts.hpp"
 #include "plugins/write/parts_options.hpp"
 

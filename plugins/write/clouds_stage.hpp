@@ -7,12 +7,13 @@
 #include <optional>
 #include <vector>
 
+#include <crisp/cloud.hpp>
+#include <crisp/context.hpp>
+#include <crisp/error.hpp>
+#include <crisp/pcd_table.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "pipeline/data/batcher.hpp"
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/pcd/pcd_table.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 
 namespace crisp {
 

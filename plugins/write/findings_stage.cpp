@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/write/findings_stage.hpp"
 
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
+
 #include "pipeline/files/findings_file.hpp"
 
 namespace crisp {

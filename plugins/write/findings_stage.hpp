@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "pipeline/data/findings.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/findings.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/data/error.hpp"
+#include <crisp/cloud.hpp>
+#include <crisp/error.hpp>
 
 namespace crisp {
 

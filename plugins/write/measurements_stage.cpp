@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/write/measurements_stage.hpp"
 
-#include "pipeline/pcd/measurement_tables.hpp"
+#include <crisp/measurement_tables.hpp>
 
 namespace crisp {
 

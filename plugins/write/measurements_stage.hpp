@@ -4,8 +4,9 @@
 #include <memory>
 #include <optional>
 
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
+#include <crisp/measurements.hpp>
+#include <crisp/plate_trajectory.hpp>
+
 #include "plugins/write/parts_options.hpp"
 
 namespace crisp {

@@ -6,9 +6,10 @@
 #include <optional>
 #include <string_view>
 
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "pipeline/pcd/parts.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 
 namespace crisp {
 

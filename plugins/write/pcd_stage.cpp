@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "pipeline/pcd/cloud_conversion.hpp"
+#include <crisp/cloud_conversion.hpp>
+
 #include "plugins/write/finite_points.hpp"
 
 namespace crisp {

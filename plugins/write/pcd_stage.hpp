@@ -3,7 +3,8 @@
 
 #include <optional>
 
-#include "pipeline/data/cloud.hpp"
+#include <crisp/cloud.hpp>
+
 #include "plugins/write/parts_options.hpp"
 #include "plugins/write/recording_borders.hpp"
 

@@ -6,7 +6,8 @@
 #include <map>
 #include <string>
 
-#include "pipeline/data/cloud.hpp"
+#include <crisp/cloud.hpp>
+
 #include "plugins/write/record_buffer.hpp"
 
 namespace crisp {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
 
 namespace crisp {
 

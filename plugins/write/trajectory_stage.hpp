@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <optional>
 
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/context.hpp>
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp {
 

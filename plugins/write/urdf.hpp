@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "pipeline/data/calibration.hpp"
-#include "pipeline/data/rig.hpp"
+#include <crisp/calibration.hpp>
+#include <crisp/rig.hpp>
 
 namespace crisp {
 

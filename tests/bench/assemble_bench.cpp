@@ -8,10 +8,11 @@
 #include <cstring>
 #include <ctime>
 
+#include <crisp/cloud.hpp>
+#include <crisp/registrar.hpp>
+
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/stage/registry.hpp"
 #include "plugins/assemble/deskew_stage.hpp"
 
 namespace crisp {

@@ -18,9 +18,10 @@
 #include <string>
 #include <vector>
 
+#include <crisp/calibration_file.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/calibration_file.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 
 namespace crisp {

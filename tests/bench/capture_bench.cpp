@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <map>
 
+#include <crisp/capture_reader.hpp>
+
 #include "grabbers/capture/capture_file.hpp"
-#include "grabbers/capture/capture_reader.hpp"
 #include "grabbers/capture/network_frames.hpp"
 #include "grabbers/capture/pcap_writer.hpp"
+#include "grabbers/wire/cola_framer.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_conversion.hpp"
 

@@ -6,8 +6,9 @@
 #include <variant>
 #include <vector>
 
+#include <crisp/clock_aligner.hpp>
+
 #include "pipeline/clocks/lower_hull.hpp"
-#include "plugins/clock/clock_aligner.hpp"
 #include "tests/plugins/clock/simulated_scanner.hpp"
 
 namespace crisp {

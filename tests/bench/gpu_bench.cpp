@@ -3,8 +3,9 @@
 // and what the former's time goes to. Arguments: points, neighbours.
 #include <benchmark/benchmark.h>
 
+#include <crisp/rqe.hpp>
+
 #include "pipeline/quality/kernel.hpp"
-#include "pipeline/quality/rqe.hpp"
 #include "pipeline/quality/searches.hpp"
 #include "plugins/cuda/gpu.hpp"
 #include "tests/bench/walls.hpp"

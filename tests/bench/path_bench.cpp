@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
-#include "pipeline/app/builtin.hpp"
-#include "pipeline/stage/pipeline_file.hpp"
-#include "pipeline/stage/runner.hpp"
+#include <crisp/builtin.hpp>
+#include <crisp/pipeline_file.hpp>
+#include <crisp/runner.hpp>
 
 namespace crisp {
 namespace {

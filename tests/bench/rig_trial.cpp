@@ -17,7 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/calibration_file.hpp>
+
 #include "tests/end_to_end/drawn_rig.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 

@@ -2,8 +2,9 @@
 // RQE with its gradient as others would compute it: all to the same truncation, in one thread.
 #pragma once
 
+#include <crisp/points.hpp>
+
 #include "pipeline/quality/kernel.hpp"
-#include "pipeline/quality/points.hpp"
 
 namespace crisp::bench {
 

@@ -17,11 +17,12 @@
 #include <numbers>
 #include <random>
 
+#include <crisp/neighbour_search.hpp>
+#include <crisp/rqe.hpp>
+
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
-#include "pipeline/quality/rqe.hpp"
-#include "pipeline/quality/search.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "tests/bench/rivals.hpp"
 #include "tests/bench/walls.hpp"

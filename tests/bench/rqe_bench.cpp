@@ -4,9 +4,10 @@
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
+#include <crisp/neighbour_search.hpp>
+#include <crisp/rqe.hpp>
+
 #include "pipeline/quality/kernel.hpp"
-#include "pipeline/quality/rqe.hpp"
-#include "pipeline/quality/search.hpp"
 #include "tests/bench/walls.hpp"
 
 namespace crisp {

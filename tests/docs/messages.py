@@ -9,7 +9,7 @@ from cpp_text import VALUE
 
 FOLDERS = ("grabbers", "pipeline", "plugins")
 MARKS = {"distrust", "mark_untrusted"}  # Context's: the run ends with exit status 3
-DECLARES_MARKS = "pipeline/stage/context.hpp"
+DECLARES_MARKS = "pipeline/include/crisp/context.hpp"
 INTERNAL = ": an error of this program"  # what internal_error() appends, with the advice
 REPORT = "please report it with the command and its input"
 LISTS = {"caveats", "other_minima"}

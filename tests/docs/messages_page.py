@@ -23,7 +23,8 @@ AREAS = (  # title, prefixes of the files
     ("Calibration", ("pipeline/estimate", "pipeline/model", "plugins/calibrate", "plugins/watch", "plugins/cuda",
                      "pipeline/quality", "pipeline/statistics", "pipeline/data")),
     ("Diagnosis", ("plugins/diagnose", "plugins/scans")),
-    ("Pipelines, rigs and other files", ("pipeline/stage", "pipeline/files", "pipeline/plot", "plugins/report")),
+    ("Pipelines, rigs and other files", ("pipeline/include", "pipeline/stage", "pipeline/files", "pipeline/plot",
+                                         "plugins/report")),
     ("Program, batch and cluster", ("pipeline/app", "pipeline/batch", "pipeline/python")),
     ("Simulator and studies", ("grabbers/simulate", "plugins/simulate", "plugins/study")),
 )

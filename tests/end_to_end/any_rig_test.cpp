@@ -3,7 +3,8 @@
 // wrong, or right and untrusted.
 #include <gmock/gmock.h>
 
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/calibration_file.hpp>
+
 #include "tests/end_to_end/drawn_rig.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 

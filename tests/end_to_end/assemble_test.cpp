@@ -6,7 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/calibration_file.hpp>
+
 #include "tests/end_to_end/pipeline_fixture.hpp"
 #include "tests/end_to_end/room.hpp"
 

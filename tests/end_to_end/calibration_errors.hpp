@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pipeline/data/calibration.hpp"
+#include <crisp/calibration.hpp>
 
 namespace crisp::test {
 

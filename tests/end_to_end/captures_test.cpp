@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <crisp/calibration_file.hpp>
+
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/degree.hpp"
-#include "pipeline/files/calibration_file.hpp"
 #include "tests/end_to_end/calibration_errors.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 #include "tests/end_to_end/scene_distance.hpp"

@@ -10,12 +10,13 @@
 #include <fstream>
 #include <thread>
 
-#include "pipeline/app/builtin.hpp"
+#include <crisp/builtin.hpp>
+#include <crisp/calibration_file.hpp>
+#include <crisp/cloud_conversion.hpp>
+#include <crisp/rig_file.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/files/calibration_file.hpp"
-#include "pipeline/files/rig_file.hpp"
 #include "pipeline/files/yaml.hpp"
-#include "pipeline/pcd/cloud_conversion.hpp"
 #include "tests/end_to_end/calibration_errors.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 #include "tests/support/source_dir.hpp"

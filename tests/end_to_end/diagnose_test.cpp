@@ -3,7 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/calibration_file.hpp>
+
 #include "pipeline/files/findings_file.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 

@@ -8,8 +8,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "pipeline/app/builtin.hpp"
-#include "pipeline/pcd/cloud_conversion.hpp"
+#include <crisp/builtin.hpp>
+#include <crisp/cloud_conversion.hpp>
+
 #include "tests/support/source_dir.hpp"
 
 namespace crisp::test {

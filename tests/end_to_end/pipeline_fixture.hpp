@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <crisp/cloud.hpp>
+
 #include "pipeline/app/commands.hpp"
-#include "pipeline/data/cloud.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp::test {

@@ -7,8 +7,9 @@
 
 #include <cmath>
 
+#include <crisp/calibration_file.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/files/calibration_file.hpp"
 #include "pipeline/files/findings_file.hpp"
 #include "tests/support/source_dir.hpp"
 

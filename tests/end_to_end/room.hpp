@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "pipeline/data/cloud.hpp"
+#include <crisp/cloud.hpp>
 
 namespace crisp::test {
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <crisp/cloud.hpp>
+
 #include "grabbers/simulate/scene.hpp"
-#include "pipeline/data/cloud.hpp"
 
 namespace crisp::test {
 

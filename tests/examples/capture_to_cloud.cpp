@@ -6,12 +6,12 @@
 #include <iostream>
 #include <optional>
 
-#include "grabbers/capture/capture_reader.hpp"
-#include "pipeline/files/calibration_file.hpp"
-#include "pipeline/model/catalogue.hpp"
-#include "pipeline/pcd/cloud_conversion.hpp"
-#include "plugins/assemble/deskew.hpp"
-#include "plugins/clock/clock_aligner.hpp"
+#include <crisp/calibration_file.hpp>
+#include <crisp/capture_reader.hpp>
+#include <crisp/clock_aligner.hpp>
+#include <crisp/cloud_conversion.hpp>
+#include <crisp/deskew.hpp>
+#include <crisp/effect_catalogue.hpp>
 
 namespace {
 
@@ -20,7 +20,7 @@ crisp::Cloud cloud_of(const char* capture, const crisp::Rig& rig, const crisp::C
   crisp::TermRegistry terms;
   crisp::register_built_in(terms);
   const crisp::SensorModel model(calibration, terms);
-  crisp::KnownMirrors mirrors;
+  crisp::MirrorAngleCache mirrors;
   crisp::Cloud cloud;
   std::optional<crisp::PlateTrajectory> plate;  // of the stretch of time whose measurements come next
   const crisp::AlignmentSink place{

@@ -4,7 +4,8 @@
 
 #include <cstdlib>
 
-#include "pipeline/pcd/pcd_table.hpp"
+#include <crisp/pcd_table.hpp>
+
 #include "tests/support/source_dir.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -8,9 +8,9 @@
 #include <iostream>
 #include <mutex>
 
-#include "grabbers/pcl/cloud_grabber.hpp"
-#include "pipeline/files/calibration_file.hpp"
-#include "pipeline/files/rig_file.hpp"
+#include <crisp/calibration_file.hpp>
+#include <crisp/cloud_grabber.hpp>
+#include <crisp/rig_file.hpp>
 
 namespace {
 

@@ -9,11 +9,12 @@
 #include <sstream>
 #include <thread>
 
+#include <crisp/atomic_file.hpp>
+#include <crisp/calibration_file.hpp>
+
 #include "grabbers/emulate/emulator.hpp"
 #include "grabbers/simulate/recording.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/files/calibration_file.hpp"
 #include "tests/grabbers/live/live_support.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -5,13 +5,14 @@
 #include <cstdlib>
 #include <sstream>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/bag/bag_items.hpp"
 #include "grabbers/bag/bag_summary.hpp"
 #include "grabbers/bag/byte_cursor.hpp"
 #include "grabbers/bag/mcap_reader.hpp"
 #include "grabbers/bag/ros_sensor_messages.hpp"
 #include "grabbers/bag/rosbag1_reader.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

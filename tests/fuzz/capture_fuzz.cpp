@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "grabbers/capture/capture_reader.hpp"
-#include "pipeline/data/error.hpp"
+#include <crisp/capture_reader.hpp>
+#include <crisp/error.hpp>
+
 #include "tests/fuzz/memory_file.hpp"
 
 namespace {

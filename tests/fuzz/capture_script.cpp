@@ -3,11 +3,12 @@
 
 #include <algorithm>
 
+#include <crisp/error.hpp>
+#include <crisp/hub_item.hpp>
+
 #include "grabbers/capture/hub_traffic.hpp"
-#include "grabbers/wire/hub_item.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

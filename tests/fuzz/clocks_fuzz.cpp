@@ -8,9 +8,10 @@
 #include <cstdlib>
 #include <functional>
 
-#include "pipeline/data/error.hpp"
-#include "plugins/clock/clock_aligner.hpp"
-#include "plugins/clock/online_aligner.hpp"
+#include <crisp/clock_aligner.hpp>
+#include <crisp/error.hpp>
+#include <crisp/online_aligner.hpp>
+
 #include "tests/fuzz/item_script.hpp"
 
 namespace crisp {

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "pipeline/data/scan.hpp"
+#include <crisp/scan.hpp>
 
 namespace crisp {
 

@@ -2,9 +2,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/pcd/cloud_conversion.hpp"
-#include "pipeline/pcd/measurement_tables.hpp"
+#include <crisp/cloud_conversion.hpp>
+#include <crisp/error.hpp>
+#include <crisp/measurement_tables.hpp>
 
 namespace {
 

@@ -9,12 +9,13 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include <crisp/cloud.hpp>
+#include <crisp/error.hpp>
+#include <crisp/measurements.hpp>
+#include <crisp/runner.hpp>
+#include <crisp/term.hpp>
+
 #include "grabbers/capture/register.hpp"
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/model/term.hpp"
-#include "pipeline/stage/runner.hpp"
 #include "plugins/assemble/register.hpp"
 #include "plugins/clock/register.hpp"
 #include "tests/fuzz/capture_script.hpp"

@@ -5,9 +5,10 @@
 #include <cstdlib>
 #include <string_view>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scene_file.hpp"
-#include "pipeline/data/error.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

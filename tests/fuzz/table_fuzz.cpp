@@ -5,9 +5,10 @@
 #include <cstdlib>
 #include <sstream>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/table/table_items.hpp"
 #include "grabbers/table/table_reader.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

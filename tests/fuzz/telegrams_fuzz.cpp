@@ -4,8 +4,9 @@
 #include <cstdlib>
 #include <sstream>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/telegrams/sick_scan_xd_json.hpp"
-#include "pipeline/data/error.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::istringstream text(std::string(reinterpret_cast<const char*>(data), size));

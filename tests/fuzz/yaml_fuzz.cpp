@@ -5,10 +5,14 @@
 #include <optional>
 #include <string_view>
 
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/calibration_file.hpp>
+#include <crisp/pipeline_file.hpp>
+#include <crisp/rig_file.hpp>
+
+#include "pipeline/files/calibration_yaml.hpp"
 #include "pipeline/files/findings_file.hpp"
-#include "pipeline/files/rig_file.hpp"
-#include "pipeline/stage/pipeline_file.hpp"
+#include "pipeline/files/rig_yaml.hpp"
+#include "pipeline/stage/pipeline_plan.hpp"
 
 namespace crisp {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pipeline/model/catalogue.hpp"
+#include <crisp/effect_catalogue.hpp>
 
 namespace crisp {
 

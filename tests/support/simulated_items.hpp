@@ -5,9 +5,10 @@
 #include <variant>
 #include <vector>
 
+#include <crisp/hub_item.hpp>
+
 #include "grabbers/simulate/recording.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "grabbers/wire/hub_item.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 
 namespace crisp::test {

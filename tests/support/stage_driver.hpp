@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp::test {
 

@@ -6,8 +6,9 @@
 #include <span>
 #include <string>
 
+#include <crisp/term.hpp>
+
 #include "pipeline/model/rotation.hpp"
-#include "pipeline/model/term.hpp"
 #include "pipeline/model/terms/shape.hpp"
 
 namespace crisp {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pipeline/model/term.hpp"
+#include <crisp/term.hpp>
 
 namespace crisp {
 

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <crisp/rqe.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/quality/rqe.hpp"
 
 namespace crisp {
 namespace {

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/rig.hpp"
+#include <crisp/rig.hpp>
+
 #include "pipeline/estimate/surfel_refinement.hpp"
 
 namespace crisp {

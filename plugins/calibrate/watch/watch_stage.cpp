@@ -10,8 +10,9 @@
 #include <system_error>
 #include <utility>
 
+#include <crisp/registrar.hpp>
+
 #include "pipeline/estimate/free_parameters.hpp"
-#include "pipeline/stage/registry.hpp"
 
 namespace crisp {
 namespace {

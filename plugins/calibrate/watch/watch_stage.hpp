@@ -9,9 +9,10 @@
 #include <string>
 #include <vector>
 
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "pipeline/data/oriented_plate.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 #include "plugins/calibrate/watch/calibration_check.hpp"
 #include "plugins/calibrate/watch/sliding_window.hpp"
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
+#include <crisp/measurements.hpp>
+#include <crisp/plate_trajectory.hpp>
 
 namespace crisp {
 

@@ -7,8 +7,9 @@
 #include <span>
 #include <vector>
 
+#include <crisp/findings.hpp>
+
 #include "pipeline/clocks/clock_line.hpp"
-#include "pipeline/data/findings.hpp"
 
 namespace crisp {
 

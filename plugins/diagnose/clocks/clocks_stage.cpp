@@ -8,9 +8,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <crisp/scan.hpp>
+
 #include "pipeline/clocks/unwrap.hpp"
 #include "pipeline/data/recordings.hpp"
-#include "pipeline/data/scan.hpp"
 #include "pipeline/plot/write_plot.hpp"
 #include "plugins/diagnose/clocks/clock_plots.hpp"
 #include "plugins/diagnose/noise/permutation_test.hpp"

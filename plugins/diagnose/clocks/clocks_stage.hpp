@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/findings.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "plugins/diagnose/clocks/clock_stamps.hpp"
 
 namespace crisp {

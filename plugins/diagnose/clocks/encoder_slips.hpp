@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
+#include <crisp/measurements.hpp>
+#include <crisp/plate_trajectory.hpp>
 
 namespace crisp {
 

@@ -5,10 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/context.hpp>
+#include <crisp/findings.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "pipeline/estimate/measurement_buffer.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 
 namespace crisp {
 

@@ -5,8 +5,9 @@
 #include <map>
 #include <numeric>
 
+#include <crisp/beam.hpp>
+
 #include "pipeline/estimate/surfel_jacobian.hpp"
-#include "pipeline/model/beam.hpp"
 
 namespace crisp {
 namespace {

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/model/catalogue.hpp"
+#include <crisp/effect_catalogue.hpp>
+
 #include "plugins/diagnose/model/score_test.hpp"
 
 namespace crisp {

@@ -9,9 +9,10 @@
 #include <numbers>
 #include <random>
 
+#include <crisp/rqe.hpp>
+
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
-#include "pipeline/quality/rqe.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "pipeline/statistics/weighted_mean.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
+
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/surfels.hpp"
 

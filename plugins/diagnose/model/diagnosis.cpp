@@ -10,7 +10,8 @@
 #include <optional>
 #include <set>
 
-#include "pipeline/data/interrupted.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/model/terms_in.hpp"
 #include "plugins/diagnose/model/cross_validation.hpp"

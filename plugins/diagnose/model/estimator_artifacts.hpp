@@ -3,7 +3,8 @@
 
 #include <optional>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
+
 #include "pipeline/estimate/outcome.hpp"
 #include "pipeline/estimate/sample.hpp"
 

@@ -6,7 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
+
 #include "plugins/diagnose/model/candidates.hpp"
 #include "plugins/diagnose/model/score_test.hpp"
 

@@ -8,11 +8,12 @@
 #include <string>
 #include <utility>
 
+#include <crisp/registrar.hpp>
+
 #include "pipeline/data/fit_statistics.hpp"
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/plot/write_plot.hpp"
-#include "pipeline/stage/registry.hpp"
 #include "plugins/diagnose/model/estimator_artifacts.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"
 #include "plugins/diagnose/report/residual_plots.hpp"

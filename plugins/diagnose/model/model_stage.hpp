@@ -5,11 +5,12 @@
 #include <memory>
 #include <optional>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/context.hpp>
+#include <crisp/findings.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/measurement_buffer.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 #include "plugins/diagnose/model/diagnosis.hpp"
 
 namespace crisp {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/data/interrupted.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/incidence.hpp"

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
+
 #include "pipeline/plot/plot.hpp"
 #include "plugins/diagnose/noise/noise_model.hpp"
 

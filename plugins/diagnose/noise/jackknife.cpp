@@ -6,7 +6,8 @@
 #include <iterator>
 #include <map>
 
-#include "pipeline/model/catalogue.hpp"
+#include <crisp/effect_catalogue.hpp>
+
 #include "pipeline/quality/blocks.hpp"
 
 namespace crisp {

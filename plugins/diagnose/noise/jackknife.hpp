@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "pipeline/data/calibration.hpp"
+#include <crisp/calibration.hpp>
+
 #include "plugins/diagnose/noise/noise_components.hpp"
 #include "plugins/diagnose/noise/noise_model.hpp"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
 
 namespace crisp {
 

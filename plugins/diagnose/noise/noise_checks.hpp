@@ -3,7 +3,8 @@
 
 #include <string>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
+
 #include "plugins/diagnose/noise/noise_components.hpp"
 
 namespace crisp {

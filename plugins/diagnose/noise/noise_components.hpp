@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/calibration.hpp"
+#include <crisp/calibration.hpp>
+
 #include "plugins/diagnose/noise/noise_model.hpp"
 
 namespace crisp {

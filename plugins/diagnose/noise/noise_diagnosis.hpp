@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
+
 #include "plugins/diagnose/noise/noise_model.hpp"
 
 namespace crisp {

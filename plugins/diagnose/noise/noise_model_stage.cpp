@@ -8,10 +8,11 @@
 #include <span>
 #include <utility>
 
+#include <crisp/registrar.hpp>
+
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/plot/write_plot.hpp"
-#include "pipeline/stage/registry.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 #include "plugins/diagnose/noise/likelihood_gain.hpp"
 #include "plugins/diagnose/noise/noise_diagnosis.hpp"

@@ -8,13 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/context.hpp>
+#include <crisp/findings.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/measurement_buffer.hpp"
 #include "pipeline/plot/plot.hpp"
 #include "pipeline/quality/surfels.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 #include "plugins/diagnose/noise/goodness_of_fit.hpp"
 #include "plugins/diagnose/noise/noise_diagnosis.hpp"

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/findings.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "plugins/diagnose/noise/goodness_of_fit.hpp"
 #include "plugins/diagnose/noise/stationary_scans.hpp"
 

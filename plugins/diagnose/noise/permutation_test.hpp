@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
 
 namespace crisp {
 

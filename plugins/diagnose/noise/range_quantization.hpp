@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
 
 namespace crisp {
 

@@ -8,7 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "pipeline/data/scan.hpp"
+#include <crisp/scan.hpp>
+
 #include "plugins/diagnose/noise/noise_model.hpp"
 #include "plugins/diagnose/scene/moving_objects.hpp"
 

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
-#include "pipeline/data/measurements.hpp"
+#include <crisp/findings.hpp>
+#include <crisp/measurements.hpp>
+
 #include "plugins/diagnose/noise/noise_model.hpp"
 #include "plugins/diagnose/scene/beam_association.hpp"
 

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/quality/rqe.hpp"
-#include "pipeline/quality/search.hpp"
-#include "pipeline/stage/registry.hpp"
+#include <crisp/cloud.hpp>
+#include <crisp/neighbour_search.hpp>
+#include <crisp/registrar.hpp>
+#include <crisp/rqe.hpp>
 
 namespace crisp {
 namespace {

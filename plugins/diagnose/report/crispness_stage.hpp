@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/quality/points.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/points.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp {
 

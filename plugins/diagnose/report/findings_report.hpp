@@ -3,7 +3,8 @@
 
 #include <string>
 
-#include "pipeline/data/rig.hpp"
+#include <crisp/rig.hpp>
+
 #include "plugins/diagnose/model/diagnosis.hpp"
 
 namespace crisp {

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
+
 #include "plugins/diagnose/scans/scan_series.hpp"
 
 namespace crisp {

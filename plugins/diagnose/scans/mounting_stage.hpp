@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "plugins/diagnose/scans/mounting.hpp"
 
 namespace crisp {

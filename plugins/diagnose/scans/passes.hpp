@@ -6,8 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
+#include <crisp/findings.hpp>
+#include <crisp/plate_trajectory.hpp>
+
 #include "plugins/diagnose/scans/scan_series.hpp"
 
 namespace crisp {

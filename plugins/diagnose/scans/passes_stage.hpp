@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/measurements.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "plugins/diagnose/scans/passes.hpp"
 
 namespace crisp {

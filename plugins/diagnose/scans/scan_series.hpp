@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/data/clock_map.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/data/rig.hpp"
-#include "pipeline/data/scan.hpp"
+#include <crisp/clock_map.hpp>
+#include <crisp/error.hpp>
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/rig.hpp>
+#include <crisp/scan.hpp>
 
 namespace crisp {
 

@@ -6,8 +6,9 @@
 #include <variant>
 #include <vector>
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "plugins/diagnose/scans/interleave.hpp"
 #include "plugins/diagnose/scans/stationary_fit_test.hpp"
 

@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "pipeline/data/fit_statistics.hpp"
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
 #include "plugins/diagnose/scans/scan_prediction_errors.hpp"
 
 namespace crisp {

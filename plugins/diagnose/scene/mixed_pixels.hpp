@@ -9,9 +9,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/quality/points.hpp"
+#include <crisp/findings.hpp>
+#include <crisp/measurements.hpp>
+#include <crisp/points.hpp>
+
 #include "plugins/diagnose/noise/noise_model.hpp"
 #include "plugins/diagnose/scene/beam_association.hpp"
 

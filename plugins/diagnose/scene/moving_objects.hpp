@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
+#include <crisp/findings.hpp>
 
 namespace crisp {
 

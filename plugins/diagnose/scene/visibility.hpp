@@ -7,9 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/data/findings.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
+#include <crisp/findings.hpp>
+#include <crisp/measurements.hpp>
+#include <crisp/plate_trajectory.hpp>
+
 #include "plugins/diagnose/scene/beam_association.hpp"
 
 namespace crisp {

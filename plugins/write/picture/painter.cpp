@@ -7,7 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/write/picture/colours.hpp"
 #include "plugins/write/picture/labels.hpp"

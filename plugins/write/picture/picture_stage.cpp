@@ -3,7 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
+
 #include "plugins/write/parts_options.hpp"
 #include "plugins/write/picture/painter.hpp"
 

@@ -5,8 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
 #include "plugins/write/picture/points.hpp"
 #include "plugins/write/picture/settings.hpp"
 

@@ -5,7 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/data/cloud.hpp"
+#include <crisp/cloud.hpp>
+
 #include "plugins/write/picture/settings.hpp"
 
 namespace crisp {

@@ -18,9 +18,10 @@
 #include <deque>
 #include <vector>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/emulate/emulator.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -17,15 +17,16 @@
 #include <iostream>
 #include <thread>
 
+#include <crisp/calibration_file.hpp>
+#include <crisp/effect_catalogue.hpp>
+#include <crisp/pipeline_file.hpp>
+#include <crisp/runner.hpp>
+
 #include "grabbers/capture/register.hpp"
 #include "grabbers/live/live_source.hpp"
 #include "grabbers/live/live_stage.hpp"
 #include "grabbers/record/record_stage.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/files/calibration_file.hpp"
-#include "pipeline/model/catalogue.hpp"
-#include "pipeline/stage/pipeline_file.hpp"
-#include "pipeline/stage/runner.hpp"
 #include "plugins/assemble/register.hpp"
 #include "plugins/calibrate/register.hpp"
 #include "plugins/calibrate/watch/register.hpp"

@@ -9,7 +9,7 @@
 #include <chrono>
 #include <fstream>
 
-#include "grabbers/wire/hub_item.hpp"
+#include <crisp/hub_item.hpp>
 
 namespace crisp {
 namespace {

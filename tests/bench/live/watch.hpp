@@ -9,9 +9,9 @@
 #include <thread>
 #include <vector>
 
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/stage/kind.hpp"
+#include <crisp/cloud.hpp>
+#include <crisp/kind.hpp>
+#include <crisp/measurements.hpp>
 
 namespace crisp {
 

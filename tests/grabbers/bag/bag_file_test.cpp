@@ -4,7 +4,8 @@
 #include <gmock/gmock.h>
 #include <zstd.h>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/grabbers/bag/bag_writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -6,8 +6,9 @@
 #include <limits>
 #include <numbers>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/bag/byte_cursor.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/grabbers/bag/bag_writer.hpp"
 
 namespace crisp {

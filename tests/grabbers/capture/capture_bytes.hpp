@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
+#include <crisp/scan.hpp>
+
 #include "grabbers/capture/byte_order.hpp"
 #include "grabbers/capture/network_frames.hpp"
 #include "grabbers/wire/scan_data.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp {
 

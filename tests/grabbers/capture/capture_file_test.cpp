@@ -5,7 +5,8 @@
 #include <pcap/pcap.h>
 #include <zlib.h>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/grabbers/capture/capture_bytes.hpp"
 #include "tests/grabbers/capture/temporary_folder.hpp"
 #include "tests/support/shared_data.hpp"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/capture/capture_reader.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <set>
 
+#include <crisp/capture_reader.hpp>
+#include <crisp/error.hpp>
+
 #include "grabbers/wire/plate_sentence.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/grabbers/capture/scenario.hpp"
 #include "tests/grabbers/capture/temporary_folder.hpp"
 

@@ -5,10 +5,11 @@
 #include <fstream>
 #include <utility>
 
+#include <crisp/error.hpp>
+#include <crisp/pipeline_file.hpp>
+#include <crisp/runner.hpp>
+
 #include "grabbers/capture/register.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/stage/pipeline_file.hpp"
-#include "pipeline/stage/runner.hpp"
 #include "tests/grabbers/capture/scenario.hpp"
 #include "tests/grabbers/capture/temporary_folder.hpp"
 

@@ -9,7 +9,8 @@
 #include <tins/tcp.h>
 #include <tins/udp.h>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/grabbers/capture/capture_bytes.hpp"
 
 namespace crisp {

@@ -7,7 +7,8 @@
 
 #include <csignal>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/grabbers/capture/temporary_folder.hpp"
 
 namespace crisp {

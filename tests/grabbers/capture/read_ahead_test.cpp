@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/grabbers/capture/scenario.hpp"
 #include "tests/grabbers/capture/temporary_folder.hpp"
 

@@ -4,7 +4,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "grabbers/capture/capture_reader.hpp"
+#include <crisp/capture_reader.hpp>
+
 #include "tests/support/shared_data.hpp"
 
 namespace crisp {

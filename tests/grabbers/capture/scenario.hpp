@@ -3,7 +3,8 @@
 
 #include <functional>
 
-#include "grabbers/capture/capture_reader.hpp"
+#include <crisp/capture_reader.hpp>
+
 #include "tests/grabbers/capture/capture_bytes.hpp"
 
 namespace crisp {

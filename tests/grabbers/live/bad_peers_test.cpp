@@ -6,11 +6,12 @@
 #include <future>
 #include <memory>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/emulate/emulator.hpp"
 #include "grabbers/live/live_source.hpp"
 #include "grabbers/wire/cola_message.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/grabbers/live/live_support.hpp"
 #include "tests/support/simulated_items.hpp"
 

@@ -9,13 +9,14 @@
 #include <future>
 #include <map>
 
-#include "grabbers/capture/capture_reader.hpp"
+#include <crisp/capture_reader.hpp>
+#include <crisp/error.hpp>
+
 #include "grabbers/emulate/emulator.hpp"
 #include "grabbers/simulate/recorded_capture.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/grabbers/live/live_support.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -11,8 +11,9 @@
 #include <thread>
 #include <vector>
 
+#include <crisp/rig.hpp>
+
 #include "grabbers/live/live_source.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp::test {
 

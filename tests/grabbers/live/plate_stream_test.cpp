@@ -11,8 +11,9 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/wire/plate_sentence.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/grabbers/live/live_support.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -10,9 +10,10 @@
 #include <thread>
 #include <vector>
 
+#include <crisp/scan.hpp>
+
 #include "grabbers/emulate/sick_responder.hpp"
 #include "grabbers/wire/cola_framer.hpp"
-#include "pipeline/data/scan.hpp"
 
 namespace crisp::test {
 

@@ -10,7 +10,8 @@
 #include <set>
 #include <sstream>
 
-#include "grabbers/capture/capture_reader.hpp"
+#include <crisp/capture_reader.hpp>
+
 #include "grabbers/emulate/emulator.hpp"
 #include "plugins/clock/laser_timing.hpp"
 #include "tests/grabbers/live/live_support.hpp"

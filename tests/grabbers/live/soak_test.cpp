@@ -8,9 +8,10 @@
 #include <cmath>
 #include <map>
 
+#include <crisp/clock_aligner.hpp>
+#include <crisp/online_aligner.hpp>
+
 #include "grabbers/emulate/emulator.hpp"
-#include "plugins/clock/clock_aligner.hpp"
-#include "plugins/clock/online_aligner.hpp"
 #include "tests/grabbers/live/live_support.hpp"
 #include "tests/support/simulated_items.hpp"
 

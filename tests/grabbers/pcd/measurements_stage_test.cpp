@@ -3,9 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <crisp/cloud.hpp>
+#include <crisp/cloud_conversion.hpp>
+
 #include "grabbers/pcd/cloud_stage.hpp"
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/pcd/cloud_conversion.hpp"
 #include "pipeline/pcd/parts.hpp"
 #include "plugins/write/measurements_stage.hpp"
 #include "tests/pipeline/pcd/sample_tables.hpp"

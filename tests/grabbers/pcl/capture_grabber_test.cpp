@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/pcl/capture_grabber.hpp"
-
 #include <gmock/gmock.h>
 
 #include <limits>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/capture_grabber.hpp>
+#include <crisp/error.hpp>
+
 #include "tests/grabbers/capture/scenario.hpp"
 #include "tests/grabbers/capture/temporary_folder.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/pcl/live_grabber.hpp"
-
 #include <gtest/gtest.h>
 
 #include <condition_variable>
+
+#include <crisp/live_grabber.hpp>
 
 #include "grabbers/emulate/emulator.hpp"
 #include "grabbers/simulate/recording.hpp"

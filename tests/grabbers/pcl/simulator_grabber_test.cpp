@@ -5,9 +5,10 @@
 
 #include <limits>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/recording.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/pcl/source_grabber.hpp"
-
 #include <gmock/gmock.h>
 
 #include <chrono>
 #include <future>
 #include <stdexcept>
+
+#include <crisp/source_grabber.hpp>
 
 #include "grabbers/pcl/paced_source.hpp"
 

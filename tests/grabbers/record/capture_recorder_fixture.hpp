@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "grabbers/capture/capture_reader.hpp"
+#include <crisp/capture_reader.hpp>
+
 #include "grabbers/record/capture_recorder.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -12,9 +12,10 @@
 #include <fstream>
 #include <thread>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/capture/capture_file.hpp"
 #include "grabbers/record/record_stage.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/grabbers/record/capture_recorder_fixture.hpp"
 #include "tests/support/simulated_items.hpp"
 #include "tests/support/stage_driver.hpp"

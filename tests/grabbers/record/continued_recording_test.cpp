@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cstring>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/capture/capture_file.hpp"
 #include "grabbers/capture/dissect.hpp"
 #include "grabbers/capture/network_frames.hpp"
 #include "grabbers/record/record_stage.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/grabbers/record/capture_recorder_fixture.hpp"
 #include "tests/support/simulated_items.hpp"
 #include "tests/support/stage_driver.hpp"

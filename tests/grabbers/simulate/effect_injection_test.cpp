@@ -5,8 +5,9 @@
 
 #include <cmath>
 
+#include <crisp/registrar.hpp>
+
 #include "grabbers/simulate/inject_stage.hpp"
-#include "pipeline/stage/registry.hpp"
 #include "tests/support/built_in_terms.hpp"
 #include "tests/support/stage_driver.hpp"
 

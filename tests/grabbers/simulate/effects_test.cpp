@@ -3,10 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/nominal_errors.hpp"
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -7,10 +7,11 @@
 #include <map>
 #include <numbers>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

@@ -5,7 +5,8 @@
 
 #include <cmath>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/grabbers/simulate/moments.hpp"
 
 namespace crisp {

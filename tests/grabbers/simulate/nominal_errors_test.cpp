@@ -5,9 +5,10 @@
 
 #include <cmath>
 
+#include <crisp/error.hpp>
+#include <crisp/rig.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/data/rig.hpp"
 
 namespace crisp {
 namespace {

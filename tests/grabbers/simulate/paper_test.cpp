@@ -6,9 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <crisp/sensor_model.hpp>
+
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
-#include "pipeline/model/sensor_model.hpp"
 
 namespace crisp {
 namespace {

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "grabbers/simulate/shapes.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/grabbers/simulate/random_direction.hpp"
 
 namespace crisp {

@@ -8,10 +8,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/support/source_dir.hpp"
 
 namespace crisp {

@@ -9,14 +9,15 @@
 #include <iterator>
 #include <map>
 
+#include <crisp/calibration_file.hpp>
+#include <crisp/error.hpp>
+
 #include "grabbers/capture/capture_file.hpp"
 #include "grabbers/capture/network_frames.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "grabbers/simulate/truth_file.hpp"
 #include "grabbers/wire/cola_framer.hpp"
 #include "grabbers/wire/plate_framer.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/calibration_file.hpp"
 
 namespace crisp {
 namespace {

@@ -9,10 +9,11 @@
 #include <numbers>
 #include <set>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "grabbers/capture/capture_reader.hpp"
+#include <crisp/capture_reader.hpp>
+#include <crisp/clock_aligner.hpp>
+#include <crisp/sensor_model.hpp>
+
 #include "grabbers/capture/item_merge.hpp"
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/nominal_errors.hpp"
@@ -13,8 +16,6 @@
 #include "grabbers/simulate/recorded_capture.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/degree.hpp"
-#include "pipeline/model/sensor_model.hpp"
-#include "plugins/clock/clock_aligner.hpp"
 
 namespace crisp {
 namespace {

@@ -5,10 +5,11 @@
 
 #include <algorithm>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/recording.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

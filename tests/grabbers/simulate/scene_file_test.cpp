@@ -7,9 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/support/source_dir.hpp"
 
 namespace crisp {

@@ -8,13 +8,14 @@
 #include <fstream>
 #include <sstream>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/calibration_file.hpp>
+#include <crisp/effect_catalogue.hpp>
+#include <crisp/error.hpp>
+#include <crisp/pipeline_file.hpp>
+#include <crisp/runner.hpp>
+
 #include "pipeline/files/findings_file.hpp"
-#include "pipeline/model/catalogue.hpp"
-#include "pipeline/stage/pipeline_file.hpp"
-#include "pipeline/stage/runner.hpp"
 #include "tests/support/source_dir.hpp"
 
 namespace crisp {

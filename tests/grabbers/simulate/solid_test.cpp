@@ -8,8 +8,9 @@
 #include <numbers>
 #include <vector>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/random.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/grabbers/simulate/random_direction.hpp"
 
 namespace crisp {

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <crisp/sensor_model.hpp>
+
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/nominal_errors.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/model/sensor_model.hpp"
 #include "tests/support/built_in_terms.hpp"
 
 namespace crisp {

@@ -5,9 +5,10 @@
 
 #include <cmath>
 
+#include <crisp/deskew.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
-#include "plugins/assemble/deskew.hpp"
 
 namespace crisp {
 namespace {
@@ -35,7 +36,7 @@ Eigen::Vector3d point_of(const Rig& rig, double tilt, double mirror, float range
   TableItems items({.angle_column = 1, .range_column = 2}, {.start_angle = mirror, .angle_step = 0.1}, rig);
   for (const std::int64_t t : {0, 10}) items.add({.time_ns = t * kMs, .angle = tilt, .ranges = {range}});
   const auto beams = items.take_measurements();
-  KnownMirrors mirrors;
+  MirrorAngleCache mirrors;
   const auto cloud =
       deskew(*beams.at(0), items.trajectory(), SensorModel(nominal_calibration(rig)), mirrors).cloud;
   const auto& p = cloud->points.at(0);
@@ -71,7 +72,7 @@ TEST(FixedBeam, IsALaserWhoseMirrorAngleNeverChanges) {
   }
   const auto beams = items.take_measurements();
   ASSERT_EQ(beams.size(), 1U);
-  KnownMirrors mirrors;
+  MirrorAngleCache mirrors;
   const auto cloud =
       deskew(*beams[0], items.trajectory(), SensorModel(nominal_calibration(tilting(0, 0))), mirrors).cloud;
   EXPECT_NEAR(cloud->points.at(0).x, std::sqrt(3.0) / 2, 1e-6);

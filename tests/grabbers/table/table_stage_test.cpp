@@ -7,11 +7,12 @@
 #include <fstream>
 #include <numbers>
 
+#include <crisp/measurements.hpp>
+#include <crisp/pipeline_file.hpp>
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/runner.hpp>
+
 #include "grabbers/table/register.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/stage/pipeline_file.hpp"
-#include "pipeline/stage/runner.hpp"
 #include "tests/support/source_dir.hpp"
 #include "tests/support/temporary_folder.hpp"
 

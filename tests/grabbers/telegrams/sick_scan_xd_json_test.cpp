@@ -7,7 +7,7 @@
 #include <sstream>
 #include <streambuf>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

@@ -6,10 +6,11 @@
 
 #include <fstream>
 
-#include "grabbers/capture/capture_reader.hpp"
+#include <crisp/capture_reader.hpp>
+#include <crisp/error.hpp>
+
 #include "grabbers/wire/cola_message.hpp"
 #include "grabbers/wire/scan_data.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"

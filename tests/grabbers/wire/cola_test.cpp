@@ -3,7 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/grabbers/wire/samples.hpp"
 
 namespace crisp {

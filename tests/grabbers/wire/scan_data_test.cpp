@@ -5,7 +5,8 @@
 
 #include <numeric>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/grabbers/wire/samples.hpp"
 
 namespace crisp {

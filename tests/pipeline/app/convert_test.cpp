@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "pipeline/pcd/cloud_conversion.hpp"
+#include <crisp/cloud_conversion.hpp>
+
 #include "pipeline/pcd/parts.hpp"
 #include "tests/pipeline/app/program_fixture.hpp"
 

@@ -2,7 +2,7 @@
 // A plugin that another compiler could have made: nothing of it may be called.
 #include <cstdlib>
 
-#include "pipeline/stage/plugin.hpp"
+#include <crisp/plugin.hpp>
 
 namespace {
 void never_called(crisp::Registrar&) { std::abort(); }

@@ -4,11 +4,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/app/builtin.hpp"
-#include "pipeline/files/calibration_file.hpp"
+#include <crisp/builtin.hpp>
+#include <crisp/calibration_file.hpp>
+#include <crisp/pipeline_file.hpp>
+
 #include "pipeline/files/findings_file.hpp"
 #include "pipeline/files/renamed_names.hpp"
-#include "pipeline/stage/pipeline_file.hpp"
+#include "pipeline/stage/pipeline_plan.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {

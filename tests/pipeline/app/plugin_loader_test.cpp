@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/plugin_loader.hpp"
-
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -8,8 +6,10 @@
 
 #include <cstring>
 
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/stage/plugin.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/plugin.hpp>
+#include <crisp/plugin_loader.hpp>
+
 #include "tests/pipeline/stage/toy_stages.hpp"
 #include "tests/support/temporary_folder.hpp"
 

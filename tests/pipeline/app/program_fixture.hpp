@@ -16,7 +16,8 @@
 #include <thread>
 #include <vector>
 
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
+
 #include "pipeline/files/yaml.hpp"
 
 namespace crisp {

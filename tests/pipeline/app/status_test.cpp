@@ -6,10 +6,11 @@
 #include <boost/asio/write.hpp>
 #include <sstream>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/app/metrics_server.hpp"
 #include "pipeline/app/progress.hpp"
 #include "pipeline/app/status_board.hpp"
-#include "pipeline/data/error.hpp"
 
 namespace crisp {
 namespace {

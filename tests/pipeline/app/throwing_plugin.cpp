@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A plugin that registers a stage, and then throws what nobody expects.
-#include "pipeline/stage/plugin.hpp"
+#include <crisp/plugin.hpp>
+
 #include "tests/pipeline/stage/toy_stages.hpp"
 
 namespace crisp::toy {

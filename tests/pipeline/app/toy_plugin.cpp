@@ -7,9 +7,10 @@
 #include <fstream>
 #include <thread>
 
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/plugin.hpp>
+
 #include "pipeline/files/yaml.hpp"
-#include "pipeline/stage/plugin.hpp"
 #include "tests/pipeline/stage/toy_stages.hpp"
 
 namespace crisp::toy {

@@ -5,7 +5,8 @@
 
 #include <csignal>
 
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
+
 #include "pipeline/files/folder_lock.hpp"
 #include "tests/support/temporary_folder.hpp"
 

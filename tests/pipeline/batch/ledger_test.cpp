@@ -3,8 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <crisp/atomic_file.hpp>
+
 #include "pipeline/batch/plan.hpp"
-#include "pipeline/files/atomic_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {

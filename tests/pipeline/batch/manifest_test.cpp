@@ -5,9 +5,10 @@
 
 #include <fstream>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/batch/last_batch.hpp"
 #include "pipeline/batch/manifest_line.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {

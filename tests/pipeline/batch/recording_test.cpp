@@ -3,10 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
+
 #include "pipeline/batch/glob.hpp"
 #include "pipeline/batch/output_name.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/atomic_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {

@@ -5,7 +5,8 @@
 
 #include <fstream>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {

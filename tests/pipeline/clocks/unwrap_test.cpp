@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

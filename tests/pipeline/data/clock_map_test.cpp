@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/data/clock_map.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <type_traits>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/clock_map.hpp>
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/data/error.hpp"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <system_error>
+
+#include <crisp/error.hpp>
 
 #include "pipeline/data/internal_error.hpp"
 #include "pipeline/data/resource_exhaustion.hpp"

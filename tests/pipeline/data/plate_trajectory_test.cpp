@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/data/plate_trajectory.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <optional>
 #include <vector>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/plate_trajectory.hpp>
 
 namespace crisp {
 namespace {

@@ -6,8 +6,9 @@
 #include <Eigen/Dense>
 #include <limits>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/shapes.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {

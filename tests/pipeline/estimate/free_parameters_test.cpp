@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/data/rig.hpp"
+#include <crisp/error.hpp>
+#include <crisp/rig.hpp>
 
 namespace crisp {
 namespace {

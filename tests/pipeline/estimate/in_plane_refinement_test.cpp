@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/paper.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 

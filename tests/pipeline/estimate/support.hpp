@@ -5,11 +5,12 @@
 #include <memory>
 #include <numbers>
 
+#include <crisp/measure.hpp>
+
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "pipeline/data/degree.hpp"
 #include "pipeline/estimate/sample.hpp"
-#include "pipeline/quality/measure.hpp"
 
 namespace crisp {
 

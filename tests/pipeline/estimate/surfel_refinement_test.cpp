@@ -5,7 +5,8 @@
 
 #include <Eigen/LU>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {

@@ -3,7 +3,8 @@
 
 #include <Eigen/LU>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/parameter_prior.hpp"
 #include "pipeline/estimate/requested_terms.hpp"

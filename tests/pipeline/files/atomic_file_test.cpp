@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/files/atomic_file.hpp"
-
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -10,7 +8,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

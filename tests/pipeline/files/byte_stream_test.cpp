@@ -16,8 +16,8 @@
 #include <iterator>
 #include <memory>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/data/interrupted.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/files/calibration_file.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include <crisp/calibration_file.hpp>
+
+#include "pipeline/files/calibration_yaml.hpp"
 #include "tests/pipeline/files/errors_of.hpp"
 #include "tests/support/source_dir.hpp"
 

@@ -11,7 +11,8 @@
 #include <optional>
 #include <thread>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/files/lock_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/files/rig_file.hpp"
-
 #include <gmock/gmock.h>
 
 #include <fstream>
 
+#include <crisp/rig_file.hpp>
+
 #include "pipeline/data/degree.hpp"
+#include "pipeline/files/rig_yaml.hpp"
 #include "tests/pipeline/files/errors_of.hpp"
 #include "tests/support/source_dir.hpp"
 

@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/model/mirror_angle_cache.hpp"
+#include <crisp/sensor_model.hpp>
+
 #include "tests/pipeline/model/support.hpp"
 #include "tests/support/instruction_sets.hpp"
 
@@ -124,7 +125,8 @@ Measurements scan_of(std::uint16_t laser, float first_angle, unsigned seed) {
   return scan;
 }
 
-std::vector<double> coordinates(const SensorModel& model, const Measurements& beams, KnownMirrors& known) {
+std::vector<double> coordinates(const SensorModel& model, const Measurements& beams,
+                                MirrorAngleCache& known) {
   std::vector<double> all;
   const TakePlaced take = [&](const PlacedRun& run) {
     for (const auto& axis : {run.x, run.y, run.z}) all.insert(all.end(), axis.begin(), axis.end());
@@ -135,12 +137,12 @@ std::vector<double> coordinates(const SensorModel& model, const Measurements& be
 
 TEST_P(BaseKinematics, KeepsSinesFromScanToScanAndNoticesOtherAngles) {
   const SensorModel bare(three_lasers());
-  KnownMirrors known;
+  MirrorAngleCache known;
   unsigned seed = 0;
   for (const auto& [laser, first_angle] : std::vector<std::pair<std::uint16_t, float>>{
            {0, -2.3F}, {0, -2.3F}, {1, -2.3F}, {0, -2.2978F}, {0, -2.3F}, {1, 1.0F}, {0, -2.3F}, {1, 1.0F}}) {
     const Measurements scan = scan_of(laser, first_angle, ++seed);
-    KnownMirrors none;
+    MirrorAngleCache none;
     const auto kept = coordinates(bare, scan, known);
     EXPECT_EQ(kept.size(), 3 * scan.size());
     EXPECT_EQ(kept, coordinates(bare, scan, none)) << seed;

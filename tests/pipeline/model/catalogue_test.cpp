@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/model/catalogue.hpp"
-
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -9,7 +7,9 @@
 #include <regex>
 #include <set>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/effect_catalogue.hpp>
+#include <crisp/error.hpp>
+
 #include "tests/pipeline/model/terms_support.hpp"
 #include "tests/support/source_dir.hpp"
 

@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/pipeline/model/support.hpp"
 
 namespace crisp {

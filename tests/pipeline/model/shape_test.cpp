@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "pipeline/model/beam.hpp"
+#include <crisp/beam.hpp>
 
 namespace crisp {
 namespace {

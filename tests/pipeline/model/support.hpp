@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <crisp/sensor_model.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/model/sensor_model.hpp"
 
 namespace crisp {
 

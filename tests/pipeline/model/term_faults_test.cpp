@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/model/catalogue.hpp"
-#include "pipeline/model/sensor_model.hpp"
+#include <crisp/effect_catalogue.hpp>
+#include <crisp/error.hpp>
+#include <crisp/sensor_model.hpp>
 
 namespace crisp {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/model/term.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/term.hpp>
+
 #include "tests/pipeline/model/support.hpp"
 
 namespace crisp {

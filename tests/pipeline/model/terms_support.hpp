@@ -3,7 +3,8 @@
 
 #include <map>
 
-#include "pipeline/model/catalogue.hpp"
+#include <crisp/effect_catalogue.hpp>
+
 #include "tests/pipeline/model/support.hpp"
 #include "tests/support/built_in_terms.hpp"
 

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 #include <pcl/io/pcd_io.h>
 
-#include "pipeline/pcd/cloud_conversion.hpp"
+#include <crisp/cloud_conversion.hpp>
+
 #include "tests/pipeline/pcd/sample_tables.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/pcd/measurement_tables.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/measurement_tables.hpp>
+
 #include "pipeline/pcd/parts.hpp"
 #include "tests/pipeline/pcd/sample_tables.hpp"
 #include "tests/support/temporary_folder.hpp"

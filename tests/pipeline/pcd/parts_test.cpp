@@ -3,9 +3,10 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/measurement_tables.hpp>
+
 #include "pipeline/files/list_files.hpp"
-#include "pipeline/pcd/measurement_tables.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace crisp {

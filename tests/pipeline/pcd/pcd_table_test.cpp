@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/pcd/pcd_table.hpp"
-
 #include <gmock/gmock.h>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/pcd/cloud_conversion.hpp"
+#include <crisp/cloud_conversion.hpp>
+#include <crisp/error.hpp>
+#include <crisp/pcd_table.hpp>
+
 #include "tests/pipeline/pcd/sample_tables.hpp"
 #include "tests/support/temporary_folder.hpp"
 

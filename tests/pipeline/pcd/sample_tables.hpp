@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
+#include <crisp/cloud.hpp>
+#include <crisp/measurements.hpp>
+#include <crisp/plate_trajectory.hpp>
 
 namespace crisp::test {
 

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "pipeline/quality/rqe.hpp"
+#include <crisp/rqe.hpp>
+
 #include "pipeline/quality/searches.hpp"
 #include "pipeline/quality/spatial_order.hpp"
 #include "pipeline/quality/sum_on_lattice.hpp"

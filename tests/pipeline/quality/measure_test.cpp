@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/quality/measure.hpp"
-
 #include <gtest/gtest.h>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/quality/rqe.hpp"
+#include <crisp/error.hpp>
+#include <crisp/measure.hpp>
+#include <crisp/rqe.hpp>
+
 #include "tests/pipeline/quality/clouds.hpp"
 
 namespace crisp {

@@ -5,7 +5,7 @@
 #include <exception>
 #include <iostream>
 
-#include "pipeline/quality/pcl_rqe.hpp"
+#include <crisp/pcl_rqe.hpp>
 
 int main() try {
   const auto once = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();

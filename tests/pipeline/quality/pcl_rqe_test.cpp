@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/quality/pcl_rqe.hpp"
-
 #include <gtest/gtest.h>
 #include <pcl/point_types.h>
 
 #include <limits>
 
-#include "pipeline/data/cloud.hpp"
+#include <crisp/cloud.hpp>
+#include <crisp/pcl_rqe.hpp>
+
 #include "tests/pipeline/quality/clouds.hpp"
 
 namespace crisp {

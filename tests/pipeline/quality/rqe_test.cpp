@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/quality/rqe.hpp"
-
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -8,7 +6,9 @@
 #include <limits>
 #include <numeric>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+#include <crisp/rqe.hpp>
+
 #include "tests/pipeline/quality/clouds.hpp"
 
 namespace crisp {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/quality/search.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/quality/rqe.hpp"
+#include <crisp/error.hpp>
+#include <crisp/neighbour_search.hpp>
+#include <crisp/rqe.hpp>
+
 #include "tests/pipeline/quality/awkward_clouds.hpp"
 
 namespace crisp {

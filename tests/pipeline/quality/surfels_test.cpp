@@ -6,7 +6,8 @@
 
 #include <limits>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/pipeline/quality/room.hpp"
 
 namespace crisp {

@@ -9,7 +9,8 @@
 #include <limits>
 #include <random>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/pipeline/quality/clouds.hpp"
 
 namespace crisp {

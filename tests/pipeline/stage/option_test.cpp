@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "pipeline/stage/option_set.hpp"
+#include <crisp/option_set.hpp>
 
 namespace crisp {
 namespace {

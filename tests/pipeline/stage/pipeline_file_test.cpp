@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/pipeline_file.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/pipeline_file.hpp>
+
+#include "pipeline/stage/pipeline_plan.hpp"
 #include "tests/pipeline/stage/toy_stages.hpp"
 #include "tests/support/source_dir.hpp"
 

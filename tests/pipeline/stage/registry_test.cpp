@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/registry.hpp"
-
 #include <gmock/gmock.h>
+
+#include <crisp/registrar.hpp>
 
 #include "tests/pipeline/stage/toy_stages.hpp"
 

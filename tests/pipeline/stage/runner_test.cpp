@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/runner.hpp"
-
 #include <gmock/gmock.h>
 
 #include <atomic>
 #include <chrono>
 #include <map>
 #include <thread>
+
+#include <crisp/runner.hpp>
 
 #include "tests/pipeline/stage/toy_stages.hpp"
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/stage/context.hpp"
-#include "pipeline/stage/description.hpp"
-#include "pipeline/stage/registry.hpp"
+#include <crisp/context.hpp>
+#include <crisp/registrar.hpp>
+#include <crisp/stage_description.hpp>
 
 namespace crisp::toy {
 

@@ -6,13 +6,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/data/error.hpp"
-#include "pipeline/data/measurements.hpp"
-#include "pipeline/data/plate_trajectory.hpp"
-#include "pipeline/model/catalogue.hpp"
-#include "pipeline/stage/registry.hpp"
-#include "pipeline/stage/runner.hpp"
+#include <crisp/cloud.hpp>
+#include <crisp/effect_catalogue.hpp>
+#include <crisp/error.hpp>
+#include <crisp/measurements.hpp>
+#include <crisp/plate_trajectory.hpp>
+#include <crisp/registrar.hpp>
+#include <crisp/runner.hpp>
+
 #include "tests/support/stage_driver.hpp"
 
 namespace crisp {

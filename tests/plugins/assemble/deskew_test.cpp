@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/assemble/deskew.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/data/rig.hpp"
+#include <crisp/deskew.hpp>
+#include <crisp/rig.hpp>
 
 namespace crisp {
 namespace {
@@ -25,7 +24,7 @@ PlateTrajectory once_a_second() {
 
 /// Deskews a scan without predecessors.
 Deskewed deskew(const Measurements& beams, const PlateTrajectory& plate, const SensorModel& model) {
-  KnownMirrors none;
+  MirrorAngleCache none;
   return deskew(beams, plate, model, none);
 }
 

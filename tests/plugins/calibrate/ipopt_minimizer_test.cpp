@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
 
 namespace crisp {
 namespace {

@@ -3,9 +3,10 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/files/calibration_file.hpp"
-#include "pipeline/model/catalogue.hpp"
-#include "pipeline/stage/registry.hpp"
+#include <crisp/calibration_file.hpp>
+#include <crisp/effect_catalogue.hpp>
+#include <crisp/registrar.hpp>
+
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -3,8 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <crisp/sensor_model.hpp>
+
 #include "pipeline/data/oriented_plate.hpp"
-#include "pipeline/model/sensor_model.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {

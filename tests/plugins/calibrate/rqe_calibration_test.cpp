@@ -3,8 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/shapes.hpp"
-#include "pipeline/data/error.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {

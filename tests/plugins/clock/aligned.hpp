@@ -9,8 +9,9 @@
 #include <memory>
 #include <numeric>
 
-#include "plugins/clock/clock_aligner.hpp"
-#include "plugins/clock/online_aligner.hpp"
+#include <crisp/clock_aligner.hpp>
+#include <crisp/online_aligner.hpp>
+
 #include "tests/plugins/clock/simulated_scanner.hpp"
 
 namespace crisp::test {

@@ -4,7 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/stage/runner.hpp"
+#include <crisp/runner.hpp>
+
 #include "plugins/clock/register.hpp"
 #include "tests/plugins/clock/simulated_scanner.hpp"
 

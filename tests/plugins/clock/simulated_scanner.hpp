@@ -10,8 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include <crisp/scan.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/scan.hpp"
 #include "tests/support/simulated_stamps.hpp"
 
 namespace crisp::test {

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <random>
 
-#include "pipeline/quality/rqe.hpp"
+#include <crisp/rqe.hpp>
+
 #include "pipeline/quality/searches.hpp"
 #include "tests/pipeline/quality/awkward_clouds.hpp"
 #include "tests/plugins/cuda/runners.hpp"

@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/data/error.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
 #include "plugins/diagnose/model/diagnosis.hpp"
 #include "tests/support/built_in_terms.hpp"

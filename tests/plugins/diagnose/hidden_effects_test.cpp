@@ -7,7 +7,8 @@
 #include <functional>
 #include <utility>
 
-#include "pipeline/data/interrupted.hpp"
+#include <crisp/error.hpp>
+
 #include "plugins/diagnose/report/findings_report.hpp"
 #include "tests/plugins/diagnose/hidden.hpp"
 #include "tests/plugins/diagnose/noise/drawn.hpp"

@@ -2,7 +2,8 @@
 // A term that a plugin adds takes part in the diagnosis like built-in ones.
 #include <gmock/gmock.h>
 
-#include "pipeline/model/catalogue.hpp"
+#include <crisp/effect_catalogue.hpp>
+
 #include "tests/plugins/diagnose/hidden.hpp"
 
 namespace crisp {

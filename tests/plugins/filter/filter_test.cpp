@@ -3,10 +3,11 @@
 
 #include <limits>
 
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/data/error.hpp"
+#include <crisp/cloud.hpp>
+#include <crisp/error.hpp>
+#include <crisp/first_in_voxel.hpp>
+
 #include "plugins/filter/limits_stages.hpp"
-#include "plugins/filter/pcl_first_in_voxel.hpp"
 #include "plugins/filter/voxel_stage.hpp"
 #include "tests/support/stage_driver.hpp"
 

@@ -3,10 +3,11 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/data/error.hpp"
-#include "pipeline/files/atomic_file.hpp"
-#include "pipeline/files/calibration_file.hpp"
-#include "pipeline/pcd/cloud_conversion.hpp"
+#include <crisp/atomic_file.hpp>
+#include <crisp/calibration_file.hpp>
+#include <crisp/cloud_conversion.hpp>
+#include <crisp/error.hpp>
+
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -3,7 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/stage/registry.hpp"
+#include <crisp/registrar.hpp>
+
 #include "tests/support/built_in_terms.hpp"
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"

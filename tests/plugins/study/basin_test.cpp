@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "plugins/study/basin_text.hpp"
 #include "tests/plugins/study/rqe.hpp"
 

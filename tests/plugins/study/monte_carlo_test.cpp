@@ -7,8 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/scenes.hpp"
-#include "pipeline/data/error.hpp"
 #include "plugins/study/table.hpp"
 #include "tests/plugins/study/rqe.hpp"
 

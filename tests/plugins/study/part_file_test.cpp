@@ -9,7 +9,8 @@
 #include <list>
 #include <set>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "plugins/study/basin_text.hpp"
 #include "plugins/study/run_json.hpp"
 #include "plugins/study/table.hpp"

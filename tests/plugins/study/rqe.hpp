@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "pipeline/quality/measure.hpp"
+#include <crisp/measure.hpp>
 
 namespace crisp::test {
 

@@ -7,11 +7,12 @@
 #include <cmath>
 #include <numbers>
 
+#include <crisp/error.hpp>
+
 #include "grabbers/simulate/paper.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "grabbers/simulate/shapes.hpp"
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/error.hpp"
 #include "plugins/study/bound_text.hpp"
 #include "plugins/study/refinement_accuracy.hpp"
 

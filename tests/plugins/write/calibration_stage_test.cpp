@@ -3,8 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/files/calibration_file.hpp"
-#include "pipeline/stage/pipeline.hpp"
+#include <crisp/calibration_file.hpp>
+#include <crisp/pipeline.hpp>
+
 #include "plugins/write/register.hpp"
 
 namespace crisp {

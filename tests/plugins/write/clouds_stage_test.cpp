@@ -7,7 +7,8 @@
 #include <fstream>
 #include <thread>
 
-#include "pipeline/pcd/cloud_conversion.hpp"
+#include <crisp/cloud_conversion.hpp>
+
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"
 

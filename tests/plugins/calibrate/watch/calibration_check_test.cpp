@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "tests/plugins/calibrate/watch/support.hpp"
 
 namespace crisp {

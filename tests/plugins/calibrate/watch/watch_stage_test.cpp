@@ -5,7 +5,8 @@
 
 #include <fstream>
 
-#include "pipeline/stage/registry.hpp"
+#include <crisp/registrar.hpp>
+
 #include "tests/plugins/calibrate/watch/support.hpp"
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"

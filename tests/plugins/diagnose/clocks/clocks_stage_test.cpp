@@ -5,7 +5,8 @@
 
 #include <cmath>
 
-#include "pipeline/data/scan.hpp"
+#include <crisp/scan.hpp>
+
 #include "tests/support/stage_driver.hpp"
 
 namespace crisp {

@@ -8,8 +8,9 @@
 #include <numbers>
 #include <random>
 
+#include <crisp/findings.hpp>
+
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/findings.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/diagnose/clocks/angle_shifts.hpp"
 #include "plugins/diagnose/clocks/encoder_stage.hpp"

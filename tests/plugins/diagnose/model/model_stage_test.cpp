@@ -3,7 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/stage/registry.hpp"
+#include <crisp/registrar.hpp>
+
 #include "tests/plugins/diagnose/hidden.hpp"
 #include "tests/support/stage_driver.hpp"
 

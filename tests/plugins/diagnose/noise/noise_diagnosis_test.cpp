@@ -9,7 +9,8 @@
 #include <map>
 #include <random>
 
-#include "pipeline/model/catalogue.hpp"
+#include <crisp/effect_catalogue.hpp>
+
 #include "plugins/diagnose/noise/common_mode_range_error.hpp"
 #include "plugins/diagnose/noise/jackknife.hpp"
 #include "plugins/diagnose/noise/likelihood_gain.hpp"

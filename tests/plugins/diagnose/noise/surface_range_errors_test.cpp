@@ -7,9 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#include <crisp/registrar.hpp>
+
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/shared_errors.hpp"
-#include "pipeline/stage/registry.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 #include "plugins/diagnose/noise/goodness_of_fit.hpp"
 #include "plugins/diagnose/noise/noise_diagnosis.hpp"

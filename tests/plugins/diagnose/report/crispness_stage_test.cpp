@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/quality/search.hpp"
-#include "pipeline/stage/runner.hpp"
+#include <crisp/cloud.hpp>
+#include <crisp/neighbour_search.hpp>
+#include <crisp/runner.hpp>
+
 #include "plugins/diagnose/register.hpp"
 
 namespace crisp {

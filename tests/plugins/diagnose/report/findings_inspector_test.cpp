@@ -3,7 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/data/error.hpp"
+#include <crisp/error.hpp>
+
 #include "pipeline/files/findings_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "pipeline/pcd/measurement_tables.hpp"
+#include <crisp/measurement_tables.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 4) return 2;

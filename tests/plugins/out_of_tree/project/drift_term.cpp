@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <crisp/term.hpp>
+
 #include "example.hpp"
-#include "pipeline/model/term.hpp"
 
 namespace {
 

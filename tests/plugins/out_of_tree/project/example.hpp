@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pipeline/stage/registry.hpp"
+#include <crisp/registrar.hpp>
 
 void register_near_stage(crisp::Registrar& registrar);
 void register_drift_term(crisp::Registrar& registrar);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
+#include <crisp/cloud.hpp>
+#include <crisp/context.hpp>
+
 #include "example.hpp"
-#include "pipeline/data/cloud.hpp"
-#include "pipeline/stage/context.hpp"
 
 namespace {
 

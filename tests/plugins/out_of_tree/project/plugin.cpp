@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/plugin.hpp"
+#include <crisp/plugin.hpp>
 
 #include "example.hpp"
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
+#include <crisp/term.hpp>
+
 #include "example.hpp"
-#include "pipeline/model/term.hpp"
 
 namespace {
 

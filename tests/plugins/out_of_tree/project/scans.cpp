@@ -5,7 +5,7 @@
 #include <iostream>
 #include <memory>
 
-#include "grabbers/pcl/capture_grabber.hpp"  // crisp::pcl
+#include <crisp/capture_grabber.hpp>  // crisp::pcl
 
 int main(int argc, char** argv) try {
   if (argc != 2) return 2;

@@ -5,9 +5,9 @@
 #include <exception>
 #include <iostream>
 
-#include "pipeline/pcd/cloud_conversion.hpp"      // crisp::pcd
-#include "pipeline/quality/pcl_rqe.hpp"           // crisp::pcl_rqe
-#include "plugins/filter/pcl_first_in_voxel.hpp"  // crisp::filter
+#include <crisp/cloud_conversion.hpp>  // crisp::pcd
+#include <crisp/first_in_voxel.hpp>    // crisp::filter
+#include <crisp/pcl_rqe.hpp>           // crisp::pcl_rqe
 
 int main(int argc, char** argv) try {
   if (argc != 3) return 2;

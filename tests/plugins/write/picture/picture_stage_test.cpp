@@ -7,7 +7,8 @@
 
 #include <fstream>
 
-#include "pipeline/files/atomic_file.hpp"
+#include <crisp/atomic_file.hpp>
+
 #include "tests/plugins/write/picture/support.hpp"
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"

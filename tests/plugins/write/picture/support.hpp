@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "pipeline/data/cloud.hpp"
+#include <crisp/cloud.hpp>
 
 namespace crisp::test {
 

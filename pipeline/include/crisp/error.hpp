@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace crisp {
+
+/// A place in a file that a person wrote. Lines and columns start at 1; 0 means "not known".
+struct Place {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+/// "file:line:column", as much of it as is known.
+std::string to_string(const Place& place);
+
+/// The one exception of crisp: what is wrong, where, and what to do about it. Damaged input is no Error but a
+/// counted loss; an Error means that the requested job cannot be done.
+class Error : public std::runtime_error {
+ public:
+  explicit Error(std::string what, std::string advice = {}, Place place = {});
+
+  const std::string& message() const { return message_; }
+  const std::string& advice() const { return advice_; }
+  const Place& place() const { return place_; }
+
+  /// The same, and that it is an option of a stage that is wrong, whose place the pipeline knows.
+  Error of_option(std::string name) const;
+  const std::string& option() const { return option_; }  ///< empty: none
+
+ private:
+  std::string message_;
+  std::string advice_;
+  Place place_;
+  std::string option_;
+};
+
+/// Several errors found in one go (all mistakes of a pipeline at once).
+class Errors : public Error {
+ public:
+  explicit Errors(std::vector<Error> errors);
+  const std::vector<Error>& all() const { return errors_; }
+
+ private:
+  std::vector<Error> errors_;
+};
+
+/// Thrown by work that was stopped before its end.
+class Interrupted : public std::runtime_error {
+ public:
+  Interrupted() : std::runtime_error("interrupted") {}
+};
+
+}  // namespace crisp

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl/filters/filter.h>
+
+#include <pcl/impl/pcl_base.hpp>  // the definitions too: PCL compiles them for its own points only
+
+#include <crisp/voxels.hpp>
+
+namespace crisp {
+
+/// As pcl::VoxelGrid, but keeps the first point of each voxel as it is, with all its fields (a mean of points
+/// has no time, no laser and no beam), and the order of the points.
+///
+///     crisp::FirstInVoxel<pcl::PointXYZI> thin;
+///     thin.setLeafSize(0.05);
+///     thin.setInputCloud(cloud);
+///     thin.filter(thinned);
+template <class PointT>
+class FirstInVoxel : public pcl::Filter<PointT> {
+ public:
+  FirstInVoxel() { this->filter_name_ = "FirstInVoxel"; }
+
+  /// @param size [m] of a voxel's edge
+  /// @throws Error unless it is a number above 0
+  void setLeafSize(double size) {
+    [[maybe_unused]] const Voxels checked(size);
+    size_ = size;
+  }
+  double getLeafSize() const { return size_; }
+
+  /// Number of points without a voxel that the last filter() dropped: they are no numbers, or 2^31 voxels or
+  /// more from the origin.
+  std::size_t getTooFar() const { return too_far_; }
+
+ protected:
+  void applyFilter(pcl::PointCloud<PointT>& output) override {
+    Voxels voxels(size_);
+    output.clear();
+    too_far_ = 0;
+    for (const auto index : *this->indices_) {
+      const PointT& point = (*this->input_)[index];
+      const InVoxel found = voxels.put(point.x, point.y, point.z);
+      if (found == InVoxel::first) output.push_back(point);
+      if (found == InVoxel::too_far || found == InVoxel::nowhere) ++too_far_;
+    }
+    output.header = this->input_->header;
+  }
+
+ private:
+  double size_ = 0.05;
+  std::size_t too_far_ = 0;
+};
+
+}  // namespace crisp

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <concepts>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <crisp/atomic_file.hpp>
+#include <crisp/pcd_header.hpp>
+
+namespace crisp {
+
+template <class T>
+concept PcdNumber =
+    (std::integral<T> && !std::same_as<T, bool>) || std::same_as<T, float> || std::same_as<T, double>;
+
+/// The points of a PCD file as named columns, and the notes of its header. In memory a column follows the
+/// other, as in a binary_compressed file.
+class PcdTable {
+ public:
+  explicit PcdTable(std::size_t rows) { header_.points = rows; }
+  /// @param columns all the fields' values, one field after the other, in the header's order
+  /// @param surplus number of points in the file beyond the header's count, which were not read
+  PcdTable(PcdHeader header, std::string columns, std::size_t surplus = 0);
+
+  std::size_t rows() const { return header_.points; }
+  std::size_t surplus() const { return surplus_; }
+  const PcdHeader& header() const { return header_; }
+  std::string_view bytes() const { return columns_; }
+  bool has(std::string_view field) const { return header_.find(field) != nullptr; }
+
+  /// 16 hexadecimal digits that differ where the columns do.
+  std::string digest() const;
+
+  /// Sets a note of crisp in the header's comments; neither key nor value may hold blanks.
+  void set_note(const std::string& key, std::string value) { header_.notes[key] = std::move(value); }
+
+  /// Adds a column: `value_of(row)` gives each row's value.
+  template <PcdNumber T, class ValueOf>
+  void add(std::string name, ValueOf value_of) {
+    constexpr char kType = std::floating_point<T> ? 'F' : std::signed_integral<T> ? 'I' : 'U';
+    header_.fields.push_back({.name = std::move(name), .type = kType, .size = sizeof(T)});
+    std::size_t end = columns_.size();
+    columns_.resize(end + rows() * sizeof(T));
+    for (std::size_t row = 0; row < rows(); ++row, end += sizeof(T)) {
+      const T value = value_of(row);
+      std::memcpy(columns_.data() + end, &value, sizeof(T));
+    }
+  }
+
+  /// A column's values as numbers of type T, whatever type the file has them in.
+  /// @throws Error if there is no such column of single elements, or a value is beyond a whole number T
+  template <PcdNumber T>
+  std::vector<T> column(std::string_view name) const;
+
+ private:
+  PcdHeader header_;
+  std::string columns_;
+  std::size_t surplus_ = 0;
+};
+
+/// Writes a PCD file in the requested format; a binary_compressed one can hold 4 GB. The same table
+/// gives the same bytes.
+/// @param out nothing was written to it; it is not committed
+/// @throws Error if the points are too many for the format, or the disk is full
+void write_pcd(AtomicFile& out, const PcdTable& table, PcdFormat format);
+
+/// Reads a PCD file of any origin.
+/// @throws Error if it cannot be read, its header is invalid, or its content does not match the header, in
+///         ASCII a point a line
+PcdTable read_pcd(const std::filesystem::path& file);
+
+/// The same from memory. Needs no more memory than some 300 times the bytes, whatever the header claims.
+/// @param name of the file, for errors
+PcdTable parse_pcd(std::string_view bytes, const std::string& name);
+
+/// Runs `read`, and puts the file's name before what it complains of.
+template <class Read>
+auto about(const std::filesystem::path& file, Read read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    throw Error(file.string() + ": " + error.message(), error.advice());
+  }
+}
+
+}  // namespace crisp

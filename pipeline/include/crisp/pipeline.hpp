@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <crisp/context.hpp>
+#include <crisp/error.hpp>
+#include <crisp/registrar.hpp>
+
+namespace crisp {
+
+/// A tag that a person wrote, and where.
+struct TagReference {
+  std::string tag;
+  Place place;
+};
+
+/// One stage of a pipeline as requested.
+struct StageSpec {
+  std::string stage = {};                                ///< name in the registry
+  std::string tag = {};                                  ///< empty: the stage's name
+  std::optional<std::vector<TagReference>> inputs = {};  ///< absent: the nearest stages above that fit
+  std::map<std::string, OptionValue> with = {};          ///< the options that are not at their default
+  std::set<std::string> refused = {};                    ///< options with invalid values, already reported
+  std::map<std::string, Place> places = {};              ///< where the options were given
+  Place place = {};
+};
+
+/// Tags each stage without a tag by its name, numbered from the second of that name on.
+void name_stages(std::vector<StageSpec>& specs);
+
+/// One stage of a pipeline, constructed, configured and connected.
+struct PipelineNode {
+  const StageType* type = nullptr;
+  std::string tag;
+  Place place;
+  std::map<std::string, Place> option_places;  ///< of those that were given
+  bool has_valid_options = true;               ///< its options, each by itself, are right
+  std::unique_ptr<Stage> stage;
+  std::vector<std::vector<std::size_t>> feeders;  ///< for each of the type's inputs, the nodes that feed it
+
+  /// The place of the option, or else of the stage.
+  const Place& place_of(const std::string& option) const {
+    const auto given = option_places.find(option);
+    return given != option_places.end() ? given->second : place;
+  }
+  OptionValue value(const Option& option) const { return option.get(type->options_object(*stage)); }
+};
+
+/// Something that is probably not meant, but can be run.
+struct PipelineWarning {
+  std::string text;
+  Place place;
+};
+
+/// Stages in an order in which each is fed only by those before it.
+struct Pipeline {
+  std::vector<PipelineNode> nodes;
+  std::vector<PipelineWarning> warnings;
+};
+
+/// Constructs the stages, sets their options and connects them by kind. Opens no file.
+///
+/// An input without `inputs` is fed by the nearest stage above that gives its kind; with `inputs`, by all the
+/// stages named there that give it, and by no other.
+/// @throws Errors all the mistakes that were found
+Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run);
+
+/// The same, but adds mistakes to `errors` instead of throwing, so that a caller can report its own with
+/// them. The pipeline is complete only if no error was added.
+/// @param rig_is_known  otherwise stages are not checked against it
+Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run, std::vector<Error>& errors,
+                        bool rig_is_known = true);
+
+}  // namespace crisp

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <typeindex>
+#include <vector>
+
+#include <crisp/inspector.hpp>
+#include <crisp/stage_description.hpp>
+
+namespace crisp {
+
+/// The stages that are known, by name.
+class StageRegistry {
+ public:
+  /// @throws Error if the name is taken or malformed, or the description is incomplete or contradicts itself
+  void add(StageType type);
+
+  const StageType* find(const std::string& name) const;  ///< nullptr if there is none
+  std::vector<const StageType*> all() const;             ///< by name
+  std::vector<std::string> names() const;
+  std::vector<std::string> givers(const Kind& kind) const;  ///< names of the stages that give it
+
+ private:
+  std::map<std::string, StageType> types_;
+};
+
+/// Argument of a family's or plugin's `void register_xxx(Registrar&)`. Stages have their registry here;
+/// registries of other things (terms of the sensor model, measures …) are attached by the program, so that
+/// this library need not know them:
+///
+///     registrar.stage<DeskewStage>();
+///     registrar.get<TermRegistry>().add(...);
+class Registrar {
+ public:
+  template <class S>
+  void stage() {
+    StageType type = describe_stage<S>();
+    type.origin = origin_;
+    stages_.add(std::move(type));
+  }
+  /// For `crisp info`: describes files of one more kind. The first inspector that recognises a file is used.
+  void inspector(Inspector inspector) { inspectors_.push_back(std::move(inspector)); }
+  const Inspectors& inspectors() const { return inspectors_; }
+
+  StageRegistry& stages() { return stages_; }
+  const StageRegistry& stages() const { return stages_; }
+
+  /// Adds a registry, which must outlive the registrar.
+  /// @param kind  what one thing in it is called, if all are to be listed: "term"
+  template <class R>
+  void attach(R& registry, std::string kind = {}) {
+    Attached& other = others_[typeid(R)];
+    other.registry = &registry;
+    other.kind = std::move(kind);
+    if constexpr (requires { registry.names(); }) {
+      other.names = [&registry] { return registry.names(); };
+      other.snapshot = [&registry] { return [&registry, was = registry] { registry = was; }; };
+    }
+  }
+  /// @throws Error if no registry of this type is attached
+  template <class R>
+  R& get() const {
+    return *static_cast<R*>(other(typeid(R)));
+  }
+
+  /// All registered names, in order: "stage write.pcd", "term mirror.cone".
+  std::vector<std::string> registered() const;
+  /// Returns a function that undoes all later registrations.
+  std::function<void()> snapshot();
+
+  /// Sets the origin of the next registrations: "built in", or a plugin's file.
+  void set_origin(std::string origin) { origin_ = std::move(origin); }
+  const std::string& origin() const { return origin_; }
+
+ private:
+  /// A registry of things that are not stages.
+  struct Attached {
+    void* registry = nullptr;
+    std::string kind;
+    std::function<std::vector<std::string>()> names;
+    std::function<std::function<void()>()> snapshot;
+  };
+
+  void* other(std::type_index type) const;
+
+  StageRegistry stages_;
+  Inspectors inspectors_;
+  std::map<std::type_index, Attached> others_;
+  std::string origin_ = "built in";
+};
+
+}  // namespace crisp

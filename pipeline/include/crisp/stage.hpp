@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <span>
+#include <utility>
+
+#include <crisp/error.hpp>
+#include <crisp/kind.hpp>
+
+namespace crisp {
+
+class Context;
+struct RunSettings;
+
+/// Inputs of a stage's call: the item that drives the call, and the latest of every held kind.
+class Inputs {
+ public:
+  explicit Inputs(std::span<const Item> items) : items_(items) {}
+
+  /// The item of kind T, or nullptr: of a held kind the latest, of a driving kind the one that this call is
+  /// for.
+  template <class T>
+  const T* find() const {
+    return share<T>().get();
+  }
+  /// @throws Error if there is no item of this kind
+  template <class T>
+  const T& get() const {
+    const T* item = find<T>();
+    if (!item)
+      throw Error("there is no " + std::string(KindName<T>::value) + " here",
+                  "let describe() take it, or test by find()");
+    return *item;
+  }
+  /// As find(), for stages that keep the item beyond the call.
+  template <class T>
+  std::shared_ptr<const T> share() const {
+    for (const auto& item : items_) {
+      if (auto value = item.as<T>()) return value;
+    }
+    return nullptr;
+  }
+
+ private:
+  std::span<const Item> items_;
+};
+
+/// Receives a stage's items. A given item runs through the stages below before give() returns.
+class Outputs {
+ public:
+  explicit Outputs(std::function<void(Item)> sink) : sink_(std::move(sink)) {}
+
+  template <class T>
+  void give(std::shared_ptr<const T> item) {
+    sink_(Item::of<T>(std::move(item)));
+  }
+  template <class T>
+  void give(std::shared_ptr<T> item) {
+    give(std::shared_ptr<const T>(std::move(item)));
+  }
+  template <class T>
+  void give(T item) {
+    give(std::make_shared<const T>(std::move(item)));
+  }
+
+ private:
+  std::function<void(Item)> sink_;
+};
+
+/// One step of a pipeline. A class S derived from it also has `static void describe(StageDescription<S>&)`.
+class Stage {
+ public:
+  Stage() = default;
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+  virtual ~Stage() = default;
+
+  /// Called once all options are set, before any file is opened: throws an Error for what the declarations of
+  /// single options cannot check (a minimum above a maximum, a laser that the rig does not have).
+  virtual void check(const RunSettings&) const {}
+
+  /// Called for each item of a driving kind, once everything that the stage holds is there. A stage that
+  /// takes nothing is a source: it is called once and gives everything that it has.
+  virtual void process(const Inputs& in, Outputs& out, Context& context) = 0;
+
+  /// Called once, after the last item; gives what a whole set was needed for.
+  virtual void finish(Outputs&, Context&) {}
+};
+
+}  // namespace crisp

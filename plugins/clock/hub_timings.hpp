@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <crisp/alignment.hpp>
+#include <crisp/rig.hpp>
+
+#include "pipeline/data/pool.hpp"
+#include "plugins/clock/laser_timing.hpp"
+#include "plugins/clock/plate_timing.hpp"
+
+namespace crisp {
+
+/// An aligner's tracks of a rig's devices.
+class HubTimings {
+ public:
+  HubTimings(const Rig& rig, const AlignmentSettings& settings);
+
+  /// Notes that something was received. @return [s since the epoch] when
+  double arrive(std::int64_t receipt_ns);
+  /// [s] How long nothing had come from any device when this is received.
+  double pause_before(std::int64_t receipt_ns) const;
+  /// Forgets all but the epoch and where the plate was: what comes now is of another recording.
+  void begin_anew();
+  /// The track that a scan belongs to; nullptr, and counted, if the rig has no such laser.
+  LaserTiming* track_of(const Scan& scan);
+
+  std::vector<LaserTiming>& lasers() { return lasers_; }
+  const std::vector<LaserTiming>& lasers() const { return lasers_; }
+  /// Measurements of a scan, on the hub's clock.
+  std::shared_ptr<const Measurements> measurements_of(const TimedScan& scan);
+  PlateTiming& plate() { return plate_; }
+  const PlateTiming& plate() const { return plate_; }
+  std::int64_t epoch_ns() const { return epoch_ns_; }
+  double now() const { return now_; }  ///< [s since the epoch] latest receipt
+
+  std::uint64_t scans_received() const;  ///< of use or not
+  bool has_scans() const;                ///< of any laser
+  bool has_readings() const;             ///< of the plate, two or more
+  /// @throws Error as Aligner::finish()
+  void refuse_if_missing() const;
+  void finish_clocks();
+  std::vector<DeviceReport> reports() const;
+  AlignmentReport report() const;
+
+ private:
+  Rig rig_;
+  AlignmentSettings settings_;
+  std::vector<LaserTiming> lasers_;
+  PlateTiming plate_;
+  Pool<Measurements> measurements_;
+  std::int64_t epoch_ns_ = 0;
+  bool begun_ = false;
+  std::optional<double> begin_;  ///< [s since the epoch] of the present recording
+  double now_ = 0;
+  std::uint64_t unknown_lasers_ = 0;
+  std::uint64_t back_in_time_ = 0;
+};
+
+}  // namespace crisp
