@@ -44,7 +44,7 @@ class Examples(unittest.TestCase):
             if not text.startswith("crisp: 1\n") and not text.startswith("crisp: 1 "):
                 continue
             if "stage: example." in text:
-                continue  # a plugin's, which tests/plugins/out_of_tree runs
+                continue  # a plugin's, which tests/installed runs
             count += 1
             if "\nlasers:" in text:
                 rigs["tilt.yaml"] = text  # of the pipeline that follows it

@@ -160,7 +160,7 @@ def crisp(words):
 
 
 def outcome(words):
-    if "--plugin" in words:  # tests/plugins/out_of_tree runs the example's
+    if "--plugin" in words:  # tests/installed runs the example's
         return 0, "", ""
     return {"check": check, "run": run}[os.environ["PAGES_HOW"]](words)
 

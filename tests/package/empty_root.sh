@@ -78,7 +78,7 @@ in_root apt-get -q -y install --no-install-recommends -o Dpkg::Use-Pty=0 \
 
 step "use"
 mkdir "$work/root/tmp/work"
-cp -r "$here/use.sh" "$source/tests/plugins/out_of_tree/project" "$work/root/tmp/work/"
+cp -r "$here/use.sh" "$source/tests/examples" "$work/root/tmp/work/"
 PYTHONPATH="$source/tests/docs" /usr/bin/python3 -B -c 'import code_blocks, pathlib, sys
 print(next(block.text for block in code_blocks.code_blocks(pathlib.Path(sys.argv[1])) if block.is_python))' \
   "$source/README.md" >"$work/root/tmp/work/readme.py"

@@ -23,10 +23,10 @@ bash -c 'source /usr/share/bash-completion/completions/crisp
 COMP_WORDS=(crisp run picture --set calibrati) COMP_CWORD=4; _crisp; test "${COMPREPLY[*]}" = calibration='
 
 # A plugin, and programs that use the libraries
-cmake -G Ninja -S project -B build >/dev/null
+cmake -G Ninja -S examples -B build >/dev/null
 cmake --build build -- --quiet
 crisp plugins --plugin build/example.so | grep -q example.near
-crisp run project/near.yaml -i project/cloud.pcd -o near --plugin build/example.so --quiet
+crisp run examples/near.yaml -i examples/cloud.pcd -o near --plugin build/example.so --quiet
 grep -q '^POINTS 2$' near/near.pcd
-build/thin project/cloud.pcd 4
-build/scans hub.pcap
+build/cloud_entropy examples/cloud.pcd 4
+build/count_scans hub.pcap

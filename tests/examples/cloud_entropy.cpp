@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// thin CLOUD.pcd SIZE: how many points of a cloud remain with one in each voxel of SIZE metres, and how crisp
-// it is.
+// cloud_entropy CLOUD.pcd SIZE: how crisp a cloud is, and how many of its points remain with one in each
+// voxel of SIZE metres.
 #include <cstdlib>
 #include <exception>
 #include <iostream>

@@ -9,6 +9,7 @@ void register_all(crisp::Registrar& registrar) {
   register_near_stage(registrar);
   register_drift_term(registrar);
   register_ripple_term(registrar);
+  register_spread_measure(registrar);
 }
 
 }  // namespace

@@ -6,3 +6,4 @@
 void register_near_stage(crisp::Registrar& registrar);
 void register_drift_term(crisp::Registrar& registrar);
 void register_ripple_term(crisp::Registrar& registrar);
+void register_spread_measure(crisp::Registrar& registrar);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// compare BEAMS.pcd DRIFTED.pcd RATE: do the ranges of the second recording fall behind the first's by RATE
-// m/s?
+// compare_ranges BEAMS.pcd DRIFTED.pcd RATE: do the ranges of the second recording fall behind the first's by
+// RATE m/s?
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

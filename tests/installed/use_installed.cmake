@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs the build, moves it, builds the example project against it, and runs crisp with its plugin.
+# Installs the build, moves it, compiles each public header alone against it, builds the examples, and runs them and
+# crisp with their plugin.
 cmake_minimum_required(VERSION 3.25)
 
-set(work "${build}/tests/out_of_tree")
+set(work "${build}/installed_package")
 set(prefix "${work}/moved")
 set(crisp "${prefix}/bin/crisp")
-set(project "${CMAKE_CURRENT_LIST_DIR}/project")
+set(project "${CMAKE_CURRENT_LIST_DIR}/../examples")
 unset(ENV{LD_LIBRARY_PATH})
 unset(ENV{CRISP_PLUGINS})
 
@@ -52,9 +53,23 @@ endforeach()
 run(${CMAKE_COMMAND} --install "${build}" --prefix "${work}/installed")
 file(RENAME "${work}/installed" "${prefix}")  # nothing may depend on where it was installed
 
-run(${CMAKE_COMMAND} -G Ninja -S "${project}" -B "${work}/build" -D CMAKE_PREFIX_PATH=${prefix}
-    -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_BUILD_TYPE=Debug)
-run(${CMAKE_COMMAND} --build "${work}/build")
+# build_against_installed(<source folder> <build folder>)
+function(build_against_installed source folder)
+  run(${CMAKE_COMMAND} -G Ninja -S "${source}" -B "${folder}" -D CMAKE_PREFIX_PATH=${prefix}
+      -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_BUILD_TYPE=Debug)
+  run(${CMAKE_COMMAND} --build "${folder}")
+endfunction()
+
+# The public headers are all that is installed, and none needs another one before it.
+file(GLOB public RELATIVE "${CMAKE_CURRENT_LIST_DIR}/../../pipeline/include"
+     "${CMAKE_CURRENT_LIST_DIR}/../../pipeline/include/crisp/*.hpp")
+file(GLOB_RECURSE headers RELATIVE "${prefix}/${include}" "${prefix}/${include}/*")
+if(NOT public OR NOT "${headers}" STREQUAL "${public}")
+  message(FATAL_ERROR "the public headers are ${public}, but these are installed: ${headers}")
+endif()
+build_against_installed("${CMAKE_CURRENT_LIST_DIR}/headers" "${work}/headers")
+
+build_against_installed("${project}" "${work}/build")
 
 # A plugin that is named
 run(${crisp} plugins --plugin "${work}/build/example.so")
@@ -75,10 +90,10 @@ foreach(rate IN ITEMS 0 0.1)
   run(${crisp} run "${project}/drift.yaml" -o "${work}/drift_${rate}"
       --set "grabber.simulate.effects={example.drift: {rate: ${rate}}}")
 endforeach()
-run("${work}/build/compare" "${work}/drift_0/beams.pcd" "${work}/drift_0.1/beams.pcd" 0.1)
+run("${work}/build/compare_ranges" "${work}/drift_0/beams.pcd" "${work}/drift_0.1/beams.pcd" 0.1)
 
 # What hides in a capture is named by the plugin's term, and the calibration extended by it.
-set(configs "${CMAKE_CURRENT_LIST_DIR}/../../../configs")
+set(configs "${prefix}/share/crisp/configs")
 run(${crisp} run "${configs}/simulate.yaml" -o "${work}/hidden" --set grabber.simulate.duration=4s
     --set "grabber.simulate.effects={laser3.example.ripple: {a: 11mm}}")
 run(${crisp} run "${configs}/diagnose.yaml" -i "${work}/hidden/hub.pcap" -o "${work}/diagnosed")
@@ -93,9 +108,30 @@ file(READ "${work}/diagnosed/calibration.yaml" calibration)
 if(NOT calibration MATCHES "example.ripple")
   message(FATAL_ERROR "the calibration does not hold what was found:\n${calibration}")
 endif()
+
+# The plugin's measure can be minimized.
+file(WRITE "${work}/spread.yaml" "crisp: 1
+pipeline:
+  - stage: grabber.capture
+    with: {file: \"${work}/hidden/hub.pcap\"}
+  - stage: clock.convex_hull
+  - stage: calibrate.rqe
+    with: {measure: example.spread}
+")
+run(${crisp} validate "${work}/spread.yaml")
+
+# A diagnosis in a program, with the plugin's term among the candidates
+run("${work}/build/diagnose_capture" "${work}/hidden/hub.pcap" "${work}/build/example.so")
+if(NOT output MATCHES "laser3: example.ripple, a = ([0-9.]+) ± [^ ]+ m\n1 findings\n")
+  message(FATAL_ERROR "a ripple was hidden in laser3, but the program found this:\n${output}")
+endif()
+if(CMAKE_MATCH_1 LESS 0.0108 OR CMAKE_MATCH_1 GREATER 0.0112)  # [m] four standard errors about the truth
+  message(FATAL_ERROR "the ripple's amplitude is 11 mm, but the program found ${CMAKE_MATCH_1} m")
+endif()
+
 # Programs of PCL's manner
-run("${work}/build/thin" "${project}/cloud.pcd" 4)
+run("${work}/build/cloud_entropy" "${project}/cloud.pcd" 4)
 expect_output(" of 3 points, RQE ")
-run(${crisp} run "${prefix}/share/crisp/configs/simulate.yaml" -o "${work}/made" --set grabber.simulate.duration=1s)
-run("${work}/build/scans" "${work}/made/hub.pcap")
+run(${crisp} run "${configs}/simulate.yaml" -o "${work}/made" --set grabber.simulate.duration=1s)
+run("${work}/build/count_scans" "${work}/made/hub.pcap")
 expect_output("150 scans, ")
