@@ -30,11 +30,11 @@ struct PlateMotionSettings {
 
 /// How stamps become hub times.
 struct AlignmentSettings {
-  TimeSource source = TimeSource::clock;
-  double drift = 200e-6 / 3600;  ///< [1/s] largest change of a clock's rate in a second
+  TimeSource source = TimeSource::clock;  ///< where the measurements' hub times come from
+  double drift = 200e-6 / 3600;           ///< [1/s] largest change of a clock's rate in a second
   std::optional<double> window;  ///< [s] stretch of stamps that one line is fitted to; none: automatic
   double margin = 0.25;          ///< [s] by which a trajectory covers more than its measurements' times
-  PlateMotionSettings plate;
+  PlateMotionSettings plate;     ///< how readings become the motion between them
   std::optional<unsigned> mirror_half_width;  ///< stamps on either side that smooth the mirror's motion
 };
 
@@ -52,19 +52,19 @@ struct SilentTime {
 
 /// Counts of one device's telegrams or readings.
 struct DeviceReport {
-  std::string device;             ///< the rig's name of it
-  std::optional<ClockMap> clock;  ///< nothing where no stamp was of use
-  std::size_t stamps = 0;         ///< that its clock is fitted to
-  std::uint64_t received = 0;
-  std::uint64_t lost = 0;      ///< by the gaps of its counter; 0 where it has none
-  std::uint64_t repeated = 0;  ///< came twice: left out
-  std::uint64_t late = 0;      ///< came after later ones: left out
-  std::uint64_t standing = 0;  ///< carry the stamp of their predecessor, but another count: left out
-  std::uint64_t damaged = 0;   ///< with times that fit nothing before or after: left out
-  std::uint64_t resets = 0;    ///< of its clock
-  double standstill = 0;       ///< [s] for how long at most its clock stood still
-  bool by_receipt = false;     ///< its clock stands still: receipts count instead
-  std::vector<SilentTime> silences;
+  std::string device;                  ///< the rig's name of it
+  std::optional<ClockMap> clock;       ///< nothing where no stamp was of use
+  std::size_t stamps = 0;              ///< that its clock is fitted to
+  std::uint64_t received = 0;          ///< telegrams or readings, of use or not
+  std::uint64_t lost = 0;              ///< by the gaps of its counter; 0 where it has none
+  std::uint64_t repeated = 0;          ///< came twice: left out
+  std::uint64_t late = 0;              ///< came after later ones: left out
+  std::uint64_t standing = 0;          ///< carry the stamp of their predecessor, but another count: left out
+  std::uint64_t damaged = 0;           ///< with times that fit nothing before or after: left out
+  std::uint64_t resets = 0;            ///< of its clock
+  double standstill = 0;               ///< [s] for how long at most its clock stood still
+  bool by_receipt = false;             ///< its clock stands still: receipts count instead
+  std::vector<SilentTime> silences;    ///< of 1 s and more, in their order; at most about 1000
   std::vector<StampStep> clock_steps;  ///< by how much its clock jumped: forwards
   std::vector<StampStep> delay_steps;  ///< by how much its shortest delay grew
 
@@ -76,11 +76,11 @@ struct DeviceReport {
 struct AlignmentReport {
   std::vector<DeviceReport>
       devices;  ///< the lasers in the order of the rig, then the plate; of each recording
-  std::map<std::string, std::uint64_t> counts;
-  std::vector<std::string> warnings;
-  std::vector<std::string> caveats;  ///< why the times cannot be trusted
-  std::vector<StampStep> hub_steps;  ///< by how much the hub's clock was set: forwards
-  double hub_deviation = 0;          ///< [s] by how much at most it deviated from a steady one
+  std::map<std::string, std::uint64_t> counts;  ///< losses and other events, by name
+  std::vector<std::string> warnings;            ///< what a person should know
+  std::vector<std::string> caveats;             ///< why the times cannot be trusted
+  std::vector<StampStep> hub_steps;             ///< by how much the hub's clock was set: forwards
+  double hub_deviation = 0;                     ///< [s] by how much at most it deviated from a steady one
 
   /// Adds what was done of another recording.
   void append(AlignmentReport other);
@@ -88,8 +88,9 @@ struct AlignmentReport {
 
 /// Receives an alignment's results: the plate's trajectory over a time first, then measurements in it.
 struct AlignmentSink {
-  std::function<void(PlateTrajectory)> trajectory;
-  std::function<void(std::shared_ptr<const Measurements>)> measurements;
+  std::function<void(PlateTrajectory)> trajectory;  ///< receives φ(t) over the measurements that come next
+  std::function<void(std::shared_ptr<const Measurements>)>
+      measurements;  ///< receives the measurements of one scan
 };
 
 /// From scans and readings in the order of receipt to measurements and the plate's trajectory on the hub's
@@ -103,6 +104,7 @@ class Aligner {
 
   /// @throws Error if a device's clock cannot be used at all
   virtual void add(std::shared_ptr<const Scan> scan) = 0;
+  /// @throws Error if the plate's clock cannot be used at all
   virtual void add(const PlateReading& reading) = 0;
   /// Hands out all that is left.
   /// @throws Error if there was no scan of any laser, or no encoder reading

@@ -29,6 +29,7 @@ class AllErrors {
   void keep_of(Action&& action) {
     for_each_error(action, [&](const Error& error) { add(error); });
   }
+  /// Keeps one error.
   void add(Error error) { errors_.push_back(std::move(error)); }
   /// @throws Errors  all that were kept, if there are any
   void throw_any() {

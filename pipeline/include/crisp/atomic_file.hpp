@@ -47,8 +47,8 @@ class AtomicFile {
   /// @throws Error that names the file, if the disk is full or fails
   void commit();
 
-  const std::filesystem::path& path() const { return file_; }
-  const std::filesystem::path& aside() const { return aside_; }
+  const std::filesystem::path& path() const { return file_; }    ///< the file's name once it is complete
+  const std::filesystem::path& aside() const { return aside_; }  ///< the file that is written until then
 
  private:
   struct Close {

@@ -49,6 +49,7 @@ struct Beam {
   Vector3<T> direction = Vector3<T>::Zero();  ///< unit vector
   T range{};                                  ///< [m]
 
+  /// The measured point [m], in the frame that origin and direction are in.
   Vector3<T> point() const { return origin + direction * range; }
 };
 

@@ -16,6 +16,7 @@ class Builtin {
   Builtin(const Builtin&) = delete;
   Builtin& operator=(const Builtin&) = delete;
 
+  /// All that is known by name; valid as long as this object.
   Registrar& registrar() { return registrar_; }
 
  private:

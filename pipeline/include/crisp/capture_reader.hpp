@@ -24,7 +24,9 @@ class CaptureReader final : public ItemSource {
   ~CaptureReader() override;
   CaptureReader(const CaptureReader&) = delete;
   CaptureReader& operator=(const CaptureReader&) = delete;
+  /// Goes on where the other reader was.
   CaptureReader(CaptureReader&&) noexcept;
+  /// Goes on where the other reader was.
   CaptureReader& operator=(CaptureReader&&) noexcept;
 
   /// The next item of one of the rig's devices; nothing at the end of the capture.

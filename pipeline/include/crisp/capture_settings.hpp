@@ -9,7 +9,7 @@ namespace crisp {
 
 /// Settings for parsing a capture.
 struct CaptureSettings {
-  EncoderWidths encoder_widths = EncoderWidths::Position32;
+  EncoderWidths encoder_widths = EncoderWidths::Position32;  ///< of encoders that are wired to lasers
   double max_wait = 5;                     ///< [s] of capture time that a lost TCP segment is waited for
   std::function<bool()> interrupted = {};  ///< polled while a capture is read from a pipe: whether to give up
 };

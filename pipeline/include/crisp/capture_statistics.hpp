@@ -15,6 +15,7 @@ namespace crisp {
 /// Events, mostly losses, by a name that a person understands: "packets cut short by the capture".
 class Counts {
  public:
+  /// Adds n events of this name.
   void add(std::string_view name, std::uint64_t n = 1) {
     if (n == 0) return;
     const auto found = counts_.find(name);
@@ -24,14 +25,18 @@ class Counts {
       counts_.emplace(name, n);
     }
   }
+  /// Adds all events of another list.
   void add(const Counts& other) {
     for (const auto& [name, n] : other.counts_) add(name, n);
   }
+  /// The number of events of this name; 0 if there was none.
   std::uint64_t of(std::string_view name) const {
     const auto found = counts_.find(name);
     return found == counts_.end() ? 0 : found->second;
   }
+  /// All numbers, by name.
   const std::map<std::string, std::uint64_t, std::less<>>& all() const { return counts_; }
+  /// Whether all numbers are the same.
   bool operator==(const Counts&) const = default;
 
  private:
@@ -46,17 +51,17 @@ enum class DeviceKind : std::uint8_t { Laser, Plate };
 
 /// The shape of a laser's scans, by its last telegram.
 struct ScanShape {
-  std::size_t beams = 0;
-  double start_angle = 0;  ///< [rad] as the device reports it
-  double angle_step = 0;   ///< [rad]
-  std::size_t echoes = 0;
-  bool remissions = false;
-  bool encoder = false;
+  std::size_t beams = 0;    ///< of one scan
+  double start_angle = 0;   ///< [rad] as the device reports it
+  double angle_step = 0;    ///< [rad]
+  std::size_t echoes = 0;   ///< of one beam, at most
+  bool remissions = false;  ///< whether it sends any
+  bool encoder = false;     ///< whether its telegrams carry an encoder's readings
 };
 
 /// Statistics of one device in a capture.
 struct DeviceStatistics {
-  DeviceKind kind = DeviceKind::Laser;
+  DeviceKind kind = DeviceKind::Laser;        ///< what sends such telegrams
   std::string name;                           ///< as the rig calls it; empty if the rig does not know it
   Address address;                            ///< from where its packets came
   std::uint64_t items = 0;                    ///< different scans or readings
@@ -65,7 +70,8 @@ struct DeviceStatistics {
   Counts telegrams;                           ///< all that it sent, by kind
   Counts losses;                              ///< what is missing, by reason
   Counts notes;                               ///< what was out of the ordinary without loss
-  std::int64_t first_ns = 0, last_ns = 0;     ///< [ns since the Unix epoch] receipt of first and last item
+  std::int64_t first_ns = 0;                  ///< [ns since the Unix epoch] receipt of the first item
+  std::int64_t last_ns = 0;                   ///< [ns since the Unix epoch] receipt of the last item
   double longest_silence = 0;                 ///< [s] between two items, pauses between recordings included
   std::int64_t silence_ns = 0;                ///< [ns since the Unix epoch] when that began
   std::uint64_t pauses = 0;                   ///< between recordings: nothing came from any device
@@ -78,7 +84,7 @@ struct DeviceStatistics {
   std::optional<double> period;  ///< [s] of the mirror, measured by the laser's own clock, median
   std::optional<double> skew;    ///< hub seconds per second of its clock, less 1: a rough estimate
   double nominal_frequency = 0;  ///< [Hz] that a laser claims
-  ScanShape shape;
+  ScanShape shape;               ///< of a laser's scans
 
   /// [Hz] items a second within recordings, 0 for fewer than two.
   double rate() const;
@@ -89,15 +95,16 @@ struct DeviceStatistics {
 
 /// Statistics of a capture, with its losses.
 struct CaptureStatistics {
-  std::uint64_t packets = 0;
-  std::uint64_t bytes = 0;                 ///< of the packets
-  std::uint64_t file_bytes = 0;            ///< read from the file
-  std::int64_t first_ns = 0, last_ns = 0;  ///< [ns since the Unix epoch] of the packets
-  std::uint64_t pauses = 0;                ///< of kPause and more, between recordings: nothing came at all
-  double paused = 0;                       ///< [s] in all
-  Counts link_types;                       ///< packets by link type
-  Counts losses;                           ///< what the file or the network lost, not attributed to a device
-  Counts notes;
+  std::uint64_t packets = 0;         ///< in the capture, of any sender
+  std::uint64_t bytes = 0;           ///< of the packets
+  std::uint64_t file_bytes = 0;      ///< read from the file
+  std::int64_t first_ns = 0;         ///< [ns since the Unix epoch] time of the first packet
+  std::int64_t last_ns = 0;          ///< [ns since the Unix epoch] time of the last packet
+  std::uint64_t pauses = 0;          ///< of kPause and more, between recordings: nothing came at all
+  double paused = 0;                 ///< [s] in all
+  Counts link_types;                 ///< packets by link type
+  Counts losses;                     ///< what the file or the network lost, not attributed to a device
+  Counts notes;                      ///< what was out of the ordinary without loss
   std::vector<std::string> remarks;  ///< on the order of the packets
   std::vector<DeviceStatistics>
       devices;  ///< the rig's in its order, then the unknown ones in order of address

@@ -29,6 +29,7 @@ class ClockAligner final : public Aligner {
   ~ClockAligner() override;
 
   void add(std::shared_ptr<const Scan> scan) override;
+  /// @throws Error if the plate's clock cannot be used at all
   void add(const PlateReading& reading) override;
   AlignmentReport finish() override;
 

@@ -19,22 +19,24 @@ struct ClockPiece {
 /// known has no map.
 class ClockPieces {
  public:
+  /// A map of one piece.
   explicit ClockPieces(const ClockPiece& first) : pieces_{first} {}
   /// @throws Error unless they ascend
   ClockPieces(const ClockPiece& first, const std::vector<ClockPiece>& others);
 
   /// @throws Error unless it begins after the last one
   void append(const ClockPiece& piece);
+  /// Puts a piece in the place of the last one. @throws Error unless it begins after the one before that
   void replace_last(const ClockPiece& piece);
   /// Removes the last piece. @return whether there was another one before it; the first stays
   bool drop_last();
 
-  const ClockPiece& front() const { return pieces_.front(); }
-  const ClockPiece& back() const { return pieces_.back(); }
-  const ClockPiece& operator[](std::size_t i) const { return pieces_[i]; }
-  std::size_t size() const { return pieces_.size(); }
-  auto begin() const { return pieces_.begin(); }
-  auto end() const { return pieces_.end(); }
+  const ClockPiece& front() const { return pieces_.front(); }               ///< the first piece
+  const ClockPiece& back() const { return pieces_.back(); }                 ///< the last piece
+  const ClockPiece& operator[](std::size_t i) const { return pieces_[i]; }  ///< piece i, from 0
+  std::size_t size() const { return pieces_.size(); }                       ///< number of pieces, ≥ 1
+  auto begin() const { return pieces_.begin(); }  ///< of the pieces, in the order of device time
+  auto end() const { return pieces_.end(); }      ///< of the pieces
 
  private:
   std::vector<ClockPiece> pieces_;

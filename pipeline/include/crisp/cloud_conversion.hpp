@@ -14,9 +14,10 @@ namespace crisp {
 /// A cloud as a PCD table: fields x y z intensity laser beam time, and the note epoch_ns, all exactly.
 PcdTable to_pcd_table(const Cloud& cloud);
 
+/// A cloud that was made of a PCD table, and what it could not keep.
 struct ConvertedCloud {
-  std::shared_ptr<Cloud> cloud;
-  std::size_t not_finite = 0;  ///< points without a position or time that is a number: left out
+  std::shared_ptr<Cloud> cloud;  ///< the points, in the order of the table
+  std::size_t not_finite = 0;    ///< points without a position or time that is a number: left out
   double rounding = 0;  ///< [m] most that a coordinate changed when it became single, as those of a Cloud are
 };
 

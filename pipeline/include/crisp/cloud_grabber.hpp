@@ -17,9 +17,9 @@ namespace crisp {
 
 /// From items to clouds, as clock.online, assemble.deskew and assemble.revolutions do.
 struct CloudSettings {
-  OnlineSettings online;
-  RevolutionSettings revolutions;
-  TermRegistry terms = {};  ///< that the calibration names
+  OnlineSettings online;           ///< how stamps become hub times
+  RevolutionSettings revolutions;  ///< what part of a turn is one cloud
+  TermRegistry terms = {};         ///< that the calibration names
 };
 
 /// Any source of items as a pcl::Grabber of clouds: to the signals of SourceGrabber it adds
@@ -29,6 +29,7 @@ struct CloudSettings {
 /// one cloud a revolution of the plate, in its frame, as soon as the revolution is complete.
 class CloudGrabber : public SourceGrabber {
  public:
+  /// The signal of a complete cloud.
   using CloudCallback = void(const Cloud::ConstPtr&);
 
   /// @param rig  whose devices the source's items come from
@@ -37,6 +38,7 @@ class CloudGrabber : public SourceGrabber {
   CloudGrabber(std::string name, Open open, Rig rig, Calibration calibration, CloudSettings settings = {});
   ~CloudGrabber() noexcept override;
 
+  /// Begins a new cloud with the first scan. @throws what opening the source throws
   void start() override;
 
  protected:

@@ -28,22 +28,22 @@ using ProgressSink = std::function<void(const Progress&)>;
 
 /// A number that programs watch while a run goes on, in the manner of Prometheus.
 struct Gauge {
-  std::string name;  ///< "scans_total", "clock_skew_ppm": of small letters, digits and _
-  double value = 0;
+  std::string name;         ///< "scans_total", "clock_skew_ppm": of small letters, digits and _
+  double value = 0;         ///< in the unit that the name ends with
   std::string device = {};  ///< which it is of, if any
 };
 
 /// Status of a stage in a run without end.
 struct StageStatus {
-  std::string line;  ///< for people: "laser1 50.0 Hz, laser2 50.1 Hz, plate 500 Hz"
-  std::vector<Gauge> gauges = {};
+  std::string line;                      ///< for people: "laser1 50.0 Hz, laser2 50.1 Hz, plate 500 Hz"
+  std::vector<Gauge> gauges = {};        ///< for programs
   std::vector<std::string> events = {};  ///< since the last status: each a line of the log
 };
 using StatusSink = std::function<void(const StageStatus&)>;
 
 /// Settings of a run, the same for all of its stages.
 struct RunSettings {
-  Rig rig = default_rig();
+  Rig rig = default_rig();               ///< the scanner
   unsigned threads = 1;                  ///< how many threads a stage may use
   std::uint64_t seed = 1;                ///< for whatever is drawn at random
   std::filesystem::path output;          ///< the folder that `-o` names; empty if none was given
@@ -52,28 +52,37 @@ struct RunSettings {
 
 /// A stage's report on a run.
 struct StageReport {
-  std::map<std::string, std::uint64_t> counts;
-  std::vector<std::string> warnings;
-  std::vector<std::string> caveats;
-  std::map<std::string, std::string> lifted;  ///< of which kind caveats no longer hold, and why
-  nlohmann::json section = nlohmann::json::object();
-  std::vector<std::string> lines;
-  std::vector<std::filesystem::path> read;
-  std::vector<std::filesystem::path> written;
-  std::function<void(const nlohmann::ordered_json& summary)> when_recorded = {};
+  std::map<std::string, std::uint64_t> counts;        ///< losses and other events, see Context::count
+  std::vector<std::string> warnings;                  ///< see Context::warn
+  std::vector<std::string> caveats;                   ///< see Context::mark_untrusted
+  std::map<std::string, std::string> lifted;          ///< of which kind caveats no longer hold, and why
+  nlohmann::json section = nlohmann::json::object();  ///< the stage's section of summary.json
+  std::vector<std::string> lines;                     ///< see Context::print
+  std::vector<std::filesystem::path> read;            ///< files that the results depend on
+  std::vector<std::filesystem::path> written;         ///< complete files
+  std::function<void(const nlohmann::ordered_json& summary)> when_recorded =
+      {};  ///< see Context::when_recorded
 };
 
 /// A stage's access to its run: settings, reports and progress. To be used from the thread that calls the
 /// stage; only interrupted() is thread-safe.
 class Context {
  public:
+  /// @param run       settings of the run; they outlive this object
+  /// @param report    receives what the stage reports; outlives this object
+  /// @param stop      becomes true when the run is to stop; nullptr: nobody stops it
+  /// @param progress  receives the stage's progress; empty: nobody wants to know
   Context(const RunSettings& run, StageReport& report, const std::atomic<bool>* stop = nullptr,
           ProgressSink progress = {})
       : run_(&run), report_(&report), stop_(stop), progress_(std::move(progress)) {}
 
+  /// The scanner's rig.
   const Rig& rig() const { return run_->rig; }
+  /// Number of threads that the stage may use, ≥ 1.
   unsigned threads() const { return run_->threads; }
+  /// Seed of whatever the stage draws at random.
   std::uint64_t seed() const { return run_->seed; }
+  /// All settings of the run.
   const RunSettings& run() const { return *run_; }
 
   /// Adds to the loss (or other event) of this name: "telegrams with a wrong checksum". Zero makes it known.

@@ -11,9 +11,10 @@
 
 namespace crisp {
 
+/// A cloud of placed beams.
 struct Deskewed {
-  std::shared_ptr<Cloud> cloud;
-  std::size_t outside = 0;  ///< beams fired when the plate's angle is unknown: left out
+  std::shared_ptr<Cloud> cloud;  ///< [m] in the base's frame, in the order of the measurements
+  std::size_t outside = 0;       ///< beams fired when the plate's angle is unknown: left out
 };
 
 /// Places every beam where the plate was when that beam was fired: equations (1) to (3) of Sheehan, Harrison

@@ -9,9 +9,9 @@ namespace crisp {
 
 /// A place in a file that a person wrote. Lines and columns start at 1; 0 means "not known".
 struct Place {
-  std::string file;
-  int line = 0;
-  int column = 0;
+  std::string file;  ///< as the user named it; empty: not known
+  int line = 0;      ///< from 1
+  int column = 0;    ///< from 1, in bytes
 };
 
 /// "file:line:column", as much of it as is known.
@@ -21,11 +21,14 @@ std::string to_string(const Place& place);
 /// counted loss; an Error means that the requested job cannot be done.
 class Error : public std::runtime_error {
  public:
+  /// @param what    what happened, with number and unit
+  /// @param advice  what the user changes; may be empty
+  /// @param place   where in a file of the user's
   explicit Error(std::string what, std::string advice = {}, Place place = {});
 
-  const std::string& message() const { return message_; }
-  const std::string& advice() const { return advice_; }
-  const Place& place() const { return place_; }
+  const std::string& message() const { return message_; }  ///< what happened
+  const std::string& advice() const { return advice_; }    ///< what the user changes; empty: none
+  const Place& place() const { return place_; }            ///< in a file of the user's
 
   /// The same, and that it is an option of a stage that is wrong, whose place the pipeline knows.
   Error of_option(std::string name) const;
@@ -41,8 +44,9 @@ class Error : public std::runtime_error {
 /// Several errors found in one go (all mistakes of a pipeline at once).
 class Errors : public Error {
  public:
+  /// @param errors  at least one; what() has all of them, a line each
   explicit Errors(std::vector<Error> errors);
-  const std::vector<Error>& all() const { return errors_; }
+  const std::vector<Error>& all() const { return errors_; }  ///< each by itself, in the order of finding
 
  private:
   std::vector<Error> errors_;

@@ -16,6 +16,7 @@ namespace crisp {
 template <class T, class... Settings>
 class Registry {
  public:
+  /// Makes a new object with the given settings.
   using Factory = std::function<std::unique_ptr<T>(const Settings&...)>;
 
   /// @param summary  what it is, in half a sentence
@@ -30,8 +31,10 @@ class Registry {
   std::unique_ptr<T> make(const std::string& name, const Settings&... settings) const {
     return entry(name).make(settings...);
   }
+  /// @throws Error  as make()
   const std::string& summary(const std::string& name) const { return entry(name).summary; }
 
+  /// All known names, in alphabetical order.
   std::vector<std::string> names() const {
     std::vector<std::string> result;
     for (const auto& [name, entry] : entries_) result.push_back(name);

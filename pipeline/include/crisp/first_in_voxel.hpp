@@ -27,6 +27,7 @@ class FirstInVoxel : public pcl::Filter<PointT> {
     [[maybe_unused]] const Voxels checked(size);
     size_ = size;
   }
+  /// [m] Edge of a voxel.
   double getLeafSize() const { return size_; }
 
   /// Number of points without a voxel that the last filter() dropped: they are no numbers, or 2^31 voxels or
@@ -34,6 +35,7 @@ class FirstInVoxel : public pcl::Filter<PointT> {
   std::size_t getTooFar() const { return too_far_; }
 
  protected:
+  /// Called by filter(). @param output  receives the points that are kept
   void applyFilter(pcl::PointCloud<PointT>& output) override {
     Voxels voxels(size_);
     output.clear();

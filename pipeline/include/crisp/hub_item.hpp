@@ -25,7 +25,9 @@ class ItemSource {
   ItemSource() = default;
   ItemSource(const ItemSource&) = delete;
   ItemSource& operator=(const ItemSource&) = delete;
+  /// Goes on where the other source was.
   ItemSource(ItemSource&&) noexcept = default;
+  /// Goes on where the other source was.
   ItemSource& operator=(ItemSource&&) noexcept = default;
   virtual ~ItemSource() = default;
 

@@ -29,6 +29,7 @@ struct Point;
 template <class T>
 struct KindName;
 
+/// @cond
 // clang-format off
 template <> struct KindName<Scan> { static constexpr std::string_view value = "Scan"; };
 template <> struct KindName<PlateReading> { static constexpr std::string_view value = "PlateReading"; };
@@ -39,16 +40,20 @@ template <> struct KindName<Calibration> { static constexpr std::string_view val
 template <> struct KindName<pcl::PointCloud<Point>> { static constexpr std::string_view value = "Cloud"; };
 template <> struct KindName<Findings> { static constexpr std::string_view value = "Findings"; };
 // clang-format on
+/// @endcond
 
 /// A kind of data that flows between stages: a C++ type and its name.
 class Kind {
  public:
   template <class T>
+  /// The kind of a C++ type. @tparam T  a type that KindName knows
   static Kind of() {
     return {KindName<T>::value, typeid(T)};
   }
 
+  /// The name under which people know the kind: "Scan".
   std::string_view name() const { return name_; }
+  /// Whether both are of the same C++ type.
   bool operator==(const Kind& other) const { return *type_ == *other.type_; }
 
  private:
@@ -60,14 +65,16 @@ class Kind {
 
 /// One thing that flows, immutable once passed on.
 struct Item {
-  Kind kind;
-  std::shared_ptr<const void> value;
+  Kind kind;                          ///< of the value
+  std::shared_ptr<const void> value;  ///< of the kind's C++ type
 
   template <class T>
+  /// An item that holds a value of type T.
   static Item of(std::shared_ptr<const T> value) {
     return {Kind::of<T>(), std::move(value)};
   }
   template <class T>
+  /// The value, or nullptr if it is of another kind.
   std::shared_ptr<const T> as() const {
     return kind == Kind::of<T>() ? std::static_pointer_cast<const T>(value) : nullptr;
   }

@@ -27,7 +27,9 @@ struct SickConfiguration {
   std::optional<bool> remission;     ///< whether remissions are sent
   bool ntp_off = false;              ///< the device's clock is not to be set over the network
 
+  /// Whether the mirror's frequency or the resolution is to change.
   bool sets_mirror() const { return frequency || resolution; }
+  /// Whether nothing is to change.
   bool is_empty() const { return !sets_mirror() && output_range.empty() && !remission && !ntp_off; }
 };
 
@@ -39,7 +41,7 @@ struct SickSettings {
   double reply_timeout = 1;         ///< [s] for a connection, and for each answer
   double silence = 2;               ///< [s] without a scan after which the connection is made anew
   double max_reconnect_delay = 5;   ///< [s] between two tries; the first are quicker
-  EncoderWidths encoder_widths = EncoderWidths::Position32;
+  EncoderWidths encoder_widths = EncoderWidths::Position32;  ///< of encoders that are wired to lasers
 };
 
 /// Transport of the plate's sentences.
@@ -51,21 +53,21 @@ enum class PlateTransport : std::uint8_t {
 
 /// Where and how the plate's encoder readings are received.
 struct PlateSettings {
-  PlateTransport transport = PlateTransport::Datagrams;
+  PlateTransport transport = PlateTransport::Datagrams;  ///< how the sentences come
   std::string listen = "127.0.0.1";   ///< the hub's address that datagrams are taken at; 0.0.0.0: all of them
   std::optional<std::uint16_t> port;  ///< of the hub; 0: any that is free; nothing: the rig's, or 4000
-  std::string serial = "/dev/ttyUSB0";
-  unsigned baud = 115200;          ///< [bit/s] of the serial line
+  std::string serial = "/dev/ttyUSB0";  ///< the serial line's device
+  unsigned baud = 115200;               ///< [bit/s] of the serial line
   double silence = 2;              ///< [s] without a reading after which a connection or line is opened anew
   double max_reconnect_delay = 5;  ///< [s] between two tries; the first are quicker
 };
 
 /// Settings of a live scanner.
 struct LiveSettings {
-  bool lasers = true;
-  bool plate = true;
-  SickSettings sick;
-  PlateSettings plate_at;
+  bool lasers = true;      ///< whether the rig's lasers are connected
+  bool plate = true;       ///< whether the plate is received
+  SickSettings sick;       ///< of the lasers
+  PlateSettings plate_at;  ///< of the plate
   std::size_t queue =
       16384;  ///< items that may wait for the pipeline; then the oldest are dropped, and counted
   HubClock clock = now_ns;  ///< stamps the receipts

@@ -26,8 +26,9 @@ bool belong_together(const PcdTable& measurements, const PcdTable& trajectory);
 /// The file in which the trajectory stands that belongs to a file of measurements: x.pcd → x.plate.pcd.
 std::filesystem::path plate_path(const std::filesystem::path& measurements);
 
+/// Measurements that were made of a PCD table.
 struct TableMeasurements {
-  Measurements beams;
+  Measurements beams;          ///< in the order of the table
   std::size_t impossible = 0;  ///< ranges that are not positive, or anything that is not a number: left out
 };
 

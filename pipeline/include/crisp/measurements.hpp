@@ -20,7 +20,8 @@ struct Measurements {
   std::vector<std::uint16_t> beam;   ///< index of the beam in its scan
   std::vector<float> cos_incidence;  ///< |cos β| on the surface that was met; empty where nobody has found it
 
-  std::size_t size() const { return range.size(); }
+  std::size_t size() const { return range.size(); }  ///< number of measurements
+  /// Makes room for n measurements in all.
   void reserve(std::size_t n);
   /// Appends; incidences are dropped if only one of the two has them. @throws Error if the epochs differ
   void append(const Measurements& other);

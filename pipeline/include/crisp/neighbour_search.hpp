@@ -52,8 +52,8 @@ struct GaussianSums {
 
 /// Sums to compute in addition to `kernel`.
 struct RequestedSums {
-  bool gradient = true;
-  bool error = true;
+  bool gradient = true;  ///< the sum's derivative with respect to each point
+  bool error = true;     ///< a bound of what the cut-off leaves out
 };
 
 /// A way to find neighbours. It may keep what it learnt from one call for the next.

@@ -41,6 +41,7 @@ class OnlineAligner final : public Aligner {
   ~OnlineAligner() override;
 
   void add(std::shared_ptr<const Scan> scan) override;
+  /// @throws Error if the plate's clock cannot be used at all
   void add(const PlateReading& reading) override;
   AlignmentReport finish() override;
 

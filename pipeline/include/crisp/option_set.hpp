@@ -108,6 +108,7 @@ V from_scalar(const OptionScalar& scalar, const ChoiceTable<V>& table) {
 template <class V>
 class OptionDeclaration {
  public:
+  /// For OptionSet::add, which makes them.
   OptionDeclaration(Option& option, std::shared_ptr<detail::ChoiceTable<V>> table)
       : option_(&option), table_(std::move(table)) {}
 
@@ -122,6 +123,7 @@ class OptionDeclaration {
     option_->max = max;
     return *this;
   }
+  /// Smallest number, allowed, in the option's unit.
   OptionDeclaration& at_least(double min) {
     option_->min = min;
     return *this;
@@ -195,17 +197,21 @@ class OptionDeclaration {
 template <class T>
 class OptionSet {
  public:
+  /// Declares an option of a member. @param a  pointer to the member, or a callable that returns a reference
+  /// to it
   template <class A>
   auto add(std::string name, A a, std::string help) {
     return declare(
         std::move(name), std::move(help), [a](T & object) -> auto& { return std::invoke(a, object); });
   }
+  /// Declares an option of a member of a member: `a` of T, then `b` of that.
   template <class A, class B>
   auto add(std::string name, A a, B b, std::string help) {
     return declare(
         std::move(name), std::move(help),
         [ a, b ](T & object) -> auto& { return std::invoke(b, std::invoke(a, object)); });
   }
+  /// Declares an option three members deep.
   template <class A, class B, class C>
   auto add(std::string name, A a, B b, C c, std::string help) {
     return declare(
@@ -213,6 +219,7 @@ class OptionSet {
         [ a, b, c ](T & object) -> auto& { return std::invoke(c, std::invoke(b, std::invoke(a, object))); });
   }
 
+  /// All declared options, in the order of declaration.
   const std::deque<Option>& all() const { return options_; }
 
  private:

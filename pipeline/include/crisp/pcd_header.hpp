@@ -18,12 +18,14 @@ enum class PcdFormat { ascii, binary, binary_compressed };
 
 /// One field of every point of a PCD file.
 struct PcdField {
-  std::string name;
+  std::string name;       ///< "x", "intensity"
   char type = 'F';        ///< 'F' floating point, 'I' signed, 'U' unsigned
   std::size_t size = 4;   ///< [bytes] of one element: 1, 2, 4 or 8
   std::size_t count = 1;  ///< elements of each point
 
+  /// [bytes] of the field in one point.
   std::size_t width() const { return size * count; }
+  /// Whether both describe the same field.
   bool operator==(const PcdField&) const = default;
 };
 
@@ -32,13 +34,13 @@ struct PcdField {
 /// PCD has no place for further data. crisp writes them in comment lines, "# crisp epoch_ns 17…", which every
 /// reader of PCD files skips.
 struct PcdHeader {
-  std::vector<PcdField> fields;
-  std::size_t points = 0;
-  std::size_t rows = 1;   ///< HEIGHT: more than one where points stand in order of an image
-  bool has_pose = false;  ///< whether VIEWPOINT is other than the origin; set by reading
-  PcdFormat format = PcdFormat::binary_compressed;
-  std::map<std::string, std::string> notes;  ///< of crisp's comment lines: "epoch_ns" → "17…"
-  std::size_t data_begin = 0;                ///< [bytes] from the file's beginning; set by reading
+  std::vector<PcdField> fields;  ///< in the order in which a point holds them
+  std::size_t points = 0;        ///< in all
+  std::size_t rows = 1;          ///< HEIGHT: more than one where points stand in order of an image
+  bool has_pose = false;         ///< whether VIEWPOINT is other than the origin; set by reading
+  PcdFormat format = PcdFormat::binary_compressed;  ///< of the points
+  std::map<std::string, std::string> notes;         ///< of crisp's comment lines: "epoch_ns" → "17…"
+  std::size_t data_begin = 0;                       ///< [bytes] from the file's beginning; set by reading
 
   std::size_t record_size() const;                     ///< [bytes] of one point
   const PcdField* find(std::string_view field) const;  ///< nullptr if there is none

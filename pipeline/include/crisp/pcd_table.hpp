@@ -21,16 +21,19 @@ concept PcdNumber =
 /// other, as in a binary_compressed file.
 class PcdTable {
  public:
+  /// A table of that many points, without columns.
   explicit PcdTable(std::size_t rows) { header_.points = rows; }
   /// @param columns all the fields' values, one field after the other, in the header's order
   /// @param surplus number of points in the file beyond the header's count, which were not read
   PcdTable(PcdHeader header, std::string columns, std::size_t surplus = 0);
 
-  std::size_t rows() const { return header_.points; }
-  std::size_t surplus() const { return surplus_; }
-  const PcdHeader& header() const { return header_; }
-  std::string_view bytes() const { return columns_; }
-  bool has(std::string_view field) const { return header_.find(field) != nullptr; }
+  std::size_t rows() const { return header_.points; }  ///< number of points
+  std::size_t surplus() const { return surplus_; }     ///< points of the file beyond the header's count
+  const PcdHeader& header() const { return header_; }  ///< fields and notes
+  std::string_view bytes() const { return columns_; }  ///< all columns, one after the other
+  bool has(std::string_view field) const {
+    return header_.find(field) != nullptr;
+  }  ///< whether there is such a column
 
   /// 16 hexadecimal digits that differ where the columns do.
   std::string digest() const;

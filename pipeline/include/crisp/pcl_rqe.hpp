@@ -28,10 +28,12 @@ class PclRqe : public pcl::PCLBase<PointT> {
  public:
   /// Width of the kernel that stands for each point [m], 1e-6 to 1e6.
   void setSigma(double sigma) { settings_.sigma = sigma; }
+  /// [m] Width of the kernel.
   double getSigma() const { return settings_.sigma; }
 
   /// Distance [σ] beyond which a pair counts as 0.
   void setCutoff(double cutoff) { settings_.cutoff = cutoff; }
+  /// [σ] Distance beyond which a pair counts as 0.
   double getCutoff() const { return settings_.cutoff; }
 
   /// Weights of the input cloud's points; none: all the same.

@@ -17,8 +17,8 @@ namespace crisp {
 
 /// A tag that a person wrote, and where.
 struct TagReference {
-  std::string tag;
-  Place place;
+  std::string tag;  ///< of another stage of the pipeline
+  Place place;      ///< in the pipeline's file
 };
 
 /// One stage of a pipeline as requested.
@@ -29,7 +29,7 @@ struct StageSpec {
   std::map<std::string, OptionValue> with = {};          ///< the options that are not at their default
   std::set<std::string> refused = {};                    ///< options with invalid values, already reported
   std::map<std::string, Place> places = {};              ///< where the options were given
-  Place place = {};
+  Place place = {};                                      ///< in the pipeline's file
 };
 
 /// Tags each stage without a tag by its name, numbered from the second of that name on.
@@ -37,12 +37,12 @@ void name_stages(std::vector<StageSpec>& specs);
 
 /// One stage of a pipeline, constructed, configured and connected.
 struct PipelineNode {
-  const StageType* type = nullptr;
-  std::string tag;
-  Place place;
-  std::map<std::string, Place> option_places;  ///< of those that were given
-  bool has_valid_options = true;               ///< its options, each by itself, are right
-  std::unique_ptr<Stage> stage;
+  const StageType* type = nullptr;                ///< as the registry describes it
+  std::string tag;                                ///< by which others name it; no two have the same
+  Place place;                                    ///< in the pipeline's file
+  std::map<std::string, Place> option_places;     ///< of those that were given
+  bool has_valid_options = true;                  ///< its options, each by itself, are right
+  std::unique_ptr<Stage> stage;                   ///< with its options set
   std::vector<std::vector<std::size_t>> feeders;  ///< for each of the type's inputs, the nodes that feed it
 
   /// The place of the option, or else of the stage.
@@ -50,19 +50,20 @@ struct PipelineNode {
     const auto given = option_places.find(option);
     return given != option_places.end() ? given->second : place;
   }
+  /// The present value of an option.
   OptionValue value(const Option& option) const { return option.get(type->options_object(*stage)); }
 };
 
 /// Something that is probably not meant, but can be run.
 struct PipelineWarning {
-  std::string text;
-  Place place;
+  std::string text;  ///< in words
+  Place place;       ///< in the pipeline's file
 };
 
 /// Stages in an order in which each is fed only by those before it.
 struct Pipeline {
-  std::vector<PipelineNode> nodes;
-  std::vector<PipelineWarning> warnings;
+  std::vector<PipelineNode> nodes;        ///< in the order of running
+  std::vector<PipelineWarning> warnings;  ///< in the order of the file
 };
 
 /// Constructs the stages, sets their options and connects them by kind. Opens no file.

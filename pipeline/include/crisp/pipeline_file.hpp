@@ -15,16 +15,16 @@ namespace crisp {
 struct PipelineArguments {
   std::optional<std::filesystem::path> input = {};   ///< what ${input} stands for
   std::optional<std::filesystem::path> output = {};  ///< what ${output} stands for, a folder
-  std::optional<std::filesystem::path> rig = {};
-  std::optional<std::string> name = {};  ///< what ${name} stands for; otherwise it is as ${stem}
-  std::vector<std::string> set = {};     ///< "tag.option=value", or "variable=value" for one of `vars:`
-  bool only_validate = false;            ///< ${input} and ${output} need no value
+  std::optional<std::filesystem::path> rig = {};     ///< the rig's file
+  std::optional<std::string> name = {};              ///< what ${name} stands for; otherwise it is as ${stem}
+  std::vector<std::string> set = {};  ///< "tag.option=value", or "variable=value" for one of `vars:`
+  bool only_validate = false;         ///< ${input} and ${output} need no value
 };
 
 /// A pipeline that is ready to run, and what it came from.
 struct LoadedPipeline {
-  Pipeline pipeline;
-  std::filesystem::path file;
+  Pipeline pipeline;               ///< its stages are made and connected
+  std::filesystem::path file;      ///< as it was given
   std::filesystem::path rig_file;  ///< empty: the default rig
 };
 

@@ -29,6 +29,7 @@ struct PlateArc {
   double width = 0;                      ///< [s] end − begin
   std::array<double, 4> coefficients{};  ///< [rad] of 1, u, u², u³
 
+  /// The plate at time t [s since epoch], from `begin` to `end`.
   PlateState at(double t) const;
 };
 
@@ -61,16 +62,18 @@ class PlateTrajectory {
   /// The same with other angles [rad], one a reading.
   PlateTrajectory with_angles(std::vector<double> angles) const;
 
-  std::int64_t epoch_ns() const { return epoch_ns_; }
-  bool empty() const { return times_.empty(); }
-  std::size_t size() const { return times_.size(); }
-  double begin() const { return times_.front(); }  ///< [s since epoch]; not of an empty trajectory
-  double end() const { return times_.back(); }     ///< [s since epoch]; not of an empty trajectory
-  double max_gap() const { return max_gap_; }
-  std::span<const double> times() const { return times_; }
-  std::span<const double> angles() const { return angles_; }
-  std::span<const double> rates() const { return rates_; }  ///< [rad/s] dφ/dt at each reading
-  std::span<const double> new_zeros() const { return new_zeros_; }
+  std::int64_t epoch_ns() const { return epoch_ns_; }  ///< [ns since the Unix epoch] zero of the times
+  bool empty() const { return times_.empty(); }        ///< whether there is no reading
+  std::size_t size() const { return times_.size(); }   ///< number of readings
+  double begin() const { return times_.front(); }      ///< [s since epoch]; not of an empty trajectory
+  double end() const { return times_.back(); }         ///< [s since epoch]; not of an empty trajectory
+  double max_gap() const { return max_gap_; }          ///< [s] longest silence that is interpolated across
+  std::span<const double> times() const { return times_; }    ///< [s since epoch] of the readings
+  std::span<const double> angles() const { return angles_; }  ///< [rad] φ of the readings
+  std::span<const double> rates() const { return rates_; }    ///< [rad/s] dφ/dt at each reading
+  std::span<const double> new_zeros() const {
+    return new_zeros_;
+  }  ///< [s since epoch] when the encoder began to count anew
 
  private:
   std::size_t part_of(double t) const;

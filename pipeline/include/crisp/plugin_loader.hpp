@@ -14,7 +14,7 @@ struct PluginDescriptor;
 
 /// One file that was tried as a plugin.
 struct PluginRecord {
-  std::filesystem::path file;
+  std::filesystem::path file;       ///< as it was found
   std::string name;                 ///< empty if it was not found out
   std::string version;              ///< the plugin's own
   std::string refusal;              ///< why it cannot be used; empty if it can
@@ -22,6 +22,7 @@ struct PluginRecord {
   std::string skipped;              ///< which file is used in its place; empty if none is
   std::vector<std::string> brings;  ///< "stage filter.near", "term range.drift"
 
+  /// Whether its registrations are in force.
   bool is_loaded() const { return refusal.empty() && skipped.empty(); }
 };
 
@@ -33,6 +34,7 @@ struct PluginRecord {
 /// is called), or if its registrations are rejected. A plugin whose name is already loaded is skipped.
 class PluginLoader {
  public:
+  /// @param registrar  receives what the plugins register; outlives this object
   explicit PluginLoader(Registrar& registrar) : registrar_(registrar) {}
 
   /// Prefers this file or folder among plugins of the same name, wherever others are found first.

@@ -9,9 +9,11 @@ namespace crisp {
 
 /// A view of n points [m] in any one Cartesian frame, as a struct of arrays.
 struct PointsView {
-  std::span<const double> x, y, z;
+  std::span<const double> x;  ///< [m] n coordinates
+  std::span<const double> y;  ///< [m] n coordinates
+  std::span<const double> z;  ///< [m] n coordinates
 
-  std::size_t size() const { return x.size(); }
+  std::size_t size() const { return x.size(); }  ///< number of points
 };
 
 /// [m²]
@@ -24,10 +26,14 @@ inline double squared_distance(const PointsView& points, std::size_t i, std::siz
 
 /// n vectors that are owned, as a struct of arrays.
 struct Vectors {
-  std::vector<double> x, y, z;
+  std::vector<double> x;  ///< n components
+  std::vector<double> y;  ///< n components
+  std::vector<double> z;  ///< n components
 
-  std::size_t size() const { return x.size(); }
+  std::size_t size() const { return x.size(); }  ///< number of vectors
+  /// Makes it n vectors, all of whose components are `value`.
   void assign(std::size_t n, double value);
+  /// A view of the vectors as points; valid until they change.
   PointsView view() const { return {x, y, z}; }
 };
 

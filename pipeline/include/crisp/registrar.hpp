@@ -20,6 +20,7 @@ class StageRegistry {
 
   const StageType* find(const std::string& name) const;  ///< nullptr if there is none
   std::vector<const StageType*> all() const;             ///< by name
+  /// All known names, in alphabetical order.
   std::vector<std::string> names() const;
   std::vector<std::string> givers(const Kind& kind) const;  ///< names of the stages that give it
 
@@ -35,6 +36,8 @@ class StageRegistry {
 ///     registrar.get<TermRegistry>().add(...);
 class Registrar {
  public:
+  /// Adds a stage type. @tparam S  derived from Stage, with `static void describe(StageDescription<S>&)`
+  /// @throws Error  if a stage of that name is known
   template <class S>
   void stage() {
     StageType type = describe_stage<S>();
@@ -43,10 +46,10 @@ class Registrar {
   }
   /// For `crisp info`: describes files of one more kind. The first inspector that recognises a file is used.
   void inspector(Inspector inspector) { inspectors_.push_back(std::move(inspector)); }
-  const Inspectors& inspectors() const { return inspectors_; }
+  const Inspectors& inspectors() const { return inspectors_; }  ///< all that were added
 
-  StageRegistry& stages() { return stages_; }
-  const StageRegistry& stages() const { return stages_; }
+  StageRegistry& stages() { return stages_; }              ///< the stage types
+  const StageRegistry& stages() const { return stages_; }  ///< the stage types
 
   /// Adds a registry, which must outlive the registrar.
   /// @param kind  what one thing in it is called, if all are to be listed: "term"
@@ -73,7 +76,9 @@ class Registrar {
 
   /// Sets the origin of the next registrations: "built in", or a plugin's file.
   void set_origin(std::string origin) { origin_ = std::move(origin); }
-  const std::string& origin() const { return origin_; }
+  const std::string& origin() const {
+    return origin_;
+  }  ///< "built in", or the file of the plugin that registers
 
  private:
   /// A registry of things that are not stages.

@@ -11,6 +11,7 @@
 
 namespace crisp {
 
+/// What part of a turn is one cloud.
 struct RevolutionSettings {
   double turns = 1;     ///< of the plate, in one cloud; 0.5 is enough for lasers that see to both sides
   double longest = 10;  ///< [s] of points in one cloud, if the plate does not turn so far
@@ -21,8 +22,10 @@ struct RevolutionSettings {
 /// scan that is in.
 class Revolutions {
  public:
+  /// Receives each complete cloud.
   using Give = std::function<void(std::shared_ptr<const Cloud>)>;
 
+  /// @param give  called with each complete cloud, within add() and finish()
   Revolutions(const RevolutionSettings& settings, Give give) : settings_(settings), give_(std::move(give)) {}
 
   /// @param points  of a scan, times on the epoch of `plate`

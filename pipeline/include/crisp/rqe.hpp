@@ -10,6 +10,7 @@ namespace crisp {
 
 class Search;
 
+/// Settings of rqe().
 struct RqeSettings {
   double sigma = 0.03;      ///< [m] width of the kernel that stands for each point
   double cutoff = 7;        ///< [σ] distance beyond which a pair counts as 0

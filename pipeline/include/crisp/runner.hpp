@@ -16,18 +16,21 @@ namespace crisp {
 
 /// Result of one stage of a run.
 struct NodeResult {
-  std::string tag;
-  std::string stage;
+  std::string tag;                             ///< of the stage in the pipeline
+  std::string stage;                           ///< its name: "calibrate.rqe"
   double seconds = 0;                          ///< its own time, without that of the stages that it feeds
   std::map<std::string, std::uint64_t> taken;  ///< items by kind
   std::map<std::string, std::uint64_t> given;  ///< items by kind
-  StageReport report;
+  StageReport report;                          ///< what the stage reported
 };
 
 /// Hooks to stop and watch a run from outside.
 struct RunHooks {
+  /// Becomes true when the run is to stop; nullptr: nobody stops it.
   const std::atomic<bool>* stop = nullptr;
+  /// Called with the progress that a stage reports.
   std::function<void(const std::string& tag, const Progress& progress)> progress = {};
+  /// Called with the status that a stage sets.
   std::function<void(const std::string& tag, const StageStatus& status)> status = {};
   /// Called with each caveat once the call in which a stage gave it has ended; a stage below may resolve it.
   std::function<void(const std::string& tag, const std::string& caveat)> caveat = {};

@@ -42,9 +42,9 @@ enum class BeamTiming {
 /// One scan telegram of one laser, decoded. Angles are as the device reports them (no mount angle applied):
 /// beam k points to start_angle + k * angle_step.
 struct Scan {
-  std::uint16_t laser = 0;  ///< index of the laser in the rig
-  std::uint32_t serial_number = 0;
-  std::uint16_t device_status = 0;
+  std::uint16_t laser = 0;                 ///< index of the laser in the rig
+  std::uint32_t serial_number = 0;         ///< of the device; 0 where it sends none
+  std::uint16_t device_status = 0;         ///< as the device sends it; 0: no error, no pollution
   std::uint16_t telegram_counter = 0;      ///< wraps at 65536
   std::uint16_t scan_counter = 0;          ///< wraps at 65536
   std::uint32_t scan_time_us = 0;          ///< [µs] device clock; wraps at 2^32
@@ -53,10 +53,10 @@ struct Scan {
   double scan_frequency = 0;               ///< [Hz] nominal
   double start_angle = 0;                  ///< [rad] reported angle of beam 0
   double angle_step = 0;                   ///< [rad] exact fraction where the telegram rounds
-  BeamTiming timing = BeamTiming::mirror;
-  double beam_interval = 0;  ///< [s] from beam to beam, where that is stated
-  std::vector<Echo> echoes;  ///< DIST1/RSSI1, DIST2/RSSI2, …
-  std::vector<ScanEncoder> encoders;
+  BeamTiming timing = BeamTiming::mirror;  ///< when each beam was fired
+  double beam_interval = 0;                ///< [s] from beam to beam, where that is stated
+  std::vector<Echo> echoes;                ///< DIST1/RSSI1, DIST2/RSSI2, …
+  std::vector<ScanEncoder> encoders;       ///< that are wired to the laser
   bool numbered = true;  ///< by the device, and all requested: else a gap of its numbers is no loss
   bool timed = true;  ///< by the device's clock: else its times are its number times the nominal period, or
                       ///< its receipt

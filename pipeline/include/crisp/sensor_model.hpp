@@ -20,8 +20,8 @@ namespace crisp {
 
 /// The terms of a calibration, resolved once: `slots` are their parameters' positions in a laser's list.
 struct ChainTerm {
-  std::shared_ptr<const ModelTerm> term;
-  std::size_t first_slot = 0;
+  std::shared_ptr<const ModelTerm> term;  ///< that changes the beams
+  std::size_t first_slot = 0;             ///< its first parameter's index in LaserChain::slots
 };
 
 /// The chain of one laser: which of the model's parameters it depends on, and its terms by phase.
@@ -86,13 +86,14 @@ class SensorModel {
   /// @throws Error for a term that `terms` does not know, or whose parameters are not those it declares
   explicit SensorModel(Calibration calibration, const TermRegistry& terms = {});
 
-  std::size_t lasers() const { return fixed_->chains.size(); }
+  std::size_t lasers() const { return fixed_->chains.size(); }  ///< number of lasers
 
   /// All parameters in one list: "laser1.lambda", "laser1.tau", "laser1.alpha", "laser1.eta",
   /// "laser1.mirror.cone.kappa", …, "plate.encoder.eccentricity.a", …
   const std::vector<std::string>& names() const { return fixed_->names; }
-  std::size_t index(const std::string& name) const;  ///< @throws Error if there is none
-  const Eigen::VectorXd& values() const { return values_; }
+  std::size_t index(const std::string& name) const;          ///< @throws Error if there is none
+  const Eigen::VectorXd& values() const { return values_; }  ///< in the order of names(), in SI units
+  /// @throws Error unless there is one value for each of names()
   void set_values(const Eigen::VectorXd& values);
 
   /// The calibration with the present values.
@@ -114,6 +115,7 @@ class SensorModel {
   Placed place(const Measurements& beams, const PlateTrajectory& plate, const std::vector<std::size_t>& free,
                PointDerivatives& derivatives) const;
 
+  /// The chain of one laser, by its index in the calibration.
   const LaserChain& chain(std::size_t laser) const { return fixed_->chains[laser]; }
 
  private:

@@ -29,8 +29,11 @@ namespace crisp {
 /// start(), stop() and wait() may be called from any thread, stop() also from a callback.
 class SourceGrabber : public ::pcl::Grabber {
  public:
+  /// The signal of a scan.
   using ScanCallback = void(const std::shared_ptr<const Scan>&);
+  /// The signal of an encoder reading.
   using ReadingCallback = void(const PlateReading&);
+  /// Makes a source of items. @throws Error if it cannot be opened
   using Open = std::function<std::unique_ptr<ItemSource>()>;
 
   /// @param open makes the source; called by each start()
@@ -48,7 +51,9 @@ class SourceGrabber : public ::pcl::Grabber {
   /// Blocks until the source has ended or stop() was called. Not from a callback.
   void wait();
 
+  /// Whether the source is being read.
   bool isRunning() const override { return running_; }
+  /// The name that the constructor was given.
   std::string getName() const override { return name_; }
   /// [Hz] Scans a second, all lasers together, by the hub's clock; 0 before the second scan.
   float getFramesPerSecond() const override { return frames_per_second_; }

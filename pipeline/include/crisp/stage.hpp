@@ -16,6 +16,7 @@ struct RunSettings;
 /// Inputs of a stage's call: the item that drives the call, and the latest of every held kind.
 class Inputs {
  public:
+  /// @param items  of the call: the one that drives it, and those held
   explicit Inputs(std::span<const Item> items) : items_(items) {}
 
   /// The item of kind T, or nullptr: of a held kind the latest, of a driving kind the one that this call is
@@ -49,16 +50,20 @@ class Inputs {
 /// Receives a stage's items. A given item runs through the stages below before give() returns.
 class Outputs {
  public:
+  /// @param sink  runs an item through the stages below
   explicit Outputs(std::function<void(Item)> sink) : sink_(std::move(sink)) {}
 
+  /// Gives an item that the stage may keep.
   template <class T>
   void give(std::shared_ptr<const T> item) {
     sink_(Item::of<T>(std::move(item)));
   }
+  /// Gives an item that the stage has made; it must not change any more.
   template <class T>
   void give(std::shared_ptr<T> item) {
     give(std::shared_ptr<const T>(std::move(item)));
   }
+  /// Gives an item by value.
   template <class T>
   void give(T item) {
     give(std::make_shared<const T>(std::move(item)));

@@ -17,26 +17,28 @@ enum class Need { required, optional };
 
 /// One kind that a stage takes.
 struct StageInput {
-  Kind kind;
-  bool held = false;  ///< the latest is kept; it does not make the stage run
-  bool required = true;
+  Kind kind;             ///< of data
+  bool held = false;     ///< the latest is kept; it does not make the stage run
+  bool required = true;  ///< whether the stage cannot work without it
 };
 
 /// A stage as the registry describes it, without an instance of it.
 struct StageType {
-  std::string name;
-  std::string summary;
-  std::string details;
-  std::string origin;  ///< "built in", or the file of the plugin
-  std::vector<StageInput> inputs;
-  std::vector<Kind> outputs;
-  std::vector<Option> options;
-  bool endless = false;  ///< a source that ends only when the run is stopped
-  std::function<std::unique_ptr<Stage>()> make;
-  std::function<void*(Stage&)> options_object;  ///< what Option::set and Option::get want of a stage
+  std::string name;                              ///< "calibrate.rqe"
+  std::string summary;                           ///< in half a sentence
+  std::string details;                           ///< paragraphs in Markdown
+  std::string origin;                            ///< "built in", or the file of the plugin
+  std::vector<StageInput> inputs;                ///< what it takes and holds; empty: it is a source
+  std::vector<Kind> outputs;                     ///< what it gives
+  std::vector<Option> options;                   ///< in the order of declaration
+  bool endless = false;                          ///< a source that ends only when the run is stopped
+  std::function<std::unique_ptr<Stage>()> make;  ///< a fresh stage, with all options at their defaults
+  std::function<void*(Stage&)> options_object;   ///< what Option::set and Option::get want of a stage
 
+  /// Whether it takes nothing.
   bool is_source() const { return inputs.empty(); }
   const Option* find_option(const std::string& option) const;  ///< nullptr if there is none
+  /// Whether it may give items of this kind.
   bool gives(const Kind& kind) const;
 };
 
@@ -65,6 +67,7 @@ class StageDescription {
     type_.inputs.push_back({Kind::of<T>(), true, need == Need::required});
     return *this;
   }
+  /// The stage may give items of this kind.
   template <class T>
   StageDescription& gives() {
     type_.outputs.push_back(Kind::of<T>());
@@ -83,6 +86,7 @@ class StageDescription {
     return options_.add(std::move(option_name), std::forward<Arguments>(way_and_help)...);
   }
 
+  /// The complete description.
   StageType build() && {
     type_.options.assign(options_.all().begin(), options_.all().end());
     type_.make = [] { return std::make_unique<S>(); };

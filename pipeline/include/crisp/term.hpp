@@ -18,15 +18,16 @@ inline constexpr std::size_t kPhases = static_cast<std::size_t>(Phase::kRange) +
 /// Origin of a term's covariate. Recordings with different origins do not share its parameters.
 enum class CountsFrom { kNothing, kRunsEpoch, kEncodersZero };
 
+/// Declaration of a term: all that is known of it but its formula.
 struct TermInfo {
-  std::string name;  ///< as in docs/effects.md: "mirror.cone"
-  std::string summary;
-  Phase phase = Phase::kRange;
-  Scope scope = Scope::kLaser;  ///< the laser's or the plate's
-  std::vector<EffectParameter> parameters;
-  std::string details;             ///< see EffectInfo
-  std::string resolvable_by = {};  ///< see EffectInfo
-  CountsFrom counts_from = CountsFrom::kNothing;
+  std::string name;                               ///< as in docs/effects.md: "mirror.cone"
+  std::string summary;                            ///< in half a sentence
+  Phase phase = Phase::kRange;                    ///< in which it changes a beam
+  Scope scope = Scope::kLaser;                    ///< the laser's or the plate's
+  std::vector<EffectParameter> parameters;        ///< in the order in which `change` gets them
+  std::string details;                            ///< see EffectInfo
+  std::string resolvable_by = {};                 ///< see EffectInfo
+  CountsFrom counts_from = CountsFrom::kNothing;  ///< of its covariate
   bool needs_incidence = false;  ///< it does nothing where nobody has found how beams met their surfaces
   /// For an empirical term, which describes a departure by its shape: the covariate of the shape ("mirror
   /// angle"). Empty for the others.
@@ -51,10 +52,12 @@ inline const std::string& family_of(const TermInfo& info) {
 class ModelTerm {
  public:
   virtual ~ModelTerm() = default;
+  /// The declaration; the same at each call.
   virtual const TermInfo& info() const = 0;
 
   /// Changes each beam; `parameters` are in the order of info().parameters.
   virtual void apply(std::span<Beam<double>> beams, std::span<const double> parameters) const = 0;
+  /// The same with derivatives.
   virtual void apply(std::span<Beam<Jet>> beams, std::span<const Jet> parameters) const = 0;
 };
 
@@ -83,7 +86,9 @@ class TermRegistry {
   void add(std::shared_ptr<const ModelTerm> term);
   /// @throws Error naming the nearest known term
   std::shared_ptr<const ModelTerm> get(const std::string& name) const;
+  /// Whether a term of this name was added.
   bool knows(const std::string& name) const;
+  /// All known names, in alphabetical order.
   std::vector<std::string> names() const;
 
  private:
