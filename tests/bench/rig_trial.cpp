@@ -64,7 +64,7 @@ class RigTrial {
       fmt::print("\n");
     }
     for (const auto& [kind, scores] : scores_) {
-      const auto within = [&](double errors) {
+      const auto within = [&scores = scores](double errors) {
         return 100.0 *
                static_cast<double>(
                    std::ranges::count_if(scores, [&](double score) { return std::abs(score) < errors; })) /
