@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/pcl/simulator_grabber.hpp"
-
 #include <cmath>
 
 #include <crisp/error.hpp>
+#include <crisp/simulator_grabber.hpp>
 
 #include "grabbers/pcl/paced_source.hpp"
 #include "grabbers/simulate/recording.hpp"
+#include "grabbers/simulate/scenes.hpp"
 
 namespace crisp {
 namespace {
@@ -28,24 +28,32 @@ class SimulatedSource final : public ItemSource {
   RecordingSimulator simulator_;
 };
 
-std::unique_ptr<ItemSource> open(const RecordingSettings& settings, const Scene& scene, double speed,
-                                 const TermRegistry& terms) {
-  auto source = std::make_unique<SimulatedSource>(settings, scene, terms);
+RecordingSettings settings_of(const Simulation& simulation) {
+  RecordingSettings settings;
+  settings.scanner.rig = simulation.rig;
+  settings.scanner.truth = simulation.truth;
+  settings.scanner.duration = simulation.duration;
+  settings.scanner.seed = simulation.seed;
+  return settings;
+}
+
+std::unique_ptr<ItemSource> open(const Simulation& simulation, double speed, const TermRegistry& terms) {
+  auto source =
+      std::make_unique<SimulatedSource>(settings_of(simulation), built_in_scene(simulation.scene), terms);
   if (speed == 0) return source;
   return std::make_unique<PacedSource>(std::move(source), speed);
 }
 
 }  // namespace
 
-SimulatorGrabber::SimulatorGrabber(const RecordingSettings& settings, const Scene& scene, double speed,
-                                   const TermRegistry& terms)
+SimulatorGrabber::SimulatorGrabber(const Simulation& simulation, double speed, const TermRegistry& terms)
     : SourceGrabber("SimulatorGrabber",
-                    [settings, scene, speed, terms] { return open(settings, scene, speed, terms); }),
-      truth_(RecordingSimulator(settings, scene, terms).truth()) {
+                    [simulation, speed, terms] { return open(simulation, speed, terms); }) {
   if (!std::isfinite(speed) || speed < 0) {
     throw Error("a simulation cannot be played at that speed",
                 "give the speed relative to real time, or 0 for as fast as possible");
   }
+  open(simulation, 0, terms);  // throws now, not in the thread that start() makes
 }
 
 }  // namespace crisp

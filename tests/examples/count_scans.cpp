@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// count_scans HUB.pcap: how many scans of lasers and encoder readings a capture holds.
+// count_scans: how many scans of lasers and encoder readings a simulated scanner sends in a second.
+// count_scans HUB.pcap: how many a capture holds.
 // count_scans RIG.yaml SECONDS: how many the devices of a rig send in that time.
 #include <chrono>
 #include <cstdlib>
@@ -9,9 +10,10 @@
 #include <memory>
 #include <thread>
 
-#include <crisp/capture_grabber.hpp>  // crisp::pcl
-#include <crisp/live_grabber.hpp>     // crisp::pcl
-#include <crisp/rig_file.hpp>         // crisp::files
+#include <crisp/capture_grabber.hpp>    // crisp::pcl
+#include <crisp/live_grabber.hpp>       // crisp::pcl
+#include <crisp/rig_file.hpp>           // crisp::files
+#include <crisp/simulator_grabber.hpp>  // crisp::pcl
 
 namespace {
 
@@ -33,7 +35,10 @@ void count(crisp::SourceGrabber& grabber, const std::function<void()>& wait) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc == 2) {
+  if (argc == 1) {
+    crisp::SimulatorGrabber grabber({.duration = 1});
+    count(grabber, [&] { grabber.wait(); });
+  } else if (argc == 2) {
     crisp::CaptureGrabber grabber(argv[1]);
     count(grabber, [&] { grabber.wait(); });
   } else if (argc == 3) {

@@ -98,7 +98,7 @@ struct DeviceFacts {
 struct NoiseFacts {
   std::string laser;       ///< "laser1"
   std::size_t ranges = 0;  ///< that were used
-  double sigma = 0;        ///< [m] of the normal law that is left
+  double sigma = 0;        ///< [m] standard deviation of the remaining normal noise
 };
 
 /// A departure that the estimator made by itself: no cause in the scanner.

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/pcl/simulator_grabber.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include <crisp/error.hpp>
+#include <crisp/simulator_grabber.hpp>
 
 #include "grabbers/simulate/recording.hpp"
 #include "grabbers/simulate/scenes.hpp"
@@ -13,16 +12,19 @@
 namespace crisp {
 namespace {
 
-RecordingSettings short_settings() {
-  RecordingSettings settings;
-  settings.scanner.duration = 0.3;
-  settings.scanner.truth.lasers[1].eta.value = 0.005;
-  return settings;
+Simulation short_simulation() {
+  Simulation simulation{.scene = "street", .duration = 0.3, .seed = 3};
+  simulation.truth.lasers[1].eta.value = 0.005;
+  return simulation;
 }
 
 TEST(SimulatorGrabber, CallsBackWithTheWholeRecordingAtEachStart) {
-  const auto expected = simulate_recording(short_settings(), office());
-  SimulatorGrabber grabber(short_settings(), office());
+  RecordingSettings settings;
+  settings.scanner.duration = 0.3;
+  settings.scanner.seed = 3;
+  settings.scanner.truth.lasers[1].eta.value = 0.005;
+  const auto expected = simulate_recording(settings, street());
+  SimulatorGrabber grabber(short_simulation());
   std::vector<Scan> scans;
   std::vector<PlateReading> readings;
   grabber.registerCallback(std::function<SourceGrabber::ScanCallback>(
@@ -41,12 +43,11 @@ TEST(SimulatorGrabber, CallsBackWithTheWholeRecordingAtEachStart) {
     EXPECT_EQ(scans.back().echoes[0].ranges, expected.scans.back().echoes[0].ranges);
     EXPECT_EQ(readings.back().count, expected.readings.back().count);
   }
-  EXPECT_EQ(grabber.truth().calibration.lasers[1].eta.value, 0.005);
   EXPECT_EQ(grabber.getName(), "SimulatorGrabber");
 }
 
 TEST(SimulatorGrabber, StopsWhilePlayingSlowly) {
-  SimulatorGrabber grabber(short_settings(), office(), 1e-6);
+  SimulatorGrabber grabber(short_simulation(), 1e-6);
   grabber.start();
   grabber.stop();
   EXPECT_FALSE(grabber.isRunning());
@@ -54,11 +55,14 @@ TEST(SimulatorGrabber, StopsWhilePlayingSlowly) {
 
 TEST(SimulatorGrabber, RefusesWhatCannotBePlayed) {
   for (const double speed : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(SimulatorGrabber(short_settings(), office(), speed), Error);
+    EXPECT_THROW(SimulatorGrabber(short_simulation(), speed), Error);
   }
-  RecordingSettings settings = short_settings();
-  settings.scanner.range.sigma = -1;
-  EXPECT_THROW(SimulatorGrabber(settings, office()), Error);
+  Simulation nowhere = short_simulation();
+  nowhere.scene = "nowhere";
+  EXPECT_THROW(SimulatorGrabber{nowhere}, Error);
+  Simulation too_few = short_simulation();
+  too_few.truth.lasers.pop_back();
+  EXPECT_THROW(SimulatorGrabber{too_few}, Error);
 }
 
 }  // namespace
