@@ -124,6 +124,29 @@ Beam<Jet> as_jets(const Beam<double>& beam) {
   return jets;
 }
 
+/// How far the derivatives of what the phase sets move the beam's end along the normal. Sets them to 0, for
+/// the phase's next pass.
+Eigen::Matrix<double, kWidth, 1> take_derivatives(Phase phase, const TracedBeams::Slopes& slopes,
+                                                  Beam<Jet>& beam) {
+  Eigen::Matrix<double, kWidth, 1> moved = Eigen::Matrix<double, kWidth, 1>::Zero();
+  const auto changed = set_by(phase, beam);
+  for (std::size_t q = 0; q < changed.size(); ++q) {
+    moved += slopes[q] * changed[q]->v;
+    changed[q]->v.setZero();
+  }
+  return moved;
+}
+
+/// The phases of passes that are in the order of phases, each once.
+template <class Passes>
+std::vector<Phase> phases_of(const Passes& passes) {
+  std::vector<Phase> phases;
+  for (const auto& pass : passes) {
+    if (phases.empty() || phases.back() != pass.phase) phases.push_back(pass.phase);
+  }
+  return phases;
+}
+
 std::size_t quantities(Phase phase) {
   Beam<double> any;
   return set_by(phase, any).size();
@@ -179,10 +202,7 @@ void AddedTerms::fill_rows(const Measurements& beams, const PlateTrajectory& pla
     chain_of(chains_, beams, begin);
     const std::size_t laser = beams.laser[begin];
     const std::size_t end = run_end(beams, begin, kTracedBlock);
-    std::vector<Phase> phases;
-    for (const Pass& pass : passes_[laser]) {
-      if (phases.empty() || phases.back() != pass.phase) phases.push_back(pass.phase);
-    }
+    const std::vector<Phase> phases = phases_of(passes_[laser]);
     TracedBeams traced(chains_[laser], values_[laser], beams, begin, end, plate, phases);
     for (const auto& group : grouped(phases)) traced.differentiate(group, values_[laser], normal);
 
@@ -197,13 +217,7 @@ void AddedTerms::fill_rows(const Measurements& beams, const PlateTrajectory& pla
       }
       for (const Seeded& seeded : pass.terms) seeded.term->apply(block, seeded.parameters);
       for (std::size_t i = 0; i < block.size(); ++i) {
-        const auto changed = set_by(pass.phase, block[i]);
-        const TracedBeams::Slopes& slopes = traced.slopes(pass.phase, i);
-        Eigen::Matrix<double, kWidth, 1> moved = Eigen::Matrix<double, kWidth, 1>::Zero();
-        for (std::size_t q = 0; q < changed.size(); ++q) {
-          moved += slopes[q] * changed[q]->v;
-          changed[q]->v.setZero();
-        }
+        const auto moved = take_derivatives(pass.phase, traced.slopes(pass.phase, i), block[i]);
         if (!traced.is_known(i)) continue;
         for (std::size_t k = 0; k < pass.columns.size(); ++k)
           rows[(begin + i) * stride + pass.columns[k]] = moved[static_cast<Eigen::Index>(k)];
