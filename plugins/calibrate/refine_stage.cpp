@@ -142,7 +142,9 @@ std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refin
       .interrupted = [&] { return context.interrupted(); },
       .report = [&](double done, std::string_view what) { context.progress(done, what); }};
   auto found = check_mounts(refined.outcome.model, sample, context.rig(), settings);
-  if (fits || agrees_well(refined) || !found.empty()) return found;
+  if (agrees_well(refined) || !found.empty()) return found;
+  if (auto counts = check_counts(sample, context.rig(), settings)) return {std::move(*counts)};
+  if (fits) return found;
   if (auto mistake = find_rig_error(sample, context.rig(), settings)) found.push_back(std::move(*mistake));
   return found;
 }

@@ -28,8 +28,8 @@ constexpr const char* kMirrorZero = "mount.mirror_zero";
 
 /// A possible correction of the rig.
 struct RigHypothesis {
-  std::string change;               ///< in words: "plate.direction: clockwise"
-  double direction = 1;             ///< −1: the encoder counts the other way
+  std::string change;  ///< in words: "plate.direction: clockwise"
+  double turn = 1;     ///< by which the plate's angles are multiplied; −1: it counts the other way
   std::vector<double> mount_turns;  ///< [rad] by which each laser's mount is greater
 };
 
@@ -47,7 +47,7 @@ std::vector<RigHypothesis> common_hypotheses(const Rig& rig) {
   const bool is_clockwise = rig.plate.direction == CountDirection::clockwise;
   std::vector<RigHypothesis> all = {
       {.change = fmt::format("plate.direction: {}", is_clockwise ? "counter_clockwise" : "clockwise"),
-       .direction = -1,
+       .turn = -1,
        .mount_turns = std::vector<double>(n, 0.0)}};
   for (const double turn : kTurns) {
     RigHypothesis hypothesis{.change = with_mount(rig.lasers[0], turn),
@@ -69,7 +69,7 @@ class ChangedSample {
     }
     const PlateTrajectory& plate = *sample.plate;
     std::vector<double> angles;
-    for (const double angle : plate.angles()) angles.push_back(hypothesis.direction * angle);
+    for (const double angle : plate.angles()) angles.push_back(hypothesis.turn * angle);
     plate_ = plate.with_angles(std::move(angles));
     sample_.plate = &plate_;
   }
@@ -191,10 +191,30 @@ std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sa
   return caveats;
 }
 
+std::optional<std::string> check_counts(const Sample& sample, const Rig& rig,
+                                        const HypothesisSettings& settings) {
+  constexpr double kResolved = 0.003;  // of a turn
+  constexpr double kMore = 1.15;       // of the beams on flat surfaces
+  const auto period = turn_period(sample);
+  if (!period) return std::nullopt;
+  if (contradicts_counts(*period)) return counts_caveat(*period);
+  const double turns = period->angle / (2 * std::numbers::pi);
+  if (std::abs(turns - 1) <= kResolved) return std::nullopt;
+  // A few thousandths change ranges by little, and a calibration adapts to them: with fewer beams.
+  const Sample some = thin_evenly(longest_recording(sample), kBeams, 1);
+  RigHypothesis hypothesis{.change = {}, .mount_turns = std::vector<double>(rig.lasers.size(), 0.0)};
+  const HypothesisFit unchanged = fit_with(hypothesis, some, rig, settings);
+  if (settings.interrupted()) return std::nullopt;
+  hypothesis.turn = 1 / turns;
+  const HypothesisFit changed = fit_with(hypothesis, some, rig, settings);
+  const bool is_better =
+      changed.fits && static_cast<double>(changed.beams) > kMore * static_cast<double>(unchanged.beams);
+  if (!is_better) return std::nullopt;
+  return counts_caveat(*period);
+}
+
 std::optional<std::string> find_rig_error(const Sample& sample, const Rig& rig,
                                           const HypothesisSettings& settings) {
-  const auto period = turn_period(sample);
-  if (period && contradicts_counts(*period)) return counts_caveat(*period);
   const Sample some = thin_evenly(longest_recording(sample), kBeams, 1);
   // Where the rig as it stands fits as well, by the same few beams, no change of it explains anything.
   const RigHypothesis as_it_stands{.change = {}, .mount_turns = std::vector<double>(rig.lasers.size(), 0.0)};

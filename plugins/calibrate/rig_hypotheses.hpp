@@ -29,9 +29,14 @@ struct HypothesisSettings {
 std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
                                       const HypothesisSettings& settings);
 
-/// Which mistake in the rig explains that a calibration does not fit, as a caveat: counts a revolution after
-/// which the scene does not repeat; or the encoder's direction, or a mount of all lasers or one that is off
-/// by 45, 90 or 180 degrees, where a calibration with it right fits and agrees with the nominal values.
+/// Wrong counts a revolution, as a caveat: the scene repeats clearly better after another angle of the plate,
+/// or a little better, and with such counts a calibration fits with clearly more beams.
+std::optional<std::string> check_counts(const Sample& sample, const Rig& rig,
+                                        const HypothesisSettings& settings);
+
+/// Which mistake in the rig explains that a calibration does not fit, as a caveat: the encoder's direction,
+/// or a mount of all lasers or one that is off by 45, 90 or 180 degrees, where a calibration with it right
+/// fits and agrees with the nominal values.
 ///
 /// Takes some calibrations' time, with a share of the beams each.
 std::optional<std::string> find_rig_error(const Sample& sample, const Rig& rig,

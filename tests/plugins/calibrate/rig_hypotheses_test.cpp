@@ -60,6 +60,25 @@ TEST_F(RigHypotheses, MountsThatAreRightAreNotSuspected) {
       IsEmpty());
 }
 
+TEST(RigHypothesesOfCounts, HalfAPercentTooManyIsFoundByTheBeamsThatFit) {
+  TermRegistry terms;
+  register_built_in(terms);
+  const auto measure = rqe_measure();
+  const HypothesisSettings settings{.terms = &terms, .measure = measure.get(), .refinement = {}};
+  ScannerSettings scanner = misplaced_scanner(8, 5);
+  for (LaserCalibration& laser : scanner.truth.lasers) laser.eta.value /= 10;
+  const SimulatedMeasurements simulated = simulate_measurements(scanner, office());
+  Sample sample = sample_of(simulated);
+  EXPECT_FALSE(check_counts(sample, default_rig(), settings)) << "counts that are right";
+  std::vector<double> angles;
+  for (const double angle : sample.plate->angles()) angles.push_back(angle / 1.006);
+  const PlateTrajectory slower = sample.plate->with_angles(std::move(angles));
+  sample.plate = &slower;
+  const auto mistake = check_counts(sample, default_rig(), settings);
+  ASSERT_TRUE(mistake);
+  EXPECT_THAT(*mistake, HasSubstr("multiply it by 0.994"));
+}
+
 TEST_F(RigHypotheses, ARigThatFitsAsItStandsHasNoMistake) {
   EXPECT_FALSE(find_rig_error(sample_of(simulated_), default_rig(), settings()));
 }
