@@ -231,7 +231,7 @@ void ClockAligner::Windows::end_recording() {
     report_.append(tracks_.report());
   } else {
     ++report_.counts["recordings without any scan, or without two encoder readings"];
-    const std::uint64_t scans = tracks_.scans_received();
+    const std::uint64_t scans = tracks_.scans_left_out();
     report_.counts["scans of recordings without two encoder readings"] += scans;
     if (scans > 0)
       report_.warnings.push_back(fmt::format(

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pipeline/clocks/unwrap.hpp"
 
@@ -240,6 +241,15 @@ void FittedClock::settle(Segment& segment, double begin, double end) {
   segment.hull.forget_before(end - segment.first_hub - kWindowsBack * (end - begin));
 }
 
+/// For a segment whose receipts all lie ahead of the hub's latest time, once its deviation is taken out.
+void FittedClock::settle_all(Segment& segment) {
+  if (segment.stamps.empty()) return;
+  double latest = -std::numeric_limits<double>::infinity();
+  for (const Stamp& stamp : segment.stamps) latest = std::max(latest, segment.hub(stamp));
+  settle(segment, segment.hub(segment.stamps.front()),
+         std::nextafter(latest, std::numeric_limits<double>::infinity()));
+}
+
 void FittedClock::append_piece(const ClockPiece& piece) {
   if (!map_) {
     map_.emplace(ClockMap{.device = device_, .pieces = ClockPieces(piece)});
@@ -302,7 +312,10 @@ void FittedClock::finish() {
     map_->pieces.replace_last(last);
     map_->std_error = std::hypot(errors.at_center, errors.bias);  // a clock that is followed lies on its line
   }
-  for (auto& segment : segments_) close(segment);
+  for (auto& segment : segments_) {
+    if (!segment.followed && !segment.first_knot) settle_all(segment);
+    close(segment);
+  }
   segments_.clear();
   cut_ = true;
   if (!map_) return;

@@ -112,6 +112,7 @@ class FittedClock {
   void make_hull_anew(Segment& segment, double first) const;
   std::optional<WindowFit> fit(const Segment& segment, double end) const;
   void settle(Segment& segment, double begin, double end);
+  void settle_all(Segment& segment);
   void carry_on(Segment& segment, const Knot& knot);
   void append_piece(const ClockPiece& piece);
   void close(Segment& segment);

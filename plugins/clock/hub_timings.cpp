@@ -41,6 +41,7 @@ void HubTimings::begin_anew() {
   plate_ = PlateTiming(rig_.plate, stamps_of(rig_.plate.name, settings_), settings_.source);
   if (before) plate_.follow_on(*before);
   unknown_lasers_ = 0;
+  handed_out_ = 0;
   back_in_time_ = 0;
   begin_.reset();
 }
@@ -63,16 +64,17 @@ LaserTiming* HubTimings::track_of(const Scan& scan) {
 }
 
 std::shared_ptr<const Measurements> HubTimings::measurements_of(const TimedScan& scan) {
+  ++handed_out_;
   auto measurements = measurements_.get();
   fill_measurements(scan, lasers_[scan.scan->laser].laser(), epoch_ns_, *measurements);
   lasers_[scan.scan->laser].count_beams(*scan.scan, *measurements);
   return measurements;
 }
 
-std::uint64_t HubTimings::scans_received() const {
-  std::uint64_t n = unknown_lasers_;
-  for (const auto& laser : lasers_) n += laser.report().received + laser.without_ranges();
-  return n;
+std::uint64_t HubTimings::scans_left_out() const {
+  std::uint64_t received = unknown_lasers_;
+  for (const auto& laser : lasers_) received += laser.report().received + laser.without_ranges();
+  return received - handed_out_;
 }
 
 bool HubTimings::has_scans() const {

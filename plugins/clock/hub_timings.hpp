@@ -38,7 +38,7 @@ class HubTimings {
   std::int64_t epoch_ns() const { return epoch_ns_; }
   double now() const { return now_; }  ///< [s since the epoch] latest receipt
 
-  std::uint64_t scans_received() const;  ///< of use or not
+  std::uint64_t scans_left_out() const;  ///< of this recording, received and not handed out
   bool has_scans() const;                ///< of any laser
   bool has_readings() const;             ///< of the plate, two or more
   /// @throws Error as Aligner::finish()
@@ -58,6 +58,7 @@ class HubTimings {
   std::optional<double> begin_;  ///< [s since the epoch] of the present recording
   double now_ = 0;
   std::uint64_t unknown_lasers_ = 0;
+  std::uint64_t handed_out_ = 0;  ///< scans of the present recording
   std::uint64_t back_in_time_ = 0;
 };
 
