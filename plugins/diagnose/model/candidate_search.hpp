@@ -24,6 +24,7 @@ struct DiagnosisSettings {
   double min_effect = 0.008;  ///< [σ] minimum effect of a cause in the refined search (RMS change of ranges)
   int rounds = 8;             ///< maximum number of model extensions
   std::set<std::string> excluded = {};     ///< candidates that are already estimated from other data
+  std::vector<double> skew_errors = {};    ///< by laser: see skew_errors(); none: the clocks are exact
   std::function<bool()> interrupted = {};  ///< cancellation query, called from several threads
 };
 

@@ -14,6 +14,7 @@
 
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/model/terms_in.hpp"
+#include "plugins/diagnose/model/clock_lines.hpp"
 #include "plugins/diagnose/model/cross_validation.hpp"
 #include "plugins/diagnose/model/generalization.hpp"
 #include "plugins/diagnose/model/nonlinear_parameters.hpp"
@@ -64,6 +65,8 @@ class Diagnoser {
       judge(held_out, plain_score, result);
       compare(result);
       reject_causes_below_residual(result);
+      mark_clock_lines(result.hypotheses, result.after.outcome, settings_.skew_errors,
+                       0.5 * (sample_.plate->begin() + sample_.plate->end()));
       if (std::ranges::any_of(result.hypotheses, &Hypothesis::accepted))
         result.gains = CrossValidator::gains(plain_score, held_out(result.after.outcome.model.calibration()));
     } else {

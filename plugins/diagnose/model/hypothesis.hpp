@@ -27,7 +27,8 @@ struct Hypothesis {
   std::vector<Gain> gains;              ///< on held-out turns of the plate
   bool accepted = true;                 ///< whether the extended model has it
   double unexplained = 0;               ///< [m²] mean square of the systematic residual that remains
-  std::string rejected = {};            ///< reason of the rejection; empty if accepted or not generalizing
+  bool is_clock_line = false;  ///< whether it corrects an error of the laser's clock line, and is no cause
+  std::string rejected = {};   ///< reason of the rejection; empty if accepted or not generalizing
 
   /// Rejects the hypothesis, whatever its gains.
   void reject(std::string why) {

@@ -14,6 +14,7 @@
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/plot/write_plot.hpp"
+#include "plugins/diagnose/model/clock_lines.hpp"
 #include "plugins/diagnose/model/estimator_artifacts.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"
 #include "plugins/diagnose/report/residual_plots.hpp"
@@ -61,6 +62,7 @@ void DiagnoseModelStage::describe(StageDescription<DiagnoseModelStage>& d) {
       "Tests every effect of the catalogue in the distances of all beams to the flat surfaces they meet (score tests with stepwise selection by BIC). It adds the significant effects to the calibration and reports their gain on held-out turns of the plate (cross-validation). With several recordings, separated by pauses of 5 s, it holds out every other recording. It then does not test effects of time, or of angles that count from another zero. The incoming calibration must be accurate to a few centimetres: run calibrate.refine first.");
   d.takes<Measurements>()
       .takes<Findings>(Need::optional)
+      .takes<ClockMap>(Need::optional)
       .holds<PlateTrajectory>()
       .holds<Calibration>()
       .gives<Findings>()
@@ -84,6 +86,7 @@ void DiagnoseModelStage::describe(StageDescription<DiagnoseModelStage>& d) {
 
 void DiagnoseModelStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const Findings* before = in.find<Findings>()) all_.append(*before);
+  if (const auto* clock = in.find<ClockMap>()) clocks_.insert_or_assign(clock->device, *clock);
   if (!in.find<Measurements>()) return;
   start_ = in.share<Calibration>();
   collected_.add(in.share<Measurements>(),
@@ -102,6 +105,7 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
     const RecordingLags lags = lags_of_recordings(start, sample, settings_.refinement);
     sample = with_common_lags(std::move(sample), lags);
   }
+  settings_.skew_errors = skew_errors(context.rig(), clocks_);
   settings_.excluded = determined_by_stamps(all_);
   settings_.interrupted = [&context] { return context.interrupted(); };
   const Diagnosis diagnosis =
@@ -129,7 +133,8 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
     calibration.quality.insert(std::move(known));
   }
   Findings findings = findings_of(diagnosis, calibration, terms, settings_.selection, noise_);
-  for (const auto& artifact : {aliasing(sample), density_bias(*start_, diagnosis.before.outcome)}) {
+  for (const auto& artifact : {aliasing(sample), density_bias(*start_, diagnosis.before.outcome),
+                               clock_lines(diagnosis.hypotheses, diagnosis.after.outcome)}) {
     if (artifact) findings.artifacts.push_back(*artifact);
   }
   context.print(in_words(diagnosis, findings));

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 
+#include <crisp/clock_map.hpp>
 #include <crisp/context.hpp>
 #include <crisp/findings.hpp>
 #include <crisp/stage_description.hpp>
@@ -29,7 +32,8 @@ class DiagnoseModelStage final : public Stage {
   OrientedPlate oriented_;
   MeasurementBuffer collected_;
   std::shared_ptr<const Calibration> start_;
-  Findings all_;  // including those of earlier stages
+  std::map<std::string, ClockMap> clocks_;  // by device
+  Findings all_;                            // including those of earlier stages
 };
 
 }  // namespace crisp

@@ -99,6 +99,8 @@ bool is_level_of(const Hypothesis& one, const Hypothesis& other, const TermRegis
          terms.get(other.candidate.family)->info().has_free_level;
 }
 
+bool is_reported(const Hypothesis& one) { return one.candidate.is_cause() && !one.is_clock_line; }
+
 /// The hypothesis as part of which one is reported: the first member of its family, or that whose level it
 /// is.
 const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothesis>& all,
@@ -107,7 +109,8 @@ const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothe
       std::ranges::find_if(all, [&](const Hypothesis& other) { return is_level_of(one, other, terms); });
   const Hypothesis& member = whole == all.end() ? one : *whole;
   return *std::ranges::find_if(all, [&](const Hypothesis& other) {
-    return other.accepted == member.accepted && other.candidate.is_of_family(member.candidate);
+    return other.accepted == member.accepted && is_reported(other) &&
+           other.candidate.is_of_family(member.candidate);
   });
 }
 
@@ -126,12 +129,12 @@ std::vector<Finding> causes_of(const Diagnosis& diagnosis, const Calibration& ca
   std::vector<Finding> findings;
   std::map<const Hypothesis*, std::size_t> place;
   for (const Hypothesis& hypothesis : all) {
-    if (!hypothesis.candidate.is_cause() || &reported_with(hypothesis, all, terms) != &hypothesis) continue;
+    if (!is_reported(hypothesis) || &reported_with(hypothesis, all, terms) != &hypothesis) continue;
     place.emplace(&hypothesis, findings.size());
     findings.push_back(finding_of(hypothesis, calibration, diagnosis, terms, odds, noise));
   }
   for (const Hypothesis& hypothesis : all) {
-    if (!hypothesis.candidate.is_cause()) continue;
+    if (!is_reported(hypothesis)) continue;
     const Hypothesis& with = reported_with(hypothesis, all, terms);
     if (&with == &hypothesis) continue;
     merge(findings[place.at(&with)], finding_of(hypothesis, calibration, diagnosis, terms, odds, noise));
