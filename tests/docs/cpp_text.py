@@ -54,6 +54,30 @@ def calls(found, names):
             yield arguments(found, i + 1)
 
 
+def brackets(found):
+    """(name, position, position after its closing bracket) of each name with an opening bracket behind it."""
+    for i in range(len(found) - 1):
+        if found[i][0] != "name" or found[i + 1] != ("sign", "("):
+            continue
+        depth = 0
+        for end in range(i + 1, len(found)):
+            depth += (found[end] == ("sign", "(")) - (found[end] == ("sign", ")"))
+            if depth == 0:
+                yield found[i][1], i, end + 1
+                break
+
+
+def defined_functions(found):
+    """Names of the functions whose bodies follow, members included."""
+    return {name for name, _, end in brackets(found)
+            if [text for _, text in found[end:end + 2] if text != "const"][:1] == ["{"]}
+
+
+def called_functions(found):
+    """Names of the functions that are called, or declared, but of no object."""
+    return {name for name, at, _ in brackets(found) if at == 0 or found[at - 1][1] not in (".", ">")}
+
+
 def alternatives(argument):
     """An argument `c ? a : b` as a and b, any other as itself."""
     depth = 0

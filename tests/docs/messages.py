@@ -19,6 +19,7 @@ MAKERS = (
     "grabbers/capture/loss_warnings.cpp",
     "pipeline/estimate/surfel_refinement.cpp",
     "pipeline/estimate/surfel_refiner_covariance.cpp",
+    "pipeline/estimate/turn_period.cpp",
     "pipeline/estimate/view_consistency.cpp",
     "plugins/calibrate/fit_check.cpp",
     "plugins/calibrate/rig_check.cpp",
@@ -124,7 +125,7 @@ def sentences(tokens):
 
 
 @functools.cache
-def caveats(root):
+def caveats(root, makers=MAKERS):
     """(file, message) of each caveat, and how often each file relays one that is made elsewhere."""
     found = []
     relays = {}
@@ -135,8 +136,19 @@ def caveats(root):
         for arguments in given:
             texts = [text for text in (texts_or_initial(arguments[0], tokens) if arguments else []) if is_message(text)]
             found += [(name, text) for text in texts]
-            if not texts and name not in MAKERS:
+            if not texts and name not in makers:
                 relays[name] = relays.get(name, 0) + 1
-        if name in MAKERS:
+        if name in makers:
             found += [(name, text) for text in sentences(tokens)]
     return sorted(set(found)), relays
+
+
+def missing_makers(root, makers=MAKERS):
+    """(file, function) of each function of a caveat, by its name, that a file of caveats calls from elsewhere."""
+    found, relays = caveats(root, makers)
+    of_caveats = {name for name, _ in found} | set(relays)
+    called = {function for name, tokens in sources(root) if name in of_caveats
+              for function in cpp_text.called_functions(tokens) - cpp_text.defined_functions(tokens)
+              if "caveat" in function}
+    return sorted((name, function) for name, tokens in sources(root) if name not in of_caveats
+                  for function in cpp_text.defined_functions(tokens) & called)

@@ -52,6 +52,14 @@ class Messages(unittest.TestCase):
                          "a file marks results by a text from elsewhere: add the file that makes the text to MAKERS in "
                          "tests/docs/messages.py, and correct RELAYS")
 
+    def test_every_function_of_a_caveat_is_in_a_file_that_is_searched(self):
+        self.assertEqual(messages.missing_makers(ROOT), [], "add these files to MAKERS in tests/docs/messages.py")
+
+    def test_a_function_of_a_caveat_elsewhere_is_found(self):
+        file = "pipeline/estimate/turn_period.cpp"
+        others = tuple(maker for maker in messages.MAKERS if maker != file)
+        self.assertIn((file, "counts_caveat"), messages.missing_makers(ROOT, others))
+
     def test_every_entry_is_a_message_of_the_sources(self):
         printed = [message for _, message in messages.caveats(ROOT)[0] + messages.warnings(ROOT)]
         printed += [message for _, message, _ in messages.errors(ROOT)]
