@@ -56,13 +56,25 @@ void accept_if_it_generalizes(std::vector<Hypothesis>& hypotheses, const CrossVa
   for (Hypothesis& hypothesis : hypotheses) {
     if (hypothesis.accepted) open.push_back(&hypothesis);
   }
+  const auto open_where = [&open](auto is_one) {
+    std::vector<Hypothesis*> some;
+    std::ranges::copy_if(open, std::back_inserter(some), is_one);
+    return some;
+  };
   while (!open.empty()) {
-    std::vector<Hypothesis*> alike;
-    std::ranges::copy_if(open, std::back_inserter(alike), [&](const Hypothesis* other) {
-      return other->candidate.term.term == open.front()->candidate.term.term;
-    });
+    const Candidate& first = open.front()->candidate;
+    const auto of_each_laser =
+        open_where([&](const Hypothesis* other) { return other->candidate.term.term == first.term.term; });
+    const auto of_family =
+        open_where([&](const Hypothesis* other) { return other->candidate.is_of_family(first); });
     std::vector<Hypothesis*> judged = {open.front()};
-    if (!selection.accepts(judged) && alike.size() > 1 && selection.accepts(alike)) judged = alike;
+    if (!selection.accepts(judged)) {
+      for (const auto& some : {of_each_laser, of_family}) {
+        if (some.size() < 2 || !selection.accepts(some)) continue;
+        judged = some;
+        break;
+      }
+    }
     std::erase_if(open, [&](Hypothesis* one) { return std::ranges::find(judged, one) != judged.end(); });
   }
 }

@@ -14,7 +14,8 @@ using HeldOutScore = std::function<CrossValidator::Score(const Calibration& star
 
 /// Accepts hypotheses that generalize to held-out turns (forward cross-validation): adds them one by one,
 /// fits each model to the training turns and compares the held-out likelihood. If a cause of several lasers
-/// fails for one laser, it is tested for all of them jointly: corrected in one alone, the lasers disagree.
+/// fails for one laser, it is tested for all of them jointly: corrected in one alone, the lasers disagree. A
+/// member of a family that fails is tested with the family's others: each may make up for what another lacks.
 ///
 /// @param hypotheses  their gains and acceptance are set, except of those already rejected
 /// @param plain       score of the model without hypotheses

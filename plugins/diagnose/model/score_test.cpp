@@ -2,6 +2,7 @@
 #include "plugins/diagnose/model/score_test.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <limits>
@@ -30,7 +31,15 @@ struct StepSpread {
   double wald = std::numeric_limits<double>::infinity();
   double p_value = 1;
   bool is_testable = false;
+  bool is_measured = true;  ///< whether each division has twice as many effective blocks as steps
 };
+
+/// p-value where the blocks are too few to measure how much the errors scatter in excess: the errors'
+/// variance is taken to be at most a hundred times that of independent errors.
+double by_largest_excess(double gain, Eigen::Index steps) {
+  constexpr double kLargest = 100;
+  return cdf(complement(boost::math::chi_squared(static_cast<double>(steps)), gain / kLargest));
+}
 
 /// Effective number of equally distributed squares in a sum (Satterthwaite's approximation): their number if
 /// all are equal, fewer if some dominate.
@@ -57,10 +66,8 @@ std::optional<double> by_hotelling(const Eigen::MatrixXd& block_scores, const Ei
 /// p-value with Rao and Scott's first-order correction (1984): independent beam errors scatter equally in all
 /// directions, so the excess is estimated along the steps alone, for which few blocks suffice. It is
 /// conservative where the excess differs between directions.
-std::optional<double> by_rao_and_scott(const Eigen::MatrixXd& block_scores, const Eigen::VectorXd& steps) {
+std::optional<double> by_rao_and_scott(const Eigen::VectorXd& along, double n, const Eigen::VectorXd& steps) {
   const auto p = static_cast<double>(steps.size());
-  const Eigen::VectorXd along = block_scores.transpose() * steps.normalized();
-  const double n = std::min(alike(along), static_cast<double>(block_scores.cols()));
   const double left = n - p;
   if (!(left > 0 && along.squaredNorm() > 0)) return std::nullopt;
   const double ratio = steps.squaredNorm() / along.squaredNorm();
@@ -78,7 +85,10 @@ StepSpread widest(const NormalEquations& equations, const std::vector<std::size_
     const Eigen::MatrixXd covariance = block_scores * block_scores.transpose();
     const Eigen::VectorXd solved = minimum_norm_least_squares(covariance, steps);
     const auto first = by_hotelling(block_scores, steps, solved);
-    const auto second = by_rao_and_scott(block_scores, steps);
+    const Eigen::VectorXd along = block_scores.transpose() * steps.normalized();
+    const double blocks = std::min(alike(along), static_cast<double>(along.size()));
+    const auto second = by_rao_and_scott(along, blocks, steps);
+    widest.is_measured = widest.is_measured && blocks > 2 * static_cast<double>(steps.size());
     if (first || second) {
       widest.p_value = std::max(widest.p_value, std::min(first.value_or(1), second.value_or(1)));
       widest.is_testable = true;
@@ -120,6 +130,8 @@ ScoreTest score_test(const NormalEquations& equations, const std::vector<std::si
                                                   : std::sqrt(in_ranges.dot(test.covariance.diagonal()));
   test.wald = spread.wald;
   test.p_value = spread.is_testable ? spread.p_value : 1;
+  if (!spread.is_measured && steps.size() > 0)
+    test.p_value = std::min(test.p_value, by_largest_excess(test.gain, steps.size()));
   test.is_testable = spread.is_testable;
   return test;
 }

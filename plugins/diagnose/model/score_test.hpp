@@ -16,7 +16,8 @@ struct ScoreTest {
   double gain = 0;  ///< decrease of the weighted squares, in units of the residual variance: 2 ln(likelihood)
   double bic = 0;   ///< gain − p ln n: decrease of the BIC (Schwarz 1978)
   double wald = 0;  ///< valueᵀ covariance⁻¹ value: the smallest over several divisions into blocks
-  double p_value = 1;  ///< of the Wald statistic under the null hypothesis (Hotelling's T² for few blocks)
+  double p_value = 1;  ///< of the Wald statistic under the null hypothesis (Hotelling's T² for few blocks);
+                       ///< with too few blocks to measure the errors' excess, with the largest that occurs
   bool is_testable = false;  ///< whether a division has more blocks than parameters; p_value is 1 otherwise
   /// Design effect (Kish): variance of the value, along the value, relative to independent beam errors. It is
   /// valid where the model has the parameters; elsewhere blocks share the unmodeled effect. 1 where the

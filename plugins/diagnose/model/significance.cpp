@@ -17,13 +17,18 @@ constexpr const char* kIsNothing =
     "it is not significant in the joint fit with the other accepted effects (Wald test)";
 
 /// Wald test: p-value of the estimate for a term that is neutral; 0 if none of its parameters was
-/// estimated.
+/// estimated. The form is held at its estimate, since a neutral term has none, and counts as a parameter.
 double chance_of_neutral(const Candidate& candidate, const Outcome& outcome, const TermInfo& info) {
   const auto places = parameter_indices(candidate, outcome);
   std::vector<Eigen::Index> at;
+  std::vector<Eigen::Index> form;
   std::vector<double> off;
   for (std::size_t p = 0; p < places.size(); ++p) {
-    if (!places[p] || info.parameters[p].shape) continue;
+    if (!places[p]) continue;
+    if (info.parameters[p].shape) {
+      form.push_back(*places[p]);
+      continue;
+    }
     at.push_back(*places[p]);
     off.push_back(
         outcome.model
@@ -31,12 +36,17 @@ double chance_of_neutral(const Candidate& candidate, const Outcome& outcome, con
         info.parameters[p].neutral);
   }
   if (at.empty()) return 0;
-  const Eigen::MatrixXd covariance = outcome.covariance(at, at);
+  Eigen::MatrixXd covariance = outcome.covariance(at, at);
+  if (!form.empty()) {
+    const Eigen::MatrixXd with_form = outcome.covariance(form, at);
+    const Eigen::MatrixXd of_form = outcome.covariance(form, form);
+    covariance -= with_form.transpose() * solve_positive_definite(of_form, with_form);
+  }
   const Eigen::VectorXd change =
       Eigen::Map<const Eigen::VectorXd>(off.data(), static_cast<Eigen::Index>(off.size()));
   const double square = change.dot(solve_positive_definite(covariance, change));
   if (!(square > 0)) return 1;
-  return cdf(complement(boost::math::chi_squared(static_cast<double>(off.size())), square));
+  return cdf(complement(boost::math::chi_squared(static_cast<double>(off.size() + form.size())), square));
 }
 
 }  // namespace

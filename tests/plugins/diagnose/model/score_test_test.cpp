@@ -93,6 +93,17 @@ TEST(ScoreTest, DetectsALargeEffectWithFewBlocks) {
   EXPECT_GT(sure, 90) << "62 by Hotelling's T² alone";
 }
 
+TEST(ScoreTest, DetectsAVeryLargeEffectWithHardlyMoreBlocksThanParameters) {
+  int sure = 0;
+  int small = 0;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    sure += p_of_twelve(14, 50, seed) < 1e-4 ? 1 : 0;
+    small += p_of_twelve(14, 0, seed) < 0.01 ? 1 : 0;
+  }
+  EXPECT_GT(sure, 90) << "the errors' excess is at most a hundred";
+  EXPECT_LE(small, 1 + 4) << "1 ± 1 by chance";
+}
+
 TEST(ScoreTest, UsesTheDivisionOfTheLargestPValue) {
   // Ten consecutive blocks share an error, which the other division shows: standard errors are √10 times as
   // large.

@@ -75,5 +75,29 @@ TEST(Significance, TestsTheParametersOfATermJointly) {
       << "they are correlated";
 }
 
+TEST(Significance, HoldsTheFormOfATerm) {
+  // A short recording hardly determines the time constant: c and T are known together to a tenth of c alone.
+  const auto p_is_small = [](double c) {
+    Calibration calibration = nominal_calibration(default_rig());
+    TermParameters term = neutral_parameters(built_in_terms().get("range.warmup")->info());
+    term.parameters[0].value = c;
+    calibration.lasers[0].terms.push_back(term);
+    Outcome outcome{.model = SensorModel(calibration, built_in_terms()),
+                    .free = {},
+                    .covariance = {},
+                    .unobservable = {}};
+    outcome.free = {outcome.model.index("laser1.range.warmup.c"),
+                    outcome.model.index("laser1.range.warmup.T")};
+    const double of_c = 10e-3;
+    const double of_t = 50;
+    outcome.covariance = Eigen::Vector2d(of_c * of_c, of_t * of_t).asDiagonal();
+    outcome.covariance(0, 1) = outcome.covariance(1, 0) = std::sqrt(0.99) * of_c * of_t;
+    std::vector<Hypothesis> found = {of_first_laser("range.warmup")};
+    return !reject_insignificant(found, outcome, built_in_terms(), 1e-3);
+  };
+  EXPECT_TRUE(p_is_small(4e-3)) << "0.4 standard errors of c, and four where T is held";
+  EXPECT_FALSE(p_is_small(3e-3)) << "three, and T counts as a parameter";
+}
+
 }  // namespace
 }  // namespace crisp
