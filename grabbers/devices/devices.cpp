@@ -4,10 +4,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include <crisp/error.hpp>
 
 namespace crisp {
+namespace {
+
+/// Silences before a device's first item and after its last one, while others were heard.
+void count_silences_at_the_ends(std::vector<DeviceStatistics>& all) {
+  auto first = std::numeric_limits<std::int64_t>::max();
+  auto last = std::numeric_limits<std::int64_t>::min();
+  for (const DeviceStatistics& device : all) {
+    if (device.items == 0) continue;
+    first = std::min(first, device.first_ns);
+    last = std::max(last, device.last_ns);
+  }
+  const auto count = [](DeviceStatistics& device, std::int64_t from, std::int64_t to) {
+    const double silence = 1e-9 * static_cast<double>(to - from);
+    if (silence <= device.longest_silence) return;
+    device.longest_silence = silence;
+    device.silence_ns = from;
+  };
+  for (DeviceStatistics& device : all) {
+    if (device.items == 0) continue;
+    count(device, first, device.first_ns);
+    count(device, device.last_ns, last);
+  }
+}
+
+}  // namespace
 
 bool is_sick_port(std::uint16_t port) { return port == 2111 || port == 2112; }
 
@@ -71,6 +97,7 @@ std::vector<DeviceStatistics> Devices::statistics() const {
   for (const auto& device : known_) all.push_back(device->log.statistics());
   if (wired_encoder_) all.push_back(wired_encoder_->statistics());
   for (const auto& [place, device] : others_) all.push_back(device->log.statistics());
+  count_silences_at_the_ends(all);
   return all;
 }
 

@@ -50,14 +50,17 @@ Calibration calibration_of(const Outcome& outcome, const Rig& rig) {
     parameter.std_error = parameter.free ? std::sqrt(outcome.covariance(at, at)) : 0;
   });
   calibration.unobservable = outcome.unobservable;
-  return with_lambdas_near(std::move(calibration), rig);
+  return with_angles_near(std::move(calibration), rig);
 }
 
-Calibration with_lambdas_near(Calibration calibration, const Rig& rig) {
+Calibration with_angles_near(Calibration calibration, const Rig& rig) {
+  constexpr double kTurn = 2 * std::numbers::pi;
   for (std::size_t i = 0; i < std::min(calibration.lasers.size(), rig.lasers.size()); ++i) {
-    double& lambda = calibration.lasers[i].lambda.value;
-    const double nominal = rig.lasers[i].nominal.lambda.value;
-    lambda = nominal + std::remainder(lambda - nominal, 2 * std::numbers::pi);
+    LaserCalibration& laser = calibration.lasers[i];
+    const LaserCalibration& nominal = rig.lasers[i].nominal;
+    laser.lambda.value =
+        nominal.lambda.value + std::remainder(laser.lambda.value - nominal.lambda.value, kTurn);
+    laser.alpha.value += kTurn * std::round((nominal.alpha.value - laser.alpha.value) / kTurn);
   }
   return calibration;
 }

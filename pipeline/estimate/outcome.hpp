@@ -23,12 +23,12 @@ struct Outcome {
       {};  ///< parameters that this method cannot find, though another may
 };
 
-/// The outcome as a calibration: values, standard errors, covariance, and what is unobservable. Each λ is
-/// given within half a turn of the rig's.
+/// The outcome as a calibration: values, standard errors, covariance, and what is unobservable. Each λ and α
+/// is given within half a turn of the rig's.
 Calibration calibration_of(const Outcome& outcome, const Rig& rig);
 
-/// The calibration with each λ within half a turn of the rig's.
-Calibration with_lambdas_near(Calibration calibration, const Rig& rig);
+/// The calibration with each λ and α within half a turn of the rig's.
+Calibration with_angles_near(Calibration calibration, const Rig& rig);
 
 /// A table for people: each parameter in mm, degrees and ms, its standard error and its change from the
 /// rig's nominal value.

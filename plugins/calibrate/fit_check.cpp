@@ -38,9 +38,21 @@ Caveats of_rig(const Calibration& calibration, const Calibration& start, const R
   return is_new ? check.caveats : far_from_nominal(calibration, rig);
 }
 
-/// Lasers that were heard for less than half of the recording: their own values rest on little, and the
-/// others' λ and η refer to the first laser's.
-Caveats of_silence(const Measurements& beams, const Rig& rig) {
+Caveats of_rqe(const std::map<std::string, double>& quality, bool is_near_start) {
+  constexpr double kLess = 0.05;  // [nat] that chance and the bias of an optimum of RQE do not explain
+  const double after = quality.at("rqe_after");
+  if (after > quality.at("rqe_before"))
+    return {"the calibration increased the cloud's Rényi quadratic entropy: it is worse than its start"};
+  const double less = after - quality.at("rqe_unrefined");
+  if (!is_near_start || less <= kLess) return {};
+  return {fmt::format(
+      "the refinement increased the cloud's Rényi quadratic entropy by {:.3f} nat: it is worse than its start",
+      less)};
+}
+
+}  // namespace
+
+std::vector<std::string> check_silence(const Measurements& beams, const Rig& rig) {
   constexpr double kHalf = 0.5;
   struct Span {
     double first = std::numeric_limits<double>::infinity();
@@ -57,29 +69,20 @@ Caveats of_silence(const Measurements& beams, const Rig& rig) {
   }
   Caveats caveats;
   for (std::size_t laser = 0; laser < of.size(); ++laser) {
-    const bool has_beams =
-        of[laser].first <= of[laser].last;  // without any it is not observable, which is reported
-    if (!has_beams || of[laser].length() >= kHalf * all.length()) continue;
+    const std::string& name = rig.lasers[laser].name;
+    if (of[laser].first > of[laser].last) {
+      caveats.push_back(fmt::format(
+          "there are no beams of {0}: its values are the rig's, and are not calibrated. Check its address, its cable and its power supply, and record again; or take {0} out of the rig",
+          name));
+      continue;
+    }
+    if (of[laser].length() >= kHalf * all.length()) continue;
     caveats.push_back(fmt::format(
         "{} was heard for {:.1f} s of {:.1f} s: its values rest on that part alone, and those of the others may refer to them. Check its cable and its power supply, and record again",
-        rig.lasers[laser].name, of[laser].length(), all.length()));
+        name, of[laser].length(), all.length()));
   }
   return caveats;
 }
-
-Caveats of_rqe(const std::map<std::string, double>& quality, bool is_near_start) {
-  constexpr double kLess = 0.05;  // [nat] that chance and the bias of an optimum of RQE do not explain
-  const double after = quality.at("rqe_after");
-  if (after > quality.at("rqe_before"))
-    return {"the calibration increased the cloud's Rényi quadratic entropy: it is worse than its start"};
-  const double less = after - quality.at("rqe_unrefined");
-  if (!is_near_start || less <= kLess) return {};
-  return {fmt::format(
-      "the refinement increased the cloud's Rényi quadratic entropy by {:.3f} nat: it is worse than its start",
-      less)};
-}
-
-}  // namespace
 
 bool agrees_well(const Refinement& refined) {
   constexpr double kWell = 0.7;
@@ -93,7 +96,7 @@ std::vector<std::string> check_fit(const Refinement& refined, const Calibration&
                                    double noise) {
   Caveats caveats = refined.outcome.caveats;
   append(caveats, of_misfit(refined, noise));
-  append(caveats, of_silence(beams, rig));
+  append(caveats, check_silence(beams, rig));
   append(caveats, of_rig(calibration, start, rig));
   if (!agrees_well(refined)) append(caveats, of_rqe(calibration.quality, refined.restarts == 0));
   return caveats;

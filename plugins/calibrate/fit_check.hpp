@@ -14,7 +14,7 @@ namespace crisp {
 
 /// Caveats of a refined calibration's fit; empty if it is trusted: convergence, agreement of views, misfit of
 /// the surfaces against the ranges' noise, consistency with the rig, RQE, and lasers that were heard for a
-/// part of the recording only.
+/// part of the recording only: see check_silence().
 ///
 /// RQE counts only where the views are not known to agree, and the start's RQE only if the refinement ended
 /// near it: an entropy decreases as well where a wrong calibration folds the scene into less room.
@@ -26,6 +26,10 @@ namespace crisp {
 std::vector<std::string> check_fit(const Refinement& refined, const Calibration& calibration,
                                    const Calibration& start, const Measurements& beams, const Rig& rig,
                                    double noise);
+
+/// Caveats of lasers without any beam, and of those that were heard for less than half of the recording:
+/// their own values rest on little, and the others' λ and η refer to the first laser's.
+std::vector<std::string> check_silence(const Measurements& beams, const Rig& rig);
 
 /// Whether views are known to agree well, so that no other judge is needed.
 bool agrees_well(const Refinement& refined);

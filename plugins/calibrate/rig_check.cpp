@@ -156,9 +156,33 @@ void add_if_outside(const std::string& laser, const Parameter& found, const Para
       nominal.value * unit.factor, unit.name, remedy, nominal.name));
 }
 
+/// Pairs of lasers each of which has the other's nominal τ and not its own. In a wrong local minimum, τ alone
+/// shows that they are exchanged.
+std::vector<std::string> exchanged_by_tau(const Calibration& found, const Rig& rig,
+                                          const ParameterPrior& range) {
+  const auto has_tau_of = [&](std::size_t laser, std::size_t other) {
+    const Parameter& nominal = rig.lasers[other].nominal.tau;
+    const double limit = nominal.std_error > 0 ? kReach * nominal.std_error : range.tau;
+    return std::abs(found.lasers[laser].tau.value - nominal.value) <= limit;
+  };
+  std::vector<std::string> caveats;
+  for (std::size_t j = 1; j < found.lasers.size(); ++j) {
+    for (std::size_t i = 0; i < j; ++i) {
+      if (has_tau_of(i, i) || has_tau_of(j, j) || !has_tau_of(i, j) || !has_tau_of(j, i)) continue;
+      const double mm = shown_unit("m").factor;
+      caveats.push_back(fmt::format(
+          "{0}.tau is {1:.1f} mm and {2}.tau is {3:.1f} mm, but the rig's nominal values are {4:.1f} mm and {5:.1f} mm: {0} and {2} are probably exchanged. Exchange their addresses in the rig, or their cables, and calibrate again",
+          found.lasers[i].name, found.lasers[i].tau.value * mm, found.lasers[j].name,
+          found.lasers[j].tau.value * mm, rig.lasers[i].nominal.tau.value * mm,
+          rig.lasers[j].nominal.tau.value * mm));
+    }
+  }
+  return caveats;
+}
+
 /// Each parameter that is farther from its nominal value than the rig or the search allows.
 std::vector<std::string> outside(const Calibration& found, const Rig& rig, const ParameterPrior& range) {
-  std::vector<std::string> caveats;
+  std::vector<std::string> caveats = exchanged_by_tau(found, rig, range);
   for (std::size_t k = 0; k < found.lasers.size(); ++k) {
     const LaserCalibration& laser = found.lasers[k];
     const LaserCalibration& nominal = rig.lasers[k].nominal;
@@ -275,7 +299,7 @@ RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const Pa
 std::optional<Calibration> in_direction_of_rig(const Calibration& calibration, const Rig& rig,
                                                const RigCheck& check) {
   if (rig.plate.direction != CountDirection::automatic || !check.is_mirrored) return std::nullopt;
-  Calibration turned = match_form_of_rig(with_lambdas_near(mirrored(calibration), rig), rig);
+  Calibration turned = match_form_of_rig(with_angles_near(mirrored(calibration), rig), rig);
   turned.provenance[kDirectionSource] = kFromRecording;
   return turned;
 }

@@ -61,21 +61,21 @@ struct ScanShape {
 
 /// Statistics of one device in a capture.
 struct DeviceStatistics {
-  DeviceKind kind = DeviceKind::Laser;        ///< what sends such telegrams
-  std::string name;                           ///< as the rig calls it; empty if the rig does not know it
-  Address address;                            ///< from where its packets came
-  std::uint64_t items = 0;                    ///< different scans or readings
-  std::uint64_t unreadable = 0;               ///< scan telegrams of which no scan could be made
-  std::uint64_t standing = 0;                 ///< items with the stamp of the one before
-  Counts telegrams;                           ///< all that it sent, by kind
-  Counts losses;                              ///< what is missing, by reason
-  Counts notes;                               ///< what was out of the ordinary without loss
-  std::int64_t first_ns = 0;                  ///< [ns since the Unix epoch] receipt of the first item
-  std::int64_t last_ns = 0;                   ///< [ns since the Unix epoch] receipt of the last item
-  double longest_silence = 0;                 ///< [s] between two items, pauses between recordings included
-  std::int64_t silence_ns = 0;                ///< [ns since the Unix epoch] when that began
-  std::uint64_t pauses = 0;                   ///< between recordings: nothing came from any device
-  std::int64_t paused_ns = 0;                 ///< [ns] from last to first items around them
+  DeviceKind kind = DeviceKind::Laser;  ///< what sends such telegrams
+  std::string name;                     ///< as the rig calls it; empty if the rig does not know it
+  Address address;                      ///< from where its packets came
+  std::uint64_t items = 0;              ///< different scans or readings
+  std::uint64_t unreadable = 0;         ///< scan telegrams of which no scan could be made
+  std::uint64_t standing = 0;           ///< items with the stamp of the one before
+  Counts telegrams;                     ///< all that it sent, by kind
+  Counts losses;                        ///< what is missing, by reason
+  Counts notes;                         ///< what was out of the ordinary without loss
+  std::int64_t first_ns = 0;            ///< [ns since the Unix epoch] receipt of the first item
+  std::int64_t last_ns = 0;             ///< [ns since the Unix epoch] receipt of the last item
+  double longest_silence = 0;           ///< [s] without an item of it; pauses between recordings are included
+  std::int64_t silence_ns = 0;          ///< [ns since the Unix epoch] when that began
+  std::uint64_t pauses = 0;             ///< between recordings: nothing came from any device
+  std::int64_t paused_ns = 0;           ///< [ns] from last to first items around them
   std::vector<std::uint32_t> serial_numbers;  ///< of a laser
   std::uint64_t serial_changes = 0;           ///< scans with another serial number than the one before
   std::uint64_t counted_up = 0;               ///< steps of an encoder forwards, from reading to reading

@@ -30,6 +30,28 @@ TEST(CaptureReport, ReportsThatACaptureHoldsNothing) {
   EXPECT_THAT(to_text(inspect_capture(file.path())), HasSubstr("it holds no laser and no plate"));
 }
 
+TEST(CaptureReport, CountsTheSilenceBeforeTheFirstItemAndAfterTheLast) {
+  // All laser items of the first half, then readings alone.
+  const auto frames = Scenario{.scans = 20}.frames();
+  std::vector<Frame> of_plate;
+  for (const Frame& frame : frames) {
+    const bool is_plate = frame.bytes.size() < 100;
+    if (is_plate || 2 * of_plate.size() < frames.size()) of_plate.push_back(frame);
+  }
+  const MemoryFile whole(pcap_file(frames));
+  const MemoryFile cut(pcap_file(of_plate));
+  const auto silence_of = [](const MemoryFile& file, DeviceKind kind) {
+    double longest = 0;
+    for (const auto& device : inspect_capture(file.path()).devices) {
+      if (device.kind == kind) longest = std::max(longest, device.longest_silence);
+    }
+    return longest;
+  };
+  EXPECT_LT(silence_of(whole, DeviceKind::Laser), 0.03);
+  EXPECT_GT(silence_of(cut, DeviceKind::Laser), 0.1);
+  EXPECT_LT(silence_of(cut, DeviceKind::Plate), 0.03);
+}
+
 TEST(CaptureReport, ReportsPausesBetweenRecordings) {
   const CaptureStatistics statistics{.pauses = 1, .paused = 3595.04};
   EXPECT_THAT(to_text(statistics), HasSubstr("2 recordings in sequence, with 3595.0 s of pauses"));

@@ -38,9 +38,16 @@ TEST(Outcome, BecomesACalibrationWithItsErrors) {
   EXPECT_EQ(calibration.unobservable.size(), 1U);
 }
 
-TEST(Outcome, GivesLambdaWithinHalfATurnOfTheRigs) {
+TEST(Outcome, GivesAnglesWithinHalfATurnOfTheRigs) {
   const Calibration calibration = calibration_of(example(), default_rig());
   EXPECT_NEAR(calibration.lasers[2].lambda.value, 4 * std::numbers::pi / 3, 1e-12);
+  Rig upside_down = default_rig();
+  upside_down.lasers[0].nominal.alpha.value = std::numbers::pi;
+  Calibration found = nominal_calibration(upside_down);
+  found.lasers[0].alpha.value = -std::numbers::pi + 0.02;
+  EXPECT_NEAR(with_angles_near(found, upside_down).lasers[0].alpha.value, std::numbers::pi + 0.02, 1e-12);
+  found.lasers[0].alpha.value = std::numbers::pi - 0.02;
+  EXPECT_EQ(with_angles_near(found, upside_down).lasers[0].alpha.value, std::numbers::pi - 0.02);
 }
 
 TEST(Outcome, IsTabledInMillimetresDegreesAndMilliseconds) {

@@ -111,6 +111,19 @@ TEST(RigCheck, ExchangedLasersAreNamed) {
   EXPECT_THAT(check(calibration, rig).caveats, ElementsAre(HasSubstr("laser2 and laser3 are exchanged")));
 }
 
+TEST(RigCheck, ExchangedLasersAreNamedByTauAloneInAWrongLocalMinimum) {
+  Rig rig = default_rig();
+  rig.lasers[1].nominal.tau.value = 0.48;
+  Calibration calibration = found(5, rig);
+  std::swap(calibration.lasers[1].tau, calibration.lasers[2].tau);
+  for (std::size_t k : {1, 2}) calibration.lasers[k].lambda.value += 80 * kDegree;
+  EXPECT_THAT(check(calibration, rig).caveats,
+              testing::Contains(HasSubstr("laser2 and laser3 are probably exchanged")));
+  calibration.lasers[1].tau.value = 0.7;  // no laser's nominal value
+  EXPECT_THAT(check(calibration, rig).caveats,
+              testing::Not(testing::Contains(HasSubstr("probably exchanged"))));
+}
+
 TEST(RigCheck, ALaserThatIsUpsideDownIsNamed) {
   Calibration calibration = found(6);
   calibration.lasers[2].alpha.value += std::numbers::pi;
