@@ -71,9 +71,11 @@ std::vector<std::string> check_silence(const Measurements& beams, const Rig& rig
   for (std::size_t laser = 0; laser < of.size(); ++laser) {
     const std::string& name = rig.lasers[laser].name;
     if (of[laser].first > of[laser].last) {
-      caveats.push_back(fmt::format(
-          "there are no beams of {0}: its values are the rig's, and are not calibrated. Check its address, its cable and its power supply, and record again; or take {0} out of the rig",
-          name));
+      const bool is_device = !rig.lasers[laser].address.ip.empty() || !rig.lasers[laser].topic.empty();
+      if (is_device)
+        caveats.push_back(fmt::format(
+            "there are no beams of {0}: its values are the rig's, and are not calibrated. Check its address, its cable and its power supply, and record again; or take {0} out of the rig",
+            name));
       continue;
     }
     if (of[laser].length() >= kHalf * all.length()) continue;

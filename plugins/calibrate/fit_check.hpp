@@ -27,8 +27,9 @@ std::vector<std::string> check_fit(const Refinement& refined, const Calibration&
                                    const Calibration& start, const Measurements& beams, const Rig& rig,
                                    double noise);
 
-/// Caveats of lasers without any beam, and of those that were heard for less than half of the recording:
-/// their own values rest on little, and the others' λ and η refer to the first laser's.
+/// Caveats of devices without any beam, and of lasers that were heard for less than half of the recording:
+/// their own values rest on little, and the others' λ and η refer to the first laser's. A laser without an
+/// address or topic of its own is one of many in a device, and may have seen nothing.
 std::vector<std::string> check_silence(const Measurements& beams, const Rig& rig);
 
 /// Whether views are known to agree well, so that no other judge is needed.

@@ -31,14 +31,13 @@ struct StepSpread {
   double wald = std::numeric_limits<double>::infinity();
   double p_value = 1;
   bool is_testable = false;
-  bool is_measured = true;  ///< whether each division has twice as many effective blocks as steps
 };
 
-/// p-value where the blocks are too few to measure how much the errors scatter in excess: the errors'
-/// variance is taken to be at most a hundred times that of independent errors.
-double by_largest_excess(double gain, Eigen::Index steps) {
+/// p-value where blocks are too few to measure how much errors scatter in excess: their variance is taken to
+/// be at most a hundred times that of independent errors.
+double by_largest_excess(double gain, double steps) {
   constexpr double kLargest = 100;
-  return cdf(complement(boost::math::chi_squared(static_cast<double>(steps)), gain / kLargest));
+  return cdf(complement(boost::math::chi_squared(steps), gain / kLargest));
 }
 
 /// Effective number of equally distributed squares in a sum (Satterthwaite's approximation): their number if
@@ -77,7 +76,8 @@ std::optional<double> by_rao_and_scott(const Eigen::VectorXd& along, double n, c
 /// Statistics of the division into blocks that gives the largest p-value. A division with fewer blocks than
 /// steps tests nothing.
 StepSpread widest(const NormalEquations& equations, const std::vector<std::size_t>& of,
-                  const Eigen::MatrixXd& directions, const Eigen::VectorXd& steps) {
+                  const Eigen::MatrixXd& directions, const Eigen::VectorXd& steps, double gain) {
+  const auto p = static_cast<double>(steps.size());
   if (steps.size() == 0) return {.covariance = Eigen::MatrixXd(0, 0), .wald = 0};
   StepSpread widest{.covariance = {}, .p_value = 0};
   for (std::size_t division = 0; division < equations.block_scores.size(); ++division) {
@@ -88,15 +88,17 @@ StepSpread widest(const NormalEquations& equations, const std::vector<std::size_
     const Eigen::VectorXd along = block_scores.transpose() * steps.normalized();
     const double blocks = std::min(alike(along), static_cast<double>(along.size()));
     const auto second = by_rao_and_scott(along, blocks, steps);
-    widest.is_measured = widest.is_measured && blocks > 2 * static_cast<double>(steps.size());
     if (first || second) {
-      widest.p_value = std::max(widest.p_value, std::min(first.value_or(1), second.value_or(1)));
+      double p_value = std::min(first.value_or(1), second.value_or(1));
+      if (blocks < 2 * p) p_value = std::min(p_value, by_largest_excess(gain, p));
+      widest.p_value = std::max(widest.p_value, p_value);
       widest.is_testable = true;
     }
     if (steps.dot(solved) > widest.wald) continue;
     widest.wald = steps.dot(solved);
     widest.covariance = covariance;
   }
+  if (!widest.is_testable) widest.p_value = by_largest_excess(gain, p);
   return widest;
 }
 
@@ -113,12 +115,11 @@ ScoreTest score_test(const NormalEquations& equations, const std::vector<std::si
   const Eigen::VectorXd squares = equations.squares(of);
   const Eigen::MatrixXd seen = seen_directions(matrix, squares);
   const Eigen::VectorXd steps = -seen.transpose() * equations.vector(of);
-  const StepSpread spread = widest(equations, of, seen, steps);
-
   ScoreTest test;
+  test.gain = steps.squaredNorm() / equations.covariance_factor();
+  const StepSpread spread = widest(equations, of, seen, steps, test.gain);
   test.value = seen * steps;
   test.covariance = seen * spread.covariance * seen.transpose();
-  test.gain = steps.squaredNorm() / equations.covariance_factor();
   const auto count = static_cast<double>(seen.cols());
   test.bic = test.gain - count * std::log(static_cast<double>(equations.beams));
   test.visible = std::sqrt(steps.squaredNorm() / equations.weight);
@@ -129,9 +130,7 @@ ScoreTest score_test(const NormalEquations& equations, const std::vector<std::si
   test.ranges_error = seen.cols() < matrix.cols() ? std::numeric_limits<double>::infinity()
                                                   : std::sqrt(in_ranges.dot(test.covariance.diagonal()));
   test.wald = spread.wald;
-  test.p_value = spread.is_testable ? spread.p_value : 1;
-  if (!spread.is_measured && steps.size() > 0)
-    test.p_value = std::min(test.p_value, by_largest_excess(test.gain, steps.size()));
+  test.p_value = spread.p_value;
   test.is_testable = spread.is_testable;
   return test;
 }

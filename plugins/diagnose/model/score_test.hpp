@@ -18,7 +18,7 @@ struct ScoreTest {
   double wald = 0;  ///< valueᵀ covariance⁻¹ value: the smallest over several divisions into blocks
   double p_value = 1;  ///< of the Wald statistic under the null hypothesis (Hotelling's T² for few blocks);
                        ///< with too few blocks to measure the errors' excess, with the largest that occurs
-  bool is_testable = false;  ///< whether a division has more blocks than parameters; p_value is 1 otherwise
+  bool is_testable = false;  ///< whether a division has more blocks than parameters
   /// Design effect (Kish): variance of the value, along the value, relative to independent beam errors. It is
   /// valid where the model has the parameters; elsewhere blocks share the unmodeled effect. 1 where the
   /// excess is not significant.

@@ -37,6 +37,9 @@ TEST(FitCheck, NamesALaserThatWasHeardForLessThanHalf) {
 TEST(FitCheck, NamesALaserWithoutBeams) {
   EXPECT_THAT(check_silence(beams_until({10, 10, -1}), default_rig()),
               ElementsAre(HasSubstr("there are no beams of laser3: its values are the rig's")));
+  Rig one_device = default_rig();
+  for (RigLaser& laser : one_device.lasers) laser.address = {};
+  EXPECT_THAT(check_silence(beams_until({10, 10, -1}), one_device), IsEmpty());
 }
 
 }  // namespace

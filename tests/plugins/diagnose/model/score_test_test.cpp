@@ -104,6 +104,18 @@ TEST(ScoreTest, DetectsAVeryLargeEffectWithHardlyMoreBlocksThanParameters) {
   EXPECT_LE(small, 1 + 4) << "1 ± 1 by chance";
 }
 
+TEST(ScoreTest, IsNotSureWhereAnotherDivisionHasEnoughBlocksAndALargeExcess) {
+  // Two of three blocks share nearly all of the errors, so that these cannot show the excess: a hundred can.
+  auto equations = random_problem(Eigen::Vector2d(2, 2), 5000, 7).reduced({0, 1}, {});
+  const Eigen::MatrixXd scores = 70 * equations.block_scores[0];
+  Eigen::MatrixXd few = Eigen::MatrixXd::Zero(2, 3);
+  for (Eigen::Index block = 0; block < scores.cols(); ++block) few.col(block % 3) += scores.col(block);
+  equations.block_scores = {few};
+  EXPECT_LT(score_test(equations, {0, 1}).p_value, 1e-3);
+  equations.block_scores.push_back(scores);
+  EXPECT_GT(score_test(equations, {0, 1}).p_value, 1e-3);
+}
+
 TEST(ScoreTest, UsesTheDivisionOfTheLargestPValue) {
   // Ten consecutive blocks share an error, which the other division shows: standard errors are √10 times as
   // large.
