@@ -9,7 +9,7 @@ namespace crisp {
 namespace {
 
 constexpr const char* kDrift = "clock.drift";  // its parameters are the skew at the epoch and its growth
-constexpr double kClear = 3;                   // [standard errors]
+constexpr double kLineErrors = 3;              // [standard errors]
 
 struct Drift {
   Parameter skew;
@@ -51,8 +51,8 @@ void mark_clock_lines(std::vector<Hypothesis>& hypotheses, const Outcome& outcom
     const auto drift = one.accepted ? drift_of(one, outcome) : std::nullopt;
     if (!drift || one.candidate.owner >= skew_errors.size()) continue;
     const double mean = drift->skew.value + drift->growth.value * middle;
-    const bool is_constant = std::abs(drift->growth.value) < kClear * drift->growth.std_error;
-    one.is_clock_line = is_constant && std::abs(mean) < kClear * skew_errors[one.candidate.owner];
+    const bool is_constant = std::abs(drift->growth.value) < kLineErrors * drift->growth.std_error;
+    one.is_clock_line = is_constant && std::abs(mean) < kLineErrors * skew_errors[one.candidate.owner];
   }
 }
 
