@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
+
+#include <crisp/error.hpp>
 
 #include "grabbers/table/append_beams.hpp"
 #include "pipeline/data/echoes.hpp"
@@ -94,25 +97,70 @@ std::optional<PlateReading> BagItems::add(const AngleMessage& message, std::int6
                       .numbered = false};
 }
 
+Measurements BagItems::beams_of(const std::vector<LaserPoint>& points, double begin) const {
+  Measurements beams;
+  beams.epoch_ns = *epoch_ns_;
+  beams.reserve(points.size());
+  for (const auto& [laser, point] : points) {
+    const bool on_head = head_.has_value();
+    const double reported = on_head ? point.elevation : point.azimuth;
+    beams.range.push_back(point.range);
+    beams.mirror_angle.push_back(
+        static_cast<float>(wrapped_mirror_angle(reported - rig_.lasers[laser].mount)));
+    beams.time.push_back(begin + point.time);
+    beams.laser.push_back(laser);
+    beams.remission.push_back(point.remission);
+    beams.beam.push_back(on_head ? std::uint16_t{0} : static_cast<std::uint16_t>(beams.beam.size()));
+  }
+  return beams;
+}
+
 bool BagItems::add(const PointMessage& message, std::uint16_t laser) {
   if (!advance(last_scan_ns_[laser], message.stamp_ns, "scans that are not later than the one before"))
     return false;
-  if (message.outside > 0) losses_["points outside of the scan plane z = 0"] += message.outside;
   if (!message.timed) ++losses_["point clouds without times of the points, which are placed at the stamp"];
   const double begin = seconds(message.stamp_ns) + rig_.lasers[laser].time_offset;
-  auto beams = std::make_shared<Measurements>();
-  beams->epoch_ns = *epoch_ns_;
-  for (const PlanarPoint& point : message.points) {
-    beams->range.push_back(point.range);
-    beams->mirror_angle.push_back(
-        static_cast<float>(wrapped_mirror_angle(point.angle - rig_.lasers[laser].mount)));
-    beams->time.push_back(begin + point.time);
-    beams->laser.push_back(laser);
-    beams->remission.push_back(point.remission);
-    beams->beam.push_back(static_cast<std::uint16_t>(beams->beam.size()));
-  }
-  scans_.push_back({.scan = nullptr, .time = begin, .points = std::move(beams)});
+  const auto points = cones_.select(message, std::span(&laser, 1), false);
+  scans_.push_back(
+      {.scan = nullptr, .time = begin, .points = std::make_shared<Measurements>(beams_of(points, begin))});
   return true;
+}
+
+bool BagItems::add_head(const PointMessage& message, std::span<const std::uint16_t> lasers) {
+  if (!message.timed) {
+    throw Error(fmt::format("the points on {} have no times, and the head turns meanwhile",
+                            rig_.lasers[lasers.front()].topic),
+                "record the driver's cloud with a field t, time or timestamp");
+  }
+  if (!advance(last_scan_ns_[lasers.front()], message.stamp_ns,
+               "scans that are not later than the one before"))
+    return false;
+  if (!head_) head_.emplace(*epoch_ns_, max_gap_);
+  const double begin = seconds(message.stamp_ns);
+  const auto points = cones_.select(message, lasers, true);
+  for (const auto& [laser, point] : points) {
+    const LaserCalibration& nominal = rig_.lasers[laser].nominal;
+    const double from_head = nominal.lambda.value + nominal.alpha.value + std::numbers::pi / 2;
+    head_->add_azimuth(begin + point.time, point.azimuth - from_head);
+  }
+  head_->add(beams_of(points, begin));
+  return true;
+}
+
+void BagItems::check() const {
+  cones_.check();
+  constexpr std::uint64_t kFew = 100;
+  if (!head_ || head_->contradictions() * kFew <= head_->azimuths()) return;
+  throw Error(
+      fmt::format("the rings' azimuths contradict one another: {} times in {} azimuths of the head",
+                  head_->contradictions(), head_->azimuths()),
+      "where rings have azimuths of their own, give each laser's in the rig: nominal: {lambda: 3.2deg, …}");
+}
+
+std::map<std::string, std::uint64_t> BagItems::losses() const {
+  auto all = losses_;
+  for (const auto& [what, n] : cones_.losses()) all[what] += n;
+  return all;
 }
 
 std::shared_ptr<const Measurements> BagItems::measured(const Stamped& stamped) const {

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,9 @@
 #include <crisp/plate_trajectory.hpp>
 
 #include "grabbers/bag/joint_rotation.hpp"
-#include "grabbers/bag/point_cloud.hpp"
+#include "grabbers/bag/point_cones.hpp"
 #include "grabbers/bag/ros_sensor_messages.hpp"
+#include "grabbers/devices/rotating_head.hpp"
 #include "grabbers/table/actuator_angles.hpp"
 
 namespace crisp {
@@ -28,22 +30,34 @@ double duration_of_beams(const ScanMessage& message);
 class BagItems {
  public:
   /// @param max_gap  [s] longest silence of the angles to interpolate across
-  BagItems(Rig rig, double max_gap) : rig_(std::move(rig)), max_gap_(max_gap), angles_(rig_.plate) {}
+  BagItems(Rig rig, double max_gap)
+      : rig_(std::move(rig)), max_gap_(max_gap), angles_(rig_.plate), cones_(rig_) {}
 
   /// @return nothing for a scan that is earlier than the one before or of its time, which is counted
   std::shared_ptr<const Scan> add(ScanMessage message, std::int64_t receipt_ns, std::uint16_t laser);
+  /// Adds the points of one laser that sweeps a plane.
   /// @return whether the points are later than the scan before of this laser; else they are counted
   bool add(const PointMessage& message, std::uint16_t laser);
+  /// Adds the points of all lasers of a rotating head, with the head's azimuths.
+  /// @return likewise
+  /// @throws Error if the points have no times, or are not those of a head
+  bool add_head(const PointMessage& message, std::span<const std::uint16_t> lasers);
   /// @return nothing for an angle that is earlier than the one before or of its time, which is counted
   /// @param lasts  [s] how long the plate stands at that angle; 0 where it moves
   std::optional<PlateReading> add(const AngleMessage& message, std::int64_t receipt_ns, double lasts = 0);
+
+  /// The 3D laser whose azimuths are the plate's angles; nullptr if the bag had none so far.
+  RotatingHead* head() { return head_ ? &*head_ : nullptr; }
+  /// @throws Error if most points of a laser, or azimuths of the head, cannot be of it
+  void check() const;
 
   bool has_trajectory() const { return angles_.size() > 1; }
   PlateTrajectory trajectory() const { return angles_.trajectory(*epoch_ns_, max_gap_); }
   /// Calls `use` with the measurements of each scan so far, in their order.
   void for_each_measured(const std::function<void(std::shared_ptr<const Measurements>)>& use) const;
 
-  const std::map<std::string, std::uint64_t>& losses() const { return losses_; }
+  /// All that was left out, by its reason.
+  std::map<std::string, std::uint64_t> losses() const;
 
  private:
   struct Stamped {
@@ -51,6 +65,8 @@ class BagItems {
     double time;                                 ///< [s since the epoch] of beam 0
     std::shared_ptr<const Measurements> points;  ///< in place of a scan
   };
+  /// @param begin  [s since the epoch] of the message
+  Measurements beams_of(const std::vector<LaserPoint>& points, double begin) const;
   std::shared_ptr<const Measurements> measured(const Stamped& stamped) const;
   /// [µs] since the epoch, which the first stamp makes.
   std::int64_t device_us(std::int64_t stamp_ns) const;
@@ -63,6 +79,8 @@ class BagItems {
   std::optional<std::int64_t> epoch_ns_;
   JointRotation rotation_;
   ActuatorAngles angles_;
+  PointCones cones_;
+  std::optional<RotatingHead> head_;
   std::uint16_t readings_ = 0;  ///< wraps, as a device's counter does
   std::map<std::uint16_t, std::uint16_t> counters_;
   std::map<std::uint16_t, std::optional<std::int64_t>> last_scan_ns_;

@@ -16,11 +16,16 @@ namespace crisp {
 
 /// Role of a topic's messages in the rig.
 struct BagRoute {
-  std::optional<std::uint16_t> laser;  ///< whose scans they are, or hold
+  std::vector<std::uint16_t> lasers;  ///< whose scans they are, or hold; several are rings of one 3D laser
   std::optional<ScanDecoder> scans;
-  std::optional<PointDecoder> points;  ///< of the laser, in their place
+  std::optional<PointDecoder> points;  ///< of the lasers, in their place
+  bool is_head = false;                ///< whether the azimuth of these points is the plate's angle
   std::optional<AngleDecoder> angles;  ///< of the plate
 };
+
+/// Tests whether a rig states clearly which topic each laser's scans have.
+/// @throws Errors  all that is missing or contradicts itself
+void check_topics(const Rig& rig);
 
 /// Finds of which device of the rig a bag's topics are: by the rig's names, or by the type where the rig
 /// names none and only one topic is of such a type.
@@ -36,7 +41,9 @@ class BagRoutes {
   std::vector<std::string> missing() const;
 
  private:
-  std::optional<std::uint16_t> laser_of(const BagConnection& connection) const;
+  std::vector<std::uint16_t> lasers_of(const BagConnection& connection) const;
+  void route_scans(const BagConnection& connection, BagRoute& route);
+  void route_angles(const BagConnection& connection, BagRoute& route);
   static void take(std::optional<std::string>& by, const BagConnection& connection, const std::string& device,
                    const char* key);
 

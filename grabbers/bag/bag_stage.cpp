@@ -31,7 +31,7 @@ void BagStage::describe(StageDescription<BagStage>& d) {
   d.name("grabber.bag").summary("reads scans and the plate's angles from a bag of ROS 1 or ROS 2");
   d.details(
       "ROS is not required. Supported bags are those of ROS 1 (.bag, chunks plain, bz2 or lz4), MCAP (chunks plain, lz4 or zstd) and ROS 2's in SQLite (.db3); a folder stands for the files in it, as ROS 2 writes them.\n\n"
-      "Scans are sensor_msgs/LaserScan or MultiEchoLaserScan, or a message that holds one. On a topic that the rig names they may be the points of a 2D laser (sensor_msgs/PointCloud2, in the plane z = 0): each then has its own time, and a clock stage cannot align them. The plate's angle is a joint of a sensor_msgs/JointState, the number of a std_msgs message, the rotation of a frame of tf, or a field of another message, a number or a quaternion. The rig names topics: `laser1: {topic: /tilt_scan, …}`, `plate: {topic: /joint_states, joint: laser_tilt_mount_joint}`, `plate: {topic: /encoder, unit: counts}`, `plate: {topic: /slice, field: stepAngle, unit: deg}`; without a name, the only topic of such a type is used. `crisp info BAG` lists topics, types and joints.\n\n"
+      "Scans are sensor_msgs/LaserScan or MultiEchoLaserScan, or a message that holds one. On a topic that the rig names they may be the points of a 2D laser (sensor_msgs/PointCloud2, in the plane z = 0): each then has its own time, and a clock stage cannot align them. Points of a 3D laser with a rotating head are, as with `grabber.velodyne`, those of lasers with a fixed beam each: the rig names each by its `ring`, with `mount: -90deg`, and gives the plate the same topic, since the azimuth of the head is the plate's angle. The plate's angle is a joint of a sensor_msgs/JointState, the number of a std_msgs message, the rotation of a frame of tf, or a field of another message, a number or a quaternion. The rig names topics: `laser1: {topic: /tilt_scan, …}`, `plate: {topic: /joint_states, joint: laser_tilt_mount_joint}`, `plate: {topic: /encoder, unit: counts}`, `plate: {topic: /slice, field: stepAngle, unit: deg}`; without a name, the only topic of such a type is used. `crisp info BAG` lists topics, types and joints.\n\n"
       "A header's stamp is the firing time of beam 0, or the time of the angle; beams follow by the scan's time_increment. Scans and readings carry it as their device's time, and the time of receipt as the hub's, for a clock stage below. Where one computer stamped laser and plate, the stage's measurements can be placed without a clock stage. Angles are rounded to the plate's `counts_per_revolution`.");
   d.gives<Scan>().gives<PlateReading>().gives<PlateTrajectory>().gives<Measurements>();
   d.option("file", &BagStage::file_, "bag, or folder of its files").required();
@@ -50,17 +50,7 @@ void BagStage::describe(StageDescription<BagStage>& d) {
       .at_least(0);
 }
 
-void BagStage::check(const RunSettings& run) const {
-  if (run.rig.lasers.size() < 2) return;
-  for (const auto& laser : run.rig.lasers) {
-    if (laser.topic.empty()) {
-      throw Error(fmt::format("the rig has {} lasers, and gives no topic for the scans of {}",
-                              run.rig.lasers.size(), laser.name),
-                  fmt::format("name it in the rig: {}: {{topic: /scan, …}}; crisp info BAG lists topics",
-                              laser.name));
-    }
-  }
-}
+void BagStage::check(const RunSettings& run) const { check_topics(run.rig); }
 
 bool BagStage::is_requested(std::int64_t receipt_ns, Run& run) const {
   if (!run.first_ns) run.first_ns = receipt_ns;
@@ -82,13 +72,24 @@ void BagStage::use(const BagRoute& route, const BagMessage& message, Run& run) c
     if (reading) run.out.give(*reading);
     run.angles += reading.has_value();
   }
-  if (route.points)
-    run.scans[*route.laser] += run.items.add(route.points->decode(message.data), *route.laser);
+  if (route.points) use_points(route, route.points->decode(message.data), run);
   if (!scan) return;
-  if (auto given = run.items.add(std::move(*scan), message.receipt_ns, *route.laser)) {
+  const std::uint16_t laser = route.lasers.front();
+  if (auto given = run.items.add(std::move(*scan), message.receipt_ns, laser)) {
     run.out.give(std::move(given));
-    ++run.scans[*route.laser];
+    ++run.scans[laser];
   }
+}
+
+void BagStage::use_points(const BagRoute& route, const PointMessage& message, Run& run) const {
+  if (route.is_head) {
+    if (!run.items.add_head(message, route.lasers)) return;
+    for (const std::uint16_t laser : route.lasers) ++run.scans[laser];
+    run.angles = run.items.head()->azimuths();
+    if (auto piece = run.items.head()->take_piece()) std::move(*piece).give_to(run.out);
+    return;
+  }
+  for (const std::uint16_t laser : route.lasers) run.scans[laser] += run.items.add(message, laser);
 }
 
 void BagStage::read(const std::filesystem::path& file, Run& run) const {
@@ -105,7 +106,7 @@ void BagStage::read(const std::filesystem::path& file, Run& run) const {
       run.context.progress(Progress{static_cast<double>(messages), 0, "messages", "reading the bag"});
     }
     const BagRoute& route = routes[message->connection];
-    if ((!route.laser && !route.angles) || !is_requested(message->receipt_ns, run)) continue;
+    if ((route.lasers.empty() && !route.angles) || !is_requested(message->receipt_ns, run)) continue;
     try {
       use(route, *message, run);
     } catch (const BagDamage& damage) {
@@ -147,6 +148,8 @@ void BagStage::process(const Inputs&, Outputs& out, Context& context) {
     if (context.interrupted()) return;
   }
   report(run);
+  run.items.check();
+  if (RotatingHead* head = run.items.head(); head && head->azimuths() > 1) head->take_rest().give_to(out);
   if (!run.items.has_trajectory()) return;
   out.give(run.items.trajectory());
   run.items.for_each_measured([&](std::shared_ptr<const Measurements> beams) { out.give(std::move(beams)); });

@@ -97,34 +97,32 @@ std::optional<PointDecoder> PointDecoder::of(const BagConnection& connection) {
 
 PointMessage PointDecoder::decode(std::string_view message) const {
   constexpr std::int64_t kSecondInNs = 1'000'000'000;
-  constexpr double kMaxElevation = 0.01;  // of the range: half a degree
   const std::vector<RosValue> values = decode_ros(layout_, encoding_, message);
   const Cloud2 cloud = cloud_of(layout_, values);
   const Channel *x = cloud.find({"x"}), *y = cloud.find({"y"}), *z = cloud.find({"z"});
   if (x == nullptr || y == nullptr) throw BagDamage{"point clouds without x and y"};
   const Channel* time = cloud.find({"t", "time", "timestamp", "time_stamp", "offset_time"});
   const Channel* intensity = cloud.find({"intensity", "intensities", "i", "reflectivity"});
+  const Channel* ring = cloud.find({"ring", "channel", "laser_id"});
   PointMessage result{.stamp_ns = kSecondInNs * cloud.sec + cloud.nanosec, .timed = time != nullptr};
   const double stamp = static_cast<double>(cloud.sec) + 1e-9 * static_cast<double>(cloud.nanosec);
   for (std::size_t k = 0; k < cloud.points(); ++k) {
     const double px = cloud.value(k, *x), py = cloud.value(k, *y);
-    const double range = std::hypot(px, py);
-    if (!(range > 0) || !std::isfinite(range)) continue;
     const double height = z == nullptr ? 0 : cloud.value(k, *z);
-    if (!(std::abs(height) <= kMaxElevation * range)) {
-      ++result.outside;
-      continue;
-    }
+    const double across = std::hypot(px, py), range = std::hypot(across, height);
+    if (!(range > 0) || !std::isfinite(range)) continue;
     result.points.push_back(
         {.range = static_cast<float>(range),
-         .angle = std::atan2(py, px),
+         .azimuth = std::atan2(py, px),
+         .elevation = std::atan2(height, across),
          .time = time == nullptr ? 0 : time_of(cloud.value(k, *time), time->type, stamp),
-         .remission = intensity == nullptr ? 0 : static_cast<float>(cloud.value(k, *intensity))});
+         .remission = intensity == nullptr ? 0 : static_cast<float>(cloud.value(k, *intensity)),
+         .ring = ring == nullptr ? -1 : static_cast<int>(cloud.value(k, *ring))});
   }
-  std::ranges::stable_sort(result.points, {}, &PlanarPoint::time);
+  std::ranges::stable_sort(result.points, {}, &CloudPoint::time);
   constexpr double kLongest = 100;  // [s]
   const bool is_long = std::ranges::any_of(
-      result.points, [](const PlanarPoint& point) { return !(std::abs(point.time) < kLongest); });
+      result.points, [](const CloudPoint& point) { return !(std::abs(point.time) < kLongest); });
   if (is_long) throw BagDamage{"point clouds whose points are far from their stamp in time"};
   return result;
 }

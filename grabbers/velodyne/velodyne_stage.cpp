@@ -3,12 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <limits>
-#include <numbers>
-
 #include <crisp/error.hpp>
 
 #include "grabbers/capture/capture_file.hpp"
@@ -17,9 +11,7 @@
 namespace crisp {
 namespace {
 
-constexpr double kMaxGap = 0.05;      // [s] of the azimuths, which come every 0.11 ms
-constexpr std::size_t kPiece = 4000;  // packets that are held at most, of 384 beams each
-constexpr double kMargin = 1;         // [s] by which pieces of the plate's trajectory overlap, for lags
+constexpr double kMaxGap = 0.05;  // [s] of the azimuths, which come every 0.11 ms
 
 std::optional<TransportPacket> datagram_of(const Packet& packet) {
   const auto found = dissect_ip(packet);
@@ -48,27 +40,16 @@ void VelodyneStage::check(const RunSettings& run) const {
 }
 
 void VelodyneStage::take(const VelodynePacket& packet, std::int64_t receipt_ns, const Rig& rig) {
-  constexpr double kTurn = 2 * std::numbers::pi;
-  if (!epoch_ns_) {
-    epoch_ns_ = receipt_ns;
+  if (!head_) {
+    head_.emplace(receipt_ns, kMaxGap);
     last_us_ = packet.time_us;
   }
   packet_time_ += 1e-6 * static_cast<double>(velodyne_passed_us(last_us_, packet.time_us));
   last_us_ = packet.time_us;
   Measurements beams;
-  beams.epoch_ns = *epoch_ns_;
+  beams.epoch_ns = head_->epoch_ns();
   for (std::size_t b = 0; b < kVelodyneBlocks; ++b) {
-    const double time = packet_time_ + velodyne_shot(b, 0, 0);
-    double angle = -packet.azimuth[b];
-    if (!angles_.empty()) angle += kTurn * std::round((angles_.back() - angle) / kTurn);
-    if (times_.empty()) {
-      first_time_ = time;
-      first_angle_ = angle;
-    }
-    if (times_.empty() || time > times_.back()) {
-      times_.push_back(time);
-      angles_.push_back(angle);
-    }
+    head_->add_azimuth(packet_time_ + velodyne_shot(b, 0, 0), -packet.azimuth[b]);
     for (std::size_t firing = 0; firing < 2; ++firing) {
       for (std::size_t laser = 0; laser < kVelodyneLasers; ++laser) {
         const auto& one = packet.returns[b][firing][laser];
@@ -82,19 +63,7 @@ void VelodyneStage::take(const VelodynePacket& packet, std::int64_t receipt_ns, 
       }
     }
   }
-  if (beams.size() > 0) beams_.push_back(std::move(beams));
-}
-
-void VelodyneStage::give_until(double time, Outputs& out) {
-  const auto left =
-      std::ranges::find_if(beams_, [&](const Measurements& beams) { return beams.time.back() > time; });
-  out.give(PlateTrajectory(*epoch_ns_, times_, angles_, kMaxGap));
-  for (auto it = beams_.begin(); it != left; ++it) out.give(std::move(*it));
-  beams_.erase(beams_.begin(), left);
-  const auto n = std::ranges::lower_bound(times_, time - kMargin) - times_.begin();
-  if (n == std::ssize(times_)) return;  // all of it was given
-  times_.erase(times_.begin(), times_.begin() + n);
-  angles_.erase(angles_.begin(), angles_.begin() + n);
+  head_->add(std::move(beams));
 }
 
 void VelodyneStage::process(const Inputs&, Outputs& out, Context& context) {
@@ -109,24 +78,22 @@ void VelodyneStage::process(const Inputs&, Outputs& out, Context& context) {
       context.count("packets that are not a VLP-16's measurements");
       continue;
     }
-    if (epoch_ns_ && velodyne_passed_us(last_us_, data->time_us) > kVelodyneHour_us / 2) {
+    if (head_ && velodyne_passed_us(last_us_, data->time_us) > kVelodyneHour_us / 2) {
       context.count("packets that are older than the one before");
       continue;
     }
     take(*data, packet->time_ns, context.rig());
     ++packets;
-    if (beams_.size() >= kPiece)
-      give_until(std::max(times_.back() - kMargin, beams_[kPiece / 2].time.back()), out);
+    if (auto piece = head_->take_piece()) std::move(*piece).give_to(out);
   }
   for (const auto& [what, n] : capture.losses().all()) context.count(what, n);
-  if (times_.size() < 2) {
+  if (!head_ || head_->azimuths() < 2) {
     throw Error(file_.string() + " holds no measurements of a VLP-16", "check the captured interface");
   }
-  const double turns = std::abs(angles_.back() - first_angle_) / (2 * std::numbers::pi);
-  context.report({{"packets", packets}, {"turns", turns}});
+  context.report({{"packets", packets}, {"turns", head_->turns()}});
   context.print(
-      fmt::format("{} packets, {:.2f} turns in {:.3f} s", packets, turns, times_.back() - first_time_));
-  give_until(std::numeric_limits<double>::infinity(), out);
+      fmt::format("{} packets, {:.2f} turns in {:.3f} s", packets, head_->turns(), head_->duration()));
+  head_->take_rest().give_to(out);
 }
 
 }  // namespace crisp

@@ -3,13 +3,11 @@
 
 #include <filesystem>
 #include <optional>
-#include <vector>
 
 #include <crisp/context.hpp>
-#include <crisp/measurements.hpp>
-#include <crisp/plate_trajectory.hpp>
 #include <crisp/stage_description.hpp>
 
+#include "grabbers/devices/rotating_head.hpp"
 #include "grabbers/velodyne/velodyne_packet.hpp"
 
 namespace crisp {
@@ -24,16 +22,11 @@ class VelodyneStage final : public Stage {
 
  private:
   void take(const VelodynePacket& packet, std::int64_t receipt_ns, const Rig& rig);
-  /// Gives the beams until then [s since the epoch], with the plate's trajectory over them.
-  void give_until(double time, Outputs& out);
 
   std::filesystem::path file_;
-  std::optional<std::int64_t> epoch_ns_;
+  std::optional<RotatingHead> head_;  ///< from the first packet on
   std::uint32_t last_us_ = 0;
   double packet_time_ = 0;  ///< [s since the epoch] of the last packet, by the device's clock
-  double first_angle_ = 0, first_time_ = 0;
-  std::vector<double> times_, angles_;  ///< that are needed for beams that were not given yet
-  std::vector<Measurements> beams_;     ///< a packet each
 };
 
 }  // namespace crisp

@@ -74,6 +74,8 @@ class RigReader {
     laser.name = entry.key;
     laser.address = read_address(map, 0);
     laser.topic = map.text("topic", "");
+    constexpr int kMaxRing = 1023;
+    if (map.find("ring")) laser.ring = static_cast<int>(map.integer("ring", 0, 0, kMaxRing));
     laser.mount = angle(map, "mount");
     laser.time_offset = bounded(map, "time_offset", "s", 0, 10);
     laser.period_offset = static_cast<int>(map.integer("period_offset", 0, -100, 100));

@@ -24,6 +24,7 @@ struct RigLaser {
   std::string name;                     ///< "laser1": of a-z, 0-9 and _
   Address address;                      ///< on the hub's network
   std::string topic;                    ///< of its scans in a bag; empty: the only one of scans
+  std::optional<int> ring;              ///< of that topic's points which are its: a 3D laser has several
   double mount = 0;                     ///< [rad] θ = reported angle − mount
   double time_offset = 0;               ///< [s] from the scan's stamp to its first possible beam
   EchoChoice echo = EchoChoice::first;  ///< which of a beam's echoes is measured

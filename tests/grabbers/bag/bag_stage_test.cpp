@@ -1,73 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/bag/bag_stage.hpp"
-
 #include <gmock/gmock.h>
 
 #include <array>
 #include <cmath>
 
-#include "tests/grabbers/bag/bag_writer.hpp"
-#include "tests/support/stage_driver.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/grabbers/bag/bag_fixture.hpp"
 
 namespace crisp {
 namespace {
 
+using test::kBegin;
+using test::kMs;
 using test::StageDriver;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr std::int64_t kBegin = 1'700'000'000'000'000'000;
-constexpr std::int64_t kMs = 1'000'000;
-
-class BagStageTest : public testing::Test {
- protected:
-  BagStageTest() {
-    rig_.lasers.resize(1);
-    rig_.lasers[0] = {.name = "front", .mount = 0.5};
-    rig_.plate.counts_per_revolution = 1'000'000;
-    bag_.topics = {{"/scan", "sensor_msgs/LaserScan", test::kLaserScanDefinition},
-                   {"/joints", "sensor_msgs/JointState", test::kJointStateDefinition},
-                   {"/count", "std_msgs/Int32", "int32 data\n"}};
-  }
-
-  void add_scan(std::int64_t ms, std::vector<float> ranges, std::size_t topic = 0) {
-    const std::int64_t stamp = kBegin + kMs * ms;
-    bag_.messages.push_back({topic, stamp + 30 * kMs,
-                             test::scan_bytes({.stamp_ns = stamp,
-                                               .angle_min = 1,
-                                               .angle_increment = -0.25F,
-                                               .time_increment = 0.0009765625F,
-                                               .scan_time = 0.025F,
-                                               .ranges = std::move(ranges)},
-                                              false)});
-  }
-  void add_joint(std::int64_t ms, double angle) {
-    const std::int64_t stamp = kBegin + kMs * ms;
-    bag_.messages.push_back({1, stamp + kMs, test::joints_bytes(stamp, {"x", "tilt"}, {9, angle}, false)});
-  }
-
-  StageDriver run(std::map<std::string, OptionValue> options = {}) {
-    test::write_rosbag1(folder_ / "a.bag", bag_, "none");
-    options.emplace("file", OptionScalar((folder_ / "a.bag").string()));
-    auto stage = StageDriver::of<BagStage>(options);
-    stage.run().rig = rig_;
-    stage.feed();
-    return stage;
-  }
-  std::string complaint() {
-    try {
-      run();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "nothing";
-  }
-
-  test::TemporaryFolder folder_;
-  test::TestBag bag_;
-  Rig rig_;
-};
+class BagStageTest : public test::BagFixture {};
 
 TEST_F(BagStageTest, KeepsTheHeadersStampAndTheReceiptOfScans) {
   rig_.plate.joint = "tilt";
@@ -155,60 +103,6 @@ TEST_F(BagStageTest, ReadsCountsOfATopicThatTheRigNames) {
   }
   auto stage = run();
   EXPECT_EQ(stage.given<PlateReading>().at(1)->count, 250'000U);
-}
-
-struct TestPoint {
-  float x, y, z, intensity;
-  std::uint32_t t;  ///< [ns]
-};
-
-/// A PointCloud2 whose points of 20 bytes are as `TestPoint` in a struct.
-std::string point_cloud(std::int64_t stamp_ns, const std::vector<TestPoint>& points) {
-  constexpr std::uint8_t kUnsigned32 = 6, kFloat32 = 7;
-  test::RosBytes bytes(false);
-  bytes.header(stamp_ns)
-      .put(std::uint32_t{1})
-      .put(static_cast<std::uint32_t>(points.size()))
-      .put(std::uint32_t{5});
-  std::uint32_t offset = 0;
-  for (const char* name : {"x", "y", "z", "intensity", "t"}) {
-    bytes.text(name).put(offset).put(*name == 't' ? kUnsigned32 : kFloat32).put(std::uint32_t{1});
-    offset += 4;
-  }
-  bytes.put(std::uint8_t{0}).put(std::uint32_t{20}).put(static_cast<std::uint32_t>(20 * points.size()));
-  std::vector<std::uint8_t> data(20 * points.size());
-  std::memcpy(data.data(), points.data(), data.size());
-  return bytes.list(data).put(std::uint8_t{1}).bytes();
-}
-
-TEST_F(BagStageTest, ReadsThePointsOfA2DLaserWithTheirTimes) {
-  rig_.plate.joint = "tilt";
-  rig_.lasers[0].topic = "/points";
-  bag_.topics.push_back({"/points", "sensor_msgs/PointCloud2", ""});
-  bag_.topics.back().definition =
-      "Header header\nuint32 height\nuint32 width\nPointField[] fields\nbool is_bigendian\nuint32 point_step\n"
-      "uint32 row_step\nuint8[] data\nbool is_dense\n===\nMSG: sensor_msgs/PointField\nuint8 INT8=1\nstring name\n"
-      "uint32 offset\nuint8 datatype\nuint32 count\n===\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\n"
-      "string frame_id\n";
-  add_joint(0, 0.5);
-  const float nan = std::nanf("");
-  bag_.messages.push_back({3, kBegin + 40 * kMs,
-                           point_cloud(kBegin, {{0, 2, 0, 7, 3'000'000},
-                                                {3, 0, 0, 8, 1'000'000},
-                                                {nan, nan, nan, 0, 0},
-                                                {1, 1, 1, 9, 2'000'000}})});
-  add_joint(100, 1.5);
-  auto stage = run();
-  const auto beams = stage.given<Measurements>().at(0);
-  EXPECT_THAT(beams->range, ElementsAre(3, 2));
-  EXPECT_THAT(beams->time, ElementsAre(0.001, 0.003));
-  EXPECT_THAT(beams->mirror_angle, ElementsAre(-0.5F, testing::FloatEq(1.5707964F - 0.5F)))
-      << "less the mount";
-  EXPECT_THAT(beams->remission, ElementsAre(8, 7));
-  EXPECT_EQ(stage.report().counts.at("points outside of the scan plane z = 0"), 1U);
-  bag_.messages[1].bytes.resize(100);
-  EXPECT_THAT(complaint(), "nothing");
-  EXPECT_EQ(run().report().counts.at("messages that end before their content"), 1U);
 }
 
 constexpr const char* kTransformsDefinition =

@@ -113,6 +113,15 @@ TEST(RigFile, ReadsWhereABagHasItsDevices) {
   EXPECT_THAT(errors_of_rig(rig("joint: a, field: b")), ElementsAre(HasSubstr("remove one of them")));
 }
 
+TEST(RigFile, ReadsWhichRingOfA3DLaserIsALaser) {
+  const auto rig = [](const std::string& ring) {
+    return "crisp: 1\nlasers: {a: {" + ring + "nominal: {lambda: 0, tau: 0}}}\nplate: {}\n";
+  };
+  EXPECT_EQ(parse_rig(parse_yaml(rig(""), "rig.yaml")).lasers[0].ring, std::nullopt);
+  EXPECT_EQ(parse_rig(parse_yaml(rig("ring: 0, "), "rig.yaml")).lasers[0].ring, 0);
+  EXPECT_THAT(errors_of_rig(rig("ring: -1, ")), ElementsAre(HasSubstr("'ring'")));
+}
+
 TEST(RigFile, ReadsTheChoiceOfEchoes) {
   const auto rig = [](const std::string& echo) {
     return "crisp: 1\nlasers: {a: {" + echo + "nominal: {lambda: 0, tau: 0}}}\nplate: {}\n";
