@@ -5,7 +5,7 @@
 
 namespace crisp {
 
-/// grabber.table.
+/// grabber.table and grabber.encoder_lines.
 void register_table(Registrar& registrar);
 
 }  // namespace crisp

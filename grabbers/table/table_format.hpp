@@ -11,6 +11,21 @@ namespace crisp {
 
 /// Units of a column, by what one of them is in SI.
 enum class TimeUnit { s, ms, us, ns };
+/// Power of ten of nanoseconds that a unit has.
+inline int exponent_of(TimeUnit unit) {
+  switch (unit) {
+    case TimeUnit::s:
+      return 9;
+    case TimeUnit::ms:
+      return 6;
+    case TimeUnit::us:
+      return 3;
+    case TimeUnit::ns:
+      break;
+  }
+  return 0;
+}
+
 enum class LengthUnit { m, cm, mm };
 
 /// Columns of a table, from 1. A row is a scan, or, if `mirror_column` is given,

@@ -71,20 +71,6 @@ class Fields {
   std::size_t end_ = 0;
 };
 
-int exponent_of(TimeUnit unit) {
-  switch (unit) {
-    case TimeUnit::s:
-      return 9;
-    case TimeUnit::ms:
-      return 6;
-    case TimeUnit::us:
-      return 3;
-    case TimeUnit::ns:
-      break;
-  }
-  return 0;
-}
-
 double metres(LengthUnit unit) {
   constexpr double kCentimetre = 0.01, kMillimetre = 0.001;
   if (unit == LengthUnit::m) return 1;

@@ -106,4 +106,14 @@ PlateFailure decode_encoder_line(std::string_view line, const EncoderLine& forma
   return PlateFailure::None;
 }
 
+PlateFailure decode_plate_line(std::string_view line, const std::optional<EncoderLine>& own,
+                               PlateReading& reading) {
+  constexpr std::int64_t kNsInUs = 1000;
+  if (!own || line.starts_with("$PPLT,")) return decode_plate_sentence(line, reading);
+  if (line.size() > kLongestEncoderLine) return PlateFailure::Truncated;
+  reading.device_us = static_cast<std::uint32_t>(reading.receipt_ns / kNsInUs);
+  reading.numbered = false;
+  return decode_encoder_line(line, *own, reading);
+}
+
 }  // namespace crisp

@@ -56,18 +56,6 @@ std::optional<PlateReading> PlateFramer::finish_line() {
   return end_line(failure, reading);
 }
 
-PlateFailure PlateFramer::decode_own(PlateReading& reading) {
-  constexpr std::int64_t kNsInUs = 1000;
-  if (line_.size() > kLongestEncoderLine) return PlateFailure::Truncated;
-  if (line_.starts_with("$PPLT,")) return decode_plate_sentence(line_, reading);
-  reading.device_us = static_cast<std::uint32_t>(reading.receipt_ns / kNsInUs);
-  reading.sequence = own_lines_;
-  reading.numbered = false;
-  const PlateFailure failure = decode_encoder_line(line_, *own_, reading);
-  if (failure == PlateFailure::None) ++own_lines_;
-  return failure;
-}
-
 std::optional<PlateReading> PlateFramer::finish_own_line() {
   const bool begins = !own_->begin.empty() && line_.starts_with(own_->begin);
   if (std::exchange(within_line_, false) && !begins) {
@@ -76,8 +64,9 @@ std::optional<PlateReading> PlateFramer::finish_own_line() {
   }
   if (line_.ends_with('\r')) line_.pop_back();
   if (line_.empty()) return {};
-  PlateReading reading{.receipt_ns = latest_ns_};
-  const PlateFailure failure = decode_own(reading);
+  PlateReading reading{.sequence = own_lines_, .receipt_ns = latest_ns_};
+  const PlateFailure failure = decode_plate_line(line_, own_, reading);
+  own_lines_ = static_cast<std::uint16_t>(own_lines_ + (failure == PlateFailure::None && !reading.numbered));
   return end_line(failure, reading);
 }
 

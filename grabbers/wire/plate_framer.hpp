@@ -14,9 +14,6 @@
 
 namespace crisp {
 
-/// Longest line of a user's own format, without its line end; longer lines are damage.
-inline constexpr std::size_t kLongestEncoderLine = 512;
-
 /// What cuts a plate's bytes into pieces.
 enum class PlateBytes : std::uint8_t {
   stream,    ///< TCP or a serial line: it may begin within a line
@@ -96,7 +93,6 @@ class PlateFramer {
   std::optional<PlateReading> end_line(PlateFailure failure, const PlateReading& reading);
   std::optional<PlateReading> finish_line();
   std::optional<PlateReading> finish_own_line();
-  PlateFailure decode_own(PlateReading& reading);
 
   std::optional<EncoderLine> own_;
   PlateBytes bytes_;
