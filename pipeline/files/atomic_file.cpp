@@ -97,6 +97,12 @@ void AtomicFile::rewrite(long offset, std::string_view bytes) {
   if (std::fseek(stream_.get(), 0, SEEK_END) != 0) fail(file_, errno);
 }
 
+void AtomicFile::read(long offset, std::span<char> bytes) {
+  if (std::fseek(stream_.get(), offset, SEEK_SET) != 0) fail(file_, errno);
+  if (std::fread(bytes.data(), 1, bytes.size(), stream_.get()) != bytes.size()) fail(file_, errno);
+  if (std::fseek(stream_.get(), 0, SEEK_END) != 0) fail(file_, errno);
+}
+
 void AtomicFile::commit() {
   if (std::fflush(stream_.get()) != 0) fail(file_, errno);
   // A library that wrote to aside() may have replaced the file; what has to last is the one of that name.

@@ -53,6 +53,7 @@ class CloudFileStage final : public Stage {
   void finish(Outputs&, Context& context) override {
     if (!writer_) throw no_point_came();
     for (const auto& [what, n] : writer_->losses()) context.count(what, n);
+    for (auto& warning : writer_->warnings()) context.warn(std::move(warning));
     writer_->commit();
     context.wrote(file_);
     if (recording_ > 0) {

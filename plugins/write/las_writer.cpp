@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/write/las_writer.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cmath>
+#include <cstring>
 
 #include "plugins/write/gps_time.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr double kScale = 1e-4;          // [m]
-constexpr double kOffsetGrid = 100'000;  // [m] 0 for all but maps
 constexpr std::uint16_t kHeaderSize = 375;
 constexpr std::uint16_t kVlrHeaderSize = 54;
 constexpr std::uint16_t kExtraBytesSize = 192;  // of one field's description
@@ -60,24 +61,16 @@ void put_extra_fields(RecordBuffer& to) {
   put_extra_field(to, "beam", "index of the beam in its scan");
 }
 
-/// A number of tenths of a millimetre; nothing beyond 32 bits.
-bool to_steps(double metres, std::int32_t& steps) {
-  const double rounded = std::round(metres / kScale);
-  constexpr double kMax = std::numeric_limits<std::int32_t>::max();
-  if (std::abs(rounded) > kMax) return false;
-  steps = static_cast<std::int32_t>(rounded);
-  return true;
-}
+std::array<double, 3> position_of(const Point& point) { return {point.x, point.y, point.z}; }
 
 }  // namespace
 
 LasWriter::LasWriter(const std::filesystem::path& file, std::uint64_t stamp, const Point& first)
-    : file_(file), stamp_(stamp), time_shift_(adjusted_gps_time(stamp).value_or(0)), records_(kLasBuffer) {
-  const std::array position = {first.x, first.y, first.z};
-  for (std::size_t i = 0; i < position.size(); ++i)
-    offset_[i] = kOffsetGrid * std::round(static_cast<double>(position[i]) / kOffsetGrid);
-  least_.fill(std::numeric_limits<std::int32_t>::max());
-  most_.fill(std::numeric_limits<std::int32_t>::min());
+    : file_(file),
+      stamp_(stamp),
+      time_shift_(adjusted_gps_time(stamp).value_or(0)),
+      grid_(grid_near(position_of(first))),
+      records_(kLasBuffer) {
   file_.write(header());
 }
 
@@ -100,11 +93,12 @@ std::string LasWriter::header() const {
   to.put(std::uint8_t{6});   // point format
   to.put(kPointSize);
   to.put_zeros(6 * sizeof(std::uint32_t));  // counts of older versions
-  for (std::size_t i = 0; i < 3; ++i) to.put(kScale);
-  for (const double value : offset_) to.put(value);
+  for (std::size_t i = 0; i < 3; ++i) to.put(grid_.scale);
+  for (const double value : grid_.offset) to.put(value);
+  const auto least = grid_.numbers(extent_.least), most = grid_.numbers(extent_.most);
   for (std::size_t i = 0; i < 3; ++i) {
-    to.put(points_ == 0 ? 0 : offset_[i] + kScale * most_[i]);
-    to.put(points_ == 0 ? 0 : offset_[i] + kScale * least_[i]);
+    to.put(points_ == 0 ? 0 : grid_.coordinate(i, (*most)[i]));
+    to.put(points_ == 0 ? 0 : grid_.coordinate(i, (*least)[i]));
   }
   to.put_zeros(sizeof(std::uint64_t));                          // waveforms
   to.put_zeros(sizeof(std::uint64_t) + sizeof(std::uint32_t));  // records behind the points
@@ -115,18 +109,48 @@ std::string LasWriter::header() const {
   return std::string(to.view());
 }
 
+/// Makes room for a point beyond the grid's reach. @return whether there is some
+bool LasWriter::widen(const std::array<double, 3>& position) {
+  Extent extent = points_ == 0 ? Extent::of(position) : extent_;
+  extent.include(position);
+  const auto wider = wider_grid(grid_, extent);
+  if (!wider) return false;
+  move_records(*wider);
+  grid_ = *wider;
+  return true;
+}
+
+/// Writes the coordinates of all points so far anew.
+void LasWriter::move_records(const LasGrid& to) {
+  records_.flush(file_);
+  std::string records;
+  const std::uint64_t end = kPointsBegin + points_ * kPointSize;
+  for (std::uint64_t at = kPointsBegin; at < end; at += records.size()) {
+    records.resize(std::min<std::uint64_t>(kLasBuffer, end - at));
+    file_.read(static_cast<long>(at), records);
+    for (std::size_t record = 0; record < records.size(); record += kPointSize) {
+      std::array<std::int32_t, 3> numbers{};
+      std::memcpy(numbers.data(), records.data() + record, sizeof(numbers));
+      std::array<double, 3> position{};
+      for (std::size_t i = 0; i < position.size(); ++i) position[i] = grid_.coordinate(i, numbers[i]);
+      numbers = to.numbers(position).value();
+      std::memcpy(records.data() + record, numbers.data(), sizeof(numbers));
+    }
+    file_.rewrite(static_cast<long>(at), records);
+  }
+}
+
 void LasWriter::add(const Point& point, std::size_t recording) {
-  std::array<std::int32_t, 3> steps{};
-  if (!to_steps(point.x - offset_[0], steps[0]) || !to_steps(point.y - offset_[1], steps[1]) ||
-      !to_steps(point.z - offset_[2], steps[2])) {
+  const auto position = position_of(point);
+  auto numbers = grid_.numbers(position);
+  if (!numbers && widen(position)) numbers = grid_.numbers(position);
+  if (!numbers) {
     ++too_far_;
     return;
   }
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    least_[i] = std::min(least_[i], steps[i]);
-    most_[i] = std::max(most_[i], steps[i]);
-    records_.put(steps[i]);
-  }
+  if (points_ == 0) extent_ = Extent::of(position);
+  extent_.include(position);
+  for (const std::int32_t number : *numbers) records_.put(number);
   constexpr float kBrightest = std::numeric_limits<std::uint16_t>::max();
   constexpr std::uint8_t kOneOfOne = 1 | 1 << 4;  // return 1 of 1
   const float intensity =
@@ -150,8 +174,16 @@ void LasWriter::commit() {
 }
 
 std::map<std::string, std::uint64_t> LasWriter::losses() const {
-  return {{"points more than 214 km from the LAS file's offset", too_far_},
+  return {{"points too far from the others for LAS", too_far_},
           {"intensities that LAS rounded or limited to 0 to 65535", rounded_intensities_}};
+}
+
+std::vector<std::string> LasWriter::warnings() const {
+  constexpr double kFinest = 1e-4;  // [m]
+  if (grid_.scale == kFinest) return {};
+  return {fmt::format(
+      "the cloud's points are so far apart that {} holds coordinates in steps of {:g} mm instead of 0.1 mm; remove points that are far off, or write the parts of the cloud as files of their own",
+      file_.path().string(), 1e3 * grid_.scale)};
 }
 
 }  // namespace crisp

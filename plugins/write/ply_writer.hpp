@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <crisp/cloud.hpp>
 
@@ -30,6 +31,7 @@ class PlyWriter {
   void commit();
   std::uint64_t points() const { return points_; }  ///< that the file holds
   static std::map<std::string, std::uint64_t> losses() { return {}; }
+  static std::vector<std::string> warnings() { return {}; }
 
  private:
   std::string header() const;

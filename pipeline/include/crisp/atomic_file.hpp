@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string_view>
 
 namespace crisp {
@@ -42,6 +43,11 @@ class AtomicFile {
   /// @param offset  [bytes] from the file's begin; the bytes must end before what was written ends
   /// @throws Error that names the file, if the disk is full or fails
   void rewrite(long offset, std::string_view bytes);
+
+  /// Reads bytes that were written, all of them. Writing goes on behind the end.
+  /// @param offset  [bytes] from the file's begin
+  /// @throws Error that names the file, if the disk fails
+  void read(long offset, std::span<char> bytes);
 
   /// Puts the file in its place. Nothing may be written afterwards.
   /// @throws Error that names the file, if the disk is full or fails

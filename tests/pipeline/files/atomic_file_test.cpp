@@ -56,6 +56,19 @@ TEST_F(AtomicFileTest, RewritesItsBeginAndGoesOnBehindItsEnd) {
   EXPECT_EQ(content(file), "2 points: a, b");
 }
 
+TEST_F(AtomicFileTest, ReadsWhatWasWrittenAndGoesOnBehindItsEnd) {
+  const fs::path file = folder_ / "x.txt";
+  AtomicFile out(file);
+  out.write("one, two");
+  std::string read(3, ' ');
+  out.read(5, read);
+  EXPECT_EQ(read, "two");
+  out.write(", three");
+  EXPECT_THROW(out.read(14, read), Error);
+  out.commit();
+  EXPECT_EQ(content(file), "one, two, three");
+}
+
 TEST_F(AtomicFileTest, LeavesNothingBehindWhenItIsGivenUp) {
   const fs::path file = folder_ / "x.txt";
   write_file(file, "old");

@@ -151,9 +151,11 @@ class WriteLas : public WriteCloudFile<LasWriter> {
     stage.feed(cloud);
     stage.finish();
     counts_ = stage.report().counts;
+    warnings_ = stage.report().warnings;
     return test::read_las(file());
   }
   std::map<std::string, std::uint64_t> counts_;
+  std::vector<std::string> warnings_;
 };
 
 TEST_F(WriteLas, KeepsCoordinatesToHalfATenthOfAMillimetre) {
@@ -216,12 +218,41 @@ TEST_F(WriteLas, MovesItsOffsetToAMapsGrid) {
   EXPECT_NEAR(las.points[1].y, 5'500'000.5, 1e-4);
 }
 
+TEST_F(WriteLas, MovesItsOffsetToTheMiddleOfAWideCloud) {
+  Cloud cloud = room(20'000);  // more than a buffer
+  cloud[19'998].x = 3e5F;
+  const auto las = written(cloud);
+  ASSERT_EQ(las.points.size(), cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    ASSERT_NEAR(las.points[i].x, cloud[i].x, 0.51e-4);
+    ASSERT_NEAR(las.points[i].z, cloud[i].z, 0.51e-4);
+    ASSERT_EQ(las.points[i].extra.at("beam"), cloud[i].beam);
+  }
+  EXPECT_NEAR(las.most[0], 3e5, 1e-4);
+  EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(WriteLas, RoundsTheCoordinatesOfAWiderCloudMoreCoarselyAndWarns) {
+  Cloud cloud = room(20'000);
+  cloud[9'000].x = 1e6F;
+  cloud[9'001].y = -1e7F;
+  const auto las = written(cloud);
+  ASSERT_EQ(las.points.size(), cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    ASSERT_NEAR(las.points[i].x, cloud[i].x, 0.0056);
+    ASSERT_NEAR(las.points[i].y, cloud[i].y, 0.0056);
+  }
+  EXPECT_NEAR(las.least[1], -1e7, 0.01);
+  EXPECT_THAT(warnings_, ElementsAre(testing::HasSubstr("in steps of 10 mm instead of 0.1 mm")));
+}
+
 TEST_F(WriteLas, CountsPointsThatItCannotHold) {
   Cloud cloud = room(3);
-  cloud[1].x = 3e5F;
+  cloud[1].x = 4e9F;
   const auto las = written(cloud);
   EXPECT_EQ(las.points.size(), 2U);
-  EXPECT_EQ(counts_.at("points more than 214 km from the LAS file's offset"), 1U);
+  EXPECT_EQ(counts_.at("points too far from the others for LAS"), 1U);
+  EXPECT_TRUE(warnings_.empty());
 }
 
 TEST_F(WriteLas, CountsIntensitiesThatItRounds) {
