@@ -82,16 +82,19 @@ void EmulateStage::report_missing(Context& context) {
   missing_ = std::move(missing);
 }
 
+/// Whether the run is interrupted; reports what is waited for.
+bool EmulateStage::waits_no_longer(Context& context) {
+  if (settings_.wait_for_clients && !emulator_->has_begun()) report_missing(context);
+  return context.interrupted();
+}
+
 void EmulateStage::process(const Inputs& in, Outputs&, Context& context) {
   if (!emulator_) {
     settings_.plate_to = parse_address(plate_to_);
     settings_.faults.seed = context.seed();
     emulator_ = std::make_unique<Emulator>(context.rig(), settings_);
   }
-  const auto interrupted = [&] {
-    if (settings_.wait_for_clients && scans_ + readings_ == 0) report_missing(context);
-    return context.interrupted();
-  };
+  const auto interrupted = [&] { return waits_no_longer(context); };
   if (auto scan = in.share<Scan>()) {
     emulator_->send(std::move(scan), interrupted);
     ++scans_;
@@ -103,7 +106,7 @@ void EmulateStage::process(const Inputs& in, Outputs&, Context& context) {
 
 void EmulateStage::finish(Outputs&, Context& context) {
   if (!emulator_) return;
-  emulator_->finish();
+  emulator_->finish([&] { return waits_no_longer(context); });
   const EmulatedLedger ledger = emulator_->ledger();
   context.count("scans missed by a client that did not read", ledger.missed);
   context.count("scans without a client", ledger.unheard);

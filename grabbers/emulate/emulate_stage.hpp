@@ -26,6 +26,7 @@ class EmulateStage final : public Stage {
 
  private:
   void report_missing(Context& context);
+  bool waits_no_longer(Context& context);
 
   EmulatorSettings settings_;
   std::string plate_to_ = "127.0.0.1:4000";

@@ -22,6 +22,15 @@ void crop(ChannelBlock& channel, const OutputRange& range) {
                  channel.raw.begin() + static_cast<std::ptrdiff_t>(end)};
 }
 
+/// Leaves one of every so many values.
+void thin(ChannelBlock& channel, std::uint32_t every) {
+  if (every < 2) return;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < channel.raw.size(); k += every) channel.raw[kept++] = channel.raw[k];
+  channel.raw.resize(kept);
+  channel.angle_step = static_cast<std::uint16_t>(channel.angle_step * every);
+}
+
 bool is_remission(const ChannelBlock& channel) { return channel.name.starts_with("RSSI"); }
 
 /// Moves remissions to the other width; their values stay, but for what 8 bits cannot hold.
@@ -53,10 +62,10 @@ ScanSettings EmulatedDevice::settings() const {
   ScanSettings settings{.frequency = last.scan_frequency};
   if (last.channels16.empty() || last.channels16.front().raw.empty()) return settings;
   const ChannelBlock& channel = last.channels16.front();
-  settings.resolution = channel.angle_step;
+  settings.resolution = channel.angle_step * every_beam;
   settings.first = channel.start_angle;
-  settings.last =
-      channel.start_angle + static_cast<std::int32_t>((channel.raw.size() - 1) * channel.angle_step);
+  settings.last = channel.start_angle +
+                  static_cast<std::int32_t>((channel.raw.size() - 1) / every_beam * settings.resolution);
   return settings;
 }
 
@@ -65,18 +74,42 @@ OutputRange EmulatedDevice::output_range() const {
   return range.value_or(OutputRange{own.resolution, own.first, own.last});
 }
 
+ScanContent EmulatedDevice::content() const {
+  if (configured) return *configured;
+  const bool wide = std::ranges::any_of(last.channels16, is_remission);
+  return {.remission = wide || std::ranges::any_of(last.channels8, is_remission),
+          .wide = wide,
+          .encoders = static_cast<std::uint16_t>(last.encoders.empty() ? 0 : 1),
+          .time = last.time.has_value()};
+}
+
+bool EmulatedDevice::set_resolution(std::uint32_t resolution) {
+  const std::uint32_t own = settings().resolution / every_beam;
+  if (resolution == 0 || resolution % own != 0) return false;
+  every_beam = resolution / own;
+  return true;
+}
+
+bool EmulatedDevice::sends(const ScanData& scan) const {
+  return !configured || configured->interval < 2 || scan.scan_counter % configured->interval == 0;
+}
+
 ScanData EmulatedDevice::sent(ScanData scan) const {
-  if (content && !content->remission) {
+  const ScanContent content = this->content();
+  if (!content.remission) {
     std::erase_if(scan.channels16, is_remission);
     std::erase_if(scan.channels8, is_remission);
   }
-  if (content) {
-    widen_remissions(scan, content->wide);
-    scan.time = content->time ? std::optional(since_start(scan.scan_time_us)) : std::nullopt;
+  if (configured) {
+    widen_remissions(scan, content.wide);
+    if (content.encoders == 0) scan.encoders.clear();
+    scan.time = content.time ? std::optional(since_start(scan.scan_time_us)) : std::nullopt;
   }
-  if (range) {
-    for (ChannelBlock& channel : scan.channels16) crop(channel, *range);
-    for (ChannelBlock& channel : scan.channels8) crop(channel, *range);
+  for (auto* channels : {&scan.channels16, &scan.channels8}) {
+    for (ChannelBlock& channel : *channels) {
+      thin(channel, every_beam);
+      if (range) crop(channel, *range);
+    }
   }
   return scan;
 }

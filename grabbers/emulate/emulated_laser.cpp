@@ -174,7 +174,8 @@ void EmulatedLaser::restart() {
   ++ledger_.restarted;
   clock_.restart();
   device_.range.reset();  // nothing was stored
-  device_.content.reset();
+  device_.configured.reset();
+  device_.every_beam = 1;
   for (const auto& session : sessions_) session->close();
 }
 
@@ -186,6 +187,7 @@ void EmulatedLaser::send(ScanData scan) {
     ++ledger_.unheard;
     return;
   }
+  if (!device_.sends(scan)) return;
   scan = device_.sent(std::move(scan));
   for (const auto& session : sessions_) {
     if (session->wants_scans()) send(*session, scan);

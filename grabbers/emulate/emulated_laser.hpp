@@ -37,6 +37,8 @@ class EmulatedLaser {
   void start() { accept(); }
   void stop();
 
+  /// A scan as those that will be sent, by which the laser answers how it scans.
+  void introduce(ScanData scan) { device_.last = std::move(scan); }
   /// Sends a scan to all who subscribed. Who does not read what was sent misses it.
   void send(ScanData scan);
 

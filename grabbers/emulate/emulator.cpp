@@ -147,10 +147,33 @@ void Emulator::await_time(std::int64_t item_ns, const Interrupted& interrupted) 
 }
 
 void Emulator::send(const HubItem& item, const Interrupted& interrupted) {
-  if (!start_) {
-    if (settings_.wait_for_clients && settings_.speed > 0) await_clients(interrupted);
-    start_ = {std::chrono::steady_clock::now(), receipt_ns(item)};
-  }
+  if (start_) return deliver(item, interrupted);
+  keep(item);
+  if (!keeps_on()) begin(interrupted);
+}
+
+void Emulator::keep(const HubItem& item) {
+  kept_.push_back(item);
+  const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item);
+  if (scan == nullptr || !introduced_.insert((*scan)->laser).second) return;
+  const ScanData data = to_scan_data(**scan);
+  in_thread([&] { lasers_.at((*scan)->laser)->introduce(data); });
+}
+
+/// Whether some laser has had no scan yet, and may have one soon.
+bool Emulator::keeps_on() const {
+  constexpr std::int64_t kLongest_ns = 1'000'000'000;
+  return settings_.wait_for_clients && settings_.speed > 0 && introduced_.size() < lasers_.size() &&
+         receipt_ns(kept_.back()) - receipt_ns(kept_.front()) < kLongest_ns;
+}
+
+void Emulator::begin(const Interrupted& interrupted) {
+  if (settings_.wait_for_clients) await_clients(interrupted);
+  start_ = {std::chrono::steady_clock::now(), receipt_ns(kept_.front())};
+  for (const HubItem& item : std::exchange(kept_, {})) deliver(item, interrupted);
+}
+
+void Emulator::deliver(const HubItem& item, const Interrupted& interrupted) {
   await_time(receipt_ns(item), interrupted);
   if (interrupted()) return;
   if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
@@ -174,7 +197,8 @@ void Emulator::send(const PlateReading& reading) {
   plate_.send_to(asio::buffer(sentence), plate_to_, 0, nobody_listens);
 }
 
-void Emulator::finish() {
+void Emulator::finish(const Interrupted& interrupted) {
+  if (!kept_.empty()) begin(interrupted);
   const auto deadline = std::chrono::steady_clock::now() + 2s;
   while (waiting_bytes() > 0 && std::chrono::steady_clock::now() < deadline)
     std::this_thread::sleep_for(kNap);

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -49,13 +50,19 @@ class Emulator {
   /// Sends an item when it is due: as long after the first as it was received after it, divided by the speed.
   /// At speed 0, once each laser has somebody to send it to, and who has taken most of what was sent before.
   /// Returns earlier, without sending it, once `interrupted`.
+  ///
+  /// Where clients are waited for at another speed than 0, the first items are kept until each laser had a
+  /// scan, for a second of them at most: a laser answers as its scans will be before it sends the first one.
   void send(const HubItem& item, const Interrupted& interrupted);
 
   /// Names of the lasers whose scans no client has requested.
   std::vector<std::string> without_client();
 
-  /// Waits until the clients have taken all that was sent, for 2 s at most.
-  void finish();
+  /// Whether anything was sent.
+  bool has_begun() const { return start_.has_value(); }
+
+  /// Sends what was kept, and waits until the clients have taken all that was sent, for 2 s at most.
+  void finish(const Interrupted& interrupted = [] { return false; });
 
   /// Counts of the faults so far.
   EmulatedLedger ledger();
@@ -64,6 +71,10 @@ class Emulator {
   void check(const EmulatorSettings& settings) const;
   void await_clients(const Interrupted& interrupted);
   void await_time(std::int64_t item_ns, const Interrupted& interrupted);
+  void keep(const HubItem& item);
+  bool keeps_on() const;
+  void begin(const Interrupted& interrupted);
+  void deliver(const HubItem& item, const Interrupted& interrupted);
   void send(const PlateReading& reading);
   double skew_of(std::size_t laser) const;
   void in_thread(const std::function<void()>& work);
@@ -80,7 +91,9 @@ class Emulator {
     std::chrono::steady_clock::time_point here;
     std::int64_t item_ns = 0;
   };
-  std::optional<Start> start_;  ///< when the first item was sent, and received
+  std::optional<Start> start_;          ///< when the first item was sent, and received
+  std::vector<HubItem> kept_;           ///< until then
+  std::set<std::uint16_t> introduced_;  ///< lasers that had a scan
   FaultDice plate_dice_;
   EmulatedLedger plate_ledger_;
   std::thread thread_;

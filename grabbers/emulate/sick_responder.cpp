@@ -52,8 +52,7 @@ const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, s
       {"ODpwrc", [](const EmulatedDevice&) { return Values{std::uint32_t{1}}; }},
       {"LMPscancfg", [](const auto& device) { return to_values(device.settings()); }},
       {"LMPoutputRange", [](const auto& device) { return to_values(device.output_range()); }},
-      {"LMDscandatacfg",
-       [](const auto& device) { return to_values(device.content.value_or(ScanContent())); }},
+      {"LMDscandatacfg", [](const auto& device) { return to_values(device.content()); }},
       {"SerialNumber",
        [](const auto& device) { return Values{fmt::format("{:08}", device.last.serial_number)}; }},
       {"LFErec", [](const EmulatedDevice&) { return Values{word(0)}; }},
@@ -142,18 +141,17 @@ Bytes SickResponder::set_output_range(const ColaTelegram& request) {
 Bytes SickResponder::set_content(const ColaTelegram& request) {
   const auto content = scan_content(request);
   if (!content) return cola_error(kInvalidData, request.language);
-  device_->content = content;
+  device_->configured = content;
   return cola_message("sWA", request.name, {}, request.language);
 }
 
-Bytes SickResponder::set_scan(const ColaTelegram& request) const {
+Bytes SickResponder::set_scan(const ColaTelegram& request) {
   const auto requested = scan_settings(request, false);
   if (!requested) return cola_error(kInvalidData, request.language);
-  const ScanSettings own = device_->settings();
-  const unsigned status = (requested->frequency == own.frequency ? 0 : kOtherFrequency) +
-                          (requested->resolution == own.resolution ? 0 : kOtherResolution);
-  Values values{byte(status)};
-  for (auto& value : to_values(own)) values.push_back(std::move(value));
+  const bool has_frequency = requested->frequency == device_->settings().frequency;
+  const bool has_resolution = device_->set_resolution(requested->resolution);
+  Values values{byte((has_frequency ? 0 : kOtherFrequency) + (has_resolution ? 0 : kOtherResolution))};
+  for (auto& value : to_values(device_->settings())) values.push_back(std::move(value));
   return cola_message("sAN", request.name, values, request.language);
 }
 

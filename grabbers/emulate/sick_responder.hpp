@@ -26,7 +26,7 @@ class SickResponder {
   Bytes call(const ColaTelegram& request);
   Bytes set_output_range(const ColaTelegram& request);
   Bytes set_content(const ColaTelegram& request);
-  Bytes set_scan(const ColaTelegram& request) const;
+  Bytes set_scan(const ColaTelegram& request);
   Bytes subscribe(const ColaTelegram& request);
 
   EmulatedDevice* device_;

@@ -21,8 +21,10 @@ LiveSource::LiveSource(const Rig& rig, const LiveSettings& settings)
     const RigLaser& laser = rig.lasers[i];
     logs_.push_back(std::make_unique<DeviceLog>(DeviceKind::Laser, laser.name, laser.address,
                                                 static_cast<std::uint16_t>(i)));
-    lasers_.push_back(std::make_unique<SickClient>(context_, *logs_.back(), laser.address, settings.sick,
-                                                   give, settings.clock));
+    SickSettings sick = settings.sick;
+    sick.configuration.encoder = rig.plate.encoder_of == i;
+    lasers_.push_back(
+        std::make_unique<SickClient>(context_, *logs_.back(), laser.address, sick, give, settings.clock));
   }
   if (settings.plate && !wired_encoder_) {
     logs_.push_back(std::make_unique<DeviceLog>(DeviceKind::Plate, rig.plate.name, rig.plate.address));

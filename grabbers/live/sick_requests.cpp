@@ -54,7 +54,10 @@ SickRequest sick_request(SickStep step, const SickConfiguration& requested, cons
       return {"sMN", "mLMPsetscancfg", to_values(changed(now, requested)), "sAN"};
     case SickStep::SetScanContent:
       return {"sWN", "LMDscandatacfg",
-              to_values(ScanContent{.remission = *requested.remission, .wide = true}), "sWA"};
+              to_values(ScanContent{.remission = *requested.remission,
+                                    .wide = true,
+                                    .encoders = static_cast<std::uint16_t>(requested.encoder ? 1 : 0)}),
+              "sWA"};
     case SickStep::SetOutputRange:
       return {"sWN", "LMPoutputRange", to_values(requested_range(requested, now)), "sWA"};
     case SickStep::SetNtpOff:

@@ -25,6 +25,7 @@ struct SickConfiguration {
   std::optional<double> resolution;  ///< [rad] from beam to beam
   std::vector<double> output_range;  ///< [rad] first and last angle, as the device reports them; or empty
   std::optional<bool> remission;     ///< whether remissions are sent
+  bool encoder = false;              ///< whether counts of an encoder at the laser are sent with these
   bool ntp_off = false;              ///< the device's clock is not to be set over the network
 
   /// Whether the mirror's frequency or the resolution is to change.

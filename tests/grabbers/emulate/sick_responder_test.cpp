@@ -110,6 +110,14 @@ TEST(SickResponder, PutsInForceWhatIsConfiguredAsFarAsItsScansAllow) {
   EXPECT_EQ(a("sMN mLMPsetscancfg +2500 +1 +2500 -450000 +2250000"),
             "sAN mLMPsetscancfg 3 1388 1 1388 FFF92230 225510")
       << "neither is possible, and what is in force";
+  EXPECT_EQ(a("sMN mLMPsetscancfg 1388 1 2710 FFF92230 225510"),
+            "sAN mLMPsetscancfg 0 1388 1 2710 FFF92230 225510")
+      << "every second beam";
+  EXPECT_EQ(device.sent(device.last).channels16[0].raw.size(), 271U);
+  EXPECT_EQ(device.sent(device.last).channels16[0].angle_step, 10'000);
+  EXPECT_EQ(a("sRN LMPscancfg"), "sRA LMPscancfg 1388 1 2710 FFF92230 225510");
+  EXPECT_EQ(a("sMN mLMPsetscancfg 1388 1 1388 FFF92230 225510"),
+            "sAN mLMPsetscancfg 0 1388 1 1388 FFF92230 225510");
   EXPECT_EQ(a("sWN LMPoutputRange 1 1388 225510 0"), "sFA 4");
   EXPECT_EQ(a("sWN LMPoutputRange"), "sFA 5");
   EXPECT_EQ(a("sWN LMPoutputRange 1 1388 0 3A98"), "sWA LMPoutputRange");
@@ -119,6 +127,41 @@ TEST(SickResponder, PutsInForceWhatIsConfiguredAsFarAsItsScansAllow) {
   ASSERT_EQ(sent.channels16.size(), 1U) << "no remissions";
   EXPECT_EQ(sent.channels16[0].start_angle, 0);
   EXPECT_EQ(sent.channels16[0].raw.size(), 4U) << "0, 0.5, 1 and 1.5 degrees";
+}
+
+TEST(SickResponder, AnswersHowItsScansAreBeforeAnybodyConfiguresThem) {
+  EmulatedDevice device;
+  device.last.scan_frequency = 2500;
+  device.last.channels16 = {
+      {.name = "DIST1", .start_angle = -450'000, .angle_step = 2500, .raw = std::vector<std::uint16_t>(1081)},
+      {.name = "RSSI1",
+       .start_angle = -450'000,
+       .angle_step = 2500,
+       .raw = std::vector<std::uint16_t>(1081)}};
+  device.last.encoders.resize(1);
+  SickResponder responder(device);
+  const auto a = [&](const std::string& request) { return answer_to(responder, request, ColaLanguage::A); };
+  EXPECT_EQ(a("sRN LMPscancfg"), "sRA LMPscancfg 9C4 1 9C4 FFF92230 225510") << "25 Hz, 0.25 degrees";
+  EXPECT_EQ(a("sRN LMDscandatacfg"), "sRA LMDscandatacfg 1 0 1 1 0 1 0 0 0 0 0 1");
+}
+
+TEST(SickResponder, SendsEncoderAndScansAsConfigured) {
+  EmulatedDevice device;
+  device.last.channels16 = {{.name = "DIST1", .angle_step = 5000, .raw = {1000, 2000}}};
+  device.last.encoders = {{.position = 7}};
+  SickResponder responder(device);
+  const auto a = [&](const std::string& request) { return answer_to(responder, request, ColaLanguage::A); };
+  a("sMN SetAccessMode 03 F4724744");
+  a("sWN LMDscandatacfg 1 0 0 0 0 1 0 0 0 0 0 3");
+  EXPECT_EQ(device.sent(device.last).encoders.size(), 1U);
+  int sent = 0;
+  for (std::uint16_t k = 0; k < 9; ++k) {
+    device.last.scan_counter = k;
+    sent += device.sends(device.last) ? 1 : 0;
+  }
+  EXPECT_EQ(sent, 3);
+  a("sWN LMDscandatacfg 1 0 0 0 0 0 0 0 0 0 0 1");
+  EXPECT_TRUE(device.sent(device.last).encoders.empty());
 }
 
 TEST(SickResponder, SendsRemissionsAndTimeAsConfigured) {

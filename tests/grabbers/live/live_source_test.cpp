@@ -169,6 +169,31 @@ TEST(LiveSource, ConfiguresALaserAndReportsWhatItDoesNotDo) {
   EXPECT_EQ(notes.of("connections whose scans were not as configured: 50 Hz instead of 25 Hz"), 1U);
 }
 
+TEST(LiveSource, ConfiguresALaserOf25HertzWithAnEncoder) {
+  auto scan = *scans_of(recorded_items(0.1), 0).front();
+  scan.scan_frequency = 25;
+  scan.angle_step = 0.25 * kDegree;
+  for (std::vector<float>* values : {&scan.echoes[0].ranges, &scan.echoes[0].remissions})
+    values->resize(1081);
+  scan.encoders = {{.position = 123}};
+  Rig rig = loopback_rig(1);
+  rig.plate.encoder_of = 0;
+  const std::vector<HubItem> items = {std::make_shared<const Scan>(scan)};
+  Emulator emulator(rig, {.speed = 0});
+  emulator.send(items.front(), [] { return true; });  // it answers as this scan is
+  const SickConfiguration requested{.frequency = 25, .resolution = 0.5 * kDegree, .remission = true};
+  LiveSource source(emulator.rig(), {.sick = {.configuration = requested}});
+  std::vector<HubItem> came;
+  {
+    const Feeding feeding(emulator, items);
+    came = take_scans(source, 1);
+  }
+  ASSERT_EQ(came.size(), 2U) << "a scan, and the count in it, which stays with remissions";
+  EXPECT_EQ(std::get<PlateReading>(came[0]).count, 123U);
+  EXPECT_EQ(scans_of(came, 0).at(0)->echoes.at(0).ranges.size(), 541U) << "every second beam";
+  EXPECT_THAT(of(source.close(), "laser1").notes.all(), testing::IsEmpty());
+}
+
 TEST(LiveSource, GoesOnWhenALaserComesBack) {
   const auto recorded = recorded_items();
   const auto some = std::vector<HubItem>(recorded.begin(),
