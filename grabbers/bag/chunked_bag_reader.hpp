@@ -23,16 +23,16 @@ class ChunkedBagReader : public BagReader {
   /// The same of the next record in the chunk. @throws BagDamage
   virtual void take_record_of(ByteCursor& chunk) = 0;
 
-  void open_chunk(std::string content) {
-    chunk_ = std::move(content);
-    left_ = ByteCursor(chunk_);
-  }
+  /// The memory in which chunks are decompressed.
+  std::string& room() { return room_; }
+  /// @param content  of a chunk: it stays until the next record outside of it is read
+  void open_chunk(std::string_view content) { left_ = ByteCursor(content); }
   void give(const BagMessage& message) { message_ = message; }
 
   ExactReader in_;
 
  private:
-  std::string chunk_;
+  std::string room_;
   ByteCursor left_{{}};  ///< of the chunk
   std::optional<BagMessage> message_;
 };

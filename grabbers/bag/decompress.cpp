@@ -15,28 +15,27 @@ namespace {
 
 constexpr const char* kDamaged = "chunks that cannot be decompressed";
 
-/// Memory for so many bytes, but never for more than what `compressed` bytes can have become.
-std::string room_for(std::uint64_t size, std::size_t compressed, std::uint64_t best_ratio) {
+/// Makes room for so many bytes, but never for more than what `compressed` bytes can have become.
+void make_room(std::string& out, std::uint64_t size, std::size_t compressed, std::uint64_t best_ratio) {
   if (size / best_ratio > compressed + 1) throw BagDamage{kDamaged};
-  return std::string(size, '\0');
+  out.resize(size);
 }
 
-std::string from_bz2(std::string_view bytes, std::uint64_t size) {
+void from_bz2(std::string_view bytes, std::uint64_t size, std::string& out) {
   constexpr std::uint64_t kBestRatio = 100'000;  // 45 bytes of bzip2 can be 900 kB of zeros, and more of them
   constexpr std::uint64_t kMax = std::uint64_t{1} << 31;
   if (size > kMax || bytes.size() > kMax) throw BagDamage{kDamaged};
-  std::string out = room_for(size, bytes.size(), kBestRatio);
+  make_room(out, size, bytes.size(), kBestRatio);
   auto written = static_cast<unsigned>(size);
   // bzip2's interface takes what it does not change without const
   const int status = BZ2_bzBuffToBuffDecompress(out.data(), &written, const_cast<char*>(bytes.data()),
                                                 static_cast<unsigned>(bytes.size()), 0, 0);
   if (status != BZ_OK || written != size) throw BagDamage{kDamaged};
-  return out;
 }
 
-std::string from_lz4(std::string_view bytes, std::uint64_t size) {
+void from_lz4(std::string_view bytes, std::uint64_t size, std::string& out) {
   constexpr std::uint64_t kBestRatio = 255;
-  std::string out = room_for(size, bytes.size(), kBestRatio);
+  make_room(out, size, bytes.size(), kBestRatio);
   LZ4F_dctx* raw = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION)) != 0) throw BagDamage{kDamaged};
   const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> context(raw,
@@ -52,24 +51,28 @@ std::string from_lz4(std::string_view bytes, std::uint64_t size) {
     if (left == 0) break;
   }
   if (written != size) throw BagDamage{kDamaged};
-  return out;
 }
 
-std::string from_zstd(std::string_view bytes, std::uint64_t size) {
+void from_zstd(std::string_view bytes, std::uint64_t size, std::string& out) {
   constexpr std::uint64_t kBestRatio = 100'000;
-  std::string out = room_for(size, bytes.size(), kBestRatio);
+  make_room(out, size, bytes.size(), kBestRatio);
   if (ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size()) != size) throw BagDamage{kDamaged};
-  return out;
 }
 
 }  // namespace
 
-std::string decompress(std::string_view method, std::string_view bytes, std::uint64_t size) {
-  if (method == "bz2") return from_bz2(bytes, size);
-  if (method == "lz4") return from_lz4(bytes, size);
-  if (method == "zstd") return from_zstd(bytes, size);
-  if (!method.empty() && method != "none") throw BagDamage{"chunks with an unknown compression"};
-  return std::string(bytes);
+std::string_view decompress(std::string_view method, std::string_view bytes, std::uint64_t size,
+                            std::string& room) {
+  if (method.empty() || method == "none") return bytes;
+  if (method == "bz2")
+    from_bz2(bytes, size, room);
+  else if (method == "lz4")
+    from_lz4(bytes, size, room);
+  else if (method == "zstd")
+    from_zstd(bytes, size, room);
+  else
+    throw BagDamage{"chunks with an unknown compression"};
+  return room;
 }
 
 }  // namespace crisp

@@ -75,9 +75,10 @@ void McapReader::take_chunk(ByteCursor content) {
   const auto size = content.take<std::uint64_t>();
   const auto crc = content.take<std::uint32_t>();
   const std::string_view method = content.text();
-  std::string chunk = decompress(method, content.bytes(content.take<std::uint64_t>()), size);
+  const std::string_view chunk =
+      decompress(method, content.bytes(content.take<std::uint64_t>()), size, room());
   if (crc != 0 && crc != crc_of(chunk)) throw BagDamage{"chunks with a wrong checksum"};
-  open_chunk(std::move(chunk));
+  open_chunk(chunk);
 }
 
 void McapReader::take_message(ByteCursor content) {

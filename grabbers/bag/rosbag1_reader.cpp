@@ -66,7 +66,7 @@ void Rosbag1Reader::connect(const Record& record) {
 
 void Rosbag1Reader::take_chunk(const Record& record) {
   const auto size = number<std::uint32_t>(record.header, "size");
-  open_chunk(decompress(field(record.header, "compression"), record.data, size));
+  open_chunk(decompress(field(record.header, "compression"), record.data, size, room()));
 }
 
 void Rosbag1Reader::use(const Record& record) {
@@ -94,7 +94,9 @@ bool Rosbag1Reader::take_record() {
 
 void Rosbag1Reader::take_record_of(ByteCursor& chunk) {
   const std::string_view header = chunk.text();
-  use({header, chunk.text()});
+  const std::string_view data = chunk.text();
+  if (number<Op>(header, "op") == Op::chunk) throw BagDamage{"chunks within chunks"};
+  use({header, data});
 }
 
 }  // namespace crisp

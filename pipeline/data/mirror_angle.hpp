@@ -10,8 +10,10 @@ namespace crisp {
 /// mount. An angle of half a turn but for rounding stays.
 inline double wrapped_mirror_angle(double angle) {
   constexpr double kRounding = 1e-3;  // [rad] less than any laser's step
-  if (std::abs(angle) <= std::numbers::pi + kRounding) return angle;
-  return std::remainder(angle, 2 * std::numbers::pi);
+  constexpr double kTurn = 2 * std::numbers::pi;
+  if (std::abs(angle) <= kTurn / 2 + kRounding) return angle;
+  if (std::abs(angle) < 3 * kTurn / 2) return angle - std::copysign(kTurn, angle);  // exact, and quick
+  return std::remainder(angle, kTurn);
 }
 
 }  // namespace crisp

@@ -26,9 +26,13 @@ test::TestBag long_bag(bool ros2) {
     const std::int64_t stamp = 1'700'000'000'000'000'000 + kPeriod * i;
     for (std::size_t k = 0; k < ranges.size(); ++k)
       ranges[k] = 0.001F * static_cast<float>(1000 + (37 * k + 11 * static_cast<std::size_t>(i)) % 8000);
-    bag.messages.push_back(
-        {0, stamp + kPeriod,
-         test::scan_bytes({.stamp_ns = stamp, .time_increment = 1e-5F, .ranges = ranges}, ros2)});
+    bag.messages.push_back({0, stamp + kPeriod,
+                            test::scan_bytes({.stamp_ns = stamp,
+                                              .angle_min = -2.35619F,
+                                              .angle_increment = 0.00436332F,
+                                              .time_increment = 1e-5F,
+                                              .ranges = ranges},
+                                             ros2)});
     bag.messages.push_back({1, stamp, test::joints_bytes(stamp, {"tilt"}, {1e-4 * i}, ros2)});
   }
   return bag;
@@ -67,6 +71,7 @@ void read_bag(benchmark::State& state, const char* ending, const char* compressi
 BENCHMARK_CAPTURE(read_bag, rosbag1_plain, ".bag", "none")->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_bag, rosbag1_lz4, ".bag", "lz4")->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_bag, mcap_plain, ".mcap", "")->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_bag, mcap_lz4, ".mcap", "lz4")->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_bag, mcap_zstd, ".mcap", "zstd")->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_bag, sqlite, ".db3", "")->UseRealTime()->Unit(benchmark::kMillisecond);
 
