@@ -26,6 +26,16 @@ constexpr std::uint8_t kMeasuring = 7, kIdle = 3;
 std::uint8_t byte(unsigned value) { return static_cast<std::uint8_t>(value); }
 std::uint16_t word(unsigned value) { return static_cast<std::uint16_t>(value); }
 
+/// The evaluation of one field that is not configured: drivers refuse an answer without any.
+Values field_evaluation(const EmulatedDevice& device) {
+  constexpr std::uint32_t kOneAsFloat = 0x3F800000, kNone = 0;
+  const ScanSettings scans = device.settings();
+  // One field: its version, number and counter; scale and offset of distances, and of angles; no result; no
+  // time.
+  return {word(1),     word(1), byte(1), kNone,   kOneAsFloat, kNone,  scans.resolution,
+          scans.first, byte(0), word(0), word(0), word(0),     word(0)};
+}
+
 /// The variables that can be read, with their values. (In a generic lambda clang 14 takes a list of one
 /// number for a size.)
 const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, std::less<>>& variables() {
@@ -55,7 +65,7 @@ const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, s
       {"LMDscandatacfg", [](const auto& device) { return to_values(device.content()); }},
       {"SerialNumber",
        [](const auto& device) { return Values{fmt::format("{:08}", device.last.serial_number)}; }},
-      {"LFErec", [](const EmulatedDevice&) { return Values{word(0)}; }},
+      {"LFErec", [](const auto& device) { return field_evaluation(device); }},
       {"LIDinputstate",  // version, system counter, four inputs, no time
        [](const auto&) {
          return Values{word(0), std::uint32_t{0}, byte(0), byte(0), byte(0), byte(0), word(0)};

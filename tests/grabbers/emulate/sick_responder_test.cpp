@@ -64,7 +64,10 @@ TEST(SickResponder, RunsTheBinaryDialogueOfSickScanXdToItsEnd) {
   EXPECT_EQ(b("sRN field048"), "sFA\0\x03"s);
   EXPECT_EQ(b("sRN field0xx"), "sFA\0\x03"s);
   EXPECT_EQ(b("sRN LIDinputstate"), "sRA LIDinputstate "s + std::string(12, '\0'));
-  EXPECT_EQ(b("sRN LFErec"), "sRA LFErec \0\0"s);
+  EXPECT_EQ(b("sRN LFErec"),
+            "sRA LFErec \0\1\0\1\1\0\0\0\0\x3f\x80\0\0\0\0\0\0\0\0\x13\x88\xff\xf9\x22\x30\0"s +
+                std::string(8, '\0'))
+      << "one field: a driver takes none for damage";
   device.last.serial_number = 11110042;
   EXPECT_EQ(b("sRN SerialNumber"), "sRA SerialNumber \0\x08"s + "11110042");
   EXPECT_EQ(b("sWN LMDscandatacfg \x01\0\0\0\0\0\0\0\0\0\0\0\x01"s), "sWA LMDscandatacfg ");
