@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Clouds that crisp writes are opened by other programs: CloudCompare and Open3D, as far as they are installed.
+"""Clouds that crisp writes are opened by other programs: CloudCompare, Open3D and PCL's, as far as they are installed.
 
     peers_test.py CRISP
 """
@@ -24,6 +24,7 @@ try:
 except ImportError:
     open3d = None
 CLOUD_COMPARE = shutil.which("CloudCompare")
+PCL = shutil.which("pcl_convert_pcd_ascii_binary") and shutil.which("pcl_ply2pcd")
 
 
 def write_pcd(path):
@@ -61,6 +62,26 @@ class Peers(unittest.TestCase):
         rows = [[float(number) for number in line.split()] for line in seen.read_text().splitlines()]
         self.expect_points(rows, 4)
 
+    def points_by_pcl(self, pcd):
+        """x, y, z and intensity of a cloud that PCL's program opens and writes as text."""
+        text = self.folder / "text.pcd"
+        subprocess.run(["pcl_convert_pcd_ascii_binary", pcd, text, "0"], check=True, stdout=subprocess.DEVNULL)
+        header, _, rows = text.read_text().partition("DATA ascii\n")
+        fields = next(line.split()[1:] for line in header.splitlines() if line.startswith("FIELDS"))
+        columns = [fields.index(name) for name in ("x", "y", "z", "intensity")]
+        return [[float(row.split()[column]) for column in columns] for row in rows.splitlines()]
+
+    @unittest.skipUnless(PCL, "pcl-tools is not installed")
+    def test_pcl_opens_pcd_with_its_intensities(self):
+        self.expect_points(self.points_by_pcl(self.converted("pcd")), 4)
+
+    @unittest.skipUnless(PCL, "pcl-tools is not installed")
+    def test_pcl_opens_ply_with_its_intensities(self):
+        made = self.folder / "made.pcd"
+        subprocess.run(["pcl_ply2pcd", self.converted("ply"), made], check=True, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL)
+        self.expect_points(self.points_by_pcl(made), 4)
+
     @unittest.skipUnless(open3d, "python3-open3d is not installed")
     def test_open3d_opens_ply_and_pcd(self):
         for ending in ("ply", "pcd"):
@@ -75,7 +96,7 @@ class Peers(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if not open3d and not CLOUD_COMPARE:
-        print("skipped: neither cloudcompare nor python3-open3d is installed")
+    if not open3d and not CLOUD_COMPARE and not PCL:
+        print("skipped: none of cloudcompare, python3-open3d and pcl-tools is installed")
         sys.exit(SKIPPED)
     unittest.main()
