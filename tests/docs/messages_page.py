@@ -14,7 +14,7 @@ number. [Troubleshooting](../how-to/troubleshoot.md) explains the messages that 
 that make a result untrusted.
 """
 AREAS = (  # title, prefixes of the files
-    ("Captures", ("grabbers/capture", "grabbers/wire", "grabbers/pcl", "grabbers/record")),
+    ("Captures", ("grabbers/capture", "grabbers/wire", "pipeline/pcl", "grabbers/record")),
     ("Bags, tables, lists of telegrams, Velodyne", ("grabbers/bag", "grabbers/table", "grabbers/telegrams",
                                                     "grabbers/velodyne")),
     ("Devices", ("grabbers/live", "grabbers/emulate")),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/pcl/paced_source.hpp"
+#include "pipeline/pcl/paced_source.hpp"
 
 namespace crisp {
 

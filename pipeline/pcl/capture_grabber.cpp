@@ -5,7 +5,7 @@
 #include <crisp/capture_grabber.hpp>
 #include <crisp/error.hpp>
 
-#include "grabbers/pcl/paced_source.hpp"
+#include "pipeline/pcl/paced_source.hpp"
 
 namespace crisp {
 

@@ -7,7 +7,7 @@
 
 #include <crisp/source_grabber.hpp>
 
-#include "grabbers/pcl/paced_source.hpp"
+#include "pipeline/pcl/paced_source.hpp"
 
 namespace crisp {
 namespace {

@@ -4,9 +4,9 @@
 #include <crisp/error.hpp>
 #include <crisp/simulator_grabber.hpp>
 
-#include "grabbers/pcl/paced_source.hpp"
 #include "grabbers/simulate/recording.hpp"
 #include "grabbers/simulate/scenes.hpp"
+#include "pipeline/pcl/paced_source.hpp"
 
 namespace crisp {
 namespace {
