@@ -11,8 +11,8 @@
 #include "grabbers/capture/dissect.hpp"
 #include "grabbers/capture/flow.hpp"
 #include "grabbers/capture/fragments.hpp"
-#include "grabbers/capture/item_merge.hpp"
 #include "grabbers/capture/ordered_capture.hpp"
+#include "grabbers/capture/reorder_buffer.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
@@ -36,8 +36,11 @@ struct CaptureReader::Traffic {
   FragmentAssembler fragments;
   std::unordered_map<FlowKey, std::unique_ptr<Flow>> flows;
   std::vector<Flow*> rig_flows;
-  ItemMerge merge;
-  Flow::Give give = [this](HubItem item) { merge.push(std::move(item)); };
+  ReorderBuffer<HubItem> merge;
+  Flow::Give give = [this](HubItem item) {
+    const std::int64_t time_ns = receipt_ns(item);
+    merge.push(time_ns, std::move(item));
+  };
   CaptureStatistics totals;
   std::map<std::uint32_t, std::uint64_t> link_types;  ///< packets
   std::int64_t newest_ns = 0, given_ns = 0;
@@ -141,12 +144,11 @@ void CaptureReader::Traffic::finish() {
 std::optional<HubItem> CaptureReader::Traffic::next() {
   while (!interrupted) {
     if (ended ? !merge.empty() : merge.has(newest_ns - kMaxReordering)) {  // no limit is later than this
-      auto item = ended ? merge.pop() : merge.pop(limit_ns());
-      if (item) {
-        if (receipt_ns(*item) < given_ns)
+      if (auto next = ended ? merge.pop() : merge.pop(limit_ns())) {
+        if (next->time_ns < given_ns)
           totals.notes.add("items out of order, since the hub's clock stepped back");
-        given_ns = receipt_ns(*item);
-        return item;
+        given_ns = next->time_ns;
+        return std::move(next->item);
       }
     }
     if (ended) return {};

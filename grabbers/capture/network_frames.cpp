@@ -91,16 +91,13 @@ void mark_as_simulated(Bytes& frame) {
 }
 
 void FrameSorter::push(std::int64_t time_ns, ByteView frame) {
-  held_.emplace(time_ns, Bytes(frame.begin(), frame.end()));
-  while (held_.begin()->first + hold_ns_ <= held_.rbegin()->first && held_.size() > 1) {
-    sink_(held_.begin()->first, held_.begin()->second);
-    held_.erase(held_.begin());
-  }
+  held_.push(time_ns, Bytes(frame.begin(), frame.end()));
+  const std::int64_t limit_ns = held_.last_ns() - hold_ns_ + 1;
+  while (const auto due = held_.pop(limit_ns)) sink_(due->time_ns, due->item);
 }
 
 void FrameSorter::finish() {
-  for (const auto& [time, bytes] : held_) sink_(time, bytes);
-  held_.clear();
+  while (const auto frame = held_.pop()) sink_(frame->time_ns, frame->item);
 }
 
 TcpConversation::TcpConversation(const Address& server, const Address& client, FrameSink sink,

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 
 #include <crisp/rig.hpp>
 
+#include "grabbers/capture/reorder_buffer.hpp"
 #include "grabbers/wire/bytes.hpp"
 
 namespace crisp {
@@ -18,6 +18,7 @@ using FrameSink = std::function<void(std::int64_t, ByteView)>;
 /// Frames of equal times keep their order.
 class FrameSorter {
  public:
+  /// @param hold_ns  > 0
   FrameSorter(FrameSink sink, std::int64_t hold_ns) : sink_(std::move(sink)), hold_ns_(hold_ns) {}
   void push(std::int64_t time_ns, ByteView frame);
   void finish();  ///< gives away all that is held
@@ -25,7 +26,7 @@ class FrameSorter {
  private:
   FrameSink sink_;
   std::int64_t hold_ns_;
-  std::multimap<std::int64_t, Bytes> held_;
+  ReorderBuffer<Bytes> held_;
 };
 
 /// The maker of a frame, identified by its hardware addresses.

@@ -36,11 +36,12 @@ std::optional<HubEvent> RecordingSimulator::next() {
   const auto since_start = [&](std::int64_t ns) {
     return static_cast<double>(ns - settings_.start_ns) * 1e-9;
   };
-  while (in_flight_.empty() || since_start(in_flight_.begin()->first) >= now_) {
+  while (in_flight_.empty() || since_start(in_flight_.first_ns()) >= now_) {
     if (!fire()) break;
   }
-  if (in_flight_.empty()) return std::nullopt;
-  return std::move(in_flight_.extract(in_flight_.begin()).mapped());
+  auto event = in_flight_.pop();
+  if (!event) return std::nullopt;
+  return std::move(event->item);
 }
 
 /// The count is as old as a reading with the plate's least delay would be, so that η is that of the truth.
@@ -77,8 +78,8 @@ bool RecordingSimulator::fire() {
 }
 
 void RecordingSimulator::hold(HubEvent event) {
-  const auto received = receipt_ns(event);
-  in_flight_.emplace(received, std::move(event));
+  const auto received_ns = receipt_ns(event);
+  in_flight_.push(received_ns, std::move(event));
 }
 
 double RecordingSimulator::progress() const {

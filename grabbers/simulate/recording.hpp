@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <variant>
 #include <vector>
 
 #include <crisp/scan.hpp>
 
+#include "grabbers/capture/reorder_buffer.hpp"
 #include "grabbers/simulate/laser_unit.hpp"
 #include "grabbers/simulate/plate_unit.hpp"
 #include "grabbers/simulate/recording_settings.hpp"
@@ -55,8 +55,8 @@ class RecordingSimulator {
   Sweep upcoming_;
   std::vector<LaserUnit> lasers_;
   PlateUnit plate_;
-  std::multimap<std::int64_t, HubEvent> in_flight_;  ///< by receipt
-  double now_ = 0;                                   ///< [s] nothing is sent before it any more
+  ReorderBuffer<HubEvent> in_flight_;  ///< by receipt
+  double now_ = 0;                     ///< [s] nothing is sent before it any more
 };
 
 /// The scans and readings of a whole recording.

@@ -62,6 +62,7 @@ Bytes as_loopback(ByteView ethernet, std::uint32_t family, ByteOrder order);
 inline const Address kLaser1{"192.168.0.1", 2112}, kLaser2{"192.168.0.2", 2112}, kPlate{"192.168.0.10", 4000};
 inline const Address kHub{"192.168.0.100", 50000}, kHubPlate{"192.168.0.100", 4000};
 inline constexpr std::int64_t kStart = 1'700'000'000'000'000'000;
+inline constexpr std::int64_t kNsPerMillisecond = 1'000'000;
 
 /// Scan k of a laser: 50 a second, distances that identify the scan.
 ScanData numbered_scan(std::uint16_t k, std::size_t beams = 20);

@@ -12,15 +12,13 @@
 namespace crisp {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;
-
 std::int64_t scan_time(std::size_t laser, std::size_t k) {
   return kStart +
-         (20 * static_cast<std::int64_t>(k) + 5 + 3 * static_cast<std::int64_t>(laser)) * kMillisecond;
+         (20 * static_cast<std::int64_t>(k) + 5 + 3 * static_cast<std::int64_t>(laser)) * kNsPerMillisecond;
 }
 
 std::int64_t reading_time(std::size_t k) {
-  return kStart + static_cast<std::int64_t>(k) * 2 * kMillisecond + 77'000;
+  return kStart + static_cast<std::int64_t>(k) * 2 * kNsPerMillisecond + 77'000;
 }
 
 ScanData scan_of(std::size_t laser, std::size_t k, std::size_t beams) {
@@ -41,11 +39,11 @@ std::vector<Frame> Scenario::frames() const {
       {same_address ? kLaser1 : kLaser2, same_address ? other_port : kHub, sink, tcp}};
   DatagramSender plate(kPlate, kHubPlate, sink);
   for (std::size_t laser = 0; handshake && laser < 2; ++laser) {
-    lasers[laser].open(kStart - 500 * kMillisecond);
+    lasers[laser].open(kStart - 500 * kNsPerMillisecond);
     lasers[laser].send(TcpSide::Client, cola_frame(as_bytes("sEN LMDscandata 1"), language),
-                       kStart - 400 * kMillisecond);
+                       kStart - 400 * kNsPerMillisecond);
     lasers[laser].send(TcpSide::Server, cola_frame(as_bytes("sEA LMDscandata 1"), language),
-                       kStart - 399 * kMillisecond);
+                       kStart - 399 * kNsPerMillisecond);
   }
   for (std::size_t k = 0; k < scans; ++k) {
     for (std::size_t laser = 0; laser < 2; ++laser) {
