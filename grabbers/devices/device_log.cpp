@@ -23,7 +23,7 @@ int DeviceStatistics::period_hint() const {
 }
 
 DeviceLog::DeviceLog(DeviceKind kind, std::string name, Address address, std::uint16_t laser, Pauses* pauses)
-    : laser_(laser), pauses_(pauses) {
+    : laser_(laser), timeline_(pauses) {
   statistics_.kind = kind;
   statistics_.name = std::move(name);
   statistics_.address = std::move(address);
@@ -32,15 +32,9 @@ DeviceLog::DeviceLog(DeviceKind kind, std::string name, Address address, std::ui
 DeviceStatistics DeviceLog::statistics() const {
   auto statistics = statistics_;
   const bool laser = statistics.kind == DeviceKind::Laser;
-  const auto missing = static_cast<std::int64_t>(tracker_.lost());
-  statistics.losses.add(laser ? kTelegramsNeverCame : kReadingsNeverCame,
-                        static_cast<std::uint64_t>(std::max<std::int64_t>(0, missing - unrequested_)));
-  if (unrequested_ > 0) {
-    statistics.notes.add("scans between the requested ones", static_cast<std::uint64_t>(unrequested_));
-  }
+  timeline_.add_to(statistics, laser ? kTelegramsNeverCame : kReadingsNeverCame);
   statistics.median_handover = handover_.value();
   statistics.period = period_.value();
-  statistics.skew = clock_.skew();
   return statistics;
 }
 
@@ -50,50 +44,10 @@ void DeviceLog::count_telegram(std::string_view kind) {
   statistics_.telegrams.add(full ? "others" : kind);
 }
 
-/// Counter gaps across a pause between two recordings are no loss, and clocks may be others after it.
-void DeviceLog::note_pause(std::uint32_t device_us, std::int64_t time_ns) {
-  auto& s = statistics_;
-  if (pauses_ == nullptr) return;
-  pauses_->hear(time_ns);
-  if (s.items == 0 || !pauses_->last_is_between(s.last_ns, time_ns)) return;
-  ++s.pauses;
-  s.paused_ns += time_ns - s.last_ns;
-  tracker_.restart();
-  clock_.restart();
-  clock_.take(device_us, time_ns);
-  last_scan_.reset();
-}
-
-bool DeviceLog::is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns, bool polled) {
-  if (clock_.take(device_us, time_ns)) {
-    note("restarts of the device's clock");
-    tracker_.restart();
-    last_scan_.reset();
-  }
-  note_pause(device_us, time_ns);
-  const auto missing = static_cast<std::int64_t>(tracker_.lost());
-  const auto verdict = tracker_.take(counter, device_us, time_ns);
-  if (polled) unrequested_ += static_cast<std::int64_t>(tracker_.lost()) - missing;
-  if (verdict == SequenceTracker::Verdict::Late) note("items that came late");
-  const bool twice = verdict == SequenceTracker::Verdict::Duplicate;
-  if (twice) note(polled ? "scans read twice by a client" : "items that came twice");
-  return !twice;
-}
-
-void DeviceLog::note_time(std::uint32_t device_us, std::int64_t time_ns) {
-  auto& s = statistics_;
-  if (device_us == std::exchange(last_stamp_us_, device_us)) ++s.standing;
-  if (s.items++ == 0) {
-    s.first_ns = s.last_ns = time_ns;
-    return;
-  }
-  const double silence = 1e-9 * static_cast<double>(time_ns - s.last_ns);
-  if (silence > s.longest_silence) {
-    s.longest_silence = silence;
-    s.silence_ns = s.last_ns;
-  }
-  s.first_ns = std::min(s.first_ns, time_ns);
-  s.last_ns = std::max(s.last_ns, time_ns);
+bool DeviceLog::is_new(const DeviceTimeline::Item& item) {
+  const auto arrival = timeline_.judge(item);
+  if (arrival.begins_anew) last_scan_.reset();  // turns across a reset or a pause give no period
+  return arrival.is_new;
 }
 
 std::shared_ptr<const Scan> DeviceLog::take(const ColaFrame& frame, EncoderWidths widths) {
@@ -127,7 +81,8 @@ std::shared_ptr<const Scan> DeviceLog::take_scan(const ColaTelegram& telegram, s
   }
   if (data_.appended > 0) note("scan telegrams with unknown fields at their end");
   if (data_.layer != 0) {  // a cone: the rig describes planes
-    if (is_new(data_.telegram_counter, data_.transmission_time_us, time_ns)) {
+    if (is_new({.counter = data_.telegram_counter,
+                .stamp = {.receipt_ns = time_ns, .device_us = data_.transmission_time_us}})) {
       lose("scans of a tilted layer (only the layer at 0 degrees is read)");
     }
     return {};
@@ -139,9 +94,10 @@ std::shared_ptr<const Scan> DeviceLog::take_scan(const ColaTelegram& telegram, s
     return {};
   }
   const bool polled = telegram.command == "sRA";
-  if (!is_new(scan->telegram_counter, scan->transmission_time_us, time_ns, polled)) return {};
+  const DeviceStamp stamp{.receipt_ns = time_ns, .device_us = scan->transmission_time_us};
+  if (!is_new({.counter = scan->telegram_counter, .stamp = stamp, .is_polled = polled})) return {};
   if (polled) scan->numbered = false;
-  note_time(scan->transmission_time_us, time_ns);
+  timeline_.pass_on(stamp);
   note_scan(*scan);
   return scan;
 }
@@ -178,8 +134,9 @@ void DeviceLog::note_count(std::uint32_t count) {
 std::optional<PlateReading> DeviceLog::take(const PlateReading& reading, std::string_view kind) {
   if (kind.empty()) kind = reading.numbered ? "PPLT" : "lines of an encoder";
   count_telegram(kind);
-  if (!is_new(reading.sequence, reading.device_us, reading.receipt_ns, !reading.numbered)) return {};
-  note_time(reading.device_us, reading.receipt_ns);
+  const DeviceStamp stamp{.receipt_ns = reading.receipt_ns, .device_us = reading.device_us};
+  if (!is_new({.counter = reading.sequence, .stamp = stamp, .is_polled = !reading.numbered})) return {};
+  timeline_.pass_on(stamp);
   note_count(reading.count);
   return reading;
 }

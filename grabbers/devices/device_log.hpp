@@ -8,10 +8,8 @@
 #include <crisp/capture_statistics.hpp>
 #include <crisp/scan.hpp>
 
-#include "grabbers/devices/pauses.hpp"
-#include "grabbers/devices/rough_clock.hpp"
+#include "grabbers/devices/device_timeline.hpp"
 #include "grabbers/devices/running_median.hpp"
-#include "grabbers/devices/sequence_tracker.hpp"
 #include "grabbers/wire/cola_framer.hpp"
 #include "grabbers/wire/scan_conversion.hpp"
 #include "pipeline/data/pool.hpp"
@@ -43,24 +41,18 @@ class DeviceLog {
  private:
   std::shared_ptr<const Scan> take_scan(const ColaTelegram& telegram, std::int64_t time_ns,
                                         EncoderWidths widths);
-  bool is_new(std::uint16_t counter, std::uint32_t device_us, std::int64_t time_ns, bool polled = false);
+  bool is_new(const DeviceTimeline::Item& item);
   void lose_scan(std::string_view why);
-  void note_pause(std::uint32_t device_us, std::int64_t time_ns);
   void count_telegram(std::string_view kind);
-  void note_time(std::uint32_t device_us, std::int64_t time_ns);
   void note_scan(const Scan& scan);
   void note_count(std::uint32_t count);
 
   DeviceStatistics statistics_;
   std::uint16_t laser_ = 0;
-  Pauses* pauses_ = nullptr;
+  DeviceTimeline timeline_;
   ScanData data_;
   Pool<Scan> scans_;
   std::string kind_;  ///< of a telegram: here to keep its memory
-  SequenceTracker tracker_;
-  std::int64_t unrequested_ = 0;  ///< among the tracker's gaps: scans that a polling client did not request
-  std::optional<std::uint32_t> last_stamp_us_;
-  RoughClock clock_;
   RunningMedian handover_, period_;
   std::optional<std::pair<std::uint16_t, std::uint32_t>> last_scan_;  ///< its counter and time
   std::optional<std::uint32_t> last_serial_number_;

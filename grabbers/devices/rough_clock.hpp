@@ -5,6 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "pipeline/clocks/clock_line.hpp"
+#include "pipeline/clocks/unwrap.hpp"
+
 namespace crisp {
 
 /// A rough estimate of a device's microsecond clock that wraps at 2^32: its resets and its skew. The clock
@@ -13,30 +16,25 @@ class RoughClock {
  public:
   /// @return whether the clock was set since the last item: it fell back by more than 0.5 s, or ran ahead of
   ///         the hub's by more than a minute. What was known of its rate is then forgotten.
-  bool take(std::uint32_t device_us, std::int64_t receipt_ns);
+  bool take(const DeviceStamp& stamp);
 
   /// Forgets everything before.
   void restart() { begun_ = false; }
 
-  /// Hub seconds per device second, less 1: the edge of the lower convex hull of (device time, delay) in the
-  /// middle. Nothing before 10 s of device time, where delays decide.
+  /// Hub seconds per device second, less 1: the slope of the lower convex hull in the middle. Nothing before
+  /// 10 s of device time, where delays decide.
   std::optional<double> skew() const;
 
  private:
-  struct Stamp {
-    double device = 0;  ///< [s] since the first
-    double delay = 0;   ///< [s] receipt less device time, since the first
-  };
-
-  void begin(std::uint32_t device_us, std::int64_t receipt_ns);
+  void begin(const DeviceStamp& stamp);
   void keep(const Stamp& stamp);
 
   bool begun_ = false;
-  std::uint32_t last_us_ = 0;
-  std::int64_t last_ns_ = 0, first_ns_ = 0;
-  double elapsed_us_ = 0;      ///< device time since the first stamp, unwrapped
-  double width_ = 1;           ///< [s] of device time in which only the least delay is kept
-  std::vector<Stamp> lowest_;  ///< in ascending device time
+  DeviceStamp last_;
+  std::int64_t first_ns_ = 0;
+  std::int64_t elapsed_us_ = 0;  ///< device time since the first stamp, unwrapped
+  double width_ = 1;             ///< [s] of device time in which only the least delay is kept
+  std::vector<Stamp> lowest_;    ///< in ascending device time
 };
 
 }  // namespace crisp

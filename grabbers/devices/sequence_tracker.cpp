@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/devices/sequence_tracker.hpp"
 
-#include <cmath>
-
-#include "grabbers/devices/congruent.hpp"
-
 namespace crisp {
+
 std::int64_t SequenceTracker::steps_to(std::uint16_t counter, std::int64_t time_ns) const {
   const double expected =
       elapsed_ns_ > 0 ? static_cast<double>(time_ns - last_ns_) * steps_ / elapsed_ns_ : 1;
-  return std::llround(nearest_congruent(static_cast<std::uint16_t>(counter - last_), 65536, expected));
+  return last_.advance(counter, expected);
 }
 
 SequenceTracker::Verdict SequenceTracker::begin(std::uint16_t counter, std::uint32_t stamp,
                                                 std::int64_t time_ns) {
   begun_ = true;
-  last_ = counter;
+  last_.accept(counter);
   last_ns_ = time_ns;
   seen_ = 1;
   stamps_[counter % kRemembered] = stamp;
@@ -46,7 +43,7 @@ SequenceTracker::Verdict SequenceTracker::take(std::uint16_t counter, std::uint3
     elapsed_ns_ = kKept * elapsed_ns_ + static_cast<double>(time_ns - last_ns_);
     steps_ = kKept * steps_ + static_cast<double>(steps);
   }
-  last_ = counter;
+  last_.accept(counter);
   last_ns_ = time_ns;
   return Verdict::Next;
 }

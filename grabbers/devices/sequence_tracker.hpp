@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "pipeline/clocks/unwrap.hpp"
+
 namespace crisp {
 
 /// Watches a counter that wraps at 65536: what was lost, came twice or came late. A silence longer than a
@@ -29,7 +31,7 @@ class SequenceTracker {
   Verdict begin(std::uint16_t counter, std::uint32_t stamp, std::int64_t time_ns);
 
   bool begun_ = false;
-  std::uint16_t last_ = 0;
+  CounterUnwrapper last_;
   std::int64_t last_ns_ = 0;
   double elapsed_ns_ = 0, steps_ = 0;  ///< of the last items: their ratio is the time from one to the next
   std::uint64_t seen_ = 0;             ///< bit k: counter last − k has come

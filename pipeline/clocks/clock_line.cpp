@@ -23,17 +23,35 @@ ClockLine line_through(const Stamp& stamp, double slope, double center) {
 
 double slope_between(const Stamp& a, const Stamp& b) { return (b.lead - a.lead) / (b.device - a.device); }
 
-}  // namespace
-
-ClockLine line_by_convex_hull(std::span<const Stamp> stamps, double center) {
+LowerHull hull_of(std::span<const Stamp> stamps) {
   LowerHull hull;
   for (const auto& stamp : stamps) hull.add(stamp);
-  const auto vertices = hull.vertices();
-  if (vertices.size() == 1) return line_through(vertices.front(), 0, center);
+  return hull;
+}
+
+/// The edge above or below which `center` lies: its vertices, of which there are two or more in all.
+std::span<const Stamp> edge_at(std::span<const Stamp> vertices, double center) {
   const auto right = std::upper_bound(vertices.begin() + 1, vertices.end() - 1, center,
                                       [](double t, const Stamp& vertex) { return t < vertex.device; });
-  const double slope = slope_between(right[-1], *right);
-  if (std::abs(slope) <= kMaxSkew) return line_through(right[-1], slope, center);
+  return {right - 1, 2};
+}
+
+}  // namespace
+
+double hull_slope(std::span<const Stamp> stamps, double center) {
+  const LowerHull hull = hull_of(stamps);
+  if (hull.vertices().size() == 1) return 0;
+  const auto edge = edge_at(hull.vertices(), center);
+  return slope_between(edge[0], edge[1]);
+}
+
+ClockLine line_by_convex_hull(std::span<const Stamp> stamps, double center) {
+  const LowerHull hull = hull_of(stamps);
+  const auto vertices = hull.vertices();
+  if (vertices.size() == 1) return line_through(vertices.front(), 0, center);
+  const auto edge = edge_at(vertices, center);
+  const double slope = slope_between(edge[0], edge[1]);
+  if (std::abs(slope) <= kMaxSkew) return line_through(edge[0], slope, center);
   const double bound = std::copysign(kMaxSkew, slope);
   return line_through(vertices[support(vertices, bound)], bound, center);
 }

@@ -35,6 +35,9 @@ inline constexpr double kMaxSkew = 1e-3;
 /// @return |slope| ≤ kMaxSkew
 ClockLine line_by_convex_hull(std::span<const Stamp> stamps, double center);
 
+/// Slope of the same edge of the hull, however steep; 0 for a single stamp.
+double hull_slope(std::span<const Stamp> stamps, double center);
+
 /// The errors of a line below stamps.
 struct LineErrors {
   double bias = 0;       ///< [s] how far above the clock it lies on the average: no stamp has the least delay

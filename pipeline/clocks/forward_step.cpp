@@ -44,7 +44,7 @@ std::optional<std::int64_t> ForwardStep::size_ns() const {
     if (before == before_.end() || hub < kShortest) continue;
     const double ran_on = device_between(before->second, seen.first);
     const bool is_even = std::abs(device_between(seen.first, seen.last) - hub) < kTolerance;
-    if (!is_even || ran_on > kPause) return std::nullopt;
+    if (!is_even || is_pause(ran_on)) return std::nullopt;
     steps.push_back(hub_between(before->second, seen.first) - ran_on);
   }
   if (steps.size() < 2) return std::nullopt;

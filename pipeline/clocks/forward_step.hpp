@@ -7,13 +7,9 @@
 #include <optional>
 #include <vector>
 
-namespace crisp {
+#include "pipeline/clocks/unwrap.hpp"
 
-/// A telegram's receipt on the hub's clock, and its time on the device's clock.
-struct DeviceStamp {
-  std::int64_t receipt_ns = 0;
-  std::uint32_t device_us = 0;  ///< wraps
-};
+namespace crisp {
 
 /// Distinguishes a forward step of the hub's clock from a pause in which nothing was recorded. After a step,
 /// all devices' clocks have run on by less than the hub's, and by the same amount less.

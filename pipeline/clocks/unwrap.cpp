@@ -31,25 +31,31 @@ std::int64_t nearest_congruent(std::int64_t residue, std::int64_t modulus, doubl
          modulus * std::llround((expected - static_cast<double>(residue)) / static_cast<double>(modulus));
 }
 
+ElapsedTime elapsed(const DeviceStamp& from, const DeviceStamp& to) {
+  const double hub_s = 1e-9 * static_cast<double>(to.receipt_ns - from.receipt_ns);
+  return {hub_s, nearest_congruent(std::int64_t{to.device_us} - from.device_us, kTimeModulus, 1e6 * hub_s)};
+}
+
 std::int64_t CounterUnwrapper::advance(std::uint16_t raw, double expected) const {
   return nearest_congruent(std::int64_t{raw} - last_, 65536, expected);
 }
 
 TimeUnwrapper::Unwrapped TimeUnwrapper::add(std::uint32_t raw_us, std::int64_t receipt_ns,
                                             std::optional<double> counted_s) {
+  const DeviceStamp stamp{.receipt_ns = receipt_ns, .device_us = raw_us};
   largest_raw_us_ = std::max(largest_raw_us_, raw_us);
   const auto go_on = [&](StampKind kind, std::int64_t device_us) {
     if (kind != StampKind::reset) before_reset_.reset();
-    last_ = {.raw_us = raw_us, .device_us = device_us, .receipt_ns = receipt_ns};
+    last_ = {.stamp = stamp, .device_us = device_us};
     return Unwrapped{kind, device_us};
   };
   if (!last_) return go_on(StampKind::next, raw_us);
-  const Step step = step_from(*last_, raw_us, receipt_ns);
+  const ElapsedTime step = elapsed(last_->stamp, stamp);
   const StampKind kind = judge(step, counted_s);
   if (kind == StampKind::next) return go_on(kind, last_->device_us + step.device_us);
   if (kind == StampKind::repeated) return {kind, last_->device_us + step.device_us};
   if (before_reset_) {
-    const Step back = step_from(*before_reset_, raw_us, receipt_ns);
+    const ElapsedTime back = elapsed(before_reset_->stamp, stamp);
     if (judge(back, std::nullopt) == StampKind::next) {
       return go_on(StampKind::returned, before_reset_->device_us + back.device_us);
     }
@@ -60,13 +66,7 @@ TimeUnwrapper::Unwrapped TimeUnwrapper::add(std::uint32_t raw_us, std::int64_t r
                last_->device_us + kResetGap_us + std::max<std::int64_t>(0, std::llround(1e6 * step.hub_s)));
 }
 
-TimeUnwrapper::Step TimeUnwrapper::step_from(const State& state, std::uint32_t raw_us,
-                                             std::int64_t receipt_ns) {
-  const double hub_s = 1e-9 * static_cast<double>(receipt_ns - state.receipt_ns);
-  return {hub_s, nearest_congruent(std::int64_t{raw_us} - state.raw_us, kTimeModulus, 1e6 * hub_s)};
-}
-
-StampKind TimeUnwrapper::judge(const Step& step, std::optional<double> counted_s) {
+StampKind TimeUnwrapper::judge(const ElapsedTime& step, std::optional<double> counted_s) {
   const double device_s = 1e-6 * static_cast<double>(step.device_us);
   if (device_s <= 0) return device_s >= -kMaxDisorder ? StampKind::repeated : StampKind::reset;
   const double off_hub = std::abs(device_s - step.hub_s);
@@ -82,7 +82,7 @@ StampKind TimeUnwrapper::judge(const Step& step, std::optional<double> counted_s
 }
 
 void TimeUnwrapper::refuse_seconds_clock(std::uint32_t raw_us) {
-  if (raw_us < last_->raw_us) ++falls_;
+  if (raw_us < last_->stamp.device_us) ++falls_;
   if (falls_ < 2 || largest_raw_us_ >= kSecond_us) return;
   throw Error("the clock of " + device_ + " wraps every second: it never reached 1 s and fell back twice",
               "update the firmware of " + device_ + ": the second of a stamp is ambiguous");

@@ -11,8 +11,21 @@ namespace crisp {
 /// so that times in a run are small numbers.
 std::int64_t epoch_of_run(std::int64_t first_receipt_ns);
 
-/// The number nearest to `expected` that leaves `residue` when divided by `modulus`.
+/// The number nearest to `expected` that leaves `residue` when divided by `modulus`: unwraps a counter.
 std::int64_t nearest_congruent(std::int64_t residue, std::int64_t modulus, double expected);
+
+/// A telegram's receipt on the hub's clock, and its time on the device's clock.
+struct DeviceStamp {
+  std::int64_t receipt_ns = 0;  ///< [ns since the Unix epoch]
+  std::uint32_t device_us = 0;  ///< [µs] modulo 2³²
+};
+
+/// Time between two stamps on both clocks.
+struct ElapsedTime {
+  double hub_s = 0;            ///< [s]
+  std::int64_t device_us = 0;  ///< [µs] nearest to the hub's time, which resolves the wraps
+};
+ElapsedTime elapsed(const DeviceStamp& from, const DeviceStamp& to);
 
 /// Unwraps a 16-bit counter, also across a gap of several wraps.
 class CounterUnwrapper {
@@ -66,16 +79,10 @@ class TimeUnwrapper {
 
  private:
   struct State {
-    std::uint32_t raw_us = 0;
-    std::int64_t device_us = 0;
-    std::int64_t receipt_ns = 0;
+    DeviceStamp stamp;
+    std::int64_t device_us = 0;  ///< unwrapped
   };
-  struct Step {
-    double hub_s = 0;
-    std::int64_t device_us = 0;
-  };
-  static Step step_from(const State& state, std::uint32_t raw_us, std::int64_t receipt_ns);
-  static StampKind judge(const Step& step, std::optional<double> counted_s);
+  static StampKind judge(const ElapsedTime& step, std::optional<double> counted_s);
   void refuse_seconds_clock(std::uint32_t raw_us);
 
   std::string device_;

@@ -8,7 +8,7 @@ namespace crisp {
 std::vector<Recording> recordings_of(const PlateTrajectory& plate) {
   std::vector<Recording> all;
   for (const double time : plate.times()) {
-    if (all.empty() || time - all.back().end > kPause) {
+    if (all.empty() || is_pause(time - all.back().end)) {
       const auto zero = std::ranges::count_if(plate.new_zeros(), [&](double at) { return at <= time; });
       all.push_back({.begin = time, .end = time, .zero = static_cast<std::size_t>(zero)});
     }
@@ -17,9 +17,15 @@ std::vector<Recording> recordings_of(const PlateTrajectory& plate) {
   return all;
 }
 
-RecordingNumbers::RecordingNumbers(const PlateTrajectory& plate) {
-  const auto all = recordings_of(plate);
-  for (std::size_t k = 1; k < all.size(); ++k) borders_.push_back((all[k - 1].end + all[k].begin) / 2);
+void RecordingNumbers::add(const PlateTrajectory& plate) {
+  for (const Recording& recording : recordings_of(plate)) {
+    if (end_) add_silence(*end_, recording.begin);
+    end_ = recording.end;
+  }
+}
+
+void RecordingNumbers::add_silence(double begin, double end) {
+  if (is_pause(end - begin)) borders_.push_back((begin + end) / 2);
 }
 
 std::size_t RecordingNumbers::of(double time) const {

@@ -100,7 +100,7 @@ void ClockAligner::Windows::add(const PlateReading& reading) { receive(reading);
 void ClockAligner::Windows::receive(Received item) {
   if (stepped_ns_ != 0) set_back(item, stepped_ns_);
   const std::int64_t receipt_ns = receipt_of(item);
-  const bool is_gap = settings_.source == TimeSource::clock && tracks_.pause_before(receipt_ns) > kPause;
+  const bool is_gap = settings_.source == TimeSource::clock && tracks_.ends_pause(receipt_ns);
   if (held_.empty() && !is_gap) return pass(item);
   forward_step_.after(device_of(item), stamp_of(item));
   held_.push_back(std::move(item));
@@ -136,7 +136,7 @@ void ClockAligner::Windows::pass(const Received& item) {
 }
 
 double ClockAligner::Windows::arrive(std::int64_t receipt_ns) {
-  if (tracks_.pause_before(receipt_ns) > kPause) end_recording();
+  if (tracks_.ends_pause(receipt_ns)) end_recording();
   const double hub = tracks_.arrive(receipt_ns);
   advance_windows();
   return hub;

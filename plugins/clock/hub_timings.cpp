@@ -31,10 +31,6 @@ HubTimings::HubTimings(const Rig& rig, const AlignmentSettings& settings)
       lasers_(tracks_of(rig, settings)),
       plate_(rig.plate, stamps_of(rig.plate.name, settings), settings.source) {}
 
-double HubTimings::pause_before(std::int64_t receipt_ns) const {
-  return begun_ ? 1e-9 * static_cast<double>(receipt_ns - epoch_ns_) - now_ : 0;
-}
-
 void HubTimings::begin_anew() {
   lasers_ = tracks_of(rig_, settings_);
   const auto before = plate_.latest_reading();
@@ -47,6 +43,7 @@ void HubTimings::begin_anew() {
 }
 
 double HubTimings::arrive(std::int64_t receipt_ns) {
+  pauses_.hear(receipt_ns);
   if (!begun_) epoch_ns_ = epoch_of_run(receipt_ns);
   const double hub = 1e-9 * static_cast<double>(receipt_ns - epoch_ns_);
   if (!begun_) now_ = hub;

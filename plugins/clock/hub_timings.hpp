@@ -9,6 +9,7 @@
 #include <crisp/alignment.hpp>
 #include <crisp/rig.hpp>
 
+#include "pipeline/clocks/pauses.hpp"
 #include "pipeline/data/pool.hpp"
 #include "plugins/clock/laser_timing.hpp"
 #include "plugins/clock/plate_timing.hpp"
@@ -22,8 +23,8 @@ class HubTimings {
 
   /// Notes that something was received. @return [s since the epoch] when
   double arrive(std::int64_t receipt_ns);
-  /// [s] How long nothing had come from any device when this is received.
-  double pause_before(std::int64_t receipt_ns) const;
+  /// Whether this receipt ends a pause, in which nothing came from any device.
+  bool ends_pause(std::int64_t receipt_ns) const { return pauses_.end_before(receipt_ns); }
   /// Forgets all but the epoch and where the plate was: what comes now is of another recording.
   void begin_anew();
   /// The track that a scan belongs to; nullptr, and counted, if the rig has no such laser.
@@ -53,6 +54,7 @@ class HubTimings {
   std::vector<LaserTiming> lasers_;
   PlateTiming plate_;
   Pool<Measurements> measurements_;
+  Pauses pauses_;
   std::int64_t epoch_ns_ = 0;
   bool begun_ = false;
   std::optional<double> begin_;  ///< [s since the epoch] of the present recording

@@ -35,13 +35,12 @@ PlateTiming::PlateTiming(const RigPlate& plate, DeviceStamps stamps, TimeSource 
   }
 }
 
-bool PlateTiming::is_continuous(const Latest& from, const PlateReading& reading) {
+bool PlateTiming::is_continuous(const DeviceStamp& from, const PlateReading& reading) {
   constexpr double kMaxDelay = 1;       // [s]
   constexpr double kLargestError = 60;  // [s] beyond which a wrap of the clock could be mistaken for chance
-  const double hub_s = 1e-9 * static_cast<double>(reading.receipt_ns - from.receipt_ns);
+  const auto [hub_s, device_us] =
+      elapsed(from, {.receipt_ns = reading.receipt_ns, .device_us = reading.device_us});
   const double tolerance = kMaxDelay + kMaxSkew * std::abs(hub_s);
-  const auto device_us =
-      nearest_congruent(std::int64_t{reading.device_us} - from.device_us, std::int64_t{1} << 32, 1e6 * hub_s);
   return tolerance < kLargestError && std::abs(1e-6 * static_cast<double>(device_us) - hub_s) < tolerance;
 }
 
@@ -49,7 +48,7 @@ bool PlateTiming::add(const PlateReading& reading, double hub) {
   if (before_) zero_is_new_ = !is_continuous(*before_, reading);
   before_.reset();
   const double receipt = hub - 1e-6 * reading.handover_us;  // as if it had been sent at once
-  latest_ = {.device_us = reading.device_us, .receipt_ns = reading.receipt_ns};
+  latest_ = {.receipt_ns = reading.receipt_ns, .device_us = reading.device_us};
   stamps_.trust_counter(reading.numbered);
   const auto arrival =
       stamps_.accept(reading.sequence, reading.device_us + static_cast<std::uint32_t>(reading.handover_us),

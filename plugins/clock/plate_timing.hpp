@@ -24,13 +24,9 @@ class PlateTiming {
   /// @throws Error as DeviceStamps::accept
   bool add(const PlateReading& reading, double hub);
   /// State from which a later track determines whether the encoder's count continued.
-  struct Latest {
-    std::uint32_t device_us = 0;
-    std::int64_t receipt_ns = 0;
-  };
-  std::optional<Latest> latest_reading() const { return latest_; }
+  std::optional<DeviceStamp> latest_reading() const { return latest_; }
   /// To be called before the first reading, if there was another recording of this plate before.
-  void follow_on(const Latest& before) { before_ = before; }
+  void follow_on(const DeviceStamp& before) { before_ = before; }
 
   /// The plate from the last reading at or before `begin` to the first at or after `end` [s since the epoch],
   /// as far as there are readings.
@@ -68,7 +64,7 @@ class PlateTiming {
   void classify_jump(const Reading& next);
   bool has_jumped(const Reading& from, const Reading& to) const;
   bool has_lost_zero(const PlateReading& reading, double receipt) const;
-  static bool is_continuous(const Latest& from, const PlateReading& reading);
+  static bool is_continuous(const DeviceStamp& from, const PlateReading& reading);
 
   double counts_per_revolution_;
   double angle_per_count_;  // [rad] negative where counts grow clockwise
@@ -81,9 +77,9 @@ class PlateTiming {
   std::uint64_t taken_ = 0;
   bool zero_is_lost_ = false;
   Before before_reset_;  ///< for a reset that turns out to be none
-  std::optional<Latest> latest_;
-  std::optional<Latest> before_;  ///< of another recording, until there is a first reading
-  bool zero_is_new_ = false;      ///< and no piece has reported it
+  std::optional<DeviceStamp> latest_;
+  std::optional<DeviceStamp> before_;  ///< of another recording, until there is a first reading
+  bool zero_is_new_ = false;           ///< and no piece has reported it
   Reading jumped_;
   std::uint64_t jumps_ = 0;  ///< in a row, each from the place of the one before it
   std::uint64_t impossible_ = 0;

@@ -36,7 +36,7 @@ void add_point(double x, double y, PlotSeries& series) {
 /// to different recordings.
 bool is_pause_between(std::span<const Stamp> stamps, std::size_t first, std::size_t last) {
   for (std::size_t i = first + 1; i <= last; ++i) {
-    if (receipt_of(stamps[i]) - receipt_of(stamps[i - 1]) > kPause) return true;
+    if (is_pause(receipt_of(stamps[i]) - receipt_of(stamps[i - 1]))) return true;
   }
   return false;
 }
@@ -79,7 +79,7 @@ Plot mirror_plot(const std::string& device, const MirrorFacts& facts, double nom
   PlotSeries measured{.name = "measured", .x = {}, .y = {}};
   PlotSeries expected{.name = "nominal", .x = {}, .y = {}};
   for (std::size_t i = 0; i < facts.periods.size(); ++i) {
-    if (i > 0 && facts.begin[i] - facts.begin[i - 1] > kPause) add_point(kBreak, kBreak, measured);
+    if (i > 0 && is_pause(facts.begin[i] - facts.begin[i - 1])) add_point(kBreak, kBreak, measured);
     add_point(facts.begin[i], kMicro * facts.periods[i], measured);
     add_point(facts.begin[i], kMicro * nominal, expected);
   }

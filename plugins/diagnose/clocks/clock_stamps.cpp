@@ -15,7 +15,6 @@
 namespace crisp {
 namespace {
 
-constexpr std::int64_t kWrap_us = std::int64_t{1} << 32;
 constexpr std::size_t kMin = 64;  // minimum number of stamps for a test
 
 /// Stamp at which the device's own time jumps most, and whether the jump equals the envelope's step.
@@ -134,21 +133,18 @@ ClockLine line_of(std::vector<Stamp> stamps) {
 
 void StampTrack::add(std::uint16_t counter, std::uint32_t device_us, std::int64_t receipt_ns) {
   constexpr std::int64_t kRestart = 1000;  // counts: repeated telegrams are not that late
+  const DeviceStamp stamp{.receipt_ns = receipt_ns, .device_us = device_us};
   std::int64_t count = 0;
   if (stamps_.empty()) {
     first_ns_ = receipt_ns;
   } else {
-    CounterUnwrapper unwrapper;
-    unwrapper.accept(last_counter_);
-    const std::int64_t steps = unwrapper.advance(counter, 1);
+    const std::int64_t steps = counter_.advance(counter, 1);
     if (steps <= 0 && steps > -kRestart) return;  // a repeated telegram
     count = stamps_.back().count + (steps > 0 ? steps : 1);
-    const auto gone_us = static_cast<double>(receipt_ns - last_ns_) / 1e3;
-    device_us_ += nearest_congruent(static_cast<std::uint32_t>(device_us - last_us_), kWrap_us, gone_us);
+    device_us_ += elapsed(last_, stamp).device_us;
   }
-  last_counter_ = counter;
-  last_us_ = device_us;
-  last_ns_ = receipt_ns;
+  counter_.accept(counter);
+  last_ = stamp;
   const double device = 1e-6 * static_cast<double>(device_us_);
   const double hub = 1e-9 * static_cast<double>(receipt_ns - first_ns_);
   stamps_.push_back({.count = count, .stamp = {.device = device, .lead = hub - device}});

@@ -10,6 +10,7 @@
 #include <crisp/findings.hpp>
 
 #include "pipeline/clocks/clock_line.hpp"
+#include "pipeline/clocks/unwrap.hpp"
 
 namespace crisp {
 
@@ -34,9 +35,9 @@ class StampTrack {
 
  private:
   std::vector<CountedStamp> stamps_;
-  std::uint16_t last_counter_ = 0;
-  std::uint32_t last_us_ = 0;
-  std::int64_t first_ns_ = 0, last_ns_ = 0;
+  CounterUnwrapper counter_;
+  DeviceStamp last_;
+  std::int64_t first_ns_ = 0;
   std::int64_t device_us_ = 0;  // since the first
 };
 

@@ -11,7 +11,6 @@
 #include <crisp/scan.hpp>
 
 #include "pipeline/clocks/unwrap.hpp"
-#include "pipeline/data/recordings.hpp"
 #include "pipeline/plot/write_plot.hpp"
 #include "plugins/diagnose/clocks/clock_plots.hpp"
 #include "plugins/diagnose/noise/permutation_test.hpp"
@@ -138,10 +137,8 @@ DiagnoseClocksStage::Device& DiagnoseClocksStage::device(std::size_t index, cons
 
 /// Clocks of different recordings are unrelated, so the recording with the most stamps is used.
 void DiagnoseClocksStage::arrive(std::int64_t receipt_ns) {
-  if (!first_ns_) first_ns_ = last_ns_ = receipt_ns;
-  if (1e-9 * static_cast<double>(receipt_ns - last_ns_) > kPause) end_recording();
-  first_ns_ = std::min(*first_ns_, receipt_ns);
-  last_ns_ = std::max(last_ns_, receipt_ns);
+  if (pauses_.hear(receipt_ns)) end_recording();
+  first_ns_ = std::min(first_ns_.value_or(receipt_ns), receipt_ns);
 }
 
 void DiagnoseClocksStage::end_recording() {

@@ -11,6 +11,7 @@
 #include <crisp/findings.hpp>
 #include <crisp/stage_description.hpp>
 
+#include "pipeline/clocks/pauses.hpp"
 #include "plugins/diagnose/clocks/clock_stamps.hpp"
 
 namespace crisp {
@@ -43,7 +44,7 @@ class DiagnoseClocksStage final : public Stage {
   std::vector<Device> devices_;           // the lasers of the rig, then the plate, in the current recording
   std::vector<Device> longest_;           // in the recording with the most stamps so far
   std::optional<std::int64_t> first_ns_;  // first receipt time of any device
-  std::int64_t last_ns_ = 0;
+  Pauses pauses_;
   Findings all_;  // including those of earlier stages
 };
 

@@ -10,27 +10,27 @@ namespace {
 
 TEST(RoughClock, SeesAClockThatWasSetBack) {
   RoughClock watch;
-  EXPECT_FALSE(watch.take(3'000'000'000U, 0));
-  EXPECT_FALSE(watch.take(3'000'020'000U, 20'000'000));
-  EXPECT_TRUE(watch.take(100'000U, 10'000'000'000));
-  EXPECT_FALSE(watch.take(120'000U, 10'020'000'000));
+  EXPECT_FALSE(watch.take({0, 3'000'000'000U}));
+  EXPECT_FALSE(watch.take({20'000'000, 3'000'020'000U}));
+  EXPECT_TRUE(watch.take({10'000'000'000, 100'000U}));
+  EXPECT_FALSE(watch.take({10'020'000'000, 120'000U}));
 }
 
 TEST(RoughClock, TakesAWrapAndASilenceForWhatTheyAre) {
   RoughClock watch;
-  EXPECT_FALSE(watch.take(4'294'960'000U, 0));
-  EXPECT_FALSE(watch.take(12'704U, 20'000'000)) << "the clock wraps at 2^32";
+  EXPECT_FALSE(watch.take({0, 4'294'960'000U}));
+  EXPECT_FALSE(watch.take({20'000'000, 12'704U})) << "the clock wraps at 2^32";
   const std::int64_t two_hours_us = 7'200'000'000;
   EXPECT_FALSE(
-      watch.take(static_cast<std::uint32_t>(12'704 + two_hours_us), 20'000'000 + two_hours_us * 1000));
+      watch.take({20'000'000 + two_hours_us * 1000, static_cast<std::uint32_t>(12'704 + two_hours_us)}));
 }
 
 TEST(RoughClock, TakesALateDeliveryForNoRestart) {
   RoughClock watch;
-  EXPECT_FALSE(watch.take(1'000'000, 0));
-  EXPECT_FALSE(watch.take(1'020'000, 30'000'000'000)) << "held up for 30 s";
-  EXPECT_FALSE(watch.take(31'000'000, 30'000'100'000)) << "and then on time again";
-  EXPECT_FALSE(watch.take(30'999'000, 30'000'200'000)) << "datagrams may change places";
+  EXPECT_FALSE(watch.take({0, 1'000'000}));
+  EXPECT_FALSE(watch.take({30'000'000'000, 1'020'000})) << "held up for 30 s";
+  EXPECT_FALSE(watch.take({30'000'100'000, 31'000'000})) << "and then on time again";
+  EXPECT_FALSE(watch.take({30'000'200'000, 30'999'000})) << "datagrams may change places";
 }
 
 /// Stamps of a clock that is `skew` slow, `rate` a second, with delays of an exponential law, mean 0.3 ms.
@@ -41,7 +41,8 @@ std::optional<double> skew_found(double skew, double seconds, double rate, std::
   for (double t = 0; t < seconds; t += 1 / rate) {
     const auto device_us = static_cast<std::uint64_t>(1e6 * t) + first_us;
     const double receipt = t * (1 + skew) + delay(random);
-    EXPECT_FALSE(clock.take(static_cast<std::uint32_t>(device_us), static_cast<std::int64_t>(1e9 * receipt)));
+    EXPECT_FALSE(
+        clock.take({static_cast<std::int64_t>(1e9 * receipt), static_cast<std::uint32_t>(device_us)}));
   }
   return clock.skew();
 }

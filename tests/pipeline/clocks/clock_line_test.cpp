@@ -23,6 +23,13 @@ TEST(ClockLine, IsTheHullsEdgeAtTheMeanOfTheStamps) {
   }
 }
 
+TEST(HullSlope, IsThatOfTheLineHoweverSteep) {
+  EXPECT_NEAR(hull_slope(kByHand, 2), 0.5e-5, 1e-18);
+  EXPECT_NEAR(hull_slope(kByHand, 3.5), 2e-5, 1e-18);
+  EXPECT_EQ(hull_slope(std::vector<Stamp>{{0, 1}, {1, 3}}, 0.5), 2) << "a line's slope is at most kMaxSkew";
+  EXPECT_EQ(hull_slope(std::vector<Stamp>{{5, 1}}, 5), 0);
+}
+
 TEST(ClockLine, OfTwoWaysToFindItIsTheSameToRounding) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(seed);

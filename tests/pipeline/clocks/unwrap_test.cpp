@@ -16,6 +16,15 @@ constexpr std::int64_t kWrap_us = std::int64_t{1} << 32;
 std::uint32_t raw(std::int64_t us) { return static_cast<std::uint32_t>(us); }
 std::int64_t ns(double seconds) { return 1'700'000'000'000'000'000 + std::llround(1e9 * seconds); }
 
+TEST(Elapsed, ResolvesTheWrapsOfTheDevicesClockByTheHubs) {
+  const DeviceStamp from{.receipt_ns = ns(0), .device_us = raw(kWrap_us - 10)};
+  const auto none = elapsed(from, {.receipt_ns = ns(0.5), .device_us = 20});
+  EXPECT_NEAR(none.hub_s, 0.5, 1e-12);
+  EXPECT_EQ(none.device_us, 30);
+  EXPECT_EQ(elapsed(from, {.receipt_ns = ns(9000), .device_us = 20}).device_us, 30 + 2 * kWrap_us);
+  EXPECT_EQ(elapsed(from, {.receipt_ns = ns(1), .device_us = raw(kWrap_us - 15)}).device_us, -5) << "earlier";
+}
+
 TEST(TimeUnwrapper, CountsOnPastAWrap) {
   TimeUnwrapper time("laser1");
   const std::int64_t start = kWrap_us - 30'000;

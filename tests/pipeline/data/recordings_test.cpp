@@ -34,6 +34,28 @@ TEST(Recordings, TimesInAPauseBelongToTheNearerOne) {
   EXPECT_EQ(number.of(500), 1U);
 }
 
+TEST(Recordings, NumbersGrowWithThePiecesOfATrajectory) {
+  RecordingNumbers number;
+  EXPECT_EQ(number.of(50), 0U);
+  EXPECT_FALSE(number.has_readings());
+  number.add(plate_from({0}));
+  number.add(plate_from({4}));
+  number.add(plate_from({20, 40}));
+  EXPECT_TRUE(number.has_readings());
+  const RecordingNumbers at_once(plate_from({0, 4, 20, 40}));
+  EXPECT_EQ(number.count(), 3U);
+  for (const double time : {0.0, 12.4, 12.6, 30.4, 30.6, 90.0}) EXPECT_EQ(number.of(time), at_once.of(time));
+}
+
+TEST(Recordings, AreDividedBySilencesOfMoreThanFiveSeconds) {
+  RecordingNumbers number;
+  number.add_silence(1, 6);
+  EXPECT_EQ(number.count(), 1U);
+  number.add_silence(10, 16);
+  EXPECT_EQ(number.of(12.9), 0U);
+  EXPECT_EQ(number.of(13.1), 1U);
+}
+
 TEST(Recordings, KnowWhichZeroTheirAnglesCountFrom) {
   const auto all = recordings_of(plate_from({0, 20, 40, 60}, {20, 60}));
   ASSERT_EQ(all.size(), 4U);
