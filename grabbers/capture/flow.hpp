@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include <crisp/capture_settings.hpp>
+#include <crisp/capture_reader.hpp>
 #include <crisp/hub_item.hpp>
 
 #include "grabbers/capture/tcp_stream.hpp"

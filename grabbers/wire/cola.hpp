@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include <crisp/cola_language.hpp>
+#include <crisp/scan.hpp>
 
 #include "grabbers/wire/bytes.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <crisp/effect.hpp>
+#include <crisp/term.hpp>
 
 namespace crisp {
 

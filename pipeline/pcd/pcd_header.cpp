@@ -12,7 +12,7 @@
 #include <utility>
 
 #include <crisp/error.hpp>
-#include <crisp/pcd_header.hpp>
+#include <crisp/pcd_table.hpp>
 
 #include "pipeline/files/control_characters.hpp"
 

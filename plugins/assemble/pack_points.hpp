@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <crisp/point.hpp>
+#include <crisp/cloud.hpp>
 
 // Plain data only: what is behind is compiled once for each kind of processor.
 namespace crisp::simd {

@@ -3,15 +3,23 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
-#include <crisp/capture_settings.hpp>
 #include <crisp/capture_statistics.hpp>
 #include <crisp/hub_item.hpp>
 #include <crisp/rig.hpp>
+#include <crisp/scan.hpp>
 
 namespace crisp {
+
+/// Settings for parsing a capture.
+struct CaptureSettings {
+  EncoderWidths encoder_widths = EncoderWidths::Position32;  ///< of encoders that are wired to lasers
+  double max_wait = 5;                     ///< [s] of capture time that a lost TCP segment is waited for
+  std::function<bool()> interrupted = {};  ///< polled while a capture is read from a pipe: whether to give up
+};
 
 /// Reads scans and encoder readings from a capture of the hub's network interface, in the order in which the
 /// hub received them: the time of the packet that completes a telegram. Only where the hub's clock itself

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <crisp/cola_language.hpp>
 #include <crisp/scan.hpp>
 
 namespace crisp {

@@ -6,6 +6,10 @@
 
 namespace crisp {
 
+/// The two languages of SICK's devices: CoLa-A is ASCII between STX and ETX, CoLa-B is binary with a length
+/// and a checksum.
+enum class ColaLanguage : std::uint8_t { A, B };
+
 /// One echo of a beam: the first echoes are element 0 of `Scan::echoes`.
 struct Echo {
   std::vector<float> ranges;      ///< [m], one a beam; 0 where the device sent a code (no echo, dazzled …)

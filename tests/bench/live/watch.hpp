@@ -10,8 +10,8 @@
 #include <vector>
 
 #include <crisp/cloud.hpp>
-#include <crisp/kind.hpp>
 #include <crisp/measurements.hpp>
+#include <crisp/stage.hpp>
 
 namespace crisp {
 
