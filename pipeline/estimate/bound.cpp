@@ -45,12 +45,8 @@ Surfels surfels_of_truth(const BeamsView& beams, std::span<const std::uint32_t> 
     surfel.radius = std::max(kSmallest, std::sqrt(squares / static_cast<double>(members[s].size())));
     surfel.u = surfel.normal.unitOrthogonal();
     surfel.v = surfel.normal.cross(surfel.u);
-    surfel.begin = static_cast<std::uint32_t>(result.members.size());
-    result.members.insert(result.members.end(), members[s].begin(), members[s].end());
-    surfel.end = static_cast<std::uint32_t>(result.members.size());
-    result.surfels.push_back(surfel);
+    result.add(surfel, members[s]);
   }
-  result.weights.assign(result.members.size(), 1);
   return result;
 }
 

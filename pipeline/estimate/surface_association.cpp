@@ -166,13 +166,8 @@ Surfels sorted_by_owner(const std::vector<Surfel>& surfels, const std::vector<st
   Surfels result;
   for (std::size_t s = 0; s < surfels.size(); ++s) {
     if (members[s].size() < settings.min_points) continue;
-    Surfel surfel = surfels[s];
-    surfel.begin = static_cast<std::uint32_t>(result.members.size());
-    result.members.insert(result.members.end(), members[s].begin(), members[s].end());
-    surfel.end = static_cast<std::uint32_t>(result.members.size());
-    result.surfels.push_back(surfel);
+    result.add(surfels[s], members[s]);
   }
-  result.weights.assign(result.members.size(), 1);
   return result;
 }
 

@@ -95,6 +95,27 @@ class FindingsMap {
   std::vector<Error>& errors_;
 };
 
+/// Reads the maps of a list.
+/// @param inside  what holds the list, for errors; empty: the file
+template <class Thing>
+std::vector<Thing> read_list(FindingsMap& parent, const char* key,
+                             Thing (*read)(FindingsMap&, const std::string& place),
+                             const std::string& inside = {}, bool is_required = true) {
+  std::vector<Thing> all;
+  const auto read_one = [&](const YamlNode& node, const std::string& where) {
+    const std::string place = inside.empty() ? where : inside + ", " + where;
+    FindingsMap map(node, place, parent.errors());
+    all.push_back(read(map, place));
+    map.map().refuse_others();
+  };
+  if (is_required) {
+    parent.each(key, read_one);
+  } else {
+    parent.each_if_there(key, read_one);
+  }
+  return all;
+}
+
 Gain gain_in(FindingsMap& map, const std::string&) {
   return {.metric = map.text("metric"),
           .unit = map.text("unit"),
@@ -103,52 +124,30 @@ Gain gain_in(FindingsMap& map, const std::string&) {
           .ci95 = map.numbers<2>("ci95")};
 }
 
-std::vector<Gain> read_gains(FindingsMap& parent, const std::string& what) {
-  std::vector<Gain> all;
-  parent.each("gain", [&](const YamlNode& node, const std::string& where) {
-    FindingsMap map(node, what + ", " + where, parent.errors());
-    all.push_back(gain_in(map, where));
-    map.map().refuse_others();
-  });
-  return all;
+Parameter parameter_in(FindingsMap& map, const std::string&) {
+  return {.name = map.text("name"),
+          .unit = map.text("unit"),
+          .value = map.number("value"),
+          .std_error = map.number("std_error")};
 }
 
-std::vector<Parameter> read_parameters(FindingsMap& parent, const std::string& what) {
-  std::vector<Parameter> all;
-  parent.each("parameters", [&](const YamlNode& node, const std::string& where) {
-    FindingsMap map(node, what + ", " + where, parent.errors());
-    all.push_back({.name = map.text("name"),
-                   .unit = map.text("unit"),
-                   .value = map.number("value"),
-                   .std_error = map.number("std_error")});
-    map.map().refuse_others();
-  });
-  return all;
-}
-
-std::vector<OtherCause> read_alternatives(FindingsMap& parent, const std::string& what) {
-  std::vector<OtherCause> all;
-  parent.each_if_there("alternatives", [&](const YamlNode& node, const std::string& where) {
-    FindingsMap map(node, what + ", " + where, parent.errors());
-    all.push_back({.cause = map.text("cause"),
-                   .scope = map.text("scope"),
-                   .log10_bayes_factor = map.number("log10_bayes_factor")});
-    map.map().refuse_others();
-  });
-  return all;
+OtherCause alternative_in(FindingsMap& map, const std::string&) {
+  return {.cause = map.text("cause"),
+          .scope = map.text("scope"),
+          .log10_bayes_factor = map.number("log10_bayes_factor")};
 }
 
 Finding finding_in(FindingsMap& map, const std::string& what) {
   return {.cause = map.text("cause"),
           .scope = map.text("scope"),
-          .parameters = read_parameters(map, what),
+          .parameters = read_list(map, "parameters", parameter_in, what),
           .explained_fraction = map.number("explained_fraction"),
           .log10_bayes_factor = map.number("log10_bayes_factor"),
           .p_value = map.number("p_value"),
           .confounded_with = map.texts("confounded_with"),
           .resolvable_by = map.texts("resolvable_by"),
-          .alternatives = read_alternatives(map, what),
-          .gain = read_gains(map, what),
+          .alternatives = read_list(map, "alternatives", alternative_in, what, false),
+          .gain = read_list(map, "gain", gain_in, what),
           .accepted = map.boolean("accepted"),
           .rejection = map.text_if_there("rejection_reason")};
 }
@@ -160,7 +159,7 @@ UnnamedFinding unnamed_in(FindingsMap& map, const std::string& what) {
           .amplitude = map.number("amplitude"),
           .unit = map.text("unit"),
           .p_value = map.number("p_value"),
-          .gain = read_gains(map, what),
+          .gain = read_list(map, "gain", gain_in, what),
           .accepted = map.boolean("accepted")};
 }
 
@@ -180,8 +179,9 @@ Unobservable unobservable_in(FindingsMap& map, const std::string&) {
 }
 
 EstimatorArtifact artifact_in(FindingsMap& map, const std::string& what) {
-  return {
-      .name = map.text("artifact"), .parameters = read_parameters(map, what), .reason = map.text("reason")};
+  return {.name = map.text("artifact"),
+          .parameters = read_list(map, "parameters", parameter_in, what),
+          .reason = map.text("reason")};
 }
 
 DeviceFacts device_in(FindingsMap& map, const std::string&) {
@@ -201,21 +201,6 @@ NoiseFacts noise_in(FindingsMap& map, const std::string&) {
   return {.laser = map.text("laser"), .ranges = map.count("ranges"), .sigma = map.number("sigma")};
 }
 
-template <class Thing>
-void read_list(FindingsMap& parent, const char* key, Thing (*read)(FindingsMap&, const std::string&),
-               std::vector<Thing>& all, bool required = true) {
-  const auto read_one = [&](const YamlNode& node, const std::string& where) {
-    FindingsMap map(node, where, parent.errors());
-    all.push_back(read(map, where));
-    map.map().refuse_others();
-  };
-  if (required) {
-    parent.each(key, read_one);
-  } else {
-    parent.each_if_there(key, read_one);
-  }
-}
-
 }  // namespace
 
 Findings parse_findings(const YamlNode& root) {
@@ -223,14 +208,14 @@ Findings parse_findings(const YamlNode& root) {
   FindingsMap map(root, "findings of a diagnosis", errors);
   check_schema(map.map(), 1);
   Findings all;
-  read_list(map, "findings", finding_in, all.findings);
-  read_list(map, "unnamed", unnamed_in, all.unnamed);
-  read_list(map, "departures", departure_in, all.departures, false);
-  read_list(map, "unobservable", unobservable_in, all.unobservable);
-  read_list(map, "artifacts", artifact_in, all.artifacts);
-  read_list(map, "devices", device_in, all.devices);
-  read_list(map, "noise", noise_in, all.noise);
-  read_list(map, "gain", gain_in, all.gain, false);
+  all.findings = read_list(map, "findings", finding_in);
+  all.unnamed = read_list(map, "unnamed", unnamed_in);
+  all.departures = read_list(map, "departures", departure_in, {}, false);
+  all.unobservable = read_list(map, "unobservable", unobservable_in);
+  all.artifacts = read_list(map, "artifacts", artifact_in);
+  all.devices = read_list(map, "devices", device_in);
+  all.noise = read_list(map, "noise", noise_in);
+  all.gain = read_list(map, "gain", gain_in, {}, false);
   if (const YamlNode* node = map.map().require("goodness_of_fit")) {
     FindingsMap alike(*node, "goodness_of_fit", errors);
     all.before_p = alike.number("before_p");

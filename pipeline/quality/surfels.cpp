@@ -87,6 +87,14 @@ double misfit(const Surfel& surfel, const Surfels& surfels, const BeamsView& bea
 
 }  // namespace
 
+void Surfels::add(Surfel surfel, std::span<const std::uint32_t> beams) {
+  surfel.begin = static_cast<std::uint32_t>(members.size());
+  members.insert(members.end(), beams.begin(), beams.end());
+  surfel.end = static_cast<std::uint32_t>(members.size());
+  weights.resize(members.size(), 1);
+  surfels.push_back(std::move(surfel));
+}
+
 Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
   check(beams, settings);
   const SurfelCells cells = cells_of(beams, settings);

@@ -52,6 +52,8 @@ struct Surfels {
   std::vector<std::uint32_t> members;  ///< beams, in ascending order within each surfel
   std::vector<double> weights;         ///< 0 to 1, of each member: how much it counts
 
+  /// Adds a surfel with its beams, all of which count in full.
+  void add(Surfel surfel, std::span<const std::uint32_t> beams);
   std::span<const std::uint32_t> beams_of(const Surfel& surfel) const {
     return std::span(members).subspan(surfel.begin, surfel.end - surfel.begin);
   }

@@ -143,14 +143,10 @@ Surfels wall_lines(const BeamsView& beams, const WallLineSettings& settings) {
   for (const Wall& wall : walls) {
     if (wall.beams < settings.fewest) break;
     const auto members = members_of(wall, panorama);
-    Surfel surfel = upright(wall.sums.line(), members, beams.points);
+    const Surfel surfel = upright(wall.sums.line(), members, beams.points);
     if (surfel.radius < settings.noise) continue;  // one spot, from which the plate did not turn away
-    surfel.begin = static_cast<std::uint32_t>(result.members.size());
-    result.members.insert(result.members.end(), members.begin(), members.end());
-    surfel.end = static_cast<std::uint32_t>(result.members.size());
-    result.surfels.push_back(surfel);
+    result.add(surfel, members);
   }
-  result.weights.assign(result.members.size(), 1);
   return result;
 }
 

@@ -28,6 +28,19 @@ test::RoomScan look_down(std::size_t n, double side, double height, double bend,
   return scan;
 }
 
+TEST(Surfels, KeepTheBeamsOfEachThatIsAdded) {
+  Surfels surfels;
+  surfels.add({.radius = 1}, std::vector<std::uint32_t>{4, 7});
+  surfels.weights[0] = 0.5;
+  surfels.add({.radius = 2}, std::vector<std::uint32_t>{1});
+  ASSERT_EQ(surfels.surfels.size(), 2U);
+  EXPECT_EQ(surfels.surfels[1].radius, 2);
+  EXPECT_EQ(surfels.beams_of(surfels.surfels[0]).size(), 2U);
+  EXPECT_EQ(surfels.beams_of(surfels.surfels[1]).front(), 1U);
+  EXPECT_EQ(surfels.members, (std::vector<std::uint32_t>{4, 7, 1}));
+  EXPECT_EQ(surfels.weights, (std::vector<double>{0.5, 1, 1}));
+}
+
 TEST(Surfels, GrowToTheWholeWallsOfARoom) {
   const auto scan = test::scan_room(30000, {{0, 0}, {0, 0}, {0, 0}}, 0.012, 1);
   const auto found = find_surfels(scan.beams(), {});
