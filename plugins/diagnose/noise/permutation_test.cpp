@@ -11,6 +11,7 @@
 #include "pipeline/clocks/series.hpp"
 #include "pipeline/statistics/bootstrap.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
+#include "pipeline/statistics/monte_carlo_test.hpp"
 
 namespace crisp {
 namespace {
@@ -67,7 +68,7 @@ Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
 
 PermutationTest test_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
                             const Eigen::VectorXd& values, std::uint64_t seed) {
-  constexpr int kShuffles = 4999;
+  constexpr std::size_t kShuffles = 4999;
   const SeriesFit fit = best_in_series(base, columns, values);
   PermutationTest test{.column = fit.column,
                        .values = fit.values,
@@ -77,12 +78,11 @@ PermutationTest test_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& 
   const Eigen::MatrixXd unit = off_base(base, columns).colwise().normalized();
   Eigen::VectorXd left = off_base(base, values);
   std::mt19937_64 random(seed);
-  int above = 0;
-  for (int s = 0; s < kShuffles; ++s) {
+  const auto permuted = [&] {
     std::ranges::shuffle(left, random);
-    above += (unit.transpose() * left).cwiseAbs().maxCoeff() >= fit.product ? 1 : 0;
-  }
-  test.p_value = (1.0 + above) / (1.0 + kShuffles);
+    return (unit.transpose() * left).cwiseAbs().maxCoeff();
+  };
+  test.p_value = monte_carlo_test(fit.product, kShuffles, permuted).p_value;
   return test;
 }
 

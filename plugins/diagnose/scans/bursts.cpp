@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "pipeline/statistics/monte_carlo_test.hpp"
+
 namespace crisp {
 namespace {
 
@@ -40,16 +42,15 @@ Bursts find_bursts(const std::vector<double>& receipts, const std::vector<double
   const auto [least, most] = std::minmax_element(delays.begin(), delays.end());
   bursts.longest = *most - *least;
 
-  constexpr int kShuffles = 999;
+  constexpr std::size_t kShuffles = 999;
   std::mt19937_64 random(seed);
-  int as_much = 0;
-  for (int i = 0; i < kShuffles; ++i) {
+  const auto permuted = [&] {
     std::shuffle(delays.begin(), delays.end(), random);
     std::vector<double> times;
     for (std::size_t k = 0; k < stamps.size(); ++k) times.push_back(stamps[k] + delays[k]);
-    if (share_together(std::move(times), bursts.interval) >= bursts.together) ++as_much;
-  }
-  bursts.p_value = (as_much + 1.0) / (kShuffles + 1.0);
+    return share_together(std::move(times), bursts.interval);
+  };
+  bursts.p_value = monte_carlo_test(bursts.together, kShuffles, permuted).p_value;
   return bursts;
 }
 

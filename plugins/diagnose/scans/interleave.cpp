@@ -35,11 +35,11 @@ ScanInterleave find_interleave(const std::vector<SeriesScan>& scans, std::uint64
     counts.push_back(scan.count);
   }
   const LagContrast lags(std::move(rows), counts);
-  const auto chance = lags.shuffled(seed);
+  const auto chance = lags.permutation_test(seed);
   ScanInterleave found{.difference = lags.difference(),
                        .period = period_of(lags.difference()),
                        .p_value = chance.p_value,
-                       .beyond_chance = std::max(0.0, lags.contrast() - chance.contrast)};
+                       .beyond_chance = std::max(0.0, lags.contrast() - chance.mean)};
   constexpr double kSure = 0.01;
   if (found.p_value > kSure) found.period = 1;
   return found;

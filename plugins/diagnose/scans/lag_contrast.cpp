@@ -101,27 +101,21 @@ std::vector<std::vector<std::size_t>> LagContrast::groups(const std::vector<std:
   return all;
 }
 
-LagContrast::Chance LagContrast::shuffled(std::uint64_t seed, const std::vector<std::size_t>& kinds) const {
-  const double seen = contrast();
+MonteCarloTest LagContrast::permutation_test(std::uint64_t seed,
+                                             const std::vector<std::size_t>& kinds) const {
   const std::vector<double> between = matrix();
   const auto alike = groups(kinds);
   std::mt19937_64 random(seed);
   std::vector<std::size_t> order(rows_.size());
-  std::size_t as_much = 0;
-  Chance chance;
-  for (std::size_t s = 0; s < kShuffles; ++s) {
+  return monte_carlo_test(contrast(), kShuffles, [&] {
     for (const auto& places : alike) {
       auto scans = places;
       std::ranges::shuffle(scans, random);
       for (std::size_t k = 0; k < places.size(); ++k) order[places[k]] = scans[k];
     }
-    const double contrast = contrast_of(
+    return contrast_of(
         by_lag([&](std::size_t i, std::size_t j) { return between[order[i] * order.size() + order[j]]; }));
-    chance.contrast += contrast / static_cast<double>(kShuffles);
-    if (contrast >= seen) ++as_much;
-  }
-  chance.p_value = static_cast<double>(as_much + 1) / static_cast<double>(kShuffles + 1);
-  return chance;
+  });
 }
 
 }  // namespace crisp

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "pipeline/statistics/monte_carlo_test.hpp"
+
 namespace crisp {
 
 /// Largest lag between compared stationary scans; a larger gap separates stationary phases.
@@ -22,13 +24,9 @@ class LagContrast {
   const std::vector<double>& difference() const { return difference_; }
   double contrast() const;  ///< [m] largest less smallest difference
 
-  /// Result of a permutation test of the scans' order within each stationary phase.
-  struct Chance {
-    double p_value = 1;   ///< of the contrast
-    double contrast = 0;  ///< [m] mean over the permutations
-  };
+  /// Permutation test of the contrast [m]: permutes the scans' order within each stationary phase.
   /// @param kinds  scan class of each scan, within which scans are exchangeable; empty: one class
-  Chance shuffled(std::uint64_t seed, const std::vector<std::size_t>& kinds = {}) const;
+  MonteCarloTest permutation_test(std::uint64_t seed, const std::vector<std::size_t>& kinds = {}) const;
 
  private:
   struct Pair {

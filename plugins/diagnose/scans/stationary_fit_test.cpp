@@ -7,6 +7,7 @@
 #include <random>
 #include <span>
 
+#include "pipeline/statistics/monte_carlo_test.hpp"
 #include "pipeline/statistics/multiple_testing.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/diagnose/scans/lag_contrast.hpp"
@@ -240,19 +241,14 @@ FitStatistics with_interleave(const std::vector<StationaryPhase>& phases, std::s
   const double seen = left.lags.contrast();
   Simulation simulation(phases, found);
   std::mt19937_64 random(seed);
-  std::size_t as_much = 0;
-  double mean = 0;
-  for (std::size_t s = 0; s < kSimulations; ++s) {
+  const auto between_kinds = monte_carlo_test(seen, kSimulations, [&] {
     const std::vector<StationaryPhase> made = simulation.draw(random);
     const InterleaveModel again = fitted(made, reference, is_moved);
-    const double contrast = left_of(made, &again).lags.contrast();
-    mean += contrast / static_cast<double>(kSimulations);
-    if (contrast >= seen) ++as_much;
-  }
-  const double between_kinds = static_cast<double>(as_much + 1) / static_cast<double>(kSimulations + 1);
-  const auto within_kinds = left.lags.shuffled(seed, left.kinds);
-  return test(seen - std::min(mean, within_kinds.contrast),
-              sidak_p_value(2, std::min(between_kinds, within_kinds.p_value)));
+    return left_of(made, &again).lags.contrast();
+  });
+  const auto within_kinds = left.lags.permutation_test(seed, left.kinds);
+  return test(seen - std::min(between_kinds.mean, within_kinds.mean),
+              sidak_p_value(2, std::min(between_kinds.p_value, within_kinds.p_value)));
 }
 
 }  // namespace
@@ -275,9 +271,9 @@ std::optional<GoodnessOfFit> stationary_fit_test(const std::string& laser,
   }
   if (beams < kMinBeams) return {};
   const LagContrast plain = left_of(phases, nullptr).lags;
-  const auto chance = plain.shuffled(seed);
+  const auto chance = plain.permutation_test(seed);
   return GoodnessOfFit{.scope = laser,
-                       .before = test(plain.contrast() - chance.contrast, chance.p_value),
+                       .before = test(plain.contrast() - chance.mean, chance.p_value),
                        .after = with_interleave(phases, reference, is_moved, seed)};
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "pipeline/statistics/monte_carlo_test.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
@@ -208,16 +209,17 @@ ChangingDirections changing_directions(const Measurements& beams, const PlateTra
 }
 
 double p_value(const ChangingDirections& directions, std::uint64_t seed) {
-  constexpr int kShuffled = 999;
-  const std::size_t together = hidden_together(directions);
+  constexpr std::size_t kShuffles = 999;
+  const auto together = [](const ChangingDirections& some) {
+    return static_cast<double>(hidden_together(some));
+  };
   std::mt19937_64 random(seed);
   ChangingDirections shuffled = directions;
-  int as_often = 0;
-  for (int shuffle = 0; shuffle < kShuffled; ++shuffle) {
+  const auto permuted = [&] {
     for (auto& views : shuffled.views) shuffle_times(random, views);
-    as_often += hidden_together(shuffled) >= together ? 1 : 0;
-  }
-  return (1.0 + as_often) / (1.0 + kShuffled);
+    return together(shuffled);
+  };
+  return monte_carlo_test(together(directions), kShuffles, permuted).p_value;
 }
 
 std::optional<Finding> moving(const ChangingDirections& directions, std::uint64_t seed) {
