@@ -137,6 +137,14 @@ OtherCause alternative_in(FindingsMap& map, const std::string&) {
           .log10_bayes_factor = map.number("log10_bayes_factor")};
 }
 
+AcceptanceTest test_in(FindingsMap& map, const std::string&) {
+  return {.name = map.text("name"),
+          .statistic = map.number("statistic"),
+          .threshold = map.number("threshold"),
+          .p_value = map.number("p_value"),
+          .passed = map.boolean("passed")};
+}
+
 Finding finding_in(FindingsMap& map, const std::string& what) {
   return {.cause = map.text("cause"),
           .scope = map.text("scope"),
@@ -148,6 +156,7 @@ Finding finding_in(FindingsMap& map, const std::string& what) {
           .resolvable_by = map.texts("resolvable_by"),
           .alternatives = read_list(map, "alternatives", alternative_in, what, false),
           .gain = read_list(map, "gain", gain_in, what),
+          .tests = read_list(map, "tests", test_in, what, false),
           .accepted = map.boolean("accepted"),
           .rejection = map.text_if_there("rejection_reason")};
 }

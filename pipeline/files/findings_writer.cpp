@@ -37,6 +37,18 @@ Json json_of(const std::vector<OtherCause>& causes) {
   return all;
 }
 
+Json json_of(const std::vector<AcceptanceTest>& tests) {
+  Json all = Json::array();
+  for (const AcceptanceTest& test : tests) {
+    all.push_back({{"name", test.name},
+                   {"statistic", test.statistic},
+                   {"threshold", test.threshold},
+                   {"p_value", test.p_value},
+                   {"passed", test.passed}});
+  }
+  return all;
+}
+
 Json json_of(const Finding& finding) {
   return {{"cause", finding.cause},
           {"scope", finding.scope},
@@ -48,6 +60,7 @@ Json json_of(const Finding& finding) {
           {"resolvable_by", finding.resolvable_by},
           {"alternatives", json_of(finding.alternatives)},
           {"gain", json_of(finding.gain)},
+          {"tests", json_of(finding.tests)},
           {"accepted", finding.accepted},
           {"rejection_reason", finding.rejection_reason()}};
 }

@@ -126,7 +126,7 @@ std::string found_by(const Diagnosis& diagnosis) {
     words +=
         fmt::format(" {} ({:.2f} mm)", hypothesis.candidate.name, 1e3 * std::sqrt(hypothesis.square(noise)));
     if (!hypothesis.rejected.empty()) {
-      words += fmt::format("(refused: {:.2f} mm are unexplained)", 1e3 * std::sqrt(hypothesis.unexplained));
+      words += fmt::format("(rejected: {})", hypothesis.rejected);
     } else if (!hypothesis.accepted && !hypothesis.gains.empty()) {
       const Gain& gain = *std::ranges::find(hypothesis.gains, "log-likelihood a measurement", &Gain::metric);
       words += fmt::format("(refused: {:+.5f} to {:+.5f})", gain.ci95[0], gain.ci95[1]);

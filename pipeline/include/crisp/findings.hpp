@@ -36,6 +36,15 @@ struct OtherCause {
   double log10_bayes_factor = 0;  ///< against it
 };
 
+/// One of the tests that decide whether a finding becomes part of the model.
+struct AcceptanceTest {
+  std::string name;               ///< "Wald test"
+  double statistic = kNotTested;  ///< in the unit of the threshold
+  double threshold = kNotTested;  ///< least statistic, or largest p-value, that passes
+  double p_value = kNotTested;    ///< of the statistic under the null hypothesis, where it has one
+  bool passed = false;
+};
+
 /// A departure of the measured data from the model, with its physical cause.
 struct Finding {
   std::string cause;                            ///< "mirror.cone": see docs/effects.md
@@ -48,6 +57,7 @@ struct Finding {
   std::vector<std::string> resolvable_by = {};  ///< what a recording needs to distinguish them
   std::vector<OtherCause> alternatives = {};    ///< a few, the likeliest first; empty: none were compared
   std::vector<Gain> gain;                       ///< on held-out data, one for each metric
+  std::vector<AcceptanceTest> tests = {};       ///< in their order; the first that did not pass decided
   bool accepted = false;                        ///< whether it is part of the model from now on
   std::string rejection =
       {};  ///< why it is not; empty: it does not improve the fit on held-out data (cross-validation)

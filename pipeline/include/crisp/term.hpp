@@ -23,6 +23,8 @@ struct Tries {
     kRangePeriods,  ///< evenly in 1/x, none longer than the farthest range: less than one period is
                     ///< unresolvable
     kInstants,      ///< evenly over the recording, `from` and `to` being shares of it
+    kOfSimpleForm,  ///< the value of the same parameter of the cause's simple form, which the model must
+                    ///< have
   };
   Spacing spacing = Spacing::kLinear;  ///< of the tried values
   double from = 0;                     ///< the first value, in the parameter's unit

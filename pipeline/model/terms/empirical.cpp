@@ -58,6 +58,8 @@ std::string name_of(Over over) {
       return "time";
     case Over::kPlateRate:
       return "plate rate";
+    case Over::kRangePhase:
+      return "range phase";
   }
   return {};
 }
@@ -78,6 +80,17 @@ EffectParameter span_of_time() {
           .tries = {.spacing = Tries::Spacing::kInstants, .from = 1, .to = 1, .count = 1}};
 }
 
+EffectParameter period_of_range() {
+  return {.name = "P",
+          .unit = "m",
+          .lower = 0.05,
+          .upper = 50,
+          .neutral = 1,
+          .summary = "period",
+          .shape = true,
+          .tries = {.spacing = Tries::Spacing::kOfSimpleForm, .from = 0.5, .to = 16, .count = 1}};
+}
+
 std::vector<EffectParameter> parameters(On on, Over over, const Shape& shape) {
   const OnName what = describe(on);
   const std::vector<std::string> axes = on == On::kBase || on == On::kTilt
@@ -94,6 +107,7 @@ std::vector<EffectParameter> parameters(On on, Over over, const Shape& shape) {
     }
   }
   if (over == Over::kTime) all.push_back(span_of_time());
+  if (over == Over::kRangePhase) all.push_back(period_of_range());
   return all;
 }
 
@@ -129,12 +143,13 @@ EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape, std::string family)
                : "An empirical shape, reported as " + family +
                      ": for departures of this cause that its own formula does not describe") +
           "; x is the " + of +
-          (over == Over::kTime        ? " as a share of `span`"
-           : over == Over::kRemission ? "'s logarithm"
-           : over == Over::kIncidence ? " β as √(−ln cos β), in which both 1/cos β and β are smooth"
-           : over == Over::kRange     ? " [m]"
-           : over == Over::kPlateRate ? " [rad/s]"
-                                      : " [rad]") +
+          (over == Over::kTime         ? " as a share of `span`"
+           : over == Over::kRemission  ? "'s logarithm"
+           : over == Over::kIncidence  ? " β as √(−ln cos β), in which both 1/cos β and β are smooth"
+           : over == Over::kRange      ? " [m]"
+           : over == Over::kPlateRate  ? " [rad/s]"
+           : over == Over::kRangePhase ? " 2πr/P [rad]"
+                                       : " [rad]") +
           ".",
       .counts_from = over == Over::kTime         ? CountsFrom::kRunsEpoch
                      : over == Over::kPlateAngle ? CountsFrom::kEncodersZero
@@ -156,6 +171,7 @@ void register_empirical_terms(TermRegistry& terms) {
   add(On::kRange, Over::kIncidence, Shape::splines(6, 0, kGrazing, 0), "range.incidence");
   add(On::kRange, Over::kRemission, Shape::splines(6, dark, bright, usual), "range.intensity");
   add(On::kRange, Over::kTime, in_time, "range.warmup");
+  add(On::kRange, Over::kRangePhase, Shape::fourier(6), "range.cyclic");
   add(On::kMirrorAngle, Over::kMirrorAngle, Shape::fourier(4), "mirror.eccentricity");
   add(On::kElevation, Over::kMirrorAngle, Shape::fourier(4), "mirror.cone");
   add(On::kLag, Over::kTime, in_time, "clock.drift");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <string>
 
@@ -18,7 +19,7 @@ namespace crisp {
 class EmpiricalTerm final : public DifferentiableTerm<EmpiricalTerm> {
  public:
   enum class On { kRange, kMirrorAngle, kElevation, kPlateAngle, kLag, kBase, kTilt };
-  enum class Over { kMirrorAngle, kPlateAngle, kRange, kIncidence, kRemission, kTime, kPlateRate };
+  enum class Over { kMirrorAngle, kPlateAngle, kRange, kIncidence, kRemission, kTime, kPlateRate, kRangePhase };
 
   /// @param family  cause whose general member this is; empty: none
   EmpiricalTerm(On on, Over over, Shape shape, std::string family = {});
@@ -41,6 +42,8 @@ class EmpiricalTerm final : public DifferentiableTerm<EmpiricalTerm> {
         return change_by(T(beam.hub_time / p.back()), beam, p);
       case Over::kPlateRate:
         return change_by(T(beam.plate_rate), beam, p);
+      case Over::kRangePhase:
+        return change_by((2 * std::numbers::pi * beam.measured_range) / p.back(), beam, p);
     }
   }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <crisp/effect_catalogue.hpp>
 
@@ -22,6 +23,8 @@ double tried(const Tries& tries, double step, const Coverage& coverage) {
       const double longest = std::clamp(coverage.farthest, tries.from, tries.to);
       return 1 / std::lerp(1 / tries.from, 1 / longest, share);
     }
+    case Tries::Spacing::kOfSimpleForm:
+      return tries.from;
     case Tries::Spacing::kInstants:
       return std::lerp(coverage.first, coverage.last, std::lerp(tries.from, tries.to, share));
   }
@@ -32,6 +35,15 @@ double tried(const Tries& tries, double step, const Coverage& coverage) {
 std::size_t form_of(const TermInfo& info) {
   const auto form = std::ranges::find_if(info.parameters, [](const auto& p) { return p.tries.count > 0; });
   return static_cast<std::size_t>(form - info.parameters.begin());
+}
+
+/// Value of a parameter of the cause's simple form, if the calibration has it.
+std::optional<double> of_simple_form(const std::vector<TermParameters>& present, const std::string& family,
+                                     const std::string& parameter) {
+  const TermParameters* simple = find_term(present, family);
+  if (!simple) return std::nullopt;
+  const auto same = std::ranges::find(simple->parameters, parameter, &Parameter::name);
+  return same != simple->parameters.end() ? std::optional(same->value) : std::nullopt;
 }
 
 /// Appends a term of one owner: as in the calibration, or in all of its forms.
@@ -51,6 +63,13 @@ void append(std::vector<Candidate>& all, Candidate as, const std::vector<TermPar
     return;
   }
   as.term = neutral_parameters(info);
+  if (has_forms && info.parameters[form].tries.spacing == Tries::Spacing::kOfSimpleForm) {
+    const auto value = of_simple_form(present, as.family, info.parameters[form].name);
+    if (!value) return;
+    as.term.parameters[form].value = *value;
+    all.push_back(as);
+    return;
+  }
   for (std::size_t step = 0; step < as.forms; ++step) {
     as.form = static_cast<double>(step);
     if (has_forms) as.term.parameters[form].value = tried(info.parameters[form].tries, as.form, coverage);

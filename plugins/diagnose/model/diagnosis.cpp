@@ -14,13 +14,10 @@
 
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/model/terms_in.hpp"
-#include "plugins/diagnose/model/clock_lines.hpp"
+#include "plugins/diagnose/model/acceptance.hpp"
 #include "plugins/diagnose/model/cross_validation.hpp"
-#include "plugins/diagnose/model/generalization.hpp"
 #include "plugins/diagnose/model/nonlinear_parameters.hpp"
 #include "plugins/diagnose/model/per_model.hpp"
-#include "plugins/diagnose/model/residual_variance.hpp"
-#include "plugins/diagnose/model/significance.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 
 namespace crisp {
@@ -52,31 +49,34 @@ class Diagnoser {
     limit_lags(plain.outcome.model);
     Diagnosis result{.before = plain, .after = plain};
     extend(result);
-    if (!result.hypotheses.empty()) {
-      report(0.8, "cross-validating on held-out turns");
-      const CrossValidator validator(halves_of(inside_), result.before.outcome.model,
-                                     settings_.refinement.surfels);
-      PerModel<CrossValidator::Score> scores;
-      const HeldOutScore held_out = [&](const Calibration& start) {
-        return scores.of(SensorModel(start, terms_),
-                         [&] { return validator.score(refined(start, validator.fitted()).outcome.model); });
-      };
-      const CrossValidator::Score plain_score = held_out(result.before.outcome.model.calibration());
-      judge(held_out, plain_score, result);
-      compare(result);
-      reject_causes_below_residual(result);
-      mark_clock_lines(result.hypotheses, result.after.outcome, settings_.skew_errors,
-                       0.5 * (sample_.plate->begin() + sample_.plate->end()));
-      if (std::ranges::any_of(result.hypotheses, &Hypothesis::accepted))
-        result.gains = CrossValidator::gains(plain_score, held_out(result.after.outcome.model.calibration()));
-    } else {
-      compare(result);
-    }
+    if (!result.hypotheses.empty()) accept(result);
+    report(0.9, "simulating the scanner");
+    result.left_before = left_by(result.before);
+    result.left_after = result.hypotheses.empty() ? result.left_before : left_by(result.after);
     add_form_errors(result);
     return result;
   }
 
  private:
+  void accept(Diagnosis& result) {
+    report(0.8, "cross-validating on held-out turns");
+    const CrossValidator validator(halves_of(inside_), result.before.outcome.model,
+                                   settings_.refinement.surfels);
+    PerModel<CrossValidator::Score> scores;
+    const HeldOutScore held_out = [&](const Calibration& start) {
+      return scores.of(SensorModel(start, terms_),
+                       [&] { return validator.score(refined(start, validator.fitted()).outcome.model); });
+    };
+    const CrossValidator::Score plain = held_out(result.before.outcome.model.calibration());
+    accept_or_reject(result, plain,
+                     {.held_out = held_out,
+                      .refit = [this](const Calibration& start) { return refined(start, sample_); },
+                      .compare = [this](const Refinement& fit) { return left_by(fit); }},
+                     terms_, settings_, 0.5 * (sample_.plate->begin() + sample_.plate->end()));
+    if (std::ranges::any_of(result.hypotheses, &Hypothesis::accepted))
+      result.gains = CrossValidator::gains(plain, held_out(result.after.outcome.model.calibration()));
+  }
+
   /// The start is a calibration. Where the model lacks a large effect, searches never agree with one another.
   static constexpr int kSearches = 4;
 
@@ -202,26 +202,6 @@ class Diagnoser {
     }
   }
 
-  /// Cross-validates each hypothesis on held-out turns, then tests the accepted ones in the joint fit.
-  void judge(const HeldOutScore& held_out, const CrossValidator::Score& plain, Diagnosis& result) const {
-    reject_scene_artifacts(result.hypotheses);
-    accept_if_it_generalizes(result.hypotheses, plain, result.after.outcome.model.calibration(), held_out);
-    if (!std::ranges::all_of(result.hypotheses, &Hypothesis::accepted)) refine_with_accepted(result);
-    while (
-        reject_insignificant(result.hypotheses, result.after.outcome, terms_, settings_.selection.p_value)) {
-      refine_with_accepted(result);
-    }
-  }
-
-  void refine_with_accepted(Diagnosis& result) const {
-    std::vector<Candidate> kept;
-    for (const Hypothesis& hypothesis : result.hypotheses) {
-      if (hypothesis.accepted) kept.push_back(hypothesis.candidate);
-    }
-    const Calibration found = result.after.outcome.model.calibration();
-    result.after = refined(with_terms(found, with_values_of(found, kept)), sample_);
-  }
-
   const ProfileComparison& compared(const SensorModel& model, const SurfaceObservations& observations) const {
     return comparisons_.of(
         model, [&] { return compare_with_simulation(observations, settings_.refinement.surfels, 1); });
@@ -233,20 +213,6 @@ class Diagnoser {
       const SurfaceObservations observations(model, inside_, settings_.refinement.surfels, settings_.beams);
       return compare_with_simulation(observations, settings_.refinement.surfels, 1);
     });
-  }
-
-  void compare(Diagnosis& result) const {
-    report(0.9, "simulating the scanner");
-    result.left_before = left_by(result.before);
-    result.left_after = result.hypotheses.empty() ? result.left_before : left_by(result.after);
-  }
-
-  void reject_causes_below_residual(Diagnosis& result) const {
-    const double noise = settings_.refinement.surfels.noise;
-    while (reject_if_residual_exceeds(result.hypotheses, result.left_after, noise)) {
-      refine_with_accepted(result);
-      result.left_after = left_by(result.after);
-    }
   }
 
   const Sample& sample_;

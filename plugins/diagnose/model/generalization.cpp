@@ -8,11 +8,13 @@
 namespace crisp {
 namespace {
 
-/// Whether the held-out likelihood rises. Its confidence interval is reported, but is no criterion: the
+/// Tests whether the held-out likelihood rises. Its confidence interval is reported, but is no criterion: the
 /// training half already showed significance.
-bool generalizes(const std::vector<Gain>& gains) {
+AcceptanceTest cross_validation_of(const std::vector<Gain>& gains) {
   const auto likelihood = std::ranges::find(gains, CrossValidator::kLikelihood, &Gain::metric);
-  return likelihood != gains.end() && likelihood->after > likelihood->before;
+  const double rise = likelihood != gains.end() ? likelihood->after - likelihood->before : 0;
+  return {
+      .name = "cross-validation [nat a measurement]", .statistic = rise, .threshold = 0, .passed = rise > 0};
 }
 
 /// Set of accepted hypotheses, extended one test at a time.
@@ -28,13 +30,13 @@ class ForwardSelection {
     tried = with_values_of(found_, tried);
     auto score = held_out_(with_terms(found_, tried));
     const auto gains = CrossValidator::gains(score_, score);
-    const bool does_generalize = generalizes(gains);
+    const AcceptanceTest test = cross_validation_of(gains);
     for (Hypothesis* hypothesis : some) {
-      if (some.size() > 1 && !does_generalize) continue;  // each keeps the gains of its own test
+      if (some.size() > 1 && !test.passed) continue;  // each keeps the gains of its own test
       hypothesis->gains = gains;
-      hypothesis->accepted = does_generalize;
+      hypothesis->decide(test, {});
     }
-    if (!does_generalize) return false;
+    if (!test.passed) return false;
     accepted_ = std::move(tried);
     score_ = std::move(score);
     return true;

@@ -23,17 +23,21 @@ struct Hypothesis {
     std::string term = {};
     std::size_t owner = 0;
   };
-  std::vector<Competitor> competitors;  ///< other causes that could explain it, the most likely first
-  std::vector<Gain> gains;              ///< on held-out turns of the plate
-  bool accepted = true;                 ///< whether the extended model has it
-  double unexplained = 0;               ///< [m²] mean square of the systematic residual that remains
+  std::vector<Competitor> competitors;     ///< other causes that could explain it, the most likely first
+  std::vector<Gain> gains;                 ///< on held-out turns of the plate
+  std::vector<AcceptanceTest> tests = {};  ///< each kind once, in the order of acceptance.hpp's rules
+  bool accepted = true;                    ///< whether the extended model has it
   bool is_clock_line = false;  ///< whether it corrects an error of the laser's clock line, and is no cause
   std::string rejected = {};   ///< reason of the rejection; empty if accepted or not generalizing
 
-  /// Rejects the hypothesis, whatever its gains.
-  void reject(std::string why) {
-    accepted = false;
-    rejected = std::move(why);
+  /// Records a test that decides: a hypothesis that does not pass is rejected.
+  ///
+  /// @param otherwise  reason of the rejection
+  void decide(AcceptanceTest test, const std::string& otherwise) {
+    accepted = test.passed;
+    rejected = test.passed ? std::string() : otherwise;
+    std::erase_if(tests, [&](const AcceptanceTest& earlier) { return earlier.name == test.name; });
+    tests.push_back(std::move(test));
   }
 
   /// [m²] Mean square of the residuals that this hypothesis alone explains.

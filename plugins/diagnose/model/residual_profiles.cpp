@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -16,6 +15,8 @@
 #include "pipeline/statistics/multiple_testing.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "pipeline/statistics/weighted_mean.hpp"
+#include "plugins/diagnose/model/distinct_profiles.hpp"
+#include "plugins/diagnose/model/mean_residuals.hpp"
 #include "plugins/diagnose/model/quantile_bins.hpp"
 #include "plugins/diagnose/model/residuals.hpp"
 
@@ -102,27 +103,6 @@ std::vector<QuantileBins> layouts(const SurfaceObservations& observations, const
   return all;
 }
 
-/// [m] Mean residual in each bin: one step of Tukey's M-estimator, with weights relative to each view's own
-/// location. A profile of one laser is centred: the laser's common offset depends on no covariate and belongs
-/// to the profile over lasers.
-std::vector<double> means_in(const QuantileBins& layout, const WeightedResiduals& residuals) {
-  std::vector<double> means;
-  for (std::size_t b = 0; b + 1 < layout.first.size(); ++b) {
-    double sum = 0;
-    double slope = 0;
-    for (std::size_t k = layout.first[b]; k < layout.first[b + 1]; ++k) {
-      const double weight = residuals.weight[layout.residual[k]];
-      sum += weight * residuals.value[layout.residual[k]];
-      slope += biweight_psi_derivative(weight);
-    }
-    means.push_back(slope > 0 ? sum / slope : 0);
-  }
-  if (layout.profile.laser == kAllLasers) return means;
-  const double mean = std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(means.size());
-  for (double& one : means) one -= mean;
-  return means;
-}
-
 /// Mean residual by simulation and bin.
 using SimulatedMeans = std::vector<std::vector<double>>;
 
@@ -149,19 +129,6 @@ std::vector<double> sizes_of(const std::vector<double>& noise, const Residuals& 
   for (std::size_t laser = 0; laser < noise.size(); ++laser)
     sizes.push_back(noise[laser] * std::sqrt(squares[laser].value()));
   return sizes;
-}
-
-/// p-value of a profile under the null hypothesis of noise alone: χ² over its bins, less one degree of
-/// freedom where the mean was removed.
-double profile_p_value(const QuantileBins& layout, const std::vector<double>& means,
-                       const std::vector<double>& errors) {
-  double chi2 = 0;
-  for (std::size_t b = 0; b < means.size(); ++b) {
-    if (errors[b] > 0) chi2 += std::pow(means[b] / errors[b], 2);
-  }
-  const auto bins = static_cast<double>(means.size());
-  const double free = layout.profile.laser == kAllLasers ? bins : bins - 1;
-  return cdf(complement(boost::math::chi_squared(free), chi2 * free / bins));
 }
 
 }  // namespace
@@ -210,18 +177,17 @@ ProfileComparison compare_with_simulation(const SurfaceObservations& observation
     const auto own = means_in(all[p], residuals.measured);
     const auto errors = errors_of(means[p]);
     Profile profile = all[p].profile;
-    double square = 0;
     for (std::size_t b = 0; b < own.size(); ++b) {
       profile.bins[b].measured = own[b];
       profile.bins[b].error = errors[b];
       profile.bins[b].simulated = means[p].front()[b];
-      square += own[b] * own[b] - errors[b] * errors[b];
     }
-    profile.rms = std::sqrt(std::max(0.0, square / static_cast<double>(own.size())));
+    profile.rms = systematic_rms(own, errors);
     profile.p_value = sidak_p_value(tests, profile_p_value(all[p], own, errors));
     result.p_value = std::min(result.p_value, profile.p_value);
     result.profiles.push_back(std::move(profile));
   }
+  mark_shadows(result.profiles, all, residuals.measured, tests);
   return result;
 }
 

@@ -27,10 +27,12 @@ struct Profile {
     double error = 0;           ///< [m] standard error of the mean
     std::size_t recording = 0;  ///< for the covariate time: number of the recording
   };
-  std::vector<Bin> bins;  ///< for the covariate time, no bin has beams of two recordings
-  double share = 0;       ///< the laser's share of all residuals
-  double rms = 0;         ///< [m] of the measured means, less the contribution of noise
-  double p_value = 1;     ///< that noise alone makes any of the tested profiles this large
+  std::vector<Bin> bins;   ///< for the covariate time, no bin has beams of two recordings
+  double share = 0;        ///< the laser's share of all residuals
+  double rms = 0;          ///< [m] of the measured means, less the contribution of noise
+  double p_value = 1;      ///< that noise alone makes any of the tested profiles this large
+  bool is_shadow = false;  ///< what deviates is another profile's deviation: see mark_shadows()
+  bool is_common = false;  ///< all lasers deviate over this covariate: see mark_shadows()
 
   /// Whether the profile deviates significantly from the simulation (p ≤ 1 %).
   bool is_significant() const { return p_value <= 0.01; }

@@ -33,10 +33,13 @@ bool reject_if_residual_exceeds(std::vector<Hypothesis>& hypotheses, const Profi
   bool has_rejected = false;
   for (Hypothesis& one : hypotheses) {
     if (!one.accepted || !one.candidate.is_cause()) continue;
-    one.unexplained = unexplained_given(one, hypotheses, left, noise);
-    if (one.square(noise) >= one.unexplained) continue;
-    one.reject(kLeavesMore);
-    has_rejected = true;
+    const double unexplained = unexplained_given(one, hypotheses, left, noise);
+    one.decide({.name = "explained against residual mean square [m^2]",
+                .statistic = one.square(noise),
+                .threshold = unexplained,
+                .passed = one.square(noise) >= unexplained},
+               kLeavesMore);
+    has_rejected = has_rejected || !one.accepted;
   }
   return has_rejected;
 }

@@ -16,9 +16,13 @@ constexpr const char* kMayBeTheScenes =
 constexpr const char* kIsNothing =
     "it is not significant in the joint fit with the other accepted effects (Wald test)";
 
-/// Wald test: p-value of the estimate for a term that is neutral; 0 if none of its parameters was
-/// estimated. The form is held at its estimate, since a neutral term has none, and counts as a parameter.
-double chance_of_neutral(const Candidate& candidate, const Outcome& outcome, const TermInfo& info) {
+/// Wald test of the estimate under the null hypothesis of a neutral term. A term passes of which no parameter
+/// was estimated. The form is held at its estimate, since a neutral term has none, and counts as a parameter.
+///
+/// @param p_value  largest that passes
+AcceptanceTest wald_test(const Candidate& candidate, const Outcome& outcome, const TermInfo& info,
+                         double p_value) {
+  AcceptanceTest test{.name = "Wald test", .threshold = p_value, .p_value = 0, .passed = true};
   const auto places = parameter_indices(candidate, outcome);
   std::vector<Eigen::Index> at;
   std::vector<Eigen::Index> form;
@@ -35,7 +39,7 @@ double chance_of_neutral(const Candidate& candidate, const Outcome& outcome, con
             .values()[static_cast<Eigen::Index>(outcome.free[static_cast<std::size_t>(*places[p])])] -
         info.parameters[p].neutral);
   }
-  if (at.empty()) return 0;
+  if (at.empty()) return test;
   Eigen::MatrixXd covariance = outcome.covariance(at, at);
   if (!form.empty()) {
     const Eigen::MatrixXd with_form = outcome.covariance(form, at);
@@ -44,9 +48,11 @@ double chance_of_neutral(const Candidate& candidate, const Outcome& outcome, con
   }
   const Eigen::VectorXd change =
       Eigen::Map<const Eigen::VectorXd>(off.data(), static_cast<Eigen::Index>(off.size()));
-  const double square = change.dot(solve_positive_definite(covariance, change));
-  if (!(square > 0)) return 1;
-  return cdf(complement(boost::math::chi_squared(static_cast<double>(off.size() + form.size())), square));
+  test.statistic = change.dot(solve_positive_definite(covariance, change));
+  const boost::math::chi_squared null(static_cast<double>(off.size() + form.size()));
+  test.p_value = test.statistic > 0 ? cdf(complement(null, test.statistic)) : 1;
+  test.passed = test.p_value < p_value;
+  return test;
 }
 
 }  // namespace
@@ -66,15 +72,21 @@ std::vector<std::optional<Eigen::Index>> parameter_indices(const Candidate& cand
 
 void reject_scene_artifacts(std::vector<Hypothesis>& hypotheses) {
   constexpr double kOfScenes = 0.1;  // [σ] RMS effect of non-planar surfaces
+  const auto visible_of = [](const Hypothesis* one) { return one->test.visible; };
   std::map<std::string, std::vector<Hypothesis*>> alike;
   for (Hypothesis& one : hypotheses) {
     if (one.accepted && one.candidate.laser()) alike[one.candidate.term.term].push_back(&one);
   }
   for (const auto& [term, some] : alike) {
-    const bool is_large =
-        std::ranges::any_of(some, [](const Hypothesis* one) { return one->test.visible > kOfScenes; });
-    if (some.size() < 2 || is_large) continue;
-    for (Hypothesis* one : some) one->reject(kMayBeTheScenes);
+    if (some.size() < 2) continue;
+    const double largest = std::ranges::max(some, {}, visible_of)->test.visible;
+    for (Hypothesis* one : some) {
+      one->decide({.name = "size common to lasers [noise]",
+                   .statistic = largest,
+                   .threshold = kOfScenes,
+                   .passed = largest > kOfScenes},
+                  kMayBeTheScenes);
+    }
   }
 }
 
@@ -84,9 +96,8 @@ bool reject_insignificant(std::vector<Hypothesis>& hypotheses, const Outcome& ou
   for (Hypothesis& one : hypotheses) {
     if (!one.accepted) continue;
     const TermInfo& info = terms.get(one.candidate.term.term)->info();
-    if (chance_of_neutral(one.candidate, outcome, info) < p_value) continue;
-    one.reject(kIsNothing);
-    has_rejected = true;
+    one.decide(wald_test(one.candidate, outcome, info, p_value), kIsNothing);
+    has_rejected = has_rejected || !one.accepted;
   }
   return has_rejected;
 }

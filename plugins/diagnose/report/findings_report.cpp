@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+constexpr const char* kScanner = "scanner";  ///< scope of what all lasers have in common
+
 /// Estimates of the candidate's parameters, as far as they were estimated.
 std::vector<Parameter> parameters_of(const Hypothesis& hypothesis, const Calibration& calibration) {
   const Candidate& candidate = hypothesis.candidate;
@@ -76,6 +78,7 @@ Finding finding_of(const Hypothesis& hypothesis, const Calibration& calibration,
                   .confounded_with = {},
                   .resolvable_by = {},
                   .gain = hypothesis.gains,
+                  .tests = hypothesis.tests,
                   .accepted = hypothesis.accepted,
                   .rejection = hypothesis.rejected};
   const double behind =
@@ -167,23 +170,46 @@ std::string reason_of(const Limit& limit, const std::string& resolvable_by) {
       1e3 * limit.size, needs);
 }
 
-/// Adds the systematic residuals of the extended model over covariates without an unnamed finding.
+/// The deviations that all lasers have in common over a covariate: their RMS and least p-value.
+UnnamedFinding common_deviation(const ProfileComparison& left, const std::string& covariate) {
+  double square = 0;
+  double p_value = 1;
+  for (const Profile& profile : left.profiles) {
+    if (profile.covariate != covariate) continue;
+    square += profile.share * profile.rms * profile.rms;
+    p_value = std::min(p_value, profile.p_value);
+  }
+  return {.covariate = covariate,
+          .quantity = "range",
+          .scope = kScanner,
+          .amplitude = std::sqrt(square),
+          .unit = "m",
+          .p_value = p_value,
+          .gain = {}};
+}
+
+UnnamedFinding deviation_of(const Profile& profile, const Calibration& calibration) {
+  return {.covariate = profile.covariate,
+          .quantity = "range",
+          .scope = scope_of(profile, calibration),
+          .amplitude = profile.rms,
+          .unit = "m",
+          .p_value = profile.p_value,
+          .gain = {}};
+}
+
+/// Adds the systematic residuals of the extended model over covariates without an unnamed finding: each
+/// deviation once, by the covariate that explains most of it.
 void add_left_over(const ProfileComparison& left, const Calibration& calibration, double visible,
                    Findings& all) {
   for (const Profile& profile : left.profiles) {
-    if (!profile.is_significant() || profile.rms < visible) continue;
-    const std::string laser = scope_of(profile, calibration);
+    if (!profile.is_significant() || profile.is_shadow || profile.rms < visible) continue;
+    UnnamedFinding one =
+        profile.is_common ? common_deviation(left, profile.covariate) : deviation_of(profile, calibration);
     const bool is_known = std::ranges::any_of(all.unnamed, [&](const UnnamedFinding& known) {
-      return known.covariate == profile.covariate && (known.scope == laser || known.scope == "plate");
+      return known.covariate == one.covariate && (known.scope == one.scope || known.scope == "plate");
     });
-    if (is_known) continue;
-    all.unnamed.push_back({.covariate = profile.covariate,
-                           .quantity = "range",
-                           .scope = laser,
-                           .amplitude = profile.rms,
-                           .unit = "m",
-                           .p_value = profile.p_value,
-                           .gain = {}});
+    if (!is_known) all.unnamed.push_back(std::move(one));
   }
 }
 
@@ -212,7 +238,7 @@ std::vector<ResidualDeparture> departures_of(const Diagnosis& diagnosis, const C
 }  // namespace
 
 std::string scope_of(const Profile& profile, const Calibration& calibration) {
-  return profile.laser == kAllLasers ? "scanner" : calibration.lasers[profile.laser].name;
+  return profile.laser == kAllLasers ? kScanner : calibration.lasers[profile.laser].name;
 }
 
 Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration, const TermRegistry& terms,

@@ -16,21 +16,23 @@ namespace {
 
 Findings some_findings() {
   Findings findings{.before_p = 0.005, .after_p = 0.6};
-  findings.findings.push_back({.cause = "mirror.cone",
-                               .scope = "laser2",
-                               .parameters = {{"kappa", "rad", 0.003, 1e-4, true}},
-                               .explained_fraction = 0.8,
-                               .log10_bayes_factor = 12,
-                               .p_value = 1e-9,
-                               .confounded_with = {"laser2.mount.tangential_offset"},
-                               .resolvable_by = {"surfaces near and far"},
-                               .alternatives = {{"range.offset", "laser3", 1.5}},
-                               .gain = {{.metric = "cloud thickness",
-                                         .unit = "m",
-                                         .before = 0.009,
-                                         .after = 0.0088,
-                                         .ci95 = {-3e-4, -1e-4}}},
-                               .accepted = true});
+  findings.findings.push_back(
+      {.cause = "mirror.cone",
+       .scope = "laser2",
+       .parameters = {{"kappa", "rad", 0.003, 1e-4, true}},
+       .explained_fraction = 0.8,
+       .log10_bayes_factor = 12,
+       .p_value = 1e-9,
+       .confounded_with = {"laser2.mount.tangential_offset"},
+       .resolvable_by = {"surfaces near and far"},
+       .alternatives = {{"range.offset", "laser3", 1.5}},
+       .gain = {{.metric = "cloud thickness",
+                 .unit = "m",
+                 .before = 0.009,
+                 .after = 0.0088,
+                 .ci95 = {-3e-4, -1e-4}}},
+       .tests = {{.name = "Wald test", .statistic = 40, .threshold = 1e-3, .p_value = 1e-9, .passed = true}},
+       .accepted = true});
   findings.unnamed.push_back({.covariate = "mirror angle",
                               .quantity = "range",
                               .scope = "laser1",
@@ -69,7 +71,9 @@ TEST(FindingsFile, HasItsDocumentedSchema) {
   EXPECT_THAT(keys_of(finding), testing::UnorderedElementsAre(
                                     "cause", "scope", "parameters", "explained_fraction",
                                     "log10_bayes_factor", "p_value", "confounded_with", "resolvable_by",
-                                    "alternatives", "gain", "accepted", "rejection_reason"));
+                                    "alternatives", "gain", "tests", "accepted", "rejection_reason"));
+  EXPECT_THAT(keys_of(finding["tests"][0]),
+              testing::UnorderedElementsAre("name", "statistic", "threshold", "p_value", "passed"));
   EXPECT_THAT(keys_of(finding["alternatives"][0]),
               testing::UnorderedElementsAre("cause", "scope", "log10_bayes_factor"));
   EXPECT_THAT(keys_of(json["departures"][0]),
@@ -168,10 +172,22 @@ TEST(FindingsFile, ReportsWhyACauseWasRefused) {
   EXPECT_EQ(read.findings.at(0).rejection_reason(), "more is left than it takes");
 }
 
+TEST(FindingsFile, HasTheTestsThatDecided) {
+  const Findings read = parse_findings(parse_yaml(findings_json(some_findings()), "diagnosis.json"));
+  ASSERT_THAT(read.findings.at(0).tests, testing::SizeIs(1));
+  const AcceptanceTest& test = read.findings[0].tests[0];
+  EXPECT_EQ(test.name, "Wald test");
+  EXPECT_EQ(test.statistic, 40);
+  EXPECT_EQ(test.threshold, 1e-3);
+  EXPECT_EQ(test.p_value, 1e-9);
+  EXPECT_TRUE(test.passed);
+}
+
 TEST(FindingsFile, OfAnEarlierVersionIsReadWithoutMissingKeys) {
   auto json = nlohmann::ordered_json::parse(findings_json(some_findings()));
   json.erase("departures");
   json["findings"][0].erase("alternatives");
+  json["findings"][0].erase("tests");
   json["findings"][0].erase("refused");
   const Findings read = parse_findings(parse_yaml(json.dump(2), "diagnosis.json"));
   EXPECT_THAT(read.departures, testing::IsEmpty());

@@ -59,7 +59,7 @@ TEST(ClockLines, DoNotExplainALargerOrAChangingSkew) {
 TEST(ClockLines, OfAnotherTermOrARejectedDriftAreNone) {
   const Fit fit = fit_of(5e-6, 0);
   std::vector<Hypothesis> hypotheses = {fit.drift, fit.drift};
-  hypotheses[0].reject("it does not generalize");
+  hypotheses[0].accepted = false;
   hypotheses[1].candidate.term.term = "mirror.period";
   mark_clock_lines(hypotheses, fit.outcome, {6e-6, 6e-6, 6e-6}, kMiddle);
   EXPECT_FALSE(hypotheses[0].is_clock_line);

@@ -47,7 +47,7 @@ TEST(ResidualVariance, RejectsACauseBelowTheResidualOfItsLaser) {
   EXPECT_TRUE(reject_if_residual_exceeds(found, left, kRangeNoise));
   EXPECT_FALSE(found[0].accepted);
   EXPECT_NE(found[0].rejected, "");
-  EXPECT_NEAR(found[0].unexplained, 8e-6, 1e-12) << "over the covariate of the largest deviation";
+  EXPECT_NEAR(found[0].tests.back().threshold, 8e-6, 1e-12) << "over the covariate of the largest deviation";
   EXPECT_TRUE(found[1].accepted);
   EXPECT_TRUE(found[2].accepted) << "no deviation of its ranges";
   EXPECT_FALSE(found[3].accepted) << "the plate changes all ranges";
@@ -60,7 +60,7 @@ TEST(ResidualVariance, IncludesAFittedShapeThatDoesNotSuffice) {
   std::vector<Hypothesis> found = {of_laser(0, 0.003), of_laser(0, 0.004, "range")};
   EXPECT_TRUE(reject_if_residual_exceeds(found, left, kRangeNoise));
   EXPECT_FALSE(found[0].accepted);
-  EXPECT_NEAR(found[0].unexplained, 18e-6, 1e-12);
+  EXPECT_NEAR(found[0].tests.back().threshold, 18e-6, 1e-12);
   EXPECT_TRUE(found[1].accepted) << "a shape is a description only";
   found = {of_laser(0, 0.003), of_laser(0, 0.004, "time")};
   EXPECT_FALSE(reject_if_residual_exceeds(found, left, kRangeNoise)) << "no residual over time";

@@ -48,6 +48,17 @@ TEST(Significance, RejectsAnInsignificantTerm) {
   EXPECT_TRUE(found[1].accepted);
 }
 
+TEST(Significance, RecordsTheLastWaldTestOfEach) {
+  std::vector<Hypothesis> found = {of_first_laser("range.offset")};
+  reject_insignificant(found, outcome(0.004, 0.005, 0), built_in_terms(), 1e-3);
+  reject_insignificant(found, outcome(0.003, 0.005, 0), built_in_terms(), 1e-3);
+  ASSERT_EQ(found[0].tests.size(), 1U);
+  EXPECT_EQ(found[0].tests[0].name, "Wald test");
+  EXPECT_NEAR(found[0].tests[0].statistic, 9, 1e-9);
+  EXPECT_NEAR(found[0].tests[0].p_value, 0.0027, 1e-4) << "of three standard errors";
+  EXPECT_FALSE(found[0].tests[0].passed);
+}
+
 TEST(Significance, RejectsASmallCauseThatSeveralLasersShare) {
   const auto seen = [](const std::string& term, std::size_t laser, double visible) {
     Hypothesis one = of_first_laser(term);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include "plugins/diagnose/model/diagnosis.hpp"
+#include "plugins/diagnose/model/generalization.hpp"
+
+namespace crisp {
+
+/// The fits that acceptance needs.
+struct AcceptanceFits {
+  HeldOutScore held_out;
+  std::function<Refinement(const Calibration& start)> refit;        ///< to all turns
+  std::function<ProfileComparison(const Refinement& fit)> compare;  ///< with the simulated scanner
+};
+
+/// Decides which hypotheses the extended model keeps. It refits the model to those that are accepted, and
+/// records each test in its hypothesis. The rules, in their order:
+///
+/// 1. Effects of several lasers must exceed what surfaces that are no planes resemble.
+/// 2. A hypothesis must improve the fit on held-out turns (cross-validation).
+/// 3. It must be significant in the joint fit (Wald test).
+/// 4. A cause must explain more than the systematic residual that the extended model leaves.
+///
+/// A constant skew within the error of a clock's line is kept, but marked as no cause (see clock_lines.hpp).
+///
+/// @param plain   held-out score of the model without hypotheses
+/// @param middle  [s] of the recording, on the hub's clock
+void accept_or_reject(Diagnosis& diagnosis, const CrossValidator::Score& plain, const AcceptanceFits& fits,
+                      const TermRegistry& terms, const DiagnosisSettings& settings, double middle);
+
+}  // namespace crisp
