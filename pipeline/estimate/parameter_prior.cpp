@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "pipeline/data/each_parameter.hpp"
@@ -82,15 +83,19 @@ SensorModel with_one(const SensorModel& model, std::size_t parameter, double val
   return with(model, {parameter}, Eigen::VectorXd::Constant(1, value));
 }
 
-Eigen::VectorXd within_bounds(const SensorModel& model, const std::vector<std::size_t>& free,
-                              Eigen::VectorXd x) {
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const EffectParameter* term = declared(model, free[i]);
+StepBounds step_bounds(const SensorModel& model, const std::vector<std::size_t>& free) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto n = static_cast<Eigen::Index>(free.size());
+  StepBounds bounds{.lower = Eigen::VectorXd::Constant(n, -kInfinity),
+                    .upper = Eigen::VectorXd::Constant(n, kInfinity)};
+  const Eigen::VectorXd values = picked(model, free);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const EffectParameter* term = declared(model, free[static_cast<std::size_t>(i)]);
     if (!term || !(term->upper > term->lower)) continue;
-    double& value = x[static_cast<Eigen::Index>(i)];
-    value = std::clamp(value, term->lower, term->upper);
+    bounds.lower[i] = term->lower - values[i];
+    bounds.upper[i] = term->upper - values[i];
   }
-  return x;
+  return bounds;
 }
 
 }  // namespace crisp

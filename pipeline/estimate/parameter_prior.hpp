@@ -10,6 +10,8 @@
 #include <crisp/rig.hpp>
 #include <crisp/sensor_model.hpp>
 
+#include "pipeline/estimate/bounded_step.hpp"
+
 namespace crisp {
 
 /// A rig's prior knowledge of a parameter.
@@ -47,9 +49,8 @@ bool is_at_the_end(const ParameterPrior& range, const std::string& name, double 
 SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x);
 SensorModel with_one(const SensorModel& model, std::size_t parameter, double value);
 
-/// Values of the free parameters, those of terms no farther than their bounds.
-Eigen::VectorXd within_bounds(const SensorModel& model, const std::vector<std::size_t>& free,
-                              Eigen::VectorXd x);
+/// Steps by which the parameters of terms reach their bounds.
+StepBounds step_bounds(const SensorModel& model, const std::vector<std::size_t>& free);
 
 /// The values of the parameters in `free`, or their search ranges: a fraction of the bounds for parameters of
 /// terms.

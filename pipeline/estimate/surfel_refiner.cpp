@@ -9,6 +9,7 @@
 #include <crisp/error.hpp>
 
 #include "pipeline/estimate/base_parameters.hpp"
+#include "pipeline/estimate/bounded_step.hpp"
 #include "pipeline/estimate/incidence.hpp"
 #include "pipeline/estimate/relative_noise.hpp"
 #include "pipeline/estimate/static_surfaces.hpp"
@@ -43,9 +44,9 @@ bool SurfelRefiner::step() {
   // For terms that depend on it.
   sample_.beams.cos_incidence = incidences(found_, placed.view(noise_));
   const Eigen::VectorXd before = picked(model_, free_);
-  const Eigen::VectorXd step = posterior_mode(placed) - before;
+  const Eigen::VectorXd step = posterior_step(placed);
   update_damping(step);
-  const Eigen::VectorXd after = keep_covered(within_bounds(model_, free_, before + damping_ * step));
+  const Eigen::VectorXd after = keep_covered(before + damping_ * step);
   last_change_ = after - before;
   model_ = with(model_, free_, after);
   last_step_ = (last_change_.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
@@ -53,8 +54,9 @@ bool SurfelRefiner::step() {
   return surfaces_->is_settled() && last_step_ < settings_.tolerance && !is_reweighted;
 }
 
-/// The parameters where the linearized posterior is largest; computes the information and the covariance.
-Eigen::VectorXd SurfelRefiner::posterior_mode(const PlacedBeams& placed) {
+/// Step to where the linearized posterior is largest within the parameters' bounds; computes the information
+/// and the covariance.
+Eigen::VectorXd SurfelRefiner::posterior_step(const PlacedBeams& placed) {
   equations_ = normal_equations(found_, placed.view(noise_), free_.size(),
                                 surfel_rows(model_, sample_, free_), settings_.surfels);
   information_ = equations_.matrix / equations_.covariance_factor();
@@ -63,10 +65,10 @@ Eigen::VectorXd SurfelRefiner::posterior_mode(const PlacedBeams& placed) {
   const Eigen::VectorXd gradient =
       equations_.vector / equations_.covariance_factor() + prior.cwiseProduct(from_start);
   const auto n = information_.rows();
-  const auto posterior = (information_ + Eigen::MatrixXd(prior.asDiagonal())).eval().ldlt();
-  covariance_ = posterior.solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd posterior = information_ + Eigen::MatrixXd(prior.asDiagonal());
+  covariance_ = posterior.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
   covariance_ = covariance_.selfadjointView<Eigen::Lower>();  // to the last bit
-  return picked(model_, free_) - posterior.solve(gradient);
+  return bounded_step(posterior, gradient, step_bounds(model_, free_));
 }
 
 /// Damps the steps by the secant method where one takes back what the step before did: where parameters are

@@ -57,7 +57,7 @@ class SurfelRefiner {
   Refinement result() const;
 
  private:
-  Eigen::VectorXd posterior_mode(const PlacedBeams& placed);
+  Eigen::VectorXd posterior_step(const PlacedBeams& placed);
   void update_damping(const Eigen::VectorXd& step);
   Eigen::VectorXd widening_by_quantization(const NormalEquations& without) const;
   Eigen::VectorXd keep_covered(Eigen::VectorXd values) const;

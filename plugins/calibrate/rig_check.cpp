@@ -162,8 +162,7 @@ std::vector<std::string> exchanged_by_tau(const Calibration& found, const Rig& r
                                           const ParameterPrior& range) {
   const auto has_tau_of = [&](std::size_t laser, std::size_t other) {
     const Parameter& nominal = rig.lasers[other].nominal.tau;
-    const double limit = nominal.std_error > 0 ? kReach * nominal.std_error : range.tau;
-    return std::abs(found.lasers[laser].tau.value - nominal.value) <= limit;
+    return std::abs(found.lasers[laser].tau.value - nominal.value) <= limit_of(nominal, range.tau).size;
   };
   std::vector<std::string> caveats;
   for (std::size_t j = 1; j < found.lasers.size(); ++j) {

@@ -53,9 +53,11 @@ TEST_P(Forms, HaveTheNameOfTheirCause) {
   EXPECT_TRUE(is_named) << drawn.effect().cause << "\n" << outcome.console;
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Forms,
-                         testing::Values(Form{6,
-                                              {"effect=third_harmonic", "effect_amount=3", "scene=office"}}));
+INSTANTIATE_TEST_SUITE_P(
+    Of, Forms,
+    testing::Values(Form{6, {"effect=third_harmonic", "effect_amount=3", "scene=office"}},
+                    Form{7, {"effect=two_tones", "effect_rms=6", "scene=office", "effect_laser=0"}},
+                    Form{8, {"effect=settles", "effect_rms=8", "scene=office"}}));
 
 }  // namespace
 }  // namespace crisp
