@@ -20,7 +20,7 @@ std::string format_of(const fs::path& file) {
   for (const char* format : {"pcd", "ply", "las"}) {
     if (has_extension(file, {std::string(".") + format})) return format;
   }
-  throw Error(file.string() + " has no file extension, so the output format is unknown",
+  throw Error(file.string() + " has the extension of no known format",
               "end the name in .pcd, .ply or .las, or give --format");
 }
 
