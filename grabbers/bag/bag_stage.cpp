@@ -81,7 +81,7 @@ void BagStage::use(const BagRoute& route, const BagMessage& message, Run& run) c
   }
 }
 
-void BagStage::use_points(const BagRoute& route, const PointMessage& message, Run& run) const {
+void BagStage::use_points(const BagRoute& route, const PointMessage& message, Run& run) {
   if (route.is_head) {
     if (!run.items.add_head(message, route.lasers)) return;
     for (const std::uint16_t laser : route.lasers) ++run.scans[laser];

@@ -26,7 +26,7 @@ class BagStage final : public Stage {
   struct Run;
   void read(const std::filesystem::path& file, Run& run) const;
   void use(const BagRoute& route, const BagMessage& message, Run& run) const;
-  void use_points(const BagRoute& route, const PointMessage& message, Run& run) const;
+  static void use_points(const BagRoute& route, const PointMessage& message, Run& run);
   void report(const Run& run) const;
   bool is_requested(std::int64_t receipt_ns, Run& run) const;
 
