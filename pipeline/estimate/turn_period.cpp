@@ -76,6 +76,15 @@ double miss_of(const Comparisons& comparisons, double period) {
   return miss.pairs < kFew ? HUGE_VAL : miss.sum / static_cast<double>(miss.pairs);
 }
 
+/// [m] Median of the mean differences after angles that are near no simple fraction or multiple of a turn.
+double miss_elsewhere(const Comparisons& comparisons) {
+  std::array turns = {0.38, 0.43, 0.59, 0.61, 0.71, 0.82, 1.38};
+  std::ranges::transform(turns, turns.begin(),
+                         [&](double share) { return miss_of(comparisons, share * kTurn); });
+  std::ranges::sort(turns);
+  return turns[turns.size() / 2];
+}
+
 }  // namespace
 
 std::optional<TurnPeriod> turn_period(const Sample& sample) {
@@ -88,12 +97,18 @@ std::optional<TurnPeriod> turn_period(const Sample& sample) {
   const Comparisons comparisons = comparisons_of(sample);
   const double at_2pi = miss_of(comparisons, kTurn);
   if (!std::isfinite(at_2pi)) return std::nullopt;
+  const double elsewhere = miss_elsewhere(comparisons);
   std::vector<TurnPeriod> nearest;  // one for each factor
   for (const double factor : kFactors) {
-    TurnPeriod best{.angle = factor * kTurn, .miss = miss_of(comparisons, factor * kTurn), .at_2pi = at_2pi};
+    TurnPeriod best{.angle = factor * kTurn,
+                    .miss = miss_of(comparisons, factor * kTurn),
+                    .at_2pi = at_2pi,
+                    .elsewhere = elsewhere};
     for (double share = 1 - kAround; share < 1 + kAround + kStep / 2; share += kStep) {
       const double miss = miss_of(comparisons, factor * share * kTurn);
-      if (miss < best.miss) best = {.angle = factor * share * kTurn, .miss = miss, .at_2pi = at_2pi};
+      if (miss >= best.miss) continue;
+      best.angle = factor * share * kTurn;
+      best.miss = miss;
     }
     nearest.push_back(best);
   }
@@ -108,6 +123,11 @@ bool contradicts_counts(const TurnPeriod& period) {
   constexpr double kMin = 0.03;     // [m] by which it is smaller
   const double share = period.angle / kTurn;
   const bool is_part = share < 1 / 1.5;
+  const bool is_multiple = share > 1.5;
+  // After a rig's turn that is a part of one, the plate looks elsewhere. If the scene nearly repeats then,
+  // the encoder has slipped, and the angle after which it repeats better is one where slips happen to cancel.
+  constexpr double kRepeats = 0.5;
+  if (is_multiple && period.at_2pi < kRepeats * period.elsewhere) return false;
   return is_part || (std::abs(share - 1) > 0.003 && period.miss < kClearly * period.at_2pi &&
                      period.miss < period.at_2pi - kMin);
 }

@@ -10,9 +10,10 @@ namespace crisp {
 
 /// After which angle of the plate, by its encoder, a laser sees the same again.
 struct TurnPeriod {
-  double angle = 0;   ///< [rad] 2π if the encoder's counts a revolution are right
-  double miss = 0;    ///< [m] by how much ranges differ after that angle, in the mean over all up to 0.5 m
-  double at_2pi = 0;  ///< [m] and after 2π
+  double angle = 0;      ///< [rad] 2π if the encoder's counts a revolution are right
+  double miss = 0;       ///< [m] by how much ranges differ after that angle, in the mean over all up to 0.5 m
+  double at_2pi = 0;     ///< [m] and after 2π
+  double elsewhere = 0;  ///< [m] and after angles at which a scene does not repeat
 };
 
 /// Compares the ranges of the same beam of the same laser after one turn and another, without any

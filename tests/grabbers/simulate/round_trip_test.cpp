@@ -9,7 +9,6 @@
 #include <crisp/clock_aligner.hpp>
 #include <crisp/sensor_model.hpp>
 
-#include "grabbers/capture/item_merge.hpp"
 #include "grabbers/simulate/measurements.hpp"
 #include "grabbers/simulate/nominal_errors.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
