@@ -69,6 +69,7 @@ struct Hypothesis {
   std::string statement;
   std::string remedy;
   double distance = 0;
+  bool is_exchange = false;  ///< of lasers: whichever was exchanged, the scene keeps its sense
 };
 
 Hypothesis other_direction(const Calibration& calibration, double distance) {
@@ -84,17 +85,19 @@ Hypothesis other_direction(const Calibration& calibration, double distance) {
       .distance = distance};
 }
 
-/// What is wrong in the rig, and what to change. Several hypotheses: the nominal values do not decide between
-/// them.
+/// What is wrong in the rig, and what to change. Several hypotheses, the nearest first: the nominal values do
+/// not decide between them.
 std::string caveat_of(const std::vector<Hypothesis>& alternatives) {
   if (alternatives.size() == 1) return alternatives[0].statement + ". " + alternatives[0].remedy;
-  std::string caveat =
-      fmt::format("{} corrections of the rig fit equally well, and the recording cannot decide between them",
-                  alternatives.size());
+  std::string caveat = fmt::format(
+      "{} corrections of the rig fit, the likeliest first, and the recording cannot decide between them",
+      alternatives.size());
   for (std::size_t k = 0; k < alternatives.size(); ++k)
     caveat += fmt::format("; {}) {}. {}", k + 1, alternatives[k].statement, alternatives[k].remedy);
-  return caveat +
-         ". Find out on the scanner which one is true: a wrong correction gives a mirror image of the scene";
+  caveat += ". Find out on the scanner which one is true";
+  if (!std::ranges::all_of(alternatives, &Hypothesis::is_exchange))
+    caveat += ": a wrong correction gives a mirror image of the scene";
+  return caveat;
 }
 
 std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, const ParameterPrior& range) {
@@ -123,7 +126,7 @@ std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, con
       all.push_back({fmt::format("{} and {} are exchanged: each has the other's nominal values",
                                  nominal.lasers[j].name, name),
                      "Exchange their addresses in the rig, or their cables",
-                     distance(found, exchanged, range)});
+                     distance(found, exchanged, range), true});
     }
   }
   return all;
@@ -291,6 +294,7 @@ RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const Pa
     const bool is_other = &other != &best && !may_be_mirrored;
     if (is_other && other.distance < best.distance + kClearly) alternatives.push_back(other);
   }
+  std::ranges::stable_sort(alternatives, {}, &Hypothesis::distance);
   check.caveats = {caveat_of(alternatives)};
   return check;
 }

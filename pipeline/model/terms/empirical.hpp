@@ -19,7 +19,16 @@ namespace crisp {
 class EmpiricalTerm final : public DifferentiableTerm<EmpiricalTerm> {
  public:
   enum class On { kRange, kMirrorAngle, kElevation, kPlateAngle, kLag, kBase, kTilt };
-  enum class Over { kMirrorAngle, kPlateAngle, kRange, kIncidence, kRemission, kTime, kPlateRate, kRangePhase };
+  enum class Over {
+    kMirrorAngle,
+    kPlateAngle,
+    kRange,
+    kIncidence,
+    kRemission,
+    kTime,
+    kPlateRate,
+    kRangePhase
+  };
 
   /// @param family  cause whose general member this is; empty: none
   EmpiricalTerm(On on, Over over, Shape shape, std::string family = {});

@@ -47,11 +47,19 @@ TEST(TurnPeriod, IsFoundWhereTheCountsAreWrongByAFewPerCentOrByAFactor) {
   }
 }
 
+TEST(TurnPeriod, IsNoMultipleWhereTheSceneNearlyRepeatsAfterATurn) {
+  const TurnPeriod of_slips{.angle = 3.976 * kTurn, .miss = 0.043, .at_2pi = 0.074, .elsewhere = 0.3};
+  EXPECT_FALSE(contradicts_counts(of_slips));
+  TurnPeriod of_counts = of_slips;
+  of_counts.at_2pi = 0.28;
+  EXPECT_TRUE(contradicts_counts(of_counts));
+}
+
 TEST(TurnPeriod, DoesNotBlameTheCountsForSlips) {
   for (const double size : {2.0, 4.0, 7.0}) {
     const auto with_slips = [size](double time, double angle) {
       double slipped = 0;
-      const std::array<double, 6> at = {0.9, 1.9, 3.2, 4.1, 5.6, 6.8};
+      constexpr std::array at = {0.9, 1.9, 3.2, 4.1, 5.6, 6.8};
       for (std::size_t k = 0; k < at.size(); ++k)
         if (time > at[k]) slipped += (k % 3 == 1 ? -1 : 1) * size * kTurn / 360;
       return angle + slipped;

@@ -139,9 +139,23 @@ TEST(RigCheck, LasersThatFaceEachOtherLeaveOpenWhetherTheyOrTheDirectionAreWrong
   const RigCheck result = check(mirrored(found(7, rig)), rig);
   ASSERT_EQ(result.caveats.size(), 1U);
   EXPECT_THAT(result.caveats[0],
-              testing::AllOf(HasSubstr("2 corrections of the rig fit equally well"),
+              testing::AllOf(HasSubstr("2 corrections of the rig fit, the likeliest first"),
+                             HasSubstr("a mirror image of the scene"),
                              HasSubstr("Set plate.direction: counter_clockwise"),
                              HasSubstr("Turn each mount, or each nominal alpha, by 180 degrees")));
+}
+
+TEST(RigCheck, ExchangesThatFitAreListedWithTheLikeliestFirst) {
+  Rig rig = default_rig();
+  rig.lasers[1].nominal.lambda.value = 104 * kDegree;
+  rig.lasers[2].nominal.lambda.value = 231 * kDegree;
+  Calibration calibration = found(8, rig);
+  std::swap(calibration.lasers[0].lambda, calibration.lasers[1].lambda);
+  const RigCheck result = check(calibration, rig);
+  ASSERT_EQ(result.caveats.size(), 1U);
+  EXPECT_THAT(result.caveats[0], HasSubstr("laser1 and laser2 are exchanged"));
+  EXPECT_THAT(result.caveats[0], testing::Not(HasSubstr("mirror image")));
+  EXPECT_LT(result.caveats[0].find("laser1 and laser2"), result.caveats[0].find("2) "));
 }
 
 TEST(RigCheck, AParameterOutsideItsRangeIsReportedWithItsNominalValue) {
