@@ -96,13 +96,15 @@ std::vector<EffectParameter> parameters(On on, Over over, const Shape& shape) {
   const std::vector<std::string> axes = on == On::kBase || on == On::kTilt
                                             ? std::vector<std::string>{"x_", "y_", "z_"}
                                             : std::vector<std::string>{""};
+  constexpr double kOfPeriodic = 0.2;  // as range.cyclic: a distance must have one range
+  const double bound = what.bound * shape.scale() * (over == Over::kRangePhase ? kOfPeriodic : 1);
   std::vector<EffectParameter> all;
   for (const std::string& axis : axes) {
     for (std::size_t k = 0; k < shape.coefficients(); ++k) {
       all.push_back({.name = axis + shape.name(k),
                      .unit = what.unit,
-                     .lower = -what.bound * shape.scale(),
-                     .upper = what.bound * shape.scale(),
+                     .lower = -bound,
+                     .upper = bound,
                      .summary = shape.summary(k)});
     }
   }
