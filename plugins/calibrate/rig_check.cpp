@@ -94,10 +94,11 @@ std::string caveat_of(const std::vector<Hypothesis>& alternatives) {
       alternatives.size());
   for (std::size_t k = 0; k < alternatives.size(); ++k)
     caveat += fmt::format("; {}) {}. {}", k + 1, alternatives[k].statement, alternatives[k].remedy);
-  caveat += ". Find out on the scanner which one is true";
-  if (!std::ranges::all_of(alternatives, &Hypothesis::is_exchange))
-    caveat += ": a wrong correction gives a mirror image of the scene";
-  return caveat;
+  const bool is_exchange = std::ranges::all_of(alternatives, &Hypothesis::is_exchange);
+  return caveat +
+         (is_exchange
+              ? ". Find out on the scanner which one is true"
+              : ". Find out on the scanner which one is true: a wrong correction gives a mirror image of the scene");
 }
 
 std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, const ParameterPrior& range) {

@@ -42,7 +42,7 @@ struct AcceptanceTest {
   double statistic = kNotTested;  ///< in the unit of the threshold
   double threshold = kNotTested;  ///< least statistic, or largest p-value, that passes
   double p_value = kNotTested;    ///< of the statistic under the null hypothesis, where it has one
-  bool passed = false;
+  bool passed = false;            ///< whether the finding may become part of the model
 };
 
 /// A departure of the measured data from the model, with its physical cause.
