@@ -85,7 +85,7 @@ EffectParameter period_of_range() {
           .unit = "m",
           .lower = 0.05,
           .upper = 50,
-          .neutral = 1,
+          .neutral = 4,
           .summary = "period",
           .shape = true,
           .tries = {.spacing = Tries::Spacing::kOfSimpleForm, .from = 0.5, .to = 16, .count = 1}};
