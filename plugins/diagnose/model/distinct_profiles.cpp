@@ -21,7 +21,7 @@ bool is_shared_by_lasers(const std::string& covariate) {
   return std::ranges::find(kOfThePlate, covariate) != kOfThePlate.end();
 }
 
-std::vector<ProfileGroup> groups_of(const std::vector<Profile>& profiles) {
+std::vector<ProfileGroup> profile_groups(const std::vector<Profile>& profiles) {
   std::vector<ProfileGroup> groups;
   std::map<std::string, ProfileGroup> shared;
   std::map<std::string, std::size_t> lasers;
@@ -67,7 +67,7 @@ class ShadowSearch {
         residuals_(std::move(residuals)),
         tests_(tests),
         remaining_(profiles.size()),
-        groups_(groups_of(profiles)) {
+        groups_(profile_groups(profiles)) {
     for (std::size_t p = 0; p < profiles.size(); ++p)
       remaining_[p] = {.means = means_in(layouts[p], residuals_), .rms = profiles[p].rms};
   }
