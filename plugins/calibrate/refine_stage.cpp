@@ -132,7 +132,7 @@ void RefineStage::finish(Outputs& out, Context& context) {
   out.give(std::move(calibration));
 }
 
-std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refinement& refined, bool fits,
+std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refinement& refined,
                                                Measure& measure, Context& context) const {
   if (is_in_plane(sample)) return {};
   const HypothesisSettings settings{
@@ -143,9 +143,9 @@ std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refin
       .report = [&](double done, std::string_view what) { context.progress(done, what); }};
   auto found = check_mounts(refined.outcome.model, sample, context.rig(), settings);
   if (agrees_well(refined) || !found.empty()) return found;
-  if (auto counts = check_counts(sample, context.rig(), settings)) return {std::move(*counts)};
-  if (fits) return found;
-  if (auto mistake = find_rig_error(sample, context.rig(), settings)) found.push_back(std::move(*mistake));
+  RigErrorSearch search(sample, context.rig(), settings);
+  if (auto counts = search.counts()) return {std::move(*counts)};
+  if (auto mistake = search.any()) found.push_back(std::move(*mistake));
   return found;
 }
 
@@ -178,7 +178,7 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
   const double noise = settings_.surfels.noise;
   context.report({{"misfit", misfit_of(refined, noise)}, {"neighbour_noise", refined.scatter}});
   const auto of_fit = check_fit(refined, calibration, *start_, sample.beams, context.rig(), noise);
-  const auto of_rig = mistakes(sample, refined, of_fit.empty(), *measure, context);
+  const auto of_rig = mistakes(sample, refined, *measure, context);
   for (const auto& mistake : of_rig) context.mark_untrusted(mistake);
   // A known mistake explains the other caveats, which nobody needs to examine before it is corrected.
   for (const auto& caveat : of_fit) {

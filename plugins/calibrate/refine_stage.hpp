@@ -29,9 +29,9 @@ class RefineStage final : public Stage {
   void judge(const Sample& sample, const Refinement& refined, Calibration& calibration,
              Context& context) const;
 
-  /// Mistakes of the rig, as caveats: mounts always, the rest where the calibration does not fit.
-  std::vector<std::string> mistakes(const Sample& sample, const Refinement& refined, bool fits,
-                                    Measure& measure, Context& context) const;
+  /// Mistakes of the rig, as caveats: mounts always, the rest where the views do not agree well.
+  std::vector<std::string> mistakes(const Sample& sample, const Refinement& refined, Measure& measure,
+                                    Context& context) const;
 
   RefinementSettings settings_;
   double sigma_ = 0.02;  // [m] near the ranges' noise, where RQE itself is hardly biased

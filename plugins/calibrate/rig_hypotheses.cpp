@@ -2,18 +2,16 @@
 #include "plugins/calibrate/rig_hypotheses.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
 #include <crisp/error.hpp>
 
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/mirror_angle.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
 #include "pipeline/estimate/turn_period.hpp"
 #include "plugins/calibrate/fit_check.hpp"
@@ -25,64 +23,6 @@ namespace {
 
 constexpr std::size_t kBeams = 100'000;  // enough to see whether they fit
 constexpr const char* kMirrorZero = "mount.mirror_zero";
-
-/// A possible correction of the rig.
-struct RigHypothesis {
-  std::string change;  ///< in words: "plate.direction: clockwise"
-  double turn = 1;     ///< by which the plate's angles are multiplied; −1: it counts the other way
-  std::vector<double> mount_turns;  ///< [rad] by which each laser's mount is greater
-};
-
-constexpr std::array kTurns = {180 * kDegree, 90 * kDegree, -90 * kDegree, 45 * kDegree, -45 * kDegree};
-
-std::string with_mount(const RigLaser& laser, double turn) {
-  const double mount = std::remainder(laser.mount + turn, 2 * std::numbers::pi);
-  return fmt::format("mount: {:.4g}deg of {} (the rig has {:.4g})", mount / kDegree, laser.name,
-                     laser.mount / kDegree);
-}
-
-/// Possible mistakes of the plate, or of all lasers alike.
-std::vector<RigHypothesis> common_hypotheses(const Rig& rig) {
-  const std::size_t n = rig.lasers.size();
-  const bool is_clockwise = rig.plate.direction == CountDirection::clockwise;
-  std::vector<RigHypothesis> all = {
-      {.change = fmt::format("plate.direction: {}", is_clockwise ? "counter_clockwise" : "clockwise"),
-       .turn = -1,
-       .mount_turns = std::vector<double>(n, 0.0)}};
-  for (const double turn : kTurns) {
-    RigHypothesis hypothesis{.change = with_mount(rig.lasers[0], turn),
-                             .mount_turns = std::vector<double>(n, turn)};
-    if (n > 1) hypothesis.change += " and the mounts of the others turned alike";
-    all.push_back(std::move(hypothesis));
-  }
-  return all;
-}
-
-/// The data as they would be with the rig changed.
-class ChangedSample {
- public:
-  ChangedSample(const Sample& sample, const RigHypothesis& hypothesis) : sample_(sample) {
-    for (std::size_t i = 0; i < sample_.beams.size(); ++i) {
-      float& angle = sample_.beams.mirror_angle[i];
-      angle =
-          static_cast<float>(wrapped_mirror_angle(angle - hypothesis.mount_turns[sample_.beams.laser[i]]));
-    }
-    const PlateTrajectory& plate = *sample.plate;
-    std::vector<double> angles;
-    for (const double angle : plate.angles()) angles.push_back(hypothesis.turn * angle);
-    plate_ = plate.with_angles(std::move(angles));
-    sample_.plate = &plate_;
-  }
-  ChangedSample(const ChangedSample&) = delete;
-  ChangedSample& operator=(const ChangedSample&) = delete;
-  ~ChangedSample() = default;
-
-  const Sample& sample() const { return sample_; }
-
- private:
-  Sample sample_;
-  PlateTrajectory plate_;
-};
 
 /// "0.000" and not "-0.000".
 double without_sign_of_zero(double value) { return std::abs(value) < 5e-4 ? 0 : value; }
@@ -116,54 +56,6 @@ std::optional<Refinement> refined_with_mounts(const SensorModel& model, const Sa
   }
 }
 
-/// How well the data fit with a changed rig.
-struct HypothesisFit {
-  bool fits = false;      ///< without a caveat, and in agreement with the nominal values
-  std::size_t beams = 0;  ///< on flat surfaces: a wrong rig may fold the scene onto a few of them
-};
-
-HypothesisFit fit_with(const RigHypothesis& hypothesis, const Sample& sample, const Rig& rig,
-                       const HypothesisSettings& settings) {
-  const ChangedSample changed(sample, hypothesis);
-  RqeCalibrationSettings rqe;
-  rqe.points = 10'000;
-  rqe.probes = 4;
-  rqe.in_plane.minimizer.interrupted = settings.interrupted;
-  try {
-    const SensorModel start(nominal_calibration(rig), *settings.terms);
-    rqe.in_plane.range = search_range_with_lambda(start, rig, ParameterPrior{});
-    const Outcome crisp = calibrate_by_rqe(start, changed.sample(), *settings.measure, rqe);
-    if (settings.interrupted()) return {};
-    const auto refined = refined_with_mounts(crisp.model, changed.sample(), rig, settings);
-    if (!refined) return {};
-    const bool fits =
-        refined->outcome.caveats.empty() && agrees_well(*refined) &&
-        check_with_rig(calibration_of(refined->outcome, rig), rig, ParameterPrior{}).caveats.empty();
-    return {.fits = fits, .beams = refined->beams};
-  } catch (const Error&) {
-    return {};  // RQE refuses the data with that
-  }
-}
-
-/// The mount with which one laser's own beams fit, if they do not with the rig's.
-std::optional<std::string> mount_of_one(std::size_t laser, const Sample& sample, const Rig& rig,
-                                        const HypothesisSettings& settings) {
-  const Sample own = of_laser(sample, laser);
-  const auto fit = [&](double turn) {
-    RigHypothesis hypothesis{.change = {}, .mount_turns = std::vector<double>(rig.lasers.size(), 0.0)};
-    hypothesis.mount_turns[laser] = turn;
-    return fit_with(hypothesis, own, rig, settings);
-  };
-  if (own.beams.size() == 0) return std::nullopt;
-  const HypothesisFit unchanged = fit(0);
-  for (const double turn : kTurns) {
-    if (unchanged.fits || settings.interrupted()) break;
-    const HypothesisFit changed = fit(turn);
-    if (changed.fits && changed.beams > unchanged.beams) return with_mount(rig.lasers[laser], turn);
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
@@ -191,54 +83,105 @@ std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sa
   return caveats;
 }
 
-std::optional<std::string> check_counts(const Sample& sample, const Rig& rig,
-                                        const HypothesisSettings& settings) {
+RigErrorSearch::RigErrorSearch(const Sample& sample, const Rig& rig, HypothesisSettings settings)
+    : sample_(thin_evenly(longest_recording(sample), kBeams, 1)),
+      rig_(rig),
+      settings_(std::move(settings)),
+      period_(turn_period(sample)) {}
+
+RigErrorSearch::Fit RigErrorSearch::fit_with(const RigChange& change, const Sample& sample) const {
+  const ChangedSample changed(sample, change);
+  HypothesisSettings settings = settings_;
+  settings.refinement.angle_step *= std::abs(change.turn);
+  RqeCalibrationSettings rqe;
+  rqe.points = 10'000;
+  rqe.probes = 4;
+  rqe.in_plane.minimizer.interrupted = settings.interrupted;
+  try {
+    const SensorModel start(nominal_calibration(rig_), *settings.terms);
+    rqe.in_plane.range = search_range_with_lambda(start, rig_, ParameterPrior{});
+    const Outcome crisp = calibrate_by_rqe(start, changed.sample(), *settings.measure, rqe);
+    if (settings.interrupted()) return {};
+    const auto refined = refined_with_mounts(crisp.model, changed.sample(), rig_, settings);
+    if (!refined) return {};
+    Fit fit{.beams = refined->beams};
+    if (!refined->outcome.caveats.empty() || !agrees_well(*refined)) return fit;
+    const RigCheck check = check_with_rig(calibration_of(refined->outcome, rig_), rig_, ParameterPrior{});
+    fit.fits = check.caveats.empty();
+    if (check.is_explained) fit.mistake = check.caveats.front();
+    return fit;
+  } catch (const Error&) {
+    return {};  // RQE refuses the data with that
+  }
+}
+
+const RigErrorSearch::Fit& RigErrorSearch::fit_of_rig() {
+  if (!fit_of_rig_) fit_of_rig_ = fit_with(no_change(rig_), sample_);
+  return *fit_of_rig_;
+}
+
+std::optional<std::string> RigErrorSearch::counts() {
   constexpr double kResolved = 0.003;  // of a turn
   constexpr double kMore = 1.15;       // of the beams on flat surfaces
-  const auto period = turn_period(sample);
-  if (!period) return std::nullopt;
-  if (contradicts_counts(*period)) return counts_caveat(*period);
-  const double turns = period->angle / (2 * std::numbers::pi);
+  if (!period_) return std::nullopt;
+  if (contradicts_counts(*period_)) return counts_caveat(*period_);
+  const double turns = period_->angle / (2 * std::numbers::pi);
   if (std::abs(turns - 1) <= kResolved) return std::nullopt;
   // A few thousandths change ranges by little, and a calibration adapts to them: with fewer beams.
-  const Sample some = thin_evenly(longest_recording(sample), kBeams, 1);
-  RigHypothesis hypothesis{.change = {}, .mount_turns = std::vector<double>(rig.lasers.size(), 0.0)};
-  const HypothesisFit unchanged = fit_with(hypothesis, some, rig, settings);
-  if (settings.interrupted()) return std::nullopt;
-  hypothesis.turn = 1 / turns;
-  const HypothesisFit changed = fit_with(hypothesis, some, rig, settings);
+  const Fit& unchanged = fit_of_rig();
+  if (settings_.interrupted()) return std::nullopt;
+  RigChange change = no_change(rig_);
+  change.turn = 1 / turns;
+  const Fit changed = fit_with(change, sample_);
   const bool is_better =
       changed.fits && static_cast<double>(changed.beams) > kMore * static_cast<double>(unchanged.beams);
   if (!is_better) return std::nullopt;
-  return counts_caveat(*period);
+  return counts_caveat(*period_);
 }
 
-std::optional<std::string> find_rig_error(const Sample& sample, const Rig& rig,
-                                          const HypothesisSettings& settings) {
-  const Sample some = thin_evenly(longest_recording(sample), kBeams, 1);
-  // Where the rig as it stands fits as well, by the same few beams, no change of it explains anything.
-  const RigHypothesis as_it_stands{.change = {}, .mount_turns = std::vector<double>(rig.lasers.size(), 0.0)};
-  const HypothesisFit unchanged = fit_with(as_it_stands, some, rig, settings);
+std::optional<std::string> RigErrorSearch::first_that_fits(const std::vector<RigChange>& changes,
+                                                           const Sample& sample, const Fit& unchanged) {
+  for (const RigChange& change : changes) {
+    if (settings_.interrupted()) break;
+    if (settings_.report)
+      settings_.report(static_cast<double>(step_++) / static_cast<double>(steps_), "what if " + change.words);
+    const Fit changed = fit_with(change, sample);
+    if (changed.fits && changed.beams > unchanged.beams) return change.words;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> RigErrorSearch::mount_of_one(std::size_t laser) {
+  const Sample own = of_laser(sample_, laser);
+  if (own.beams.size() == 0) return std::nullopt;
+  const Fit unchanged = fit_with(no_change(rig_), own);
   if (unchanged.fits) return std::nullopt;
-  const auto all = common_hypotheses(rig);
-  const double steps = static_cast<double>(all.size() + rig.lasers.size());
-  const auto report = [&](std::size_t step, const std::string& what) {
-    if (settings.report) settings.report(static_cast<double>(step) / steps, "what if " + what);
+  return first_that_fits(other_mounts_of(rig_, laser), own, unchanged);
+}
+
+std::vector<RigChange> RigErrorSearch::changes_of_all() const {
+  std::vector<RigChange> changes = {other_direction(rig_)};
+  const auto append = [&](std::vector<RigChange> more) {
+    std::ranges::move(more, std::back_inserter(changes));
   };
-  std::vector<std::string> changes;
-  for (std::size_t k = 0; k < all.size() && changes.empty() && !settings.interrupted(); ++k) {
-    report(k, all[k].change);
-    const HypothesisFit changed = fit_with(all[k], some, rig, settings);
-    if (changed.fits && changed.beams > unchanged.beams) changes.push_back(all[k].change);
-  }
-  for (std::size_t laser = 0; changes.empty() && rig.lasers.size() > 1 && laser < rig.lasers.size();
-       ++laser) {
-    report(all.size() + laser, "another mount of " + rig.lasers[laser].name);
-    if (auto change = mount_of_one(laser, some, rig, settings)) changes.push_back(std::move(*change));
-  }
-  if (changes.empty()) return std::nullopt;
-  return fmt::format("the rig is probably wrong: the data fit with {}. Set it in the rig",
-                     fmt::join(changes, ", "));
+  append(exchanges(rig_));
+  append(other_mounts(rig_));
+  if (!period_) append(other_counts(rig_));
+  return changes;
+}
+
+std::optional<std::string> RigErrorSearch::any() {
+  // Where the rig as it stands fits as well, by the same few beams, no change of it explains anything.
+  if (fit_of_rig().fits) return std::nullopt;
+  if (!fit_of_rig().mistake.empty()) return fit_of_rig().mistake;
+  const auto of_all = changes_of_all();
+  const std::size_t lasers = rig_.lasers.size() > 1 ? rig_.lasers.size() : 0;
+  steps_ = of_all.size();
+  for (std::size_t laser = 0; laser < lasers; ++laser) steps_ += other_mounts_of(rig_, laser).size();
+  auto change = first_that_fits(of_all, sample_, fit_of_rig());
+  for (std::size_t laser = 0; !change && laser < lasers; ++laser) change = mount_of_one(laser);
+  if (!change) return std::nullopt;
+  return fmt::format("the rig is probably wrong: the data fit with {}. Set it in the rig", *change);
 }
 
 }  // namespace crisp

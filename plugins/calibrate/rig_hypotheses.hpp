@@ -10,6 +10,8 @@
 #include <crisp/rig.hpp>
 
 #include "pipeline/estimate/surfel_refinement.hpp"
+#include "pipeline/estimate/turn_period.hpp"
+#include "plugins/calibrate/rig_change.hpp"
 #include "plugins/calibrate/rqe_calibration.hpp"
 
 namespace crisp {
@@ -29,17 +31,48 @@ struct HypothesisSettings {
 std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
                                       const HypothesisSettings& settings);
 
-/// Wrong counts a revolution, as a caveat: the scene repeats clearly better after another angle of the plate,
-/// or a little better, and with such counts a calibration fits with clearly more beams.
-std::optional<std::string> check_counts(const Sample& sample, const Rig& rig,
-                                        const HypothesisSettings& settings);
-
-/// Which mistake in the rig explains that a calibration does not fit, as a caveat: the encoder's direction,
-/// or a mount of all lasers or one that is off by 45, 90 or 180 degrees, where a calibration with it right
-/// fits and agrees with the nominal values.
+/// Search for the mistake in the rig that explains why a calibration does not fit.
 ///
-/// Takes some calibrations' time, with a share of the beams each.
-std::optional<std::string> find_rig_error(const Sample& sample, const Rig& rig,
-                                          const HypothesisSettings& settings);
+/// Calibrates again with a share of the beams for each possible change of the rig. A change counts if the
+/// calibration with it has no caveat, agrees with the nominal values, and has more beams on flat surfaces
+/// than that of the rig as it stands.
+class RigErrorSearch {
+ public:
+  RigErrorSearch(const Sample& sample, const Rig& rig, HypothesisSettings settings);
+
+  /// Wrong counts a revolution, as a caveat: the scene repeats clearly better after another angle of the
+  /// plate, or a little better, and with such counts a calibration fits with clearly more beams.
+  std::optional<std::string> counts();
+
+  /// Any other mistake, as a caveat: the encoder's direction, the mounts of all lasers or of one, two lasers
+  /// that are exchanged, or counts that are off by a factor of two or four where the plate turned too little
+  /// to show it.
+  ///
+  /// Takes some calibrations' time.
+  std::optional<std::string> any();
+
+ private:
+  /// How well the data fit with a change.
+  struct Fit {
+    bool fits = false;      ///< without a caveat, and in agreement with the nominal values
+    std::size_t beams = 0;  ///< on flat surfaces: a wrong rig may fold the scene onto a few of them
+    std::string mistake;    ///< the mistake in the nominal values that it shows, as a caveat
+  };
+
+  Fit fit_with(const RigChange& change, const Sample& sample) const;
+  const Fit& fit_of_rig();
+  std::optional<std::string> first_that_fits(const std::vector<RigChange>& changes, const Sample& sample,
+                                             const Fit& unchanged);
+  std::optional<std::string> mount_of_one(std::size_t laser);
+  std::vector<RigChange> changes_of_all() const;
+
+  Sample sample_;
+  const Rig& rig_;
+  HypothesisSettings settings_;
+  std::optional<TurnPeriod> period_;
+  std::optional<Fit> fit_of_rig_;
+  std::size_t step_ = 0;  ///< of any()
+  std::size_t steps_ = 1;
+};
 
 }  // namespace crisp

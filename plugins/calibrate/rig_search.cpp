@@ -11,6 +11,7 @@
 #include "pipeline/estimate/base_parameters.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
+#include "plugins/calibrate/fit_check.hpp"
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 
@@ -99,7 +100,7 @@ Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measur
   const ParameterPrior near = search_range_around(start, rig, given);
   const ParameterPrior nearest = search_range_with_lambda(start, rig, given);
   const auto fits = [&](const std::optional<Refinement>& fit) {
-    return fit && fit->outcome.caveats.empty() &&
+    return fit && fit->outcome.caveats.empty() && (fit->views.empty() || agrees_well(*fit)) &&
            check_with_rig(calibration_of(fit->outcome, rig), rig, given).caveats.empty();
   };
   Outcome here = calibrated(near, 0, 0.5);

@@ -87,6 +87,10 @@ TEST_F(AnyRig, MountsThatAreOffByARightAngleAreFound) {
   is_untrusted_with(302, {"fault=mount"}, "with mount: 45.1deg of front (the rig has -44.9)");
 }
 
+TEST_F(AnyRig, ExchangedLasersThatFaceEachOtherAreFound) {
+  is_untrusted_with(2009, {}, "front and left are exchanged");
+}
+
 TEST_F(AnyRig, ALaserThatSendsNothingIsNamed) {
   const auto outcome = calibrate(18, {});
   EXPECT_THAT(outcome.console, HasSubstr("front: no data of it"));

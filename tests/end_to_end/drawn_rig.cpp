@@ -60,7 +60,7 @@ DrawnRig::DrawnRig(const std::filesystem::path& folder, std::uint64_t seed,
     const auto number = [&](const char* key) { return laser[key].as<double>(); };
     // crisp counts from −45°, whatever a unit's first beam; what the hub saw has the delays that occurred.
     const double eta = number("eta_from_minus_45") + number("eta_sample") - number("eta");
-    lasers_.push_back({.name = entry.first.as<std::string>(),
+    lasers_.push_back({.name = laser["name_in_rig"].as<std::string>(),
                        .lambda = number("lambda"),
                        .tau = number("tau"),
                        .alpha = number("alpha"),

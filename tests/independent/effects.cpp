@@ -60,7 +60,27 @@ using Make = std::function<void(Effect&, const Drawn&)>;
 struct Departure {
   std::string cause;
   Make make;
+  /// Whether such a motion of the plate shows it. Without a change, it turns the plate's angles alike.
+  std::function<bool(const PlateMotion&, double duration)> is_seen = [](const auto&, double) { return true; };
 };
+
+bool reverses(const PlateMotion& motion, double duration) {
+  bool is_forth = false, is_back = false;
+  for (double time = 0; time < duration; time += 0.05) {
+    is_forth = is_forth || rate_at(motion, time) > 0.05;
+    is_back = is_back || rate_at(motion, time) < -0.05;
+  }
+  return is_forth && is_back;
+}
+
+bool changes_rate(const PlateMotion& motion, double duration) {
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (double time = 0; time < duration; time += 0.05) {
+    least = std::min(least, rate_at(motion, time));
+    most = std::max(most, rate_at(motion, time));
+  }
+  return most - least > 0.3;
+}
 
 void add_base_forms(std::map<std::string, Departure>& forms) {
   forms["rocks"] = {"base.motion", [](Effect& e, const Drawn& d) {
@@ -122,24 +142,30 @@ void add_plate_forms(std::map<std::string, Departure>& forms) {
                                              1 + kMilli * std::cos(angle + d.phase));
                          };
                        }};
-  forms["play"] = {"encoder.backlash", [](Effect& e, const Drawn& d) {
+  forms["play"] = {"encoder.backlash",
+                   [](Effect& e, const Drawn& d) {
                      constexpr double kStep = 1e-3;
                      const auto play = std::make_shared<std::vector<double>>(
                          with_play(d.motion, d.duration, kMilli, kStep));
                      e.encoder = [=](double time) { return between(*play, time / kStep); };
-                   }};
-  forms["saturates"] = {"encoder.speed_lag", [](Effect& e, const Drawn& d) {
+                   },
+                   reverses};
+  forms["saturates"] = {"encoder.speed_lag",
+                        [](Effect& e, const Drawn& d) {
                           e.encoder = [=](double time) {
                             const double rate = rate_at(d.motion, time);
                             return kMilli * d.sign * rate * rate * rate / (4 + rate * rate);
                           };
-                        }};
-  forms["cube"] = {"encoder.speed_lag", [](Effect& e, const Drawn& d) {
+                        },
+                        changes_rate};
+  forms["cube"] = {"encoder.speed_lag",
+                   [](Effect& e, const Drawn& d) {
                      e.encoder = [=](double time) {
                        const double rate = rate_at(d.motion, time);
                        return kMilli * d.sign * rate * rate * rate / 10;
                      };
-                   }};
+                   },
+                   changes_rate};
 }
 
 void add_mirror_forms(std::map<std::string, Departure>& forms) {
@@ -160,8 +186,9 @@ void add_mirror_forms(std::map<std::string, Departure>& forms) {
                             return kMilli * d.sign * (1 + 0.3 * std::cos(2 * theta + d.phase));
                           };
                         }};
+  // By sin θ it would be another α: see fire() in scanner.cpp.
   forms["tilted_plane"] = {"mount.scan_plane_tilt", [](Effect& e, const Drawn& d) {
-                             e.elevation = [=](double theta) { return kMilli * d.sign * std::sin(theta); };
+                             e.elevation = [=](double theta) { return kMilli * d.sign * std::cos(theta); };
                            }};
 }
 
@@ -259,7 +286,9 @@ bool is_of_a_laser(const Effect& effect) {
 Effect draw_effect(Draws& draws, int lasers, const PlateMotion& motion, double duration) {
   const auto forms = all_forms();
   std::vector<Draws::Weighted> names;
-  for (const auto& [name, form] : forms) names.push_back({name, 1.0});
+  for (const auto& [name, form] : forms) {
+    if (form.is_seen(motion, duration)) names.push_back({name, 1.0});
+  }
   Effect effect;
   const bool has_effect = draws.chance("has_effect", 0) || draws.is_fixed("effect");
   if (has_effect) effect.form = draws.choice("effect", names);

@@ -29,6 +29,15 @@ void require_written(const std::ofstream& file, const std::string& path) {
   if (!file) throw std::runtime_error("cannot write " + path);
 }
 
+/// Under which name the rig's file has the device, which is another's if two addresses are exchanged.
+std::string name_in_rig(const Setup& setup, const LaserSetup& device) {
+  for (const LaserSetup& entry : setup.lasers) {
+    const bool has_port = entry.rig_port == 0 || entry.rig_port == device.port;
+    if (entry.rig_address == device.address && has_port) return entry.name;
+  }
+  return device.name;
+}
+
 }  // namespace
 
 void write_rig(const std::string& path, const Setup& setup) {
@@ -78,9 +87,10 @@ void write_truth(const std::string& path, const Setup& setup, const Effect& effe
   for (std::size_t i = 0; i < setup.lasers.size(); ++i) {
     const auto& laser = setup.lasers[i];
     const double sample = outcome.smallest_plate_delay - outcome.smallest_delays[i] + laser.stamp_offset;
-    file << "  " << laser.name << ": {lambda: " << number(laser.truth.lambda)
-         << ", tau: " << number(laser.truth.tau) << ", alpha: " << number(laser.truth.alpha)
-         << ", eta: " << number(eta(setup, laser)) << ", eta_sample: " << number(sample)
+    file << "  " << laser.name << ": {name_in_rig: " << name_in_rig(setup, laser)
+         << ", lambda: " << number(laser.truth.lambda) << ", tau: " << number(laser.truth.tau)
+         << ", alpha: " << number(laser.truth.alpha) << ", eta: " << number(eta(setup, laser))
+         << ", eta_sample: " << number(sample)
          << ", eta_from_minus_45: " << number(eta_from_minus_45(setup, laser))
          << ", mount: " << number(laser.mount) << ", kind: " << laser.kind.name
          << ", step_deg: " << number(laser.kind.step_deg) << ", rate: " << number(laser.kind.rate)

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/rig_hypotheses.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+
+#include <utility>
 
 #include "pipeline/data/mirror_angle.hpp"
 #include "tests/pipeline/estimate/support.hpp"
@@ -69,26 +72,47 @@ TEST(RigHypothesesOfCounts, HalfAPercentTooManyIsFoundByTheBeamsThatFit) {
   for (LaserCalibration& laser : scanner.truth.lasers) laser.eta.value /= 10;
   const SimulatedMeasurements simulated = simulate_measurements(scanner, office());
   Sample sample = sample_of(simulated);
-  EXPECT_FALSE(check_counts(sample, default_rig(), settings)) << "counts that are right";
+  EXPECT_FALSE(RigErrorSearch(sample, default_rig(), settings).counts()) << "counts that are right";
   std::vector<double> angles;
   for (const double angle : sample.plate->angles()) angles.push_back(angle / 1.006);
   const PlateTrajectory slower = sample.plate->with_angles(std::move(angles));
   sample.plate = &slower;
-  const auto mistake = check_counts(sample, default_rig(), settings);
+  const auto mistake = RigErrorSearch(sample, default_rig(), settings).counts();
   ASSERT_TRUE(mistake);
   EXPECT_THAT(*mistake, HasSubstr("multiply it by 0.994"));
 }
 
 TEST_F(RigHypotheses, ARigThatFitsAsItStandsHasNoMistake) {
-  EXPECT_FALSE(find_rig_error(sample_of(simulated_), default_rig(), settings()));
+  EXPECT_FALSE(RigErrorSearch(sample_of(simulated_), default_rig(), settings()).any());
 }
 
 TEST_F(RigHypotheses, MountsThatAreAllOffByARightAngleAreFoundFromTheRigsNominalValues) {
   const std::vector<double> off(3, -90 * kDegree);
-  const auto mistake = find_rig_error(with_mounts(off), rig_with_mounts(off), settings());
+  const auto mistake = RigErrorSearch(with_mounts(off), rig_with_mounts(off), settings()).any();
   ASSERT_TRUE(mistake);
   EXPECT_THAT(*mistake, AllOf(HasSubstr("mount: 45deg of laser1 (the rig has -45)"),
                               HasSubstr("the others turned alike")));
+}
+
+TEST_F(RigHypotheses, ExchangedLasersAreFoundFromTheRigsNominalValues) {
+  Rig rig = default_rig();
+  std::swap(rig.lasers[0].nominal, rig.lasers[1].nominal);
+  std::swap(rig.lasers[0].nominal.name, rig.lasers[1].nominal.name);
+  const auto mistake = RigErrorSearch(sample_of(simulated_), rig, settings()).any();
+  ASSERT_TRUE(mistake);
+  EXPECT_THAT(*mistake, HasSubstr("the addresses of laser1 and laser2 exchanged"));
+}
+
+TEST_F(RigHypotheses, CountsThatAreOffByAFactorOfFourAreFoundInLessThanATurn) {
+  Sample sample = sample_of(simulated_);
+  std::vector<double> angles;
+  for (const double angle : sample.plate->angles()) angles.push_back(angle / 4);
+  const PlateTrajectory slower = sample.plate->with_angles(std::move(angles));
+  sample.plate = &slower;
+  const auto mistake = RigErrorSearch(sample, default_rig(), settings()).any();
+  ASSERT_TRUE(mistake);
+  EXPECT_THAT(*mistake, HasSubstr(fmt::format("plate.counts_per_revolution: {:.10g}",
+                                              default_rig().plate.counts_per_revolution / 4)));
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <crisp/rig.hpp>
+
+#include "pipeline/estimate/sample.hpp"
+
+namespace crisp {
+
+/// A possible correction of a rig, as it changes what the measurements mean.
+struct RigChange {
+  std::string words;  ///< "plate.direction: clockwise"
+  double turn = 1;    ///< by which the plate's angles are multiplied; −1: it counts the other way
+  std::vector<double> mount_turns;  ///< [rad] by which each laser's mount is greater
+  std::optional<std::pair<std::size_t, std::size_t>> exchanged = std::nullopt;  ///< lasers, before all else
+};
+
+/// The rig as it stands.
+RigChange no_change(const Rig& rig);
+
+/// The plate counting the other way round.
+RigChange other_direction(const Rig& rig);
+
+/// Two lasers exchanged, each pair in turn.
+std::vector<RigChange> exchanges(const Rig& rig);
+
+/// The mounts of all lasers turned alike: by 180, 90 and 45 degrees either way.
+std::vector<RigChange> other_mounts(const Rig& rig);
+
+/// The same of one laser.
+std::vector<RigChange> other_mounts_of(const Rig& rig, std::size_t laser);
+
+/// Counts a revolution that are off by a factor of an encoder's electronics, which counts one, two or four
+/// edges of each line.
+std::vector<RigChange> other_counts(const Rig& rig);
+
+/// The data as they would be with the rig changed.
+class ChangedSample {
+ public:
+  ChangedSample(const Sample& sample, const RigChange& change);
+  ChangedSample(const ChangedSample&) = delete;
+  ChangedSample& operator=(const ChangedSample&) = delete;
+  ~ChangedSample() = default;
+
+  const Sample& sample() const { return sample_; }
+
+ private:
+  Sample sample_;
+  PlateTrajectory plate_;
+};
+
+}  // namespace crisp
