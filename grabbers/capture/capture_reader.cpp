@@ -123,8 +123,7 @@ std::int64_t CaptureReader::Traffic::limit_ns() {
   const auto longest = static_cast<std::int64_t>(1e9 * settings.max_wait);
   for (auto* flow : rig_flows) {
     flow->expire(newest_ns);
-    const auto since = flow->waiting_since();
-    if (since && newest_ns - *since <= longest) limit = std::min(limit, *since);
+    if (const auto since = flow->waiting_since(newest_ns - longest)) limit = std::min(limit, *since);
   }
   return limit;
 }

@@ -150,11 +150,12 @@ void Flow::take_reading(const PlateReading& reading) {
 
 void Flow::expire(std::int64_t now_ns) { tcp_.expire(now_ns); }
 
-std::optional<std::int64_t> Flow::waiting_since() const {
-  auto since = tcp_.waiting_since();
-  const auto framer = cola_ ? cola_->waiting_since() : std::nullopt;
-  if (!framer) return since;
-  return std::min(since.value_or(*framer), *framer);
+std::optional<std::int64_t> Flow::waiting_since(std::int64_t earliest_ns) const {
+  std::optional<std::int64_t> since;
+  for (const auto waiting : {tcp_.waiting_since(), cola_ ? cola_->waiting_since() : std::nullopt}) {
+    if (waiting && *waiting >= earliest_ns) since = std::min(since.value_or(*waiting), *waiting);
+  }
+  return since;
 }
 
 void Flow::finish() {

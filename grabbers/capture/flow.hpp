@@ -32,8 +32,9 @@ class Flow final : public StreamSink {
   /// counts.
   void finish();
 
-  /// [ns] No item still to come from what is here was received earlier. Nothing if nothing is here.
-  std::optional<std::int64_t> waiting_since() const;
+  /// [ns] No item still to come from what is here since `earliest_ns` was received earlier. Nothing if
+  /// nothing is here. A telegram's begin that has waited for longer does not count: it is given up.
+  std::optional<std::int64_t> waiting_since(std::int64_t earliest_ns) const;
   std::int64_t last_ns() const { return last_ns_; }
   bool is_of_rig() const { return device_ != nullptr && device_->rig_index.has_value(); }
 

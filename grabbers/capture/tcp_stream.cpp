@@ -61,9 +61,14 @@ void TcpStream::place(std::uint32_t sequence, ByteView bytes, std::uint32_t miss
     return;
   }
   if (distance > 0) {
+    const auto offset = position_ + static_cast<std::uint64_t>(distance);
+    const bool is_overtaken = !held_.empty() && held_.rbegin()->first > offset;
     const auto before = held_bytes_;
-    hold(position_ + static_cast<std::uint64_t>(distance), bytes, time_ns);
-    ++(held_bytes_ > before ? counts_.late_segments : counts_.repeated_segments);
+    hold(offset, bytes, time_ns);
+    if (held_bytes_ == before)
+      ++counts_.repeated_segments;
+    else if (is_overtaken)
+      ++counts_.late_segments;
     while (held_bytes_ > kMaxHeld || held_.size() > kMaxSegments) skip_hole();
     return;
   }
@@ -73,6 +78,7 @@ void TcpStream::place(std::uint32_t sequence, ByteView bytes, std::uint32_t miss
     deliver(bytes, time_ns);
   } else {  // some of these bytes may have come before
     hold(position_, bytes, time_ns);
+    ++counts_.late_segments;
     release();
   }
   if (position_ < end) {  // the capture cut the segment short: nobody will send the rest again

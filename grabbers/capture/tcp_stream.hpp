@@ -32,7 +32,7 @@ class TcpStream {
  public:
   struct Counts {
     std::uint64_t repeated_segments = 0;
-    std::uint64_t late_segments = 0;  ///< brought bytes before those that precede them
+    std::uint64_t late_segments = 0;  ///< came after bytes that follow theirs
     std::uint64_t lost_bytes = 0;     ///< never came
     std::uint64_t holes = 0;          ///< in how many places
     std::uint64_t connections = 0;    ///< begun, seen or not

@@ -2,7 +2,8 @@
 #include "grabbers/devices/device_timeline.hpp"
 
 #include <algorithm>
-#include <utility>
+
+#include "pipeline/clocks/silence.hpp"
 
 namespace crisp {
 
@@ -36,12 +37,15 @@ DeviceTimeline::Arrival DeviceTimeline::judge(const Item& item) {
 
 void DeviceTimeline::pass_on(const DeviceStamp& stamp) {
   const std::int64_t time_ns = stamp.receipt_ns;
-  if (stamp.device_us == std::exchange(last_us_, stamp.device_us)) ++standing_;
+  const std::uint32_t since_us = stamp.device_us - last_us_;  // wraps as they do
+  last_us_ = stamp.device_us;
   if (items_++ == 0) {
     first_ns_ = last_ns_ = time_ns;
     return;
   }
-  const double silence = 1e-9 * static_cast<double>(time_ns - last_ns_);
+  if (since_us == 0) ++standing_;
+  const double silence =
+      silence_between(1e-9 * static_cast<double>(time_ns - last_ns_), 1e-6 * static_cast<double>(since_us));
   if (silence > longest_silence_) {
     longest_silence_ = silence;
     silence_ns_ = last_ns_;

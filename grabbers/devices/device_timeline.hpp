@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include <crisp/capture_statistics.hpp>
 
@@ -48,7 +47,7 @@ class DeviceTimeline {
   Counts notes_;
   std::uint64_t items_ = 0;  ///< passed on
   std::uint64_t standing_ = 0;
-  std::optional<std::uint32_t> last_us_;  ///< stamp of the last one passed on
+  std::uint32_t last_us_ = 0;  ///< stamp of the last one passed on
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   double longest_silence_ = 0;  ///< [s]
   std::int64_t silence_ns_ = 0;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "pipeline/clocks/silence.hpp"
+
 namespace crisp {
 namespace {
 
@@ -20,7 +22,6 @@ DeviceStamps::DeviceStamps(std::string device, FittedClock clock, double period,
 DeviceStamps::Arrival DeviceStamps::accept(std::uint16_t counter, std::uint32_t raw_us,
                                            std::int64_t receipt_ns, double hub, std::int64_t handover_us) {
   ++report_.received;
-  note_silence(hub);
   if (report_.by_receipt) raw_us = static_cast<std::uint32_t>(receipt_ns / 1000);
   std::int64_t steps = 1;
   std::optional<double> counted_s;
@@ -30,6 +31,8 @@ DeviceStamps::Arrival DeviceStamps::accept(std::uint16_t counter, std::uint32_t 
     if (period_ > 0) counted_s = static_cast<double>(steps) * period_;
   }
   auto [kind, device_us] = time_.add(raw_us, receipt_ns, counted_s);
+  const bool goes_on = any_ && kind == StampKind::next;
+  note_silence(hub, goes_on ? 1e-6 * static_cast<double>(device_us - last_.device_us) : 0);
   Last now{.raw_us = raw_us, .receipt_ns = receipt_ns, .device_us = device_us, .handover_us = handover_us};
   now.counter.accept(counter);
   switch (kind) {
@@ -122,11 +125,11 @@ void DeviceStamps::count_useless(std::uint16_t counter, std::uint32_t raw_us, do
   }
 }
 
-void DeviceStamps::note_silence(double hub) {
+void DeviceStamps::note_silence(double hub, double device_s) {
   if (report_.received == 1) first_hub_ = last_hub_ = hub;
-  if (hub - last_hub_ >= kSilence && report_.silences.size() < kMaxNoted) {
-    report_.silences.push_back({.begin = last_hub_, .duration = hub - last_hub_});
-  }
+  const double silence = silence_between(hub - last_hub_, device_s);
+  if (silence >= kSilence && report_.silences.size() < kMaxNoted)
+    report_.silences.push_back({.begin = last_hub_, .duration = silence});
   last_hub_ = std::max(last_hub_, hub);
 }
 

@@ -72,7 +72,8 @@ class DeviceStamps {
   std::int64_t plausible_steps(std::int64_t steps, double device_s) const;
   std::int64_t count_steps(std::int64_t steps, std::int64_t even_us);
   void count_useless(std::uint16_t counter, std::uint32_t raw_us, double hub);
-  void note_silence(double hub);
+  /// @param device_s  [s] since the stamp before; 0 where the clock does not go on from it
+  void note_silence(double hub, double device_s);
 
   StandingClock standing_;
   TimeUnwrapper time_;

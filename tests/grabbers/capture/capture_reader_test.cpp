@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <random>
 #include <set>
 
 #include <crisp/capture_reader.hpp>
@@ -127,6 +128,19 @@ TEST(CaptureReader, LosesOneTelegramWithALostSegmentAndNamesIt) {
   EXPECT_EQ(losses.of("lost telegrams, by their counter"), 1U);
   EXPECT_EQ(losses.of("bytes of TCP missing from the capture"), 400U);
   EXPECT_EQ(losses.of("telegrams cut by a gap or an end"), 1U);
+}
+
+TEST(CaptureReader, GivesItemsInOrderWhereManySegmentsAreLost) {
+  const Scenario scenario{.scans = 150, .beams = 541, .tcp = {.largest_segment = 400}};
+  auto frames = scenario.frames();
+  auto segments = segments_of(frames, 1);
+  std::mt19937_64 random(1);
+  std::erase_if(segments, [&](std::size_t) { return random() % 2 == 0; });
+  for (auto lost = segments.rbegin(); lost != segments.rend(); ++lost)
+    frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(*lost));
+  const auto reading = read_capture(pcap_file(frames));
+  EXPECT_EQ(reading.statistics.notes.of("items out of order, since the hub's clock stepped back"), 0U);
+  EXPECT_EQ(reading.device("laser1").notes.of("TCP segments out of order"), 0U);
 }
 
 TEST(CaptureReader, BeginsAndEndsInMidConnection) {

@@ -54,6 +54,16 @@ TEST_F(TcpStreamTest, PutsSegmentsInOrderAndKeepsTheirTimes) {
   EXPECT_EQ(stream_.counts().late_segments, 1U);
 }
 
+TEST_F(TcpStreamTest, SegmentsAfterAHoleThatStaysAreNotOutOfOrder) {
+  flag(99, true, false, 0);
+  send(100, "ab", 1);
+  send(104, "ef", 2);
+  send(106, "gh", 3);
+  stream_.finish();
+  EXPECT_EQ(out_.text, "ab|efgh");
+  EXPECT_EQ(stream_.counts().late_segments, 0U);
+}
+
 TEST_F(TcpStreamTest, BeginsInMidConnection) {
   send(77'000, "ab", 1);
   send(77'002, "cd", 2);

@@ -42,6 +42,16 @@ TEST(DeviceTimeline, CountsLossesRepeatsAndLateItems) {
   EXPECT_EQ(found.notes.of("items that came twice"), 1U);
 }
 
+TEST(DeviceTimeline, AStepOfTheHubsClockIsNoSilence) {
+  DeviceTimeline stepped(nullptr), silent(nullptr);
+  for (std::int64_t k = 0; k < 100; ++k) {
+    come(stepped, item(k, k < 50 ? 0 : 3.7));
+    if (k < 30 || k >= 90) come(silent, item(k));
+  }
+  EXPECT_NEAR(statistics_of(stepped).longest_silence, 0.02, 1e-9);
+  EXPECT_NEAR(statistics_of(silent).longest_silence, 61 * 0.02, 1e-9);
+}
+
 TEST(DeviceTimeline, CountsNoLossesOfAPollingClient) {
   DeviceTimeline timeline(nullptr);
   for (const std::int64_t k : {0, 5, 5, 10}) {

@@ -72,6 +72,7 @@ TEST(HubClock, SetForwardByMoreThanAPauseIsOneStepOfOneRecording) {
   ASSERT_EQ(aligned.report.hub_steps.size(), 1U);
   EXPECT_NEAR(aligned.report.hub_steps[0].by, 60, 1e-3);
   EXPECT_NEAR(aligned.report.hub_steps[0].at, kStart + 5, 0.1);
+  for (const auto& device : aligned.report.devices) EXPECT_TRUE(device.silences.empty()) << device.device;
   const auto scans = aligned.of_laser(0);
   EXPECT_NEAR(scans.back()->time.front() - scans.front()->time.front(),
               lasers[0].back().begin - lasers[0].front().begin, 2e-3);
