@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <crisp/error.hpp>
 
@@ -30,6 +31,15 @@ std::optional<std::string> caveat_of_half_a_turn(const SensorModel& model, const
   return fmt::format(
       "the plate turned by {:.0f} degrees only: one laser then sees no surface twice, and only the flatness of surfaces determines its pose",
       way * 180 / std::numbers::pi);
+}
+
+/// Where most parameters are held, the few that are free rest on what is assumed of the others. A steady
+/// plate leaves fewer than half unobservable: each η and, but for the first, each λ.
+std::optional<std::string> caveat_of_few(std::size_t free, std::size_t all, const Sample& sample) {
+  if (2 * free >= all) return std::nullopt;
+  return fmt::format(
+      "these data determine {} of {} parameters only; the plate turned by {:.0f} degrees in all. Record several turns of the plate at changing rates, in a room with walls",
+      free, all, turned(sample) * 180 / std::numbers::pi);
 }
 
 /// The model with held parameters at the rig's values, if the rig gives their standard deviations.
@@ -60,9 +70,10 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
   const LagRange lag = refined_lags(start, settings.prior);
   Sample inside = covered(sample, lag.earliest, lag.latest);
   const auto caveat = caveat_of_half_a_turn(start, inside);
-  FreeParameters parameters = identifiable_parameters(
-      free_parameters(start, inside.beams, settings.fixed, settings.terms, settings.forms), start, inside,
-      ParameterPrior{});
+  FreeParameters possible =
+      free_parameters(start, inside.beams, settings.fixed, settings.terms, settings.forms);
+  const std::size_t all = possible.free.size();
+  FreeParameters parameters = identifiable_parameters(std::move(possible), start, inside, ParameterPrior{});
   SurfelRefiner refiner(with_nominal(start, parameters.unobservable, settings.prior), std::move(inside),
                         parameters.free, settings);
   int round = 0;
@@ -83,10 +94,11 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
   refiner.widen_by_shared_errors();
   refiner.consider_held(parameters.unobservable);
   const auto caveat_of_fixed = refiner.consider_fixed(fixed_parameters(start, sample, settings));
+  const auto caveat_of_most = caveat_of_few(refiner.free().size(), all, sample);
   Refinement result = refiner.result();
   if (round > 0) check_errors(result.outcome, sample.beams, settings.surfels.floor, settings.prior);
   result.outcome.unobservable = std::move(parameters.unobservable);
-  for (const auto& each : {caveat, caveat_of_fixed}) {
+  for (const auto& each : {caveat, caveat_of_most, caveat_of_fixed}) {
     if (each) result.outcome.caveats.push_back(*each);
   }
   result.rounds = round;
