@@ -22,6 +22,27 @@ void minimize_over(const Indices& free, const Eigen::MatrixXd& matrix, const Eig
   for (std::size_t k = 0; k < free.size(); ++k) step[free[k]] = minimum[static_cast<Eigen::Index>(k)];
 }
 
+/// The first bound on the way from one step to another.
+struct Block {
+  Eigen::Index parameter = 0;
+  double bound = 0;
+  double share = 1;  ///< of the way
+};
+
+std::optional<Block> first_bound(const Indices& free, const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                                 const StepBounds& bounds) {
+  std::optional<Block> first;
+  for (const Eigen::Index i : free) {
+    const bool rises = to[i] > from[i];
+    const double bound = rises ? bounds.upper[i] : bounds.lower[i];
+    const bool is_beyond = rises ? to[i] > bound : to[i] < bound;
+    if (!is_beyond) continue;
+    const double share = (bound - from[i]) / (to[i] - from[i]);
+    if (!first || share < first->share) first = {.parameter = i, .bound = bound, .share = share};
+  }
+  return first;
+}
+
 /// The parameter on its bound whose multiplier is the most negative: the objective falls inside.
 std::optional<Eigen::Index> released(const Indices& active, const Eigen::MatrixXd& matrix,
                                      const Eigen::VectorXd& gradient, const StepBounds& bounds,
@@ -51,20 +72,12 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& matrix, const Eigen::VectorX
   for (Eigen::Index change = 0; change <= most_changes; ++change) {
     Eigen::VectorXd next = step;
     minimize_over(free, matrix, gradient, next);
-    double share = 1;
-    std::optional<Eigen::Index> blocking;
-    for (const Eigen::Index i : free) {
-      const double bound = next[i] > step[i] ? bounds.upper[i] : bounds.lower[i];
-      const bool is_beyond = next[i] > step[i] ? next[i] > bound : next[i] < bound;
-      if (!is_beyond || (bound - step[i]) / (next[i] - step[i]) >= share) continue;
-      share = (bound - step[i]) / (next[i] - step[i]);
-      blocking = i;
-    }
-    step += share * (next - step);
-    if (blocking) {
-      step[*blocking] = next[*blocking] > step[*blocking] ? bounds.upper[*blocking] : bounds.lower[*blocking];
-      std::erase(free, *blocking);
-      active.push_back(*blocking);
+    const auto block = first_bound(free, step, next, bounds);
+    step += (block ? block->share : 1) * (next - step);
+    if (block) {
+      step[block->parameter] = block->bound;
+      std::erase(free, block->parameter);
+      active.push_back(block->parameter);
       continue;
     }
     const auto inside = released(active, matrix, gradient, bounds, step);

@@ -55,12 +55,12 @@ Calibration calibration_of(const Outcome& outcome, const Rig& rig) {
 
 Calibration with_angles_near(Calibration calibration, const Rig& rig) {
   constexpr double kTurn = 2 * std::numbers::pi;
+  const auto bring_near = [](Parameter& angle, const Parameter& nominal) {
+    angle.value = nominal.value + std::remainder(angle.value - nominal.value, kTurn);
+  };
   for (std::size_t i = 0; i < std::min(calibration.lasers.size(), rig.lasers.size()); ++i) {
-    LaserCalibration& laser = calibration.lasers[i];
-    const LaserCalibration& nominal = rig.lasers[i].nominal;
-    laser.lambda.value =
-        nominal.lambda.value + std::remainder(laser.lambda.value - nominal.lambda.value, kTurn);
-    laser.alpha.value += kTurn * std::round((nominal.alpha.value - laser.alpha.value) / kTurn);
+    bring_near(calibration.lasers[i].lambda, rig.lasers[i].nominal.lambda);
+    bring_near(calibration.lasers[i].alpha, rig.lasers[i].nominal.alpha);
   }
   return calibration;
 }
