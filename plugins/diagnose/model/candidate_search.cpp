@@ -152,8 +152,12 @@ std::vector<Hypothesis> CandidateSearch::refine_search(const std::set<std::strin
   SelectionSettings selection = settings_.selection;
   selection.visible = settings_.min_effect;
   auto needs = needs_in(view(promising(), settings_.refine_beams), selection, rejected);
-  std::erase_if(needs, [](const Hypothesis& hypothesis) {
-    return hypothesis.candidate.is_shape() && !hypothesis.candidate.in_model;
+  const auto& all = all_.jacobian.candidates();
+  const auto is_of_model = [&](const Candidate& one) {
+    return std::ranges::any_of(in_model(all), [&](std::size_t c) { return all[c].is_of_family(one); });
+  };
+  std::erase_if(needs, [&](const Hypothesis& hypothesis) {
+    return hypothesis.candidate.is_shape() && !is_of_model(hypothesis.candidate);
   });
   return needs;
 }
@@ -173,9 +177,12 @@ std::vector<Limit> CandidateSearch::unobservable(const std::vector<Hypothesis>& 
     if (is_taken) taken.push_back(c);
   }
   const auto tests = score_tests_given(taken, all_.jacobian, all_.equations);
+  const auto is_given = [&](const Candidate& one) {
+    return std::ranges::any_of(given, [&](const Hypothesis& h) { return h.candidate.is_of_family(one); });
+  };
   std::map<std::string, Least> limits;
   for (std::size_t c = 0; c < tests.size(); ++c) {
-    if (!tests[c] || all[c].is_shape()) continue;
+    if (!tests[c] || all[c].is_shape() || is_given(all[c])) continue;
     const Least own{.limit = limit_of(all[c], *tests[c], settings_.selection, all_.equations.beams),
                     .candidate = c};
     const auto [known, is_new] = limits.try_emplace(all[c].cause_name(), own);

@@ -56,12 +56,13 @@ class CandidateSearch {
   /// @param rejected  names of candidates that are excluded from the selection
   std::vector<Hypothesis> needs(const std::set<std::string>& rejected) const;
 
-  /// Repeats the selection with more beams, which detects smaller effects. Besides the terms that the model
-  /// has, it selects causes only: real walls have small shapes that descriptions would fit.
+  /// Repeats the selection with more beams, which detects smaller effects. Besides the families that the
+  /// model has, it selects causes' own formulas only: real walls have small shapes that descriptions would
+  /// fit.
   std::vector<Hypothesis> refine_search(const std::set<std::string>& rejected) const;
 
-  /// Causes whose detection limit exceeds a quarter of the range noise in every form, given the accepted
-  /// ones.
+  /// Other causes than the accepted ones whose detection limit, given these, exceeds a quarter of the range
+  /// noise in every form.
   std::vector<Limit> unobservable(const std::vector<Hypothesis>& given) const;
 
  private:
