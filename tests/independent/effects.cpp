@@ -186,10 +186,8 @@ void add_mirror_forms(std::map<std::string, Departure>& forms) {
                             return kMilli * d.sign * (1 + 0.3 * std::cos(2 * theta + d.phase));
                           };
                         }};
-  // By sin θ it would be another α: see fire() in scanner.cpp.
-  forms["tilted_plane"] = {"mount.scan_plane_tilt", [](Effect& e, const Drawn& d) {
-                             e.elevation = [=](double theta) { return kMilli * d.sign * std::cos(theta); };
-                           }};
+  forms["tilted_plane"] = {"mount.scan_plane_tilt",
+                           [](Effect& e, const Drawn& d) { e.tilt = kMilli * d.sign; }};
 }
 
 void add_range_forms(std::map<std::string, Departure>& forms) {
@@ -278,7 +276,7 @@ std::map<std::string, Departure> all_forms() {
 
 /// Whether it can be that of one laser only.
 bool is_of_a_laser(const Effect& effect) {
-  return effect.mirror || effect.elevation || effect.range || effect.clock;
+  return effect.mirror || effect.elevation || effect.range || effect.clock || effect.tilt != 0;
 }
 
 }  // namespace

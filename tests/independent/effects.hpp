@@ -41,6 +41,7 @@ struct Effect {
   std::function<double(const Echo&)> range;       ///< reported less true range [m]
   std::function<double(double time)> clock;       ///< of the laser's clock, fast [s]
   std::function<double(const Echo&, double sigma, std::mt19937_64&)> noise;  ///< more noise [m]
+  double tilt = 0;  ///< of the scan plane about its horizontal line [rad]
   double spot = 0;  ///< full angle of the beam's footprint; edges average two ranges [rad]
 
   bool acts_on(std::size_t one) const { return laser < 0 || static_cast<std::size_t>(laser) == one; }

@@ -24,12 +24,15 @@ struct Ray {
   Vector origin, direction;
 };
 
-Ray fire(const Pose& pose, const Geometry& g, double plate_angle, double theta, double elevation = 0) {
+Ray fire(const Pose& pose, const Geometry& g, double plate_angle, double theta, double elevation = 0,
+         double tilt = 0) {
   const double azimuth = plate_angle + g.lambda, heading = azimuth + g.alpha + kTurn / 4;
   const Vector outward = std::cos(azimuth) * pose.axes.x + std::sin(azimuth) * pose.axes.y;
   const Vector sideways = std::cos(heading) * pose.axes.x + std::sin(heading) * pose.axes.y;
-  const Vector in_plane = std::sin(theta) * sideways - std::cos(theta) * pose.axes.z;
-  const Vector off_plane = cross(-1.0 * pose.axes.z, sideways);
+  const Vector normal = cross(-1.0 * pose.axes.z, sideways);
+  const Vector down = std::sin(tilt) * normal - std::cos(tilt) * pose.axes.z;
+  const Vector in_plane = std::sin(theta) * sideways + std::cos(theta) * down;
+  const Vector off_plane = cross(down, sideways);
   return {pose.origin + g.tau * outward, std::cos(elevation) * in_plane + std::sin(elevation) * off_plane};
 }
 
@@ -39,7 +42,8 @@ Ray fire(const Pose& plain, const Geometry& geometry, const Effect& effect, bool
   const Pose pose = effect.pose ? effect.pose(plain, effect.size, time, plate_angle) : plain;
   const double turned = acts && effect.mirror ? effect.size * effect.mirror(theta) : 0;
   const double raised = acts && effect.elevation ? effect.size * effect.elevation(theta) : 0;
-  return fire(pose, geometry, plate_angle, theta + turned, raised);
+  const double tilt = acts ? effect.size * effect.tilt : 0;
+  return fire(pose, geometry, plate_angle, theta + turned, raised, tilt);
 }
 
 double remission_of(const Hit& hit) {

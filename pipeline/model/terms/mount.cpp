@@ -68,22 +68,24 @@ struct MirrorZero final : DifferentiableTerm<MirrorZero> {
   }
 };
 
-/// The scan plane is turned about the tangent through the laser.
+/// The scan plane is turned about its horizontal line, which is the tangent where α = 0. About the tangent, a
+/// radial scan plane would turn within itself, as by its mirror's zero.
 struct ScanPlaneTilt final : DifferentiableTerm<ScanPlaneTilt> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
         .name = "mount.scan_plane_tilt",
         .summary = "a laser's scan plane is tilted against the spin axis",
-        .phase = Phase::kMount,
+        .phase = Phase::kBeam,
         .scope = Scope::kLaser,
-        .parameters = {{.name = "tilt",
-                        .unit = "rad",
-                        .lower = -0.2,
-                        .upper = 0.2,
-                        .summary =
-                            "right-handed about the tangent: the beam at θ = 0 tilts towards the axis"}},
+        .parameters =
+            {{.name = "tilt",
+              .unit = "rad",
+              .lower = -0.2,
+              .upper = 0.2,
+              .summary =
+                  "right-handed about the scan plane's horizontal line (the tangent where α = 0): the beam at θ = 0 tilts towards the axis"}},
         .details =
-            "`direction = Ry(tilt) direction` in the plate's frame at the laser. Typically 0.1° to 1°. In a narrow field of view it resembles α.",
+            "`direction = Ry(tilt) direction` in the laser's frame, before α turns it. Typically 0.1° to 1°. In a narrow field of view it resembles α.",
         .resolvable_by = "the whole sweep of the mirror"};
     return kInfo;
   }

@@ -38,7 +38,7 @@ TEST(MountTerms, TheMirrorsZeroTurnsTheBeamWithinItsPlane) {
   expect_point(x, 0.2, 3, 0);
 }
 
-TEST(MountTerms, ATiltOfTheScanPlaneLeansTheBeamThatPointsDownTowardsTheAxis) {
+TEST(MountTerms, ATiltOfTheScanPlaneLeansTheBeamThatPointsDownOutOfThePlane) {
   // right-handed about y: −z goes to −x. 3-4-5 triangle: tan tilt = 3/4.
   const double tilt = std::atan2(3, 4);
   const auto down = point_with("mount.scan_plane_tilt", {{"tilt", tilt}}, one_laser(0, 0.2, 0),
@@ -47,6 +47,9 @@ TEST(MountTerms, ATiltOfTheScanPlaneLeansTheBeamThatPointsDownTowardsTheAxis) {
   const auto along = point_with("mount.scan_plane_tilt", {{"tilt", tilt}}, one_laser(0, 0.2, 0),
                                 one_beam(5, 90 * kDegree), turning_plate(0));
   expect_point(along, 0.2, 5, 0);
+  const auto radial = point_with("mount.scan_plane_tilt", {{"tilt", tilt}}, one_laser(0, 0.2, -90 * kDegree),
+                                 one_beam(5, 0), turning_plate(0));
+  expect_point(radial, 0.2, 3, -4);  // out of the radial plane
 }
 
 TEST(MirrorTerms, AConeLiftsTheBeamOutOfItsPlaneByTheSameAngleEverywhere) {
