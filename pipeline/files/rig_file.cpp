@@ -243,7 +243,8 @@ class RigReader {
         } else if (address.ip == used.ip && overlap) {
           errors_.emplace_back(
               fmt::format("rig: '{}' and '{}' have the same address {}", other, name, address.ip),
-              "give each its own, or ports that differ", place);
+              "give each its own (`crisp info` on a recording lists those in it), or ports that differ",
+              place);
         }
       }
     }

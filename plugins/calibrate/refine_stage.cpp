@@ -193,7 +193,7 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
   if (of_rig.empty() && of_fit.empty() && are_resolved(start_->caveats, check)) {
     context.resolve_caveats(KindName<Calibration>::value,
                             "the refined calibration fits, and agrees with the rig");
-  } else if (check.is_explained) {
+  } else if (check.is_explained || !of_rig.empty()) {
     context.resolve_caveats(KindName<Calibration>::value,
                             "the refined values, which are more accurate, show what is wrong in the rig");
   }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -15,10 +16,11 @@
 namespace crisp {
 namespace {
 
+constexpr double kHalfTurn = std::numbers::pi;
 constexpr std::array kTurns = {180 * kDegree, 90 * kDegree, -90 * kDegree, 45 * kDegree, -45 * kDegree};
 
 std::string mount_in_words(const RigLaser& laser, double turn) {
-  const double mount = std::remainder(laser.mount + turn, 2 * std::numbers::pi);
+  const double mount = std::remainder(laser.mount + turn, 2 * kHalfTurn);
   return fmt::format("mount: {:.4g}deg of {} (the rig has {:.4g})", mount / kDegree, laser.name,
                      laser.mount / kDegree);
 }
@@ -36,21 +38,28 @@ std::uint16_t laser_after(const RigChange& change, std::uint16_t laser) {
   return static_cast<std::uint16_t>(one + other - laser);
 }
 
+std::size_t different_changes(const RigChange& change) {
+  std::vector<LaserChange> different;
+  for (const LaserChange& laser : change.lasers) {
+    const bool is_known = std::ranges::find(different, laser) != different.end();
+    if (laser != LaserChange{} && !is_known) different.push_back(laser);
+  }
+  return different.size();
+}
+
+/// Both changes, of different lasers.
+RigChange both(RigChange one, const RigChange& other) {
+  one.words += (one.words.empty() ? "" : ", ") + other.words;
+  for (std::size_t laser = 0; laser < one.lasers.size(); ++laser) {
+    if (other.lasers[laser] != LaserChange{}) one.lasers[laser] = other.lasers[laser];
+  }
+  return one;
+}
+
 }  // namespace
 
 RigChange no_change(const Rig& rig) {
-  return {.words = {}, .mount_turns = std::vector<double>(rig.lasers.size(), 0.0)};
-}
-
-std::vector<RigChange> other_mounts_of(const Rig& rig, std::size_t laser) {
-  std::vector<RigChange> all;
-  for (const double turn : kTurns) {
-    RigChange change = no_change(rig);
-    change.words = mount_in_words(rig.lasers[laser], turn);
-    change.mount_turns[laser] = turn;
-    all.push_back(std::move(change));
-  }
-  return all;
+  return {.words = {}, .lasers = std::vector<LaserChange>(rig.lasers.size())};
 }
 
 RigChange other_direction(const Rig& rig) {
@@ -61,12 +70,31 @@ RigChange other_direction(const Rig& rig) {
   return change;
 }
 
+std::vector<RigChange> changes_of_laser(const Rig& rig, std::size_t laser) {
+  const RigLaser& own = rig.lasers[laser];
+  const double alpha = own.nominal.alpha.value;
+  RigChange upside_down = no_change(rig);
+  upside_down.words =
+      fmt::format("alpha: {:.4g}deg of {}, which is upside down (the rig has {:.4g})",
+                  std::remainder(alpha + kHalfTurn, 2 * kHalfTurn) / kDegree, own.name, alpha / kDegree);
+  upside_down.lasers[laser].is_upside_down = true;
+  std::vector<RigChange> all = {std::move(upside_down)};
+  for (const double turn : kTurns) {
+    RigChange change = no_change(rig);
+    change.words = mount_in_words(own, turn);
+    change.lasers[laser].mount_turn = turn;
+    all.push_back(std::move(change));
+  }
+  return all;
+}
+
 std::vector<RigChange> other_mounts(const Rig& rig) {
   std::vector<RigChange> all;
   for (const double turn : kTurns) {
-    RigChange change{.words = mount_in_words(rig.lasers[0], turn),
-                     .mount_turns = std::vector<double>(rig.lasers.size(), turn)};
+    RigChange change = no_change(rig);
+    change.words = mount_in_words(rig.lasers[0], turn);
     if (rig.lasers.size() > 1) change.words += " and the mounts of the others turned alike";
+    for (LaserChange& laser : change.lasers) laser.mount_turn = turn;
     all.push_back(std::move(change));
   }
   return all;
@@ -80,8 +108,8 @@ std::vector<RigChange> exchanges(const Rig& rig) {
       change.words =
           fmt::format("the addresses of {} and {} exchanged", rig.lasers[i].name, rig.lasers[j].name);
       change.exchanged = {i, j};
-      change.mount_turns[i] = rig.lasers[i].mount - rig.lasers[j].mount;
-      change.mount_turns[j] = -change.mount_turns[i];
+      change.lasers[i].mount_turn = rig.lasers[i].mount - rig.lasers[j].mount;
+      change.lasers[j].mount_turn = -change.lasers[i].mount_turn;
       all.push_back(std::move(change));
     }
   }
@@ -100,13 +128,35 @@ std::vector<RigChange> other_counts(const Rig& rig) {
   return all;
 }
 
+std::vector<RigChange> combinations(const std::vector<std::vector<RigChange>>& of_lasers) {
+  std::vector<RigChange> all;
+  for (const auto& alternatives : of_lasers) {
+    std::vector<RigChange> longer;
+    for (const RigChange& change : alternatives) {
+      if (all.empty()) longer.push_back(change);
+      for (const RigChange& before : all) longer.push_back(both(before, change));
+    }
+    all = std::move(longer);
+  }
+  std::ranges::stable_sort(all, {}, different_changes);
+  return all;
+}
+
+bool is_half_turn(const RigChange& change) {
+  return std::ranges::all_of(change.lasers, [](const LaserChange& laser) {
+    return laser.is_upside_down || laser.mount_turn == 0 || laser.mount_turn == kTurns.front();
+  });
+}
+
 ChangedSample::ChangedSample(const Sample& sample, const RigChange& change)
     : sample_(sample), plate_(turned_by(*sample.plate, change.turn)) {
   for (std::size_t i = 0; i < sample_.beams.size(); ++i) {
     auto& laser = sample_.beams.laser[i];
     laser = laser_after(change, laser);
+    const LaserChange& own = change.lasers[laser];
     float& angle = sample_.beams.mirror_angle[i];
-    angle = static_cast<float>(wrapped_mirror_angle(angle - change.mount_turns[laser]));
+    angle = static_cast<float>(wrapped_mirror_angle(angle - own.mount_turn));
+    if (own.is_upside_down) angle = -angle;
   }
   sample_.plate = &plate_;
 }

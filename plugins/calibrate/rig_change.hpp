@@ -13,11 +13,18 @@
 
 namespace crisp {
 
+/// A possible correction of one laser's entry in the rig.
+struct LaserChange {
+  double mount_turn = 0;        ///< [rad] by which its mount is greater
+  bool is_upside_down = false;  ///< compared with the rig: its angles grow the other way
+  bool operator==(const LaserChange&) const = default;
+};
+
 /// A possible correction of a rig, as it changes what the measurements mean.
 struct RigChange {
   std::string words;  ///< "plate.direction: clockwise"
   double turn = 1;    ///< by which the plate's angles are multiplied; −1: it counts the other way
-  std::vector<double> mount_turns;  ///< [rad] by which each laser's mount is greater
+  std::vector<LaserChange> lasers;                                              ///< of each laser
   std::optional<std::pair<std::size_t, std::size_t>> exchanged = std::nullopt;  ///< lasers, before all else
 };
 
@@ -30,15 +37,21 @@ RigChange other_direction(const Rig& rig);
 /// Two lasers exchanged, each pair in turn.
 std::vector<RigChange> exchanges(const Rig& rig);
 
-/// The mounts of all lasers turned alike: by 180, 90 and 45 degrees either way.
-std::vector<RigChange> other_mounts(const Rig& rig);
+/// A laser upside down, and its mount turned by 180, 90 and 45 degrees either way.
+std::vector<RigChange> changes_of_laser(const Rig& rig, std::size_t laser);
 
-/// The same of one laser.
-std::vector<RigChange> other_mounts_of(const Rig& rig, std::size_t laser);
+/// The mounts of all lasers turned alike.
+std::vector<RigChange> other_mounts(const Rig& rig);
 
 /// Counts a revolution that are off by a factor of an encoder's electronics, which counts one, two or four
 /// edges of each line.
 std::vector<RigChange> other_counts(const Rig& rig);
+
+/// Each combination of one change from each list, those that change lasers alike first.
+std::vector<RigChange> combinations(const std::vector<std::vector<RigChange>>& of_lasers);
+
+/// Whether it changes lasers by half a turn only, or turns them upside down, which are hard to tell apart.
+bool is_half_turn(const RigChange& change);
 
 /// The data as they would be with the rig changed.
 class ChangedSample {

@@ -2,6 +2,7 @@
 #include "plugins/calibrate/rig_hypotheses.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,7 @@ namespace crisp {
 namespace {
 
 constexpr std::size_t kBeams = 100'000;  // enough to see whether they fit
+constexpr double kSteps = 20;            // about as many changes as are tried
 constexpr const char* kMirrorZero = "mount.mirror_zero";
 
 /// "0.000" and not "-0.000".
@@ -139,49 +141,72 @@ std::optional<std::string> RigErrorSearch::counts() {
   return counts_caveat(*period_);
 }
 
-std::optional<std::string> RigErrorSearch::first_that_fits(const std::vector<RigChange>& changes,
-                                                           const Sample& sample, const Fit& unchanged) {
+bool RigErrorSearch::fits_with(const RigChange& change, const Sample& sample, const Fit& unchanged) {
+  if (settings_.interrupted()) return false;
+  if (settings_.report)
+    settings_.report(std::min(0.99, static_cast<double>(step_++) / kSteps), "what if " + change.words);
+  const Fit changed = fit_with(change, sample);
+  return changed.fits && changed.beams > unchanged.beams;
+}
+
+std::vector<RigChange> RigErrorSearch::those_that_fit(const std::vector<RigChange>& changes) {
+  std::vector<RigChange> fitting;
   for (const RigChange& change : changes) {
-    if (settings_.interrupted()) break;
-    if (settings_.report)
-      settings_.report(static_cast<double>(step_++) / static_cast<double>(steps_), "what if " + change.words);
-    const Fit changed = fit_with(change, sample);
-    if (changed.fits && changed.beams > unchanged.beams) return change.words;
+    const bool decides = fitting.empty() || (is_half_turn(fitting.front()) && is_half_turn(change));
+    if (decides && fits_with(change, sample_, fit_of_rig())) fitting.push_back(change);
   }
-  return std::nullopt;
+  return fitting;
 }
 
-std::optional<std::string> RigErrorSearch::mount_of_one(std::size_t laser) {
+std::vector<RigChange> RigErrorSearch::of_one(std::size_t laser) {
   const Sample own = of_laser(sample_, laser);
-  if (own.beams.size() == 0) return std::nullopt;
+  if (own.beams.size() == 0) return {};
   const Fit unchanged = fit_with(no_change(rig_), own);
-  if (unchanged.fits) return std::nullopt;
-  return first_that_fits(other_mounts_of(rig_, laser), own, unchanged);
+  if (unchanged.fits) return {};
+  auto changes = changes_of_laser(rig_, laser);
+  std::erase_if(changes, [&](const RigChange& change) { return !fits_with(change, own, unchanged); });
+  return changes;
 }
 
-std::vector<RigChange> RigErrorSearch::changes_of_all() const {
+std::vector<RigChange> RigErrorSearch::of_some() {
+  constexpr std::size_t kMost = 8;
+  std::vector<std::vector<RigChange>> alternatives;
+  for (std::size_t laser = 0; laser < rig_.lasers.size(); ++laser) {
+    auto own = of_one(laser);
+    if (!own.empty()) alternatives.push_back(std::move(own));
+  }
+  auto all = combinations(alternatives);
+  if (all.size() > kMost) all.resize(kMost);
+  return those_that_fit(all);
+}
+
+std::vector<RigChange> RigErrorSearch::of_plate() {
   std::vector<RigChange> changes = {other_direction(rig_)};
-  const auto append = [&](std::vector<RigChange> more) {
-    std::ranges::move(more, std::back_inserter(changes));
-  };
-  append(exchanges(rig_));
-  append(other_mounts(rig_));
-  if (!period_) append(other_counts(rig_));
-  return changes;
+  // Where the plate turned far enough, counts() has compared turns.
+  if (!period_) std::ranges::move(other_counts(rig_), std::back_inserter(changes));
+  return those_that_fit(changes);
+}
+
+std::vector<RigChange> RigErrorSearch::of_all() {
+  auto found = those_that_fit(exchanges(rig_));
+  return found.empty() ? those_that_fit(other_mounts(rig_)) : found;
 }
 
 std::optional<std::string> RigErrorSearch::any() {
   // Where the rig as it stands fits as well, by the same few beams, no change of it explains anything.
   if (fit_of_rig().fits) return std::nullopt;
   if (!fit_of_rig().mistake.empty()) return fit_of_rig().mistake;
-  const auto of_all = changes_of_all();
-  const std::size_t lasers = rig_.lasers.size() > 1 ? rig_.lasers.size() : 0;
-  steps_ = of_all.size();
-  for (std::size_t laser = 0; laser < lasers; ++laser) steps_ += other_mounts_of(rig_, laser).size();
-  auto change = first_that_fits(of_all, sample_, fit_of_rig());
-  for (std::size_t laser = 0; !change && laser < lasers; ++laser) change = mount_of_one(laser);
-  if (!change) return std::nullopt;
-  return fmt::format("the rig is probably wrong: the data fit with {}. Set it in the rig", *change);
+  std::vector<RigChange> found = of_plate();
+  if (found.empty()) found = of_some();  // a tenth of the time that all lasers together take
+  if (found.empty()) found = of_all();
+  if (found.empty()) return std::nullopt;
+  std::vector<std::string> words;
+  for (const RigChange& change : found) words.push_back(change.words);
+  return found.size() == 1
+             ? fmt::format("the rig is probably wrong: the data fit with {}. Set it in the rig", words[0])
+             : fmt::format(
+                   "the rig is probably wrong: the data fit with one of {} corrections: {}. Find out on the scanner which one is true, and set it in the rig",
+                   words.size(), fmt::join(words, "; or "));
 }
 
 }  // namespace crisp

@@ -44,9 +44,9 @@ class RigErrorSearch {
   /// plate, or a little better, and with such counts a calibration fits with clearly more beams.
   std::optional<std::string> counts();
 
-  /// Any other mistake, as a caveat: the encoder's direction, the mounts of all lasers or of one, two lasers
-  /// that are exchanged, or counts that are off by a factor of two or four where the plate turned too little
-  /// to show it.
+  /// Any other mistake, as a caveat: the encoder's direction, mounts, lasers that are upside down, two that
+  /// are exchanged, or counts that are off by a factor of two or four where the plate turned too little to
+  /// show it.
   ///
   /// Takes some calibrations' time.
   std::optional<std::string> any();
@@ -61,10 +61,18 @@ class RigErrorSearch {
 
   Fit fit_with(const RigChange& change, const Sample& sample) const;
   const Fit& fit_of_rig();
-  std::optional<std::string> first_that_fits(const std::vector<RigChange>& changes, const Sample& sample,
-                                             const Fit& unchanged);
-  std::optional<std::string> mount_of_one(std::size_t laser);
-  std::vector<RigChange> changes_of_all() const;
+  /// Whether the data fit, with more beams than without the change.
+  bool fits_with(const RigChange& change, const Sample& sample, const Fit& unchanged);
+  /// The first change with which all data fit; several where they differ by half a turn, or by upside down.
+  std::vector<RigChange> those_that_fit(const std::vector<RigChange>& changes);
+  /// Changes of the plate.
+  std::vector<RigChange> of_plate();
+  /// Changes of a laser with which its own beams fit, if they do not with the rig.
+  std::vector<RigChange> of_one(std::size_t laser);
+  /// Changes of the lasers whose own beams do not fit, with which all fit together.
+  std::vector<RigChange> of_some();
+  /// Changes of the lasers that only all together show.
+  std::vector<RigChange> of_all();
 
   Sample sample_;
   const Rig& rig_;
@@ -72,7 +80,6 @@ class RigErrorSearch {
   std::optional<TurnPeriod> period_;
   std::optional<Fit> fit_of_rig_;
   std::size_t step_ = 0;  ///< of any()
-  std::size_t steps_ = 1;
 };
 
 }  // namespace crisp
