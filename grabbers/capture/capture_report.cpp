@@ -146,14 +146,17 @@ std::string device_table(const CaptureStatistics& statistics) {
   return text;
 }
 
-std::string to_text(const CaptureStatistics& statistics) {
+std::string extent_of(const CaptureStatistics& statistics) {
   auto text = fmt::format("{}, {:.1f} MB", counted(statistics.packets, "packet"),
                           1e-6 * static_cast<double>(statistics.bytes));
-  if (statistics.packets > 0) {
-    const auto first = static_cast<std::time_t>(statistics.first_ns / 1'000'000'000);
-    text += fmt::format(", {:.3f} s from {:%Y-%m-%d %H:%M:%S} UTC",
-                        seconds(statistics.last_ns - statistics.first_ns), fmt::gmtime(first));
-  }
+  if (statistics.packets == 0) return text;
+  const auto first = static_cast<std::time_t>(statistics.first_ns / 1'000'000'000);
+  return text + fmt::format(", {:.3f} s from {:%Y-%m-%d %H:%M:%S} UTC",
+                            seconds(statistics.last_ns - statistics.first_ns), fmt::gmtime(first));
+}
+
+std::string to_text(const CaptureStatistics& statistics) {
+  std::string text = extent_of(statistics);
   for (const auto& [link_type, n] : statistics.link_types.all()) text += fmt::format(", {}", link_type);
   for (const auto& remark : statistics.remarks) text += "\n  " + remark;
   if (statistics.pauses > 0) {

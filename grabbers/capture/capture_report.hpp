@@ -17,6 +17,9 @@ std::uint64_t never_came(const DeviceStatistics& device);
 /// The statistics for programs. Times in s since the Unix epoch, durations in s, angles in rad.
 nlohmann::json to_json(const CaptureStatistics& statistics);
 
+/// Packets, bytes, and when the recording was made: one line.
+std::string extent_of(const CaptureStatistics& statistics);
+
 /// One line a device: items, rates, losses, silences, the shape of its scans.
 std::string device_table(const CaptureStatistics& statistics);
 

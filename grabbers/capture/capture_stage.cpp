@@ -138,6 +138,7 @@ void CaptureStage::give(const HubItem& item, Outputs& out, Context& context) {
 
 std::uint64_t CaptureStage::report(const CaptureStatistics& statistics, const std::filesystem::path& file,
                                    Context& context) {
+  context.print(extent_of(statistics));
   context.print(device_table(statistics));
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
   for (auto& warning : loss_warnings(statistics, file.filename().string())) context.warn(std::move(warning));
