@@ -6,6 +6,8 @@
 
 #include <utility>
 
+#include <crisp/effect_catalogue.hpp>
+
 #include "pipeline/data/mirror_angle.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 
