@@ -14,11 +14,6 @@
 namespace crisp {
 namespace {
 
-std::vector<std::size_t> without(std::vector<std::size_t> taken, std::size_t one) {
-  std::erase(taken, one);
-  return taken;
-}
-
 /// Groups causes that lasers of one make may share: the same cause of each laser, in one form unless the
 /// model has another.
 std::vector<std::vector<std::size_t>> causes_of_all_lasers(const std::vector<Candidate>& candidates) {
@@ -62,7 +57,11 @@ class Chooser {
  public:
   Chooser(const CandidateJacobian& jacobian, const NormalEquations& equations,
           const SelectionSettings& settings, const std::set<std::string>& rejected, std::size_t tests)
-      : jacobian_(jacobian), equations_(equations), settings_(settings), rejected_(rejected) {
+      : jacobian_(jacobian),
+        equations_(equations),
+        competition_(jacobian, equations),
+        settings_(settings),
+        rejected_(rejected) {
     std::set<std::string> names;
     for (const auto& candidate : jacobian.candidates()) names.insert(candidate.name);
     tests_ = std::max(tests, names.size());
@@ -192,7 +191,7 @@ class Chooser {
     const double own = bic_of(taken);
     for (const std::size_t one : taken) {
       if (!jacobian_.candidates()[one].is_cause()) continue;
-      for (const CompetingCandidate& other : with_competitors(taken, one).alternatives) {
+      for (const CompetingCandidate& other : competition_.with_competitors(taken, one).alternatives) {
         if (other.behind > settings_.odds) break;  // sorted, the nearest first
         std::vector<std::size_t> instead = taken;
         std::ranges::replace(instead, one, other.candidate);
@@ -228,99 +227,7 @@ class Chooser {
     return false;
   }
 
-  /// A selected candidate with the families that these data do not resolve from its own. Families compete by
-  /// their general members, whatever formula suffices here: one that leaves nothing for the selected
-  /// candidate to explain could be the cause as well. (The reverse holds by the selection: it ended where no
-  /// other family gains anything.) Lasers of one make have the same cause, so that a cause of several lasers
-  /// also competes with the other family in all of them.
-  SelectedCandidate with_competing_families(const std::vector<std::size_t>& taken, std::size_t one) const {
-    SelectedCandidate choice = with_competitors(taken, one);
-    const auto& candidates = jacobian_.candidates();
-    if (!candidates[one].is_cause()) return choice;
-    const double sharing = candidates[one].in_model ? choice.test.design_effect() : 1;
-    const auto own =
-        members_where(taken, [&](std::size_t t) { return candidates[t].is_of_family(candidates[one]); });
-    const auto alike = members_where(taken, [&](std::size_t t) {
-      return candidates[t].laser() && candidates[t].family == candidates[one].family;
-    });
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
-      if (!is_general_member(c) || !could_replace(c, one) || is_taken(c, taken)) continue;
-      add_competitor(choice, c, remaining(own, {c}, taken) / sharing);
-      if (alike.size() > own.size())
-        add_competitor(choice, c, remaining(alike, in_each_laser(c, alike), taken) / sharing);
-    }
-    std::ranges::sort(choice.alternatives, {}, &CompetingCandidate::behind);
-    return choice;
-  }
-
-  SelectedCandidate with_competitors(const std::vector<std::size_t>& taken, std::size_t one) const {
-    const auto tests = given(without(taken, one));
-    const auto& candidates = jacobian_.candidates();
-    SelectedCandidate choice{.candidate = one, .test = *tests[one], .alternatives = {}};
-    // The design effect reduces the evidence of correlated beams for all candidates alike.
-    const double sharing = candidates[one].in_model ? choice.test.design_effect() : 1;
-    for (std::size_t c = 0; c < tests.size(); ++c) {
-      if (!tests[c] || candidates[c].is_of_family(candidates[one]) || !candidates[c].is_cause()) continue;
-      add_competitor(choice, c, (choice.test.bic - tests[c]->bic) / sharing);
-    }
-    std::ranges::sort(choice.alternatives, {}, &CompetingCandidate::behind);
-    return choice;
-  }
-
  private:
-  template <class Predicate>
-  static std::vector<std::size_t> members_where(const std::vector<std::size_t>& taken, Predicate is_one) {
-    std::vector<std::size_t> some;
-    std::ranges::copy_if(taken, std::back_inserter(some), is_one);
-    return some;
-  }
-  /// Decrease of the BIC by some selected candidates where others stand in their place.
-  double remaining(const std::vector<std::size_t>& some, const std::vector<std::size_t>& instead,
-                   const std::vector<std::size_t>& taken) const {
-    auto with = members_where(taken, [&](std::size_t t) { return std::ranges::find(some, t) == some.end(); });
-    with.insert(with.end(), instead.begin(), instead.end());
-    return joint_score_test_given(with, some, jacobian_, equations_).bic;
-  }
-  /// The same term in each laser of some candidates.
-  std::vector<std::size_t> in_each_laser(std::size_t candidate, const std::vector<std::size_t>& some) const {
-    const auto& candidates = jacobian_.candidates();
-    std::vector<std::size_t> all;
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
-      const bool is_same_term = candidates[c].term.term == candidates[candidate].term.term;
-      const bool is_there = std::ranges::any_of(
-          some, [&](std::size_t s) { return candidates[s].owner == candidates[c].owner; });
-      if (is_same_term && is_there) all.push_back(c);
-    }
-    return all;
-  }
-  bool is_general_member(std::size_t candidate) const {
-    const Candidate& one = jacobian_.candidates()[candidate];
-    return one.is_cause() && one.is_shape() && !one.is_fine;
-  }
-  /// Whether the candidate acts on the same beams, and is of another family.
-  bool could_replace(std::size_t candidate, std::size_t one) const {
-    const Candidate& other = jacobian_.candidates()[candidate];
-    const Candidate& selected = jacobian_.candidates()[one];
-    return other.laser() == selected.laser() && !other.is_of_family(selected);
-  }
-  bool is_taken(std::size_t candidate, const std::vector<std::size_t>& taken) const {
-    const auto& candidates = jacobian_.candidates();
-    return std::ranges::any_of(
-        taken, [&](std::size_t t) { return candidates[t].is_of_family(candidates[candidate]); });
-  }
-
-  /// Adds a competitor, or brings one of its family nearer.
-  void add_competitor(SelectedCandidate& choice, std::size_t candidate, double behind) const {
-    const auto& candidates = jacobian_.candidates();
-    const auto known = std::ranges::find_if(choice.alternatives, [&](const CompetingCandidate& a) {
-      return candidates[a.candidate].is_of_family(candidates[candidate]);
-    });
-    if (known == choice.alternatives.end())
-      choice.alternatives.push_back({.candidate = candidate, .behind = behind});
-    else if (behind < known->behind)
-      *known = {.candidate = candidate, .behind = behind};
-  }
-
   /// The few best rejected candidates that gain no less than this one; one form of each.
   std::vector<std::size_t> rejected_like(const ScoreTest& own,
                                          const std::vector<std::optional<ScoreTest>>& tests) const {
@@ -346,6 +253,7 @@ class Chooser {
 
   const CandidateJacobian& jacobian_;
   const NormalEquations& equations_;
+  Competition competition_;
   const SelectionSettings& settings_;
   const std::set<std::string>& rejected_;
   std::size_t tests_ = 1;
@@ -358,6 +266,7 @@ std::vector<SelectedCandidate> choose(const CandidateJacobian& jacobian, const N
                                       const SelectionSettings& settings,
                                       const std::set<std::string>& rejected, std::size_t tests) {
   const Chooser chooser(jacobian, equations, settings, rejected, tests);
+  const Competition competition(jacobian, equations);
   std::vector<std::size_t> taken;
   std::set<std::vector<std::size_t>> seen;
   double rough = 0;
@@ -376,7 +285,7 @@ std::vector<SelectedCandidate> choose(const CandidateJacobian& jacobian, const N
     chooser.eliminate_needless(taken);
   }
   std::vector<SelectedCandidate> choices;
-  for (const std::size_t t : taken) choices.push_back(chooser.with_competing_families(taken, t));
+  for (const std::size_t t : taken) choices.push_back(competition.with_competing_families(taken, t));
   return choices;
 }
 

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "plugins/diagnose/model/candidate_jacobian.hpp"
-#include "plugins/diagnose/model/score_test.hpp"
+#include "plugins/diagnose/model/competing_causes.hpp"
 
 namespace crisp {
 
@@ -17,21 +16,6 @@ struct SelectionSettings {
   double visible = 0.015;  ///< [σ] minimum RMS change of ranges: edges and bumps of surfaces make less
   double odds = 9.2;       ///< difference in BIC below which two causes are not resolvable (Bayes factor 100)
   std::size_t most = 12;   ///< maximum number of selected candidates
-};
-
-/// A candidate that could replace a selected one.
-struct CompetingCandidate {
-  std::size_t candidate = 0;
-  /// BIC of the selected candidate less this one's, for independent beam errors. For the general member of
-  /// another family: what the selected candidate still gains once that member is in the model.
-  double behind = 0;
-};
-
-/// A selected candidate with its competitors.
-struct SelectedCandidate {
-  std::size_t candidate = 0;
-  ScoreTest test;                                ///< given all other selected candidates
-  std::vector<CompetingCandidate> alternatives;  ///< the nearest first, one form of each
 };
 
 /// Stepwise selection of candidates by BIC on the linearized problem: forward selection, each step followed
