@@ -13,9 +13,9 @@
 #include <crisp/measurements.hpp>
 #include <crisp/plate_trajectory.hpp>
 
-#include "grabbers/bag/joint_rotation.hpp"
+#include "grabbers/bag/joint_angle.hpp"
 #include "grabbers/bag/point_cones.hpp"
-#include "grabbers/bag/ros_sensor_messages.hpp"
+#include "grabbers/bag/ros_scan_messages.hpp"
 #include "grabbers/devices/rotating_head.hpp"
 #include "grabbers/table/actuator_angles.hpp"
 

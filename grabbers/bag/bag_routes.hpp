@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "grabbers/bag/point_cloud.hpp"
-#include "grabbers/bag/ros_sensor_messages.hpp"
+#include "grabbers/bag/ros_scan_messages.hpp"
 
 namespace crisp {
 

@@ -10,7 +10,7 @@
 #include <crisp/rig.hpp>
 #include <crisp/scan.hpp>
 
-#include "grabbers/capture/network_frames.hpp"
+#include "grabbers/capture/frame_builder.hpp"
 #include "grabbers/wire/cola.hpp"
 
 namespace crisp {

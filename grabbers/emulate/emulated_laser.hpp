@@ -11,8 +11,8 @@
 
 #include <crisp/rig.hpp>
 
-#include "grabbers/emulate/emulated_clock.hpp"
 #include "grabbers/emulate/emulated_faults.hpp"
+#include "grabbers/emulate/scan_restamper.hpp"
 #include "grabbers/emulate/sick_responder.hpp"
 
 namespace crisp {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "grabbers/live/sick_configuration.hpp"
+#include "grabbers/live/configuration_mismatch.hpp"
 #include "grabbers/wire/scan_settings.hpp"
 
 namespace crisp {

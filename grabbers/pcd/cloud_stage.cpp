@@ -9,7 +9,7 @@
 
 #include <crisp/cloud_conversion.hpp>
 
-#include "grabbers/pcd/surplus.hpp"
+#include "grabbers/pcd/surplus_points.hpp"
 #include "pipeline/pcd/parts.hpp"
 
 namespace crisp {

@@ -7,7 +7,7 @@
 
 #include <crisp/measurement_tables.hpp>
 
-#include "grabbers/pcd/surplus.hpp"
+#include "grabbers/pcd/surplus_points.hpp"
 #include "pipeline/pcd/parts.hpp"
 
 namespace crisp {

@@ -10,12 +10,12 @@
 
 #include <crisp/builtin.hpp>
 
+#include "pipeline/app/bash_completion.hpp"
 #include "pipeline/app/command_line.hpp"
-#include "pipeline/app/completion.hpp"
 #include "pipeline/app/completion_settings.hpp"
 #include "pipeline/app/exhaustion.hpp"
 #include "pipeline/app/own_process.hpp"
-#include "pipeline/data/resource_exhaustion.hpp"
+#include "pipeline/data/exception_to_error.hpp"
 #include "pipeline/files/nearest.hpp"
 
 namespace crisp {

@@ -14,7 +14,7 @@
 #include <cstring>
 #include <iostream>
 
-#include "pipeline/data/resource_exhaustion.hpp"
+#include "pipeline/data/exception_to_error.hpp"
 
 namespace crisp {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <crisp/rig_file.hpp>
 
-#include "pipeline/files/encoder_line.hpp"
+#include "pipeline/files/encoder_line_yaml.hpp"
 #include "pipeline/files/file_kind.hpp"
 #include "pipeline/files/rig_yaml.hpp"
 #include "pipeline/files/yaml_map.hpp"

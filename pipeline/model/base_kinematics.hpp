@@ -47,7 +47,7 @@ std::size_t place_bare(const BareBeams& beams, const BareLaser& laser, const Pla
                        const MirrorTable& mirrors, double* x, double* y, double* z);
 
 /// Measurements of any lasers, each with its laser's parameters.
-/// All arrays are readable, and those of StrewnPoints writable, kBeyond elements beyond the last beam; what
+/// All arrays are readable, and those of MixedPoints writable, kBeyond elements beyond the last beam; what
 /// `interval` holds there must be of the plate, too.
 struct MixedArrays {
   const float* range;            ///< [m]

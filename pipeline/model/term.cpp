@@ -5,7 +5,7 @@
 #include <crisp/error.hpp>
 #include <crisp/term.hpp>
 
-#include "pipeline/data/names.hpp"
+#include "pipeline/data/name_syntax.hpp"
 #include "pipeline/files/nearest.hpp"
 
 namespace crisp {

@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-#include "pipeline/python/results.hpp"
+#include "pipeline/python/result_collector.hpp"
 
 namespace crisp {
 

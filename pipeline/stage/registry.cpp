@@ -8,7 +8,7 @@
 
 #include <crisp/registrar.hpp>
 
-#include "pipeline/data/names.hpp"
+#include "pipeline/data/name_syntax.hpp"
 
 namespace crisp {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <crisp/runner.hpp>
 
-#include "pipeline/data/resource_exhaustion.hpp"
+#include "pipeline/data/exception_to_error.hpp"
 #include "pipeline/stage/stage_caveats.hpp"
 #include "pipeline/stage/stage_worker.hpp"
 #include "pipeline/stage/stopwatch.hpp"

@@ -13,7 +13,7 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/estimate/base_parameters.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
-#include "plugins/calibrate/multistart_search.hpp"
+#include "plugins/calibrate/grid_search.hpp"
 #include "plugins/calibrate/wall_straightness.hpp"
 
 namespace crisp {

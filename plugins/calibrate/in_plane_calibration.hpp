@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "plugins/calibrate/multistart_search.hpp"
+#include "plugins/calibrate/grid_search.hpp"
 #include "plugins/calibrate/rqe_minimizer.hpp"
 
 namespace crisp {

@@ -18,7 +18,7 @@
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 #include "plugins/calibrate/rig_hypotheses.hpp"
-#include "plugins/calibrate/single_beams.hpp"
+#include "plugins/calibrate/single_beam_refusal.hpp"
 
 namespace crisp {
 namespace {

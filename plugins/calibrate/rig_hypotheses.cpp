@@ -14,7 +14,7 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
-#include "pipeline/estimate/turn_period.hpp"
+#include "pipeline/estimate/scene_repeat.hpp"
 #include "plugins/calibrate/fit_check.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 #include "plugins/calibrate/rig_search.hpp"
@@ -89,7 +89,7 @@ RigErrorSearch::RigErrorSearch(const Sample& sample, const Rig& rig, HypothesisS
     : sample_(thin_evenly(longest_recording(sample), kBeams, 1)),
       rig_(rig),
       settings_(std::move(settings)),
-      period_(turn_period(sample)) {}
+      period_(scene_repeat(sample)) {}
 
 RigErrorSearch::Fit RigErrorSearch::fit_with(const RigChange& change, const Sample& sample) const {
   const ChangedSample changed(sample, change);

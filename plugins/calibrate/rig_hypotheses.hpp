@@ -9,8 +9,8 @@
 #include <crisp/measure.hpp>
 #include <crisp/rig.hpp>
 
+#include "pipeline/estimate/scene_repeat.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
-#include "pipeline/estimate/turn_period.hpp"
 #include "plugins/calibrate/rig_change.hpp"
 #include "plugins/calibrate/rqe_calibration.hpp"
 
@@ -77,7 +77,7 @@ class RigErrorSearch {
   Sample sample_;
   const Rig& rig_;
   HypothesisSettings settings_;
-  std::optional<TurnPeriod> period_;
+  std::optional<SceneRepeat> period_;
   std::optional<Fit> fit_of_rig_;
   std::size_t step_ = 0;  ///< of any()
 };

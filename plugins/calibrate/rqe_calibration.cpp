@@ -13,9 +13,9 @@
 #include "pipeline/estimate/base_parameters.hpp"
 #include "pipeline/estimate/identifiability.hpp"
 #include "pipeline/estimate/observability.hpp"
-#include "pipeline/estimate/turn_period.hpp"
+#include "pipeline/estimate/scene_repeat.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
-#include "plugins/calibrate/multistart_search.hpp"
+#include "plugins/calibrate/grid_search.hpp"
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rqe_minimizer.hpp"
 #include "plugins/calibrate/sandwich_covariance.hpp"
@@ -128,7 +128,7 @@ class RqeCalibration {
       const std::string& name = model_.names()[parameter];
       const double value = model_.values()[static_cast<Eigen::Index>(parameter)];
       if (!is_at_the_end(settings_.in_plane.range, name, value)) continue;
-      const auto period = turn_period(sample_);
+      const auto period = scene_repeat(sample_);
       if (period && contradicts_counts(*period)) throw Error(counts_caveat(*period));
       throw Error(
           fmt::format("{} reached {:.0f} ms, the end of its search range: RQE has no minimum there", name,

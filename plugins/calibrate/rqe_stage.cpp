@@ -11,7 +11,7 @@
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 #include "plugins/calibrate/rig_search.hpp"
-#include "plugins/calibrate/single_beams.hpp"
+#include "plugins/calibrate/single_beam_refusal.hpp"
 
 namespace crisp {
 

@@ -11,7 +11,7 @@
 #include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/quality/line_segmentation.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
-#include "plugins/calibrate/local_minima.hpp"
+#include "plugins/calibrate/curve_minima.hpp"
 
 namespace crisp {
 

@@ -8,7 +8,7 @@
 #include <crisp/sensor_model.hpp>
 
 #include "pipeline/estimate/sample.hpp"
-#include "plugins/calibrate/multistart_search.hpp"
+#include "plugins/calibrate/grid_search.hpp"
 
 namespace crisp {
 

@@ -9,7 +9,7 @@
 
 #include "pipeline/data/echoes.hpp"
 #include "plugins/clock/device_stamps.hpp"
-#include "plugins/clock/mirror_turns.hpp"
+#include "plugins/clock/mirror_smoothing.hpp"
 #include "plugins/clock/scan_beams.hpp"
 
 namespace crisp {

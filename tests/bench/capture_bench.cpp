@@ -9,7 +9,7 @@
 #include <crisp/capture_reader.hpp>
 
 #include "grabbers/capture/capture_file.hpp"
-#include "grabbers/capture/network_frames.hpp"
+#include "grabbers/capture/frame_builder.hpp"
 #include "grabbers/capture/pcap_writer.hpp"
 #include "grabbers/wire/cola_framer.hpp"
 #include "grabbers/wire/plate_sentence.hpp"

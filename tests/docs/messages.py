@@ -19,7 +19,7 @@ MAKERS = (
     "grabbers/capture/loss_warnings.cpp",
     "pipeline/estimate/surfel_refinement.cpp",
     "pipeline/estimate/surfel_refiner_covariance.cpp",
-    "pipeline/estimate/turn_period.cpp",
+    "pipeline/estimate/scene_repeat.cpp",
     "pipeline/estimate/view_consistency.cpp",
     "plugins/calibrate/fit_check.cpp",
     "plugins/calibrate/rig_check.cpp",

@@ -56,7 +56,7 @@ class Messages(unittest.TestCase):
         self.assertEqual(messages.missing_makers(ROOT), [], "add these files to MAKERS in tests/docs/messages.py")
 
     def test_a_function_of_a_caveat_elsewhere_is_found(self):
-        file = "pipeline/estimate/turn_period.cpp"
+        file = "pipeline/estimate/scene_repeat.cpp"
         others = tuple(maker for maker in messages.MAKERS if maker != file)
         self.assertIn((file, "counts_caveat"), messages.missing_makers(ROOT, others))
 

@@ -11,7 +11,7 @@
 #include "grabbers/bag/bag_summary.hpp"
 #include "grabbers/bag/byte_cursor.hpp"
 #include "grabbers/bag/mcap_reader.hpp"
-#include "grabbers/bag/ros_sensor_messages.hpp"
+#include "grabbers/bag/ros_scan_messages.hpp"
 #include "grabbers/bag/rosbag1_reader.hpp"
 
 namespace crisp {

@@ -12,7 +12,7 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
-#include "plugins/diagnose/clocks/angle_shift_model.hpp"
+#include "plugins/diagnose/clocks/angle_shift_regression.hpp"
 
 namespace crisp {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "plugins/diagnose/model/residual_distribution.hpp"
+#include "plugins/diagnose/model/residual_histogram.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 
 namespace crisp {

@@ -10,10 +10,10 @@
 #include <numbers>
 #include <numeric>
 
+#include "plugins/diagnose/noise/component_checks.hpp"
 #include "plugins/diagnose/noise/expectation_step.hpp"
 #include "plugins/diagnose/noise/jackknife.hpp"
 #include "plugins/diagnose/noise/likelihood_gain.hpp"
-#include "plugins/diagnose/noise/noise_checks.hpp"
 #include "plugins/diagnose/noise/noise_components.hpp"
 
 namespace crisp {

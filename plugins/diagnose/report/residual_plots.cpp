@@ -9,7 +9,7 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/fit_statistics.hpp"
 #include "pipeline/data/shown_unit.hpp"
-#include "plugins/diagnose/report/distribution_plot.hpp"
+#include "plugins/diagnose/report/residual_density_plot.hpp"
 
 namespace crisp {
 namespace {

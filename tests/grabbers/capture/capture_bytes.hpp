@@ -8,7 +8,7 @@
 #include <crisp/scan.hpp>
 
 #include "grabbers/capture/byte_order.hpp"
-#include "grabbers/capture/network_frames.hpp"
+#include "grabbers/capture/frame_builder.hpp"
 #include "grabbers/wire/scan_data.hpp"
 
 namespace crisp {

@@ -7,7 +7,7 @@
 
 #include "grabbers/capture/capture_file.hpp"
 #include "grabbers/capture/dissect.hpp"
-#include "grabbers/capture/network_frames.hpp"
+#include "grabbers/capture/frame_builder.hpp"
 #include "grabbers/record/record_stage.hpp"
 #include "tests/grabbers/record/capture_recorder_fixture.hpp"
 #include "tests/support/simulated_items.hpp"

@@ -13,7 +13,7 @@
 #include <crisp/error.hpp>
 
 #include "grabbers/capture/capture_file.hpp"
-#include "grabbers/capture/network_frames.hpp"
+#include "grabbers/capture/frame_builder.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "grabbers/simulate/truth_file.hpp"
 #include "grabbers/wire/cola_framer.hpp"

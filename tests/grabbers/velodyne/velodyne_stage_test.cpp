@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "grabbers/capture/network_frames.hpp"
+#include "grabbers/capture/frame_builder.hpp"
 #include "grabbers/capture/pcap_writer.hpp"
 #include "tests/support/stage_driver.hpp"
 #include "tests/support/temporary_folder.hpp"

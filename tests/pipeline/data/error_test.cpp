@@ -8,8 +8,8 @@
 
 #include <crisp/error.hpp>
 
+#include "pipeline/data/exception_to_error.hpp"
 #include "pipeline/data/internal_error.hpp"
-#include "pipeline/data/resource_exhaustion.hpp"
 
 namespace crisp {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/estimate/turn_period.hpp"
+#include "pipeline/estimate/scene_repeat.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 
 /// The period of a recording in the office whose encoder reads other angles than the plate has.
 template <class Reading>
-std::optional<TurnPeriod> period_of(Reading reading, double duration) {
+std::optional<SceneRepeat> period_of(Reading reading, double duration) {
   const auto simulated = simulate_measurements(misplaced_scanner(3, duration), office());
   std::vector<double> angles;
   for (std::size_t i = 0; i < simulated.plate.angles().size(); ++i)
@@ -23,22 +23,22 @@ std::optional<TurnPeriod> period_of(Reading reading, double duration) {
   const PlateTrajectory plate(simulated.plate.epoch_ns(),
                               {simulated.plate.times().begin(), simulated.plate.times().end()},
                               std::move(angles), simulated.plate.max_gap());
-  return turn_period({.beams = simulated.beams, .plate = &plate});
+  return scene_repeat({.beams = simulated.beams, .plate = &plate});
 }
 
 /// The encoder has `factor` times the rig's counts.
-std::optional<TurnPeriod> period_with(double factor, double duration = 6) {
+std::optional<SceneRepeat> period_with(double factor, double duration = 6) {
   return period_of([factor](double, double angle) { return factor * angle; }, duration);
 }
 
-TEST(TurnPeriod, IsATurnWhereTheCountsAreRight) {
+TEST(SceneRepeat, IsATurnWhereTheCountsAreRight) {
   const auto period = period_with(1);
   ASSERT_TRUE(period);
   EXPECT_NEAR(period->angle / kTurn, 1, 0.003);
   EXPECT_FALSE(contradicts_counts(*period));
 }
 
-TEST(TurnPeriod, IsFoundWhereTheCountsAreWrongByAFewPerCentOrByAFactor) {
+TEST(SceneRepeat, IsFoundWhereTheCountsAreWrongByAFewPerCentOrByAFactor) {
   for (const double factor : {0.97, 1.04, 2.0, 0.5, 4.0}) {
     const auto period = period_with(factor, 8);
     ASSERT_TRUE(period) << factor;
@@ -47,15 +47,15 @@ TEST(TurnPeriod, IsFoundWhereTheCountsAreWrongByAFewPerCentOrByAFactor) {
   }
 }
 
-TEST(TurnPeriod, IsNoMultipleWhereTheSceneNearlyRepeatsAfterATurn) {
-  const TurnPeriod of_slips{.angle = 3.976 * kTurn, .miss = 0.043, .at_2pi = 0.074, .elsewhere = 0.3};
+TEST(SceneRepeat, IsNoMultipleWhereTheSceneNearlyRepeatsAfterATurn) {
+  const SceneRepeat of_slips{.angle = 3.976 * kTurn, .miss = 0.043, .at_2pi = 0.074, .elsewhere = 0.3};
   EXPECT_FALSE(contradicts_counts(of_slips));
-  TurnPeriod of_counts = of_slips;
+  SceneRepeat of_counts = of_slips;
   of_counts.at_2pi = 0.28;
   EXPECT_TRUE(contradicts_counts(of_counts));
 }
 
-TEST(TurnPeriod, DoesNotBlameTheCountsForSlips) {
+TEST(SceneRepeat, DoesNotBlameTheCountsForSlips) {
   for (const double size : {2.0, 4.0, 7.0}) {
     const auto with_slips = [size](double time, double angle) {
       double slipped = 0;
@@ -70,7 +70,7 @@ TEST(TurnPeriod, DoesNotBlameTheCountsForSlips) {
   }
 }
 
-TEST(TurnPeriod, IsUndeterminedByLessThanATurn) { EXPECT_FALSE(period_with(1, 0.2)); }
+TEST(SceneRepeat, IsUndeterminedByLessThanATurn) { EXPECT_FALSE(period_with(1, 0.2)); }
 
 }  // namespace
 }  // namespace crisp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/calibrate/local_minima.hpp"
+#include "plugins/calibrate/curve_minima.hpp"
 
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>

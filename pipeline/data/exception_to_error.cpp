@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/data/resource_exhaustion.hpp"
+#include "pipeline/data/exception_to_error.hpp"
 
 #include <filesystem>
 #include <new>

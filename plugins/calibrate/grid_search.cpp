@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/calibrate/multistart_search.hpp"
+#include "plugins/calibrate/grid_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "plugins/calibrate/cloud_objective.hpp"
-#include "plugins/calibrate/local_minima.hpp"
+#include "plugins/calibrate/curve_minima.hpp"
 
 namespace crisp {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/live/sick_configuration.hpp"
+#include "grabbers/live/configuration_mismatch.hpp"
 
 #include <fmt/format.h>
 

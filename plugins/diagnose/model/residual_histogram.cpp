@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/diagnose/model/residual_distribution.hpp"
+#include "plugins/diagnose/model/residual_histogram.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/files/encoder_line.hpp"
+#include "pipeline/files/encoder_line_yaml.hpp"
 
 namespace crisp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/capture/network_frames.hpp"
+#include "grabbers/capture/frame_builder.hpp"
 
 #include <gmock/gmock.h>
 #include <tins/ethernetII.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/calibrate/single_beams.hpp"
+#include "plugins/calibrate/single_beam_refusal.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "pipeline/plot/plot.hpp"
-#include "plugins/diagnose/model/residual_distribution.hpp"
+#include "plugins/diagnose/model/residual_histogram.hpp"
 
 namespace crisp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/python/results.hpp"
+#include "pipeline/python/result_collector.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/estimate/turn_period.hpp"
+#include "pipeline/estimate/scene_repeat.hpp"
 
 #include <fmt/format.h>
 
@@ -87,7 +87,7 @@ double miss_elsewhere(const Comparisons& comparisons) {
 
 }  // namespace
 
-std::optional<TurnPeriod> turn_period(const Sample& sample) {
+std::optional<SceneRepeat> scene_repeat(const Sample& sample) {
   constexpr double kMinTurns = 1.2;
   constexpr double kAround = 0.08;
   constexpr double kStep = 0.002;
@@ -98,12 +98,12 @@ std::optional<TurnPeriod> turn_period(const Sample& sample) {
   const double at_2pi = miss_of(comparisons, kTurn);
   if (!std::isfinite(at_2pi)) return std::nullopt;
   const double elsewhere = miss_elsewhere(comparisons);
-  std::vector<TurnPeriod> nearest;  // one for each factor
+  std::vector<SceneRepeat> nearest;  // one for each factor
   for (const double factor : kFactors) {
-    TurnPeriod best{.angle = factor * kTurn,
-                    .miss = miss_of(comparisons, factor * kTurn),
-                    .at_2pi = at_2pi,
-                    .elsewhere = elsewhere};
+    SceneRepeat best{.angle = factor * kTurn,
+                     .miss = miss_of(comparisons, factor * kTurn),
+                     .at_2pi = at_2pi,
+                     .elsewhere = elsewhere};
     for (double share = 1 - kAround; share < 1 + kAround + kStep / 2; share += kStep) {
       const double miss = miss_of(comparisons, factor * share * kTurn);
       if (miss >= best.miss) continue;
@@ -113,12 +113,12 @@ std::optional<TurnPeriod> turn_period(const Sample& sample) {
     nearest.push_back(best);
   }
   // After two turns all is the same again: of periods that are as good the shortest is the turn.
-  const double least = std::ranges::min(nearest, {}, &TurnPeriod::miss).miss;
+  const double least = std::ranges::min(nearest, {}, &SceneRepeat::miss).miss;
   return *std::ranges::find_if(
-      nearest, [&](const TurnPeriod& period) { return period.miss <= kAsGood * least + kBesides; });
+      nearest, [&](const SceneRepeat& period) { return period.miss <= kAsGood * least + kBesides; });
 }
 
-bool contradicts_counts(const TurnPeriod& period) {
+bool contradicts_counts(const SceneRepeat& period) {
   constexpr double kClearly = 0.6;  // of the mean difference
   constexpr double kMin = 0.03;     // [m] by which it is smaller
   const double share = period.angle / kTurn;
@@ -132,7 +132,7 @@ bool contradicts_counts(const TurnPeriod& period) {
                      period.miss < period.at_2pi - kMin);
 }
 
-std::string counts_caveat(const TurnPeriod& period) {
+std::string counts_caveat(const SceneRepeat& period) {
   const double turns = period.angle / kTurn;
   return fmt::format(
       "the scene repeats after {:.3f} turns of the plate, as the rig counts them: ranges there differ by {:.0f} mm, and by {:.0f} mm after one turn. The rig's plate.counts_per_revolution is wrong: multiply it by {:.3f}",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/bag/ros_sensor_messages.hpp"
+#include "grabbers/bag/ros_scan_messages.hpp"
 
 #include <gmock/gmock.h>
 

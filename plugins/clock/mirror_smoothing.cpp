@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/clock/mirror_turns.hpp"
+#include "plugins/clock/mirror_smoothing.hpp"
 
 #include <algorithm>
 #include <array>

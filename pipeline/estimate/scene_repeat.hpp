@@ -9,7 +9,7 @@
 namespace crisp {
 
 /// After which angle of the plate, by its encoder, a laser sees the same again.
-struct TurnPeriod {
+struct SceneRepeat {
   double angle = 0;      ///< [rad] 2π if the encoder's counts a revolution are right
   double miss = 0;       ///< [m] by how much ranges differ after that angle, in the mean over all up to 0.5 m
   double at_2pi = 0;     ///< [m] and after 2π
@@ -20,12 +20,12 @@ struct TurnPeriod {
 /// calibration: for periods within 8 % of 2π, and of its half, third and quarter and as many times as much.
 ///
 /// @return nothing where the plate did not turn by more than a turn and a fifth
-std::optional<TurnPeriod> turn_period(const Sample& sample);
+std::optional<SceneRepeat> scene_repeat(const Sample& sample);
 
 /// Whether that shows that the counts a revolution are wrong.
-bool contradicts_counts(const TurnPeriod& period);
+bool contradicts_counts(const SceneRepeat& period);
 
 /// The caveat then, with advice.
-std::string counts_caveat(const TurnPeriod& period);
+std::string counts_caveat(const SceneRepeat& period);
 
 }  // namespace crisp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/app/completion.hpp"
+#include "pipeline/app/bash_completion.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/bag/joint_rotation.hpp"
+#include "grabbers/bag/joint_angle.hpp"
 
 #include <cmath>
 

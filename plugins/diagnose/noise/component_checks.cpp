@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/diagnose/noise/noise_checks.hpp"
+#include "plugins/diagnose/noise/component_checks.hpp"
 
 #include <cmath>
 

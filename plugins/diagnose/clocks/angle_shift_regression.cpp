@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/diagnose/clocks/angle_shift_model.hpp"
+#include "plugins/diagnose/clocks/angle_shift_regression.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

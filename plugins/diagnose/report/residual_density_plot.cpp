@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/diagnose/report/distribution_plot.hpp"
+#include "plugins/diagnose/report/residual_density_plot.hpp"
 
 #include <fmt/format.h>
 
