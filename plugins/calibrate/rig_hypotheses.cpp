@@ -22,8 +22,9 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kBeams = 100'000;  // enough to see whether they fit
-constexpr double kSteps = 20;            // about as many changes as are tried
+constexpr std::size_t kBeams = 100'000;    // enough to see whether they fit
+constexpr std::size_t kOwnBeams = 15'000;  // of one laser, where all together are tried afterwards
+constexpr double kSteps = 20;              // about as many changes as are tried
 constexpr const char* kMirrorZero = "mount.mirror_zero";
 
 /// "0.000" and not "-0.000".
@@ -159,7 +160,7 @@ std::vector<RigChange> RigErrorSearch::those_that_fit(const std::vector<RigChang
 }
 
 std::vector<RigChange> RigErrorSearch::of_one(std::size_t laser) {
-  const Sample own = of_laser(sample_, laser);
+  const Sample own = thin_evenly(of_laser(sample_, laser), kOwnBeams, 1);
   if (own.beams.size() == 0) return {};
   const Fit unchanged = fit_with(no_change(rig_), own);
   if (unchanged.fits) return {};
