@@ -47,6 +47,14 @@ std::size_t different_changes(const RigChange& change) {
   return different.size();
 }
 
+/// Whether lasers change, and each of these by half a turn or upside down.
+bool is_half_turn(const RigChange& change) {
+  const auto is_half = [](const LaserChange& laser) {
+    return laser == LaserChange{} || laser.is_upside_down || laser.mount_turn == kTurns.front();
+  };
+  return different_changes(change) > 0 && std::ranges::all_of(change.lasers, is_half);
+}
+
 /// Both changes, of different lasers.
 RigChange both(RigChange one, const RigChange& other) {
   one.words += (one.words.empty() ? "" : ", ") + other.words;
@@ -142,10 +150,8 @@ std::vector<RigChange> combinations(const std::vector<std::vector<RigChange>>& o
   return all;
 }
 
-bool is_half_turn(const RigChange& change) {
-  return std::ranges::all_of(change.lasers, [](const LaserChange& laser) {
-    return laser.is_upside_down || laser.mount_turn == 0 || laser.mount_turn == kTurns.front();
-  });
+bool are_alike(const RigChange& one, const RigChange& other) {
+  return (one.exchanged && other.exchanged) || (is_half_turn(one) && is_half_turn(other));
 }
 
 ChangedSample::ChangedSample(const Sample& sample, const RigChange& change)

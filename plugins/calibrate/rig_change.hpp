@@ -50,8 +50,9 @@ std::vector<RigChange> other_counts(const Rig& rig);
 /// Each combination of one change from each list, those that change lasers alike first.
 std::vector<RigChange> combinations(const std::vector<std::vector<RigChange>>& of_lasers);
 
-/// Whether it changes lasers by half a turn only, or turns them upside down, which are hard to tell apart.
-bool is_half_turn(const RigChange& change);
+/// Whether a recording may fail to tell two changes apart: two exchanges of lasers, or lasers upside down and
+/// turned by half a turn.
+bool are_alike(const RigChange& one, const RigChange& other);
 
 /// The data as they would be with the rig changed.
 class ChangedSample {

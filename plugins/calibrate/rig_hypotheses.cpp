@@ -153,8 +153,8 @@ bool RigErrorSearch::fits_with(const RigChange& change, const Sample& sample, co
 std::vector<RigChange> RigErrorSearch::those_that_fit(const std::vector<RigChange>& changes) {
   std::vector<RigChange> fitting;
   for (const RigChange& change : changes) {
-    const bool decides = fitting.empty() || (is_half_turn(fitting.front()) && is_half_turn(change));
-    if (decides && fits_with(change, sample_, fit_of_rig())) fitting.push_back(change);
+    const bool is_of_interest = fitting.empty() || are_alike(fitting.front(), change);
+    if (is_of_interest && fits_with(change, sample_, fit_of_rig())) fitting.push_back(change);
   }
   return fitting;
 }

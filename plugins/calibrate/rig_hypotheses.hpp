@@ -63,7 +63,7 @@ class RigErrorSearch {
   const Fit& fit_of_rig();
   /// Whether the data fit, with more beams than without the change.
   bool fits_with(const RigChange& change, const Sample& sample, const Fit& unchanged);
-  /// The first change with which all data fit; several where they differ by half a turn, or by upside down.
+  /// The first change with which all data fit, and those like it.
   std::vector<RigChange> those_that_fit(const std::vector<RigChange>& changes);
   /// Changes of the plate.
   std::vector<RigChange> of_plate();

@@ -101,11 +101,14 @@ TEST_F(RigChanges, CombinationsThatChangeLasersAlikeComeFirst) {
   EXPECT_TRUE(combinations({}).empty());
 }
 
-TEST_F(RigChanges, AHalfTurnIsThatOfTheMountOrUpsideDown) {
+TEST_F(RigChanges, ThatARecordingMayNotTellApartAreHalfTurnsAndExchanges) {
   const auto of_one = changes_of_laser(rig_, 0);
-  EXPECT_TRUE(is_half_turn(of_one[0]));
-  EXPECT_TRUE(is_half_turn(of_one[1]));
-  for (std::size_t k = 2; k < of_one.size(); ++k) EXPECT_FALSE(is_half_turn(of_one[k])) << of_one[k].words;
+  EXPECT_TRUE(are_alike(of_one[0], of_one[1])) << "upside down, and a mount turned by 180 degrees";
+  for (std::size_t k = 2; k < of_one.size(); ++k)
+    EXPECT_FALSE(are_alike(of_one[0], of_one[k])) << of_one[k].words;
+  EXPECT_TRUE(are_alike(exchanges(rig_)[0], exchanges(rig_)[0]));
+  EXPECT_FALSE(are_alike(exchanges(rig_)[0], of_one[0]));
+  EXPECT_FALSE(are_alike(other_direction(rig_), other_counts(rig_)[0]));
 }
 
 }  // namespace
