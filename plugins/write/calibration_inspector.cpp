@@ -22,7 +22,7 @@ Inspection inspect(const std::filesystem::path& file, const Rig&) {
         {"value", p.value}, {"unit", p.unit}, {"std_error", p.std_error}, {"free", p.free}};
   });
   for (const auto& [name, value] : calibration.quality) {
-    inspection.text += fmt::format("\n  {:<36}{:>14.8g}", figure_in_words(name), value);
+    inspection.text += fmt::format("\n  {:<36}{:>14.8g}", name, value);
   }
   for (const auto& u : calibration.unobservable) {
     inspection.text += fmt::format("\n  unobservable: {}: {}", u.parameter, u.reason);

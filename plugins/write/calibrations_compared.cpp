@@ -70,7 +70,7 @@ std::string quality_line(const std::string& name, const Calibration& first, cons
     const auto found = calibration.quality.find(name);
     return found == calibration.quality.end() ? "-" : fmt::format("{:.5g}", found->second);
   };
-  return fmt::format("\n  {:<36}{:<5}{:>14}{:>14}", figure_in_words(name), "", shown(first), shown(second));
+  return fmt::format("\n  {:<36}{:<5}{:>14}{:>14}", name, "", shown(first), shown(second));
 }
 
 std::string caveats_of(const char* which, const Calibration& calibration) {
@@ -93,7 +93,5 @@ std::string compare_calibrations(const Calibration& first, const Calibration& se
   for (const auto& name : figures) text += quality_line(name, first, second);
   return text + caveats_of("first", first) + caveats_of("second", second);
 }
-
-std::string figure_in_words(const std::string& name) { return name == "chi2" ? "chi2 (misfit)" : name; }
 
 }  // namespace crisp

@@ -12,7 +12,4 @@ namespace crisp {
 /// of the standard error.
 std::string compare_calibrations(const Calibration& first, const Calibration& second);
 
-/// Name of a figure of a calibration's quality for people: "chi2 (misfit)".
-std::string figure_in_words(const std::string& name);
-
 }  // namespace crisp
