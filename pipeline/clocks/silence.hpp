@@ -7,7 +7,7 @@ namespace crisp {
 /// the hub's clock was set forward in between, or items waited on their way.
 ///
 /// @param hub_s     [s] between the receipts
-/// @param device_s  [s] between the stamps; not positive where they tell nothing
+/// @param device_s  [s] between the stamps; not positive where the stamps are of no use
 inline double silence_between(double hub_s, double device_s) {
   constexpr double kSet = 0.5;  // [s] far above the delays of a network
   return device_s > 0 && hub_s - device_s > kSet ? device_s : hub_s;

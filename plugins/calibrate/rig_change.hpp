@@ -50,7 +50,7 @@ std::vector<RigChange> other_counts(const Rig& rig);
 /// Each combination of one change from each list, those that change lasers alike first.
 std::vector<RigChange> combinations(const std::vector<std::vector<RigChange>>& of_lasers);
 
-/// Whether a recording may fail to tell two changes apart: two exchanges of lasers, or lasers upside down and
+/// Whether a recording may not distinguish two changes: two exchanges of lasers, or lasers upside down and
 /// turned by half a turn.
 bool are_alike(const RigChange& one, const RigChange& other);
 

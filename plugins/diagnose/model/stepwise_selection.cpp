@@ -227,6 +227,10 @@ class Chooser {
     return false;
   }
 
+  SelectedCandidate with_competing_families(const std::vector<std::size_t>& taken, std::size_t one) const {
+    return competition_.with_competing_families(taken, one);
+  }
+
  private:
   /// The few best rejected candidates that gain no less than this one; one form of each.
   std::vector<std::size_t> rejected_like(const ScoreTest& own,
@@ -266,7 +270,6 @@ std::vector<SelectedCandidate> choose(const CandidateJacobian& jacobian, const N
                                       const SelectionSettings& settings,
                                       const std::set<std::string>& rejected, std::size_t tests) {
   const Chooser chooser(jacobian, equations, settings, rejected, tests);
-  const Competition competition(jacobian, equations);
   std::vector<std::size_t> taken;
   std::set<std::vector<std::size_t>> seen;
   double rough = 0;
@@ -285,7 +288,7 @@ std::vector<SelectedCandidate> choose(const CandidateJacobian& jacobian, const N
     chooser.eliminate_needless(taken);
   }
   std::vector<SelectedCandidate> choices;
-  for (const std::size_t t : taken) choices.push_back(competition.with_competing_families(taken, t));
+  for (const std::size_t t : taken) choices.push_back(chooser.with_competing_families(taken, t));
   return choices;
 }
 

@@ -101,7 +101,7 @@ TEST_F(RigChanges, CombinationsThatChangeLasersAlikeComeFirst) {
   EXPECT_TRUE(combinations({}).empty());
 }
 
-TEST_F(RigChanges, ThatARecordingMayNotTellApartAreHalfTurnsAndExchanges) {
+TEST_F(RigChanges, ThatAreAlikeAreHalfTurnsAndExchanges) {
   const auto of_one = changes_of_laser(rig_, 0);
   EXPECT_TRUE(are_alike(of_one[0], of_one[1])) << "upside down, and a mount turned by 180 degrees";
   for (std::size_t k = 2; k < of_one.size(); ++k)
