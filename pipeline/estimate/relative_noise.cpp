@@ -76,26 +76,32 @@ std::vector<std::vector<Pair>> pairs_by_laser(const Surfels& surfels, const Beam
   return by_laser;
 }
 
-/// A factor that goes by one quantity, in steps.
+/// A factor that depends on one quantity, in steps.
 struct Steps {
+  /// Steps of a pair's beams, which may lie on either side of a border.
+  struct OfPair {
+    std::uint8_t before = 0, beam = 0;
+  };
+
   const std::vector<float>* of = nullptr;  // of each beam
   std::vector<float> ends;                 // of each step but the last, ascending
-  std::vector<double> factor;              // of each step
+  std::vector<OfPair> pairs;
+  std::vector<double> factor;  // of each step
 
-  std::size_t step(float value) const {
-    return static_cast<std::size_t>(std::ranges::upper_bound(ends, value) - ends.begin());
+  std::size_t step(std::uint32_t beam) const {
+    return static_cast<std::size_t>(std::ranges::upper_bound(ends, (*of)[beam]) - ends.begin());
   }
-  double at(std::uint32_t beam) const { return factor[step((*of)[beam])]; }
-  /// For two beams that may lie on either side of a border.
-  double at(const Pair& pair) const { return std::sqrt((square(pair.before) + square(pair.beam)) / 2); }
-
- private:
-  double square(std::uint32_t beam) const { return std::pow(at(beam), 2); }
+  double of_beam(std::uint32_t beam) const { return factor[step(beam)]; }
+  double of_pair(std::size_t pair) const {
+    const double before = factor[pairs[pair].before];
+    const double beam = factor[pairs[pair].beam];
+    return std::sqrt((before * before + beam * beam) / 2);
+  }
 };
 
 /// Steps of equally many pairs, with the factor 1.
 Steps even_steps(const std::vector<float>& of, const std::vector<Pair>& pairs) {
-  Steps steps{.of = &of, .ends = {}, .factor = {}};
+  Steps steps{.of = &of, .ends = {}, .pairs = {}, .factor = {}};
   const std::size_t count = std::clamp<std::size_t>(pairs.size() / kMinPairs, 1, kMaxBins);
   std::vector<float> values;
   for (const Pair& pair : pairs) values.push_back(of[pair.beam]);
@@ -105,6 +111,10 @@ Steps even_steps(const std::vector<float>& of, const std::vector<Pair>& pairs) {
     const float before = steps.ends.empty() ? values.front() : steps.ends.back();
     if (end > before) steps.ends.push_back(end);
   }
+  for (const Pair& pair : pairs) {
+    steps.pairs.push_back({.before = static_cast<std::uint8_t>(steps.step(pair.before)),
+                           .beam = static_cast<std::uint8_t>(steps.step(pair.beam))});
+  }
   steps.factor.assign(steps.ends.size() + 1, 1.0);
   return steps;
 }
@@ -112,6 +122,7 @@ Steps even_steps(const std::vector<float>& of, const std::vector<Pair>& pairs) {
 /// Noise factors of one laser.
 class OfLaser {
  public:
+  OfLaser() = default;
   OfLaser(const std::vector<Pair>& pairs, const Quantities& by) {
     if (pairs.size() < kMinPairs) return;
     for (const auto* of : {&by.range, &by.incidence, &by.remission}) steps_.push_back(even_steps(*of, pairs));
@@ -120,27 +131,29 @@ class OfLaser {
       for (Steps& steps : steps_) fit(steps, pairs);
     }
     std::vector<double> sizes;
-    for (const Pair& pair : pairs) sizes.push_back(pair.size / by_steps(pair));
+    for (std::size_t k = 0; k < pairs.size(); ++k) sizes.push_back(pairs[k].size / of_pair(k));
     size_ = kMadToSigma * median_in_place(sizes);
   }
 
   /// [m] 0 where there are too few neighbours.
-  double at(std::uint32_t beam) const { return size_ * by_steps(beam); }
+  double at(std::uint32_t beam) const {
+    double product = 1;
+    for (const Steps& steps : steps_) product *= steps.of_beam(beam);
+    return size_ * product;
+  }
 
  private:
-  template <class Where>
-  double by_steps(const Where& where) const {
+  double of_pair(std::size_t pair) const {
     double product = 1;
-    for (const Steps& steps : steps_) product *= steps.at(where);
+    for (const Steps& steps : steps_) product *= steps.of_pair(pair);
     return product;
   }
 
   /// Fits the median in each step, conditional on the other quantities' factors.
   void fit(Steps& steps, const std::vector<Pair>& pairs) {
     std::vector<std::vector<double>> sizes(steps.factor.size());
-    for (const Pair& pair : pairs) {
-      const std::size_t step = steps.step((*steps.of)[pair.beam]);
-      sizes[step].push_back(pair.size / by_steps(pair) * steps.at(pair));
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      sizes[steps.pairs[k].beam].push_back(pairs[k].size / of_pair(k) * steps.of_pair(k));
     }
     for (std::size_t s = 0; s < sizes.size(); ++s) {
       const double middle = sizes[s].empty() ? 0 : median_in_place(sizes[s]);
@@ -159,14 +172,17 @@ class OfLaser {
 std::vector<double> noise_by_neighbours(const Surfels& surfels, const BeamsView& placed,
                                         const Measurements& beams, const SurfelSettings& settings) {
   Quantities by{.incidence = beams.cos_incidence, .remission = beams.remission, .range = beams.range};
-  std::vector<OfLaser> lasers;
-  for (const auto& pairs : pairs_by_laser(surfels, placed, beams, settings, by.range))
-    lasers.emplace_back(pairs, by);
+  constexpr std::size_t kBeamsOfTask = 16'384;
+  const auto pairs = pairs_by_laser(surfels, placed, beams, settings, by.range);
+  std::vector<OfLaser> lasers(pairs.size());
+  for_each_index(lasers.size(), [&](std::size_t laser) { lasers[laser] = OfLaser(pairs[laser], by); });
   std::vector<double> sizes(beams.size(), 0);
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const std::size_t laser = beams.laser[i];
-    if (laser < lasers.size()) sizes[i] = lasers[laser].at(static_cast<std::uint32_t>(i));
-  }
+  for_blocks(sizes.size(), kBeamsOfTask, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t laser = beams.laser[i];
+      if (laser < lasers.size()) sizes[i] = lasers[laser].at(static_cast<std::uint32_t>(i));
+    }
+  });
   return sizes;
 }
 

@@ -225,25 +225,23 @@ std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const Beam
                                               const ViewPartition& partition, const ViewErrors& errors) {
   constexpr double kMinShare = 0.02;  // of a view's beams: fewer are no reason for a caveat
   constexpr double kMinBeams = 500;
-  constexpr std::size_t kMinBlock = 64, kMaxBlocks = 8;
   const std::size_t n = partition.views.size();
   const Directions directions(beams.directions);
-  const std::size_t block = std::max(kMinBlock, surfels.surfels.size() / kMaxBlocks);
+  std::vector<PairSums> of_surfel(surfels.surfels.size(), PairSums(n));
+  for_each_index(of_surfel.size(), [&](std::size_t s) {
+    const Surfel& surfel = surfels.surfels[s];
+    Pieces pieces(surfel, surfels, beams, partition);
+    pieces.find_beams_through(surfels.beams_of(surfel), directions);
+    pieces.add_to(of_surfel[s], errors);
+  });
+  const double least =
+      std::max(kMinBeams, kMinShare * static_cast<double>(beams.points.size()) / static_cast<double>(n));
   std::vector<ViewConsistency> pairs;
   for (const Orientation orientation : {Orientation::upright, Orientation::level}) {
-    const auto add_block = [&](PairSums& sums, std::size_t begin, std::size_t end) {
-      for (std::size_t s = begin; s < end; ++s) {
-        if (orientation_of(surfels.surfels[s]) != orientation) continue;
-        const Surfel& surfel = surfels.surfels[s];
-        Pieces pieces(surfel, surfels, beams, partition);
-        pieces.find_beams_through(std::span(surfels.members).subspan(surfel.begin, surfel.end - surfel.begin),
-                                  directions);
-        pieces.add_to(sums, errors);
-      }
-    };
-    const auto all = sum_over_blocks(surfels.surfels.size(), block, PairSums(n), add_block);
-    const double least =
-        std::max(kMinBeams, kMinShare * static_cast<double>(beams.points.size()) / static_cast<double>(n));
+    PairSums all(n);
+    for (std::size_t s = 0; s < of_surfel.size(); ++s) {
+      if (orientation_of(surfels.surfels[s]) == orientation) all += of_surfel[s];
+    }
     for (std::size_t pair = 0; pair < n * n; ++pair) {
       if (all.beams[pair] == 0 || all.beams[pair] < least) continue;
       pairs.push_back({.view = partition.views[pair / n],

@@ -25,11 +25,17 @@ NonNegativeProblem::NonNegativeProblem(std::size_t coefficients)
 void NonNegativeProblem::add(std::span<const double> levers, double value, double weight) {
   for (Eigen::Index row = 0; row < right_.size(); ++row) {
     const double weighted = weight * levers[static_cast<std::size_t>(row)];
+    if (weighted == 0) continue;  // most are
     for (Eigen::Index column = 0; column <= row; ++column) {
       normal_(row, column) += weighted * levers[static_cast<std::size_t>(column)];
     }
     right_[row] += weighted * value;
   }
+}
+
+void NonNegativeProblem::operator+=(const NonNegativeProblem& other) {
+  normal_ += other.normal_;
+  right_ += other.right_;
 }
 
 std::vector<double> NonNegativeProblem::solution() const {

@@ -16,6 +16,9 @@ class NonNegativeProblem {
   /// Adds an observation `value` with regressors `levers`.
   void add(std::span<const double> levers, double value, double weight);
 
+  /// Adds the observations of another problem with as many coefficients.
+  void operator+=(const NonNegativeProblem& other);
+
   /// Least-squares coefficients over all active sets whose solution is non-negative. Coefficients that the
   /// observations do not identify (zero or collinear regressors) are 0.
   std::vector<double> solution() const;

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/quality/blocks.hpp"
+
 namespace crisp {
 namespace {
 
-constexpr std::size_t kRangesAtOnce = 512;  // ranges: their arrays stay in the cache
+constexpr std::size_t kRangesAtOnce = 512;     // ranges: their arrays stay in the cache
+constexpr std::size_t kRangesOfTask = 16'384;  // ranges that one thread sums
 
 using RangeArray = std::array<double, kRangesAtOnce>;
 
@@ -109,6 +112,24 @@ struct ExpectationStep::Block {
   }
 };
 
+ExpectationSums::ExpectationSums(std::size_t beams) : far(beams), of_beam(beams), squares(beams) {}
+
+void ExpectationSums::operator+=(const ExpectationSums& other) {
+  ranges += other.ranges;
+  log_likelihood += other.log_likelihood;
+  tail += other.tail;
+  tail_squares += other.tail_squares;
+  separation += other.separation;
+  separation_weight += other.separation_weight;
+  variance += other.variance;
+  const auto add = [](std::vector<double>& to, const std::vector<double>& from) {
+    std::ranges::transform(to, from, to.begin(), std::plus());
+  };
+  add(far, other.far);
+  add(of_beam, other.of_beam);
+  add(squares, other.squares);
+}
+
 ExpectationStep::ExpectationStep(const RangeErrors& errors) : errors_(errors) {
   for (auto& part : unit_variances_) part.resize(errors.size());
   for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -117,48 +138,51 @@ ExpectationStep::ExpectationStep(const RangeErrors& errors) : errors_(errors) {
   }
 }
 
-void ExpectationStep::for_each_block(const NoiseModel& model,
+void ExpectationStep::for_each_block(const NoiseModel& model, std::size_t begin, std::size_t end,
                                      const std::function<void(const Block&)>& use) const {
   const auto kinds = components_of(model);
   Block block;
   block.kinds = &kinds;
-  for (block.first = 0; block.first < errors_.size(); block.first += kRangesAtOnce) {
-    block.size = std::min(kRangesAtOnce, errors_.size() - block.first);
+  for (block.first = begin; block.first < end; block.first += kRangesAtOnce) {
+    block.size = std::min(kRangesAtOnce, end - block.first);
     block.compute(model, errors_, unit_variances_);
     use(block);
   }
 }
 
-ExpectationSums ExpectationStep::sums(const NoiseModel& model, std::size_t beams) const {
-  ExpectationSums sums;
-  for (auto* by_beam : {&sums.far, &sums.of_beam, &sums.squares}) by_beam->resize(beams);
-  for_each_block(model, [&](const Block& block) {
-    for (std::size_t k = 0; k < block.size; ++k) {
-      const std::uint16_t beam = errors_.beam[block.first + k];
-      sums.ranges += 1;
-      sums.log_likelihood += block.log_density[k];
-      sums.of_beam[beam] += 1;
-      const ExpectedSquare expected = block.add_components(k, model, beam, sums);
-      if (!(expected.weight > 0)) continue;  // underflow: an extreme outlier
-      const double relative = block.relative[k];
-      const double variance = (block.deviation[k] / relative) * (block.deviation[k] / relative);
-      ByPart units;
-      for (std::size_t part = 0; part < kVarianceParts; ++part) {
-        units[part] = model.parts[part] ? unit_variances_[part][block.first + k] : 0;
-      }
-      sums.variance.add(units, expected.square / expected.weight, expected.weight / (variance * variance));
-      sums.squares[beam] += expected.square / variance * relative * relative;
+void ExpectationStep::add(const Block& block, const NoiseModel& model, ExpectationSums& sums) const {
+  for (std::size_t k = 0; k < block.size; ++k) {
+    const std::uint16_t beam = errors_.beam[block.first + k];
+    sums.ranges += 1;
+    sums.log_likelihood += block.log_density[k];
+    sums.of_beam[beam] += 1;
+    const ExpectedSquare expected = block.add_components(k, model, beam, sums);
+    if (!(expected.weight > 0)) continue;  // underflow: an extreme outlier
+    const double relative = block.relative[k];
+    const double variance = (block.deviation[k] / relative) * (block.deviation[k] / relative);
+    ByPart units;
+    for (std::size_t part = 0; part < kVarianceParts; ++part) {
+      units[part] = model.parts[part] ? unit_variances_[part][block.first + k] : 0;
     }
-  });
-  return sums;
+    sums.variance.add(units, expected.square / expected.weight, expected.weight / (variance * variance));
+    sums.squares[beam] += expected.square / variance * relative * relative;
+  }
+}
+
+ExpectationSums ExpectationStep::sums(const NoiseModel& model, std::size_t beams) const {
+  const auto add_ranges = [&](ExpectationSums& sums, std::size_t begin, std::size_t end) {
+    for_each_block(model, begin, end, [&](const Block& block) { add(block, model, sums); });
+  };
+  return sum_over_blocks(errors_.size(), kRangesOfTask, ExpectationSums(beams), add_ranges);
 }
 
 std::vector<double> ExpectationStep::log_densities(const NoiseModel& model) const {
-  std::vector<double> all;
-  all.reserve(errors_.size());
-  for_each_block(model, [&](const Block& block) {
-    all.insert(all.end(), block.log_density.begin(),
-               block.log_density.begin() + static_cast<std::ptrdiff_t>(block.size));
+  std::vector<double> all(errors_.size());
+  for_blocks(all.size(), kRangesOfTask, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_each_block(model, begin, end, [&](const Block& block) {
+      std::copy_n(block.log_density.begin(), block.size,
+                  all.begin() + static_cast<std::ptrdiff_t>(block.first));
+    });
   });
   return all;
 }

@@ -14,6 +14,9 @@ namespace crisp {
 
 /// Sums over all ranges that the maximization step of EM needs.
 struct ExpectationSums {
+  explicit ExpectationSums(std::size_t beams);
+  void operator+=(const ExpectationSums& other);
+
   double ranges = 0;
   double log_likelihood = 0;                     ///< [nat]
   double tail = 0;                               ///< expected number of ranges in the tail
@@ -39,7 +42,10 @@ class ExpectationStep {
  private:
   struct Block;
 
-  void for_each_block(const NoiseModel& model, const std::function<void(const Block&)>& use) const;
+  /// Calls `use` for ranges begin … end − 1, a block at a time.
+  void for_each_block(const NoiseModel& model, std::size_t begin, std::size_t end,
+                      const std::function<void(const Block&)>& use) const;
+  void add(const Block& block, const NoiseModel& model, ExpectationSums& sums) const;
 
   const RangeErrors& errors_;
   std::array<std::vector<double>, kVarianceParts> unit_variances_;  // of each range
