@@ -100,8 +100,8 @@ endfunction()
 # crisp_test(<name> [THREADS] [SLOW <filter>] [SMOKE <filter>] [LONG <filter>] [CLUSTER <filter>] SOURCES ... LIBRARIES ...)
 # makes one GoogleTest program of a folder's tests. Filters are GoogleTest's. Its quick tests are one test of CTest's,
 # by the program's name; those that a filter calls slow, smoke (slow, but run by `./check`: one of each kind), long or
-# cluster (slow, and in need of a scheduler's packages) are one each, with that label. Only the release build runs those. With THREADS the thread sanitizer runs the quick
-# tests, too (target threaded_tests, label threads).
+# cluster (slow, and in need of a scheduler's packages) are one each, with that label. Only the release build runs
+# those. With THREADS the thread sanitizer runs the quick tests, too (target threaded_tests, label threads).
 function(crisp_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS" "SLOW;SMOKE;LONG;CLUSTER" "SOURCES;LIBRARIES")
   set(only_slow FALSE)

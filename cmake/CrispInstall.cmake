@@ -12,8 +12,10 @@ install(DIRECTORY pipeline/include/crisp DESTINATION "${CMAKE_INSTALL_INCLUDEDIR
 install(FILES "${CMAKE_BINARY_DIR}/crispConfig.cmake" "${CMAKE_BINARY_DIR}/crispConfigVersion.cmake"
               cmake/CrispPackages.cmake cmake/CrispPlugin.cmake DESTINATION "${package}" COMPONENT development)
 install(DIRECTORY configs/ DESTINATION "${CMAKE_INSTALL_DATADIR}/crisp/configs" COMPONENT program)
-install(FILES README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
+install(FILES README.md CONTRIBUTING.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
 if(NOT CRISP_DEBIAN)  # which has them in Debian's form
   install(FILES LICENSE CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
 endif()
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
+install(DIRECTORY tests/examples  # where the pages' links lead
+        DESTINATION "${CMAKE_INSTALL_DOCDIR}/tests" COMPONENT documentation)

@@ -10,6 +10,15 @@
 
 namespace crisp {
 
+namespace {
+
+double fraction_of(const Progress& progress) {
+  const double ratio = progress.total > 0 ? progress.done / progress.total : 0;
+  return std::isfinite(ratio) ? std::clamp(ratio, 0.0, 1.0) : 0;
+}
+
+}  // namespace
+
 ProgressPrinter::ProgressPrinter(std::ostream& out, bool terminal, Clock clock, std::size_t width)
     : out_(out), terminal_(terminal), clock_(std::move(clock)), width_(width) {}
 
@@ -43,14 +52,17 @@ void ProgressPrinter::log(const std::string& line) {
 
 void ProgressPrinter::show(const std::string& tag, const Progress& progress) {
   const double now = clock_();
+  const double fraction = fraction_of(progress);
   const bool begins = tag != tag_;
-  if (!begins && !is_due(now)) return;
-  if (begins) {
-    tag_ = tag;
+  if (begins || fraction < last_fraction_) {
     began_ = now;
+    began_at_ = fraction;
   }
+  last_fraction_ = fraction;
+  if (!begins && !is_due(now)) return;
+  tag_ = tag;
   shown_ = now;
-  print(line(progress, now - began_));
+  print(line(progress, now));
 }
 
 void ProgressPrinter::clear() {
@@ -58,11 +70,11 @@ void ProgressPrinter::clear() {
   on_screen_ = false;
 }
 
-std::string ProgressPrinter::line(const Progress& progress, double elapsed) const {
+std::string ProgressPrinter::line(const Progress& progress, double now) const {
   constexpr int kWidth = 24;
   constexpr double kEnoughToJudge = 0.5;  // [s] before a rate or the time left means anything
-  const double ratio = progress.total > 0 ? progress.done / progress.total : 0;
-  const double fraction = std::isfinite(ratio) ? std::clamp(ratio, 0.0, 1.0) : 0;
+  const double elapsed = now - began_;
+  const double fraction = fraction_of(progress);
   std::string text = fmt::format("{:<22}", tag_);
   if (terminal_) {
     const auto full = static_cast<std::size_t>(std::lround(fraction * kWidth));
@@ -72,8 +84,8 @@ std::string ProgressPrinter::line(const Progress& progress, double elapsed) cons
   if (elapsed >= kEnoughToJudge && !progress.unit.empty()) {
     text += fmt::format("  {}/s", format_amount(progress.done / elapsed, std::string(progress.unit)));
   }
-  if (elapsed >= kEnoughToJudge && fraction > 0 && fraction < 1) {
-    text += fmt::format("  {} left", format_duration(elapsed * (1 - fraction) / fraction));
+  if (elapsed >= kEnoughToJudge && fraction > began_at_ && fraction < 1) {
+    text += fmt::format("  {} left", format_duration(elapsed * (1 - fraction) / (fraction - began_at_)));
   }
   if (!progress.what.empty()) text += fmt::format("  {}", progress.what);
   return text;

@@ -33,14 +33,16 @@ class ProgressPrinter {
  private:
   bool is_due(double now) const;
   void print(const std::string& text);
-  std::string line(const Progress& progress, double elapsed) const;
+  std::string line(const Progress& progress, double now) const;
 
   std::ostream& out_;
   bool terminal_;
   Clock clock_;
   std::size_t width_;
   std::string tag_;
-  double began_ = 0;  ///< when the stage reported first
+  double began_ = 0;          ///< when the stage, or its part, reported first
+  double began_at_ = 0;       ///< fraction done by then
+  double last_fraction_ = 0;  ///< a smaller one begins another part
   double shown_ = 0;
   bool on_screen_ = false;
   bool status_shown_ = false;

@@ -176,12 +176,37 @@ Orientation orientation_of(const Surfel& surfel) {
   return std::abs(surfel.normal.z()) > kLevel ? Orientation::level : Orientation::upright;
 }
 
+constexpr double kMinShare = 0.5;  // of consistent beams
+
+/// Whether a view agrees with one besides these two, wherever they overlap.
+bool agrees_with_a_third(const std::string& view, const ViewConsistency& pair,
+                         const std::vector<ViewConsistency>& pairs) {
+  std::map<std::string, double> least;  // share, by the other view
+  for (const ViewConsistency& one : pairs) {
+    if (one.view != view && one.other != view) continue;
+    const std::string& other = one.view == view ? one.other : one.view;
+    const auto [at, is_first] = least.try_emplace(other, one.share);
+    if (!is_first) at->second = std::min(at->second, one.share);
+  }
+  return std::ranges::any_of(least, [&](const auto& third) {
+    return third.first != pair.view && third.first != pair.other && third.second >= kMinShare;
+  });
+}
+
+/// Which view of an inconsistent pair is wrong: the one that agrees with no third, if the other does.
+std::string suspect_of(const ViewConsistency& pair, const std::vector<ViewConsistency>& pairs) {
+  const bool view_agrees = agrees_with_a_third(pair.view, pair, pairs);
+  const bool other_agrees = agrees_with_a_third(pair.other, pair, pairs);
+  if (view_agrees == other_agrees) return "both";
+  return fmt::format("{}, which agrees with no other laser", view_agrees ? pair.other : pair.view);
+}
+
 ViewPartition by_laser(const Sample& sample, const std::vector<std::string>& names) {
   return {
       .views = names,
       .of_beam = {sample.beams.laser.begin(), sample.beams.laser.end()},
       .advice =
-          "the calibration is probably in a wrong local minimum. Check the rig's mount and lambda of both, or start from calibrate.load"};
+          "the calibration is probably in a wrong local minimum. Check the rig's mount and lambda of {}, or start from calibrate.load"};
 }
 
 ViewPartition by_half(const Sample& sample) {
@@ -223,7 +248,7 @@ std::vector<ViewPartition> view_partitions(const Sample& sample, const std::vect
 
 std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const BeamsView& beams,
                                               const ViewPartition& partition, const ViewErrors& errors) {
-  constexpr double kMinShare = 0.02;  // of a view's beams: fewer are no reason for a caveat
+  constexpr double kMinPart = 0.02;  // of a view's beams: fewer are no reason for a caveat
   constexpr double kMinBeams = 500;
   const std::size_t n = partition.views.size();
   const Directions directions(beams.directions);
@@ -235,7 +260,7 @@ std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const Beam
     pieces.add_to(of_surfel[s], errors);
   });
   const double least =
-      std::max(kMinBeams, kMinShare * static_cast<double>(beams.points.size()) / static_cast<double>(n));
+      std::max(kMinBeams, kMinPart * static_cast<double>(beams.points.size()) / static_cast<double>(n));
   std::vector<ViewConsistency> pairs;
   for (const Orientation orientation : {Orientation::upright, Orientation::level}) {
     PairSums all(n);
@@ -260,12 +285,12 @@ const char* in_words(Orientation orientation) {
 
 std::optional<std::string> inconsistency(const ViewPartition& partition,
                                          const std::vector<ViewConsistency>& pairs) {
-  constexpr double kMinShare = 0.5;
   const auto least = std::ranges::min_element(pairs, {}, &ViewConsistency::share);
   if (least == pairs.end() || least->share >= kMinShare) return std::nullopt;
   return fmt::format(
       "{} and {} agree on {:.0f} % of the {} in common directions (expected above {:.0f} %): {}", least->view,
-      least->other, 100 * least->share, in_words(least->orientation), 100 * kExpectedShare, partition.advice);
+      least->other, 100 * least->share, in_words(least->orientation), 100 * kExpectedShare,
+      fmt::format(fmt::runtime(partition.advice), suspect_of(*least, pairs)));
 }
 
 }  // namespace crisp

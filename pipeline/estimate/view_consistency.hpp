@@ -15,7 +15,7 @@ namespace crisp {
 struct ViewPartition {
   std::vector<std::string> views;      ///< in words: "laser1", "the fronts", "the first quarter"
   std::vector<std::uint32_t> of_beam;  ///< index into `views` of each beam
-  std::string advice;                  ///< what it means that they are inconsistent, and what to do
+  std::string advice;                  ///< cause of inconsistent views, and what to do; "{}" is the suspect
 };
 
 /// The partitions that show a wrong calibration: by laser (if there are several), which a wrong λ, τ or α

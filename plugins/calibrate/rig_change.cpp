@@ -136,7 +136,7 @@ std::vector<RigChange> other_counts(const Rig& rig) {
   return all;
 }
 
-std::vector<RigChange> combinations(const std::vector<std::vector<RigChange>>& of_lasers) {
+std::vector<RigChange> combinations(const std::vector<std::vector<RigChange>>& of_lasers, std::size_t most) {
   std::vector<RigChange> all;
   for (const auto& alternatives : of_lasers) {
     std::vector<RigChange> longer;
@@ -144,9 +144,10 @@ std::vector<RigChange> combinations(const std::vector<std::vector<RigChange>>& o
       if (all.empty()) longer.push_back(change);
       for (const RigChange& before : all) longer.push_back(both(before, change));
     }
+    std::ranges::stable_sort(longer, {}, different_changes);
+    if (longer.size() > most) longer.resize(most);  // further lasers make no combination simpler
     all = std::move(longer);
   }
-  std::ranges::stable_sort(all, {}, different_changes);
   return all;
 }
 

@@ -47,8 +47,8 @@ std::vector<RigChange> other_mounts(const Rig& rig);
 /// edges of each line.
 std::vector<RigChange> other_counts(const Rig& rig);
 
-/// Each combination of one change from each list, those that change lasers alike first.
-std::vector<RigChange> combinations(const std::vector<std::vector<RigChange>>& of_lasers);
+/// Combinations of one change from each list: the `most` that change lasers most alike, these first.
+std::vector<RigChange> combinations(const std::vector<std::vector<RigChange>>& of_lasers, std::size_t most);
 
 /// Whether a recording may not distinguish two changes: two exchanges of lasers, or lasers upside down and
 /// turned by half a turn.

@@ -176,9 +176,7 @@ std::vector<RigChange> RigErrorSearch::of_some() {
     auto own = of_one(laser);
     if (!own.empty()) alternatives.push_back(std::move(own));
   }
-  auto all = combinations(alternatives);
-  if (all.size() > kMost) all.resize(kMost);
-  return those_that_fit(all);
+  return those_that_fit(combinations(alternatives, kMost));
 }
 
 std::vector<RigChange> RigErrorSearch::of_plate() {

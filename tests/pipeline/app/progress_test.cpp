@@ -51,6 +51,18 @@ TEST_F(ProgressTest, PrintsPlainLinesAtMostEveryTenSecondsElsewhere) {
             "write                   50 %\n");
 }
 
+TEST_F(ProgressTest, EstimatesTheTimeLeftOfAPartThatBeginsAnew) {
+  ProgressPrinter printer(out, true, clock);
+  printer.show("calibrate.refine", {.done = 0});
+  now += 60;
+  printer.show("calibrate.refine", {.done = 0.9});
+  now += 1;
+  printer.show("calibrate.refine", {.done = 0.1, .what = "what if"});
+  now += 2;
+  printer.show("calibrate.refine", {.done = 0.2, .what = "what if"});
+  EXPECT_THAT(out.str(), testing::EndsWith(" 20 %  16.0 s left  what if"));
+}
+
 TEST_F(ProgressTest, SurvivesFiguresThatMakeNoSense) {
   ProgressPrinter printer(out, false, clock);
   printer.show("a", {.done = 5, .total = 0});

@@ -135,6 +135,16 @@ TEST(ViewConsistency, TheLeastConsistentPairIsReportedBelowAHalf) {
                     HasSubstr("expected above 70 %"), HasSubstr("turn it off and on again")));
 }
 
+TEST(ViewConsistency, TheViewThatAgreesWithNoOtherIsTheSuspect) {
+  const ViewPartition partition{.views = {"a", "b", "c"}, .of_beam = {}, .advice = "check {}"};
+  std::vector<ViewConsistency> pairs = {{"a", "b", Orientation::upright, 100, 0.9},
+                                        {"b", "c", Orientation::upright, 100, 0.1},
+                                        {"a", "c", Orientation::level, 100, 0.2}};
+  EXPECT_THAT(inconsistency(partition, pairs).value(), HasSubstr("check c, which agrees with no other"));
+  pairs.push_back({"b", "a", Orientation::level, 100, 0.3});
+  EXPECT_THAT(inconsistency(partition, pairs).value(), HasSubstr("check both"));
+}
+
 TEST(ViewPartitions, DivideByLaserHalfAndQuarterOfEachRecording) {
   auto scanner = misplaced_scanner(1, 1.0);
   const auto recording = simulate_measurements(scanner, office());

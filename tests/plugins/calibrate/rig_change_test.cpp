@@ -93,12 +93,17 @@ TEST_F(RigChanges, ExchangedLasersHaveEachOthersMount) {
 }
 
 TEST_F(RigChanges, CombinationsThatChangeLasersAlikeComeFirst) {
-  const auto all = combinations({changes_of_laser(rig_, 0), changes_of_laser(rig_, 1)});
+  const auto all = combinations({changes_of_laser(rig_, 0), changes_of_laser(rig_, 1)}, 100);
   ASSERT_EQ(all.size(), 36U);
   const auto is_alike = [](const RigChange& change) { return change.lasers[0] == change.lasers[1]; };
   EXPECT_THAT(std::vector(all.begin(), all.begin() + 6), Each(Truly(is_alike)));
   EXPECT_THAT(all.front().words, HasSubstr("laser1, which is upside down (the rig has 0), alpha:"));
-  EXPECT_TRUE(combinations({}).empty());
+  EXPECT_TRUE(combinations({}, 100).empty());
+}
+
+TEST_F(RigChanges, OfManyLasersAreCombinedToTheRequestedNumber) {
+  const auto all = combinations(std::vector(40, changes_of_laser(rig_, 0)), 8);
+  EXPECT_EQ(all.size(), 8U);
 }
 
 TEST_F(RigChanges, ThatAreAlikeAreHalfTurnsAndExchanges) {
