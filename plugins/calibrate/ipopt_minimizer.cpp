@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/ipopt_minimizer.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
 #include <algorithm>
@@ -36,12 +38,12 @@ class Unlocked {
 /// variables it is better than the limited-memory one that Ipopt has, and a solve costs a fraction.
 class SecantHessian {
  public:
+  SecantHessian() = default;
+  /// @param believed  about the Hessian, up to a factor
+  explicit SecantHessian(Eigen::MatrixXd believed) : matrix_(std::move(believed)) {}
+
   const Eigen::MatrixXd& at(const Eigen::VectorXd& y, const Eigen::VectorXd& gradient) {
-    if (matrix_.size() == 0) {
-      matrix_.setIdentity(y.size(), y.size());  // the basis is such that the curvature is about 1
-    } else if (y != y_) {
-      update(y - y_, gradient - gradient_);
-    }
+    if (y_.size() > 0 && y != y_) update(y - y_, gradient - gradient_);
     y_ = y;
     gradient_ = gradient;
     return matrix_;
@@ -50,7 +52,8 @@ class SecantHessian {
  private:
   void update(const Eigen::VectorXd& step, Eigen::VectorXd change) {
     constexpr double kMin = 0.2;  // of the curvature believed so far
-    if (is_first_ && step.dot(change) > 0) matrix_ *= change.squaredNorm() / step.dot(change);
+    if (is_first_ && step.dot(change) > 0)
+      matrix_ *= change.dot(matrix_.llt().solve(change)) / step.dot(change);
     is_first_ = false;
     const Eigen::VectorXd expected = matrix_ * step;
     const double believed = step.dot(expected);
@@ -79,8 +82,9 @@ struct Question {
   std::unique_lock<std::mutex>& lock;  ///< of the solvers, held while Ipopt works
 };
 
-/// The problem in Ipopt's interface: variables y, and the box as linear constraints lower ≤ x(y) ≤ upper, or
-/// without them, for a minimum inside of the box. One object serves many searches of the same size.
+/// The problem in Ipopt's interface: variables y with x = start + scale * y. Without borders the scale is the
+/// box's basis. With borders it is diagonal, so that they are bounds of single variables, beyond which Ipopt
+/// never evaluates. One object serves many searches of the same size.
 class BoxProblem final : public Ipopt::TNLP {
  public:
   BoxProblem(Index size, Borders borders) : size_(size), borders_(borders) {}
@@ -88,34 +92,47 @@ class BoxProblem final : public Ipopt::TNLP {
   /// @param question  must outlive the search
   void take(const Question& question) {
     question_ = &question;
-    hessian_ = {};
+    const Eigen::MatrixXd& basis = question.box.basis;
+    if (borders_ == Borders::kIgnored) {
+      variables_ = basis;
+      hessian_ =
+          SecantHessian(Eigen::MatrixXd::Identity(size_, size_));  // the basis makes curvatures about 1
+    } else {
+      variables_ = basis.rowwise().norm().asDiagonal();
+      const Eigen::MatrixXd to_basis = basis.inverse() * variables_;
+      hessian_ = SecantHessian(to_basis.transpose() * to_basis);
+    }
     x_.resize(0);
+    is_outside_ = false;
     best_ = {.x = question.start, .value = std::numeric_limits<double>::infinity()};
     evaluate(question.start);
     if (!std::isfinite(best_.value)) throw internal_error("the cost function is not a number at the start");
     // As Ipopt's "gradient-based" does, which it would keep from the first question on.
     constexpr double kSteepest = 100;
-    scale_ = std::min(1.0, kSteepest / slope().lpNorm<Eigen::Infinity>());
+    factor_ = std::min(1.0, kSteepest / slope().lpNorm<Eigen::Infinity>());
   }
 
   const Minimum& best() const { return best_; }
+  /// Whether the way led out of the box, where the objective makes no sense. (Never with borders.)
+  bool left_the_box() const { return is_outside_; }
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
     n = size_;
-    m = borders_ == Borders::kKept ? n : 0;
-    jacobian = n * m;
+    m = 0;
+    jacobian = 0;
     hessian = n * (n + 1) / 2;
     style = C_STYLE;
     return true;
   }
 
-  bool get_bounds_info(Index n, Number* lower, Number* upper, Index m, Number* g_lower,
-                       Number* g_upper) override {
+  bool get_bounds_info(Index n, Number* lower, Number* upper, Index, Number*, Number*) override {
     constexpr double kUnbounded = 1e19;  // Ipopt's infinity
     std::fill_n(lower, n, -kUnbounded);
     std::fill_n(upper, n, kUnbounded);
-    Eigen::Map<Eigen::VectorXd>(g_lower, m) = question_->box.lower.head(m);
-    Eigen::Map<Eigen::VectorXd>(g_upper, m) = question_->box.upper.head(m);
+    if (borders_ == Borders::kIgnored) return true;
+    const Eigen::VectorXd unit = variables_.diagonal();
+    Eigen::Map<Eigen::VectorXd>(lower, n) = (question_->box.lower - question_->start).cwiseQuotient(unit);
+    Eigen::Map<Eigen::VectorXd>(upper, n) = (question_->box.upper - question_->start).cwiseQuotient(unit);
     return true;
   }
 
@@ -125,37 +142,21 @@ class BoxProblem final : public Ipopt::TNLP {
   }
 
   bool eval_f(Index n, const Number* y, bool, Number& value) override {
-    value = scale_ * evaluate(at(n, y));
+    value = factor_ * evaluate(at(n, y));
     return std::isfinite(value);
   }
 
   bool eval_grad_f(Index n, const Number* y, bool, Number* gradient) override {
     evaluate(at(n, y));
-    Eigen::Map<Eigen::VectorXd>(gradient, n) = scale_ * slope();
+    Eigen::Map<Eigen::VectorXd>(gradient, n) = factor_ * slope();
     return gradient_.allFinite();
   }
 
-  bool eval_g(Index n, const Number* y, bool, Index m, Number* g) override {
-    Eigen::Map<Eigen::VectorXd>(g, m) = unclamped(n, y).head(m);
-    return true;
-  }
+  bool eval_g(Index, const Number*, bool, Index, Number*) override { return true; }
 
-  bool eval_jac_g(Index n, const Number*, bool, Index m, Index, Index* rows, Index* columns,
-                  Number* values) override {
-    for (Index i = 0, k = 0; i < m; ++i) {
-      for (Index j = 0; j < n; ++j, ++k) {
-        if (values) {
-          values[k] = question_->box.basis(i, j);
-        } else {
-          rows[k] = i;
-          columns[k] = j;
-        }
-      }
-    }
-    return true;
-  }
+  bool eval_jac_g(Index, const Number*, bool, Index, Index, Index*, Index*, Number*) override { return true; }
 
-  bool eval_h(Index n, const Number* y, bool, Number factor, Index, const Number*, bool, Index, Index* rows,
+  bool eval_h(Index n, const Number* y, bool, Number weight, Index, const Number*, bool, Index, Index* rows,
               Index* columns, Number* values) override {
     if (values) evaluate(at(n, y));
     const Eigen::MatrixXd* hessian =
@@ -163,7 +164,7 @@ class BoxProblem final : public Ipopt::TNLP {
     for (Index i = 0, k = 0; i < n; ++i) {
       for (Index j = 0; j <= i; ++j, ++k) {
         if (hessian) {
-          values[k] = factor * scale_ * (*hessian)(i, j);
+          values[k] = weight * factor_ * (*hessian)(i, j);
         } else {
           rows[k] = i;
           columns[k] = j;
@@ -177,6 +178,7 @@ class BoxProblem final : public Ipopt::TNLP {
                              Number, Number, Number, Index, const Ipopt::IpoptData*,
                              Ipopt::IpoptCalculatedQuantities*) override {
     best_.iterations = iteration;
+    if (left_the_box()) return false;
     return !question_->settings.interrupted || !question_->settings.interrupted();
   }
 
@@ -186,15 +188,14 @@ class BoxProblem final : public Ipopt::TNLP {
 
  private:
   /// The gradient by y, at the last evaluated point.
-  Eigen::VectorXd slope() const { return question_->box.basis.transpose() * gradient_; }
+  Eigen::VectorXd slope() const { return variables_.transpose() * gradient_; }
 
-  Eigen::VectorXd unclamped(Index n, const Number* y) const {
-    return question_->start + question_->box.basis * Eigen::Map<const Eigen::VectorXd>(y, n);
-  }
-
-  /// Trial steps may leave the box, in which alone the objective need make sense.
-  Eigen::VectorXd at(Index n, const Number* y) const {
-    return unclamped(n, y).cwiseMax(question_->box.lower).cwiseMin(question_->box.upper);
+  /// Without borders, trial steps may leave the box, in which alone the objective need make sense.
+  Eigen::VectorXd at(Index n, const Number* y) {
+    const Eigen::VectorXd x = question_->start + variables_ * Eigen::Map<const Eigen::VectorXd>(y, n);
+    Eigen::VectorXd inside = x.cwiseMax(question_->box.lower).cwiseMin(question_->box.upper);
+    is_outside_ = borders_ == Borders::kIgnored && x != inside;
+    return inside;
   }
 
   /// Evaluates value and gradient together; Ipopt requests them one after the other at the same x.
@@ -215,10 +216,12 @@ class BoxProblem final : public Ipopt::TNLP {
   Index size_;
   Borders borders_;
   const Question* question_ = nullptr;
+  Eigen::MatrixXd variables_;  ///< columns: what a unit of each y changes x by
   Eigen::VectorXd x_;
   Eigen::VectorXd gradient_;
   double value_ = 0;
-  double scale_ = 1;  ///< of the objective, as Ipopt sees it
+  bool is_outside_ = false;  ///< of the box: the point evaluated last, before it was moved inside
+  double factor_ = 1;        ///< of the objective, as Ipopt sees it
   SecantHessian hessian_;
   Minimum best_;
 };
@@ -248,9 +251,7 @@ Application make_application() {
   auto options = application->Options();
   options->SetIntegerValue("print_level", 0);
   options->SetStringValue("sb", "yes");
-  options->SetStringValue("option_file_name", "");  // an ipopt.opt lying about must not change results
-  options->SetStringValue("jac_c_constant", "yes");
-  options->SetStringValue("jac_d_constant", "yes");
+  options->SetStringValue("option_file_name", "");      // an ipopt.opt lying about must not change results
   options->SetIntegerValue("min_refinement_steps", 0);  // the systems are small and well conditioned
   // Steps that no longer lower the cost end the search only if there are many: the first ones, before much is
   // known of the curvature, may be small.
@@ -264,6 +265,11 @@ Application make_application() {
   return application;
 }
 
+struct Answer {
+  Minimum minimum;
+  bool left_the_box = false;  ///< and the search stopped there
+};
+
 /// An application that keeps, from one question to the next of the same size, what it has set up: that takes
 /// longer than many a search.
 class Solver {
@@ -271,7 +277,7 @@ class Solver {
   Solver(Index size, Borders borders)
       : borders_(borders), application_(make_application()), problem_(new BoxProblem(size, borders)) {}
 
-  Minimum answer(const Question& question) {
+  Answer answer(const Question& question) {
     problem_->take(question);
     const MinimizerSettings& settings = question.settings;
     application_->Options()->SetIntegerValue("max_iter", settings.max_iterations);
@@ -289,7 +295,7 @@ class Solver {
     minimum.status = in_words(status);
     minimum.converged = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level ||
                         status == Ipopt::Search_Direction_Becomes_Too_Small;
-    return minimum;
+    return {.minimum = std::move(minimum), .left_the_box = problem_->left_the_box()};
   }
 
  private:
@@ -311,14 +317,14 @@ Solvers& solvers() {
 }
 
 /// One that threw is not used again.
-Minimum solve(const Question& question, Borders borders) {
+Answer solve(const Question& question, Borders borders) {
   auto& idle = solvers().idle[{question.start.size(), borders}];
   if (idle.empty()) idle.emplace_back(static_cast<Index>(question.start.size()), borders);
   Solver solver = std::move(idle.back());
   idle.pop_back();
-  Minimum minimum = solver.answer(question);
+  Answer answer = solver.answer(question);
   idle.push_back(std::move(solver));
-  return minimum;
+  return answer;
 }
 
 bool is_inside(const Eigen::VectorXd& x, const Box& box) {
@@ -340,10 +346,11 @@ Minimum minimize(const Objective& objective, const Eigen::VectorXd& start, const
                     .box = box,
                     .settings = settings,
                     .lock = lock};
-  Minimum found = solve(question, Borders::kIgnored);
-  if (is_inside(found.x, box) || (settings.interrupted && settings.interrupted())) return found;
+  const auto [found, left_the_box] = solve(question, Borders::kIgnored);
+  const bool is_found = !left_the_box && is_inside(found.x, box);
+  if (is_found || (settings.interrupted && settings.interrupted())) return found;
   question.start = found.x;
-  Minimum kept = solve(question, Borders::kKept);
+  Minimum kept = solve(question, Borders::kKept).minimum;
   kept.iterations += found.iterations;
   return kept;
 }

@@ -45,13 +45,16 @@ bool has_moved_lambda(const Outcome& outcome, const ParameterPrior& near) {
   });
 }
 
-/// The outcome refined; nothing if nothing is flat there, or nothing is determined.
+/// The outcome refined, with enough beams to see whether it fits; nothing if nothing is flat there, or
+/// nothing is determined.
 std::optional<Refinement> refined(const Outcome& outcome, const Sample& sample, const Rig& rig,
                                   const std::function<bool()>& interrupted) {
+  constexpr std::size_t kBeams = 200'000;
   RefinementSettings settings;
   settings.prior.nominal = nominal_values(rig);
   try {
-    return refine_by_surfels(outcome.model, sample, settings, [&](int) { return !interrupted(); });
+    return refine_by_surfels(outcome.model, thin_evenly(sample, kBeams, 1), settings,
+                             [&](int) { return !interrupted(); });
   } catch (const Error&) {
     return std::nullopt;
   }
