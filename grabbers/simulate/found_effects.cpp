@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <crisp/error.hpp>
 
@@ -86,6 +87,35 @@ void check_device(const Found& found, const std::string& file, const Rig& rig) {
       {file});
 }
 
+bool has_parameter(const EffectInfo& info, const Parameter& parameter) {
+  return std::ranges::find(info.parameters, parameter.name, &EffectParameter::name) != info.parameters.end();
+}
+
+/// Whether a finding has the parameters of a cause's general member, a curve, in place of its formula's.
+bool is_curve(const Found& found, const EffectInfo& info, const std::vector<EffectInfo>& catalogue) {
+  const auto is_of_a_shape = [&](const Parameter& parameter) {
+    return std::ranges::any_of(catalogue, [&](const EffectInfo& other) {
+      return other.name.starts_with("empirical.") && has_parameter(other, parameter);
+    });
+  };
+  return std::ranges::any_of(found.parameters, [&](const Parameter& parameter) {
+    return !has_parameter(info, parameter) && is_of_a_shape(parameter);
+  });
+}
+
+/// Why the file does not determine what is to be simulated.
+std::optional<std::string> missing(const Found& found, const EffectInfo* info,
+                                   const std::vector<EffectInfo>& catalogue) {
+  if (std::ranges::any_of(found.parameters, [](const auto& p) { return std::isnan(p.value); }))
+    return ", which the file does not hold";
+  if (found.cause == "noise.mixed_pixels")
+    return ": the file holds the fraction of edges, not the width of the spot";
+  if (found.cause == "clock.drift" && std::ranges::count(found.parameters, "rms", &Parameter::name) > 0)
+    return ": the file holds the size of a drift that varies, not its course";
+  if (info && is_curve(found, *info, catalogue)) return ": a curve, which calibration.yaml has as a term";
+  return std::nullopt;
+}
+
 /// As `effects` would have it.
 OptionGroup as_option(const Found& found, const std::string& file) {
   OptionGroup group{.name = found.scope + "." + found.cause, .entries = {}, .place = {file}};
@@ -106,14 +136,10 @@ FoundEffects effects_of(const Findings& findings, const std::string& file, const
   for (const Found& found : all_found(findings)) {
     const auto info = std::ranges::find(catalogue, found.cause, &EffectInfo::name);
     if (info == catalogue.end() || info->scope != Scope::kScene) check_device(found, file, rig);
-    if (found.cause == "noise.mixed_pixels") {
-      result.others.push_back(
-          fmt::format("{} of {}: the file holds the fraction of edges, not the width of the spot",
-                      found.cause, found.scope));
-    } else if (std::ranges::any_of(found.parameters, [](const auto& p) { return std::isnan(p.value); })) {
-      result.others.push_back(
-          fmt::format("{} of {}, which the file does not hold", found.cause, found.scope));
-    } else if (info != catalogue.end() && info->scope != Scope::kScene) {
+    const EffectInfo* known = info == catalogue.end() ? nullptr : &*info;
+    if (const auto reason = missing(found, known, catalogue)) {
+      result.others.push_back(fmt::format("{} of {}{}", found.cause, found.scope, *reason));
+    } else if (known && known->scope != Scope::kScene) {
       requested.push_back(as_option(found, file));
     } else {
       result.others.push_back(fmt::format("{} of {}", found.cause, found.scope));

@@ -22,6 +22,10 @@ Eigen::VectorXd shape_of(const ClockDeparture& departure, const Eigen::VectorXd&
 
 /// Device and receipt time of the envelope's stamps, with leads predicted by the line and the deviation.
 Eigen::VectorXd fitted(const Envelope& envelope, const ClockDeparture& departure) {
+  if (departure.kind == ClockDeparture::Kind::varying_drift) {
+    const Eigen::MatrixXd line = envelope.straight();
+    return line * least_squares(line, envelope.lead) + departure.curve;
+  }
   Eigen::MatrixXd design(envelope.time.size(), 3);
   design << envelope.straight(), shape_of(departure, envelope.time);
   return design * least_squares(design, envelope.lead);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "pipeline/plot/plot.hpp"
-#include "plugins/diagnose/clocks/clock_stamps.hpp"
+#include "plugins/diagnose/clocks/clock_departure.hpp"
 
 namespace crisp {
 

@@ -41,33 +41,6 @@ class StampTrack {
   std::int64_t device_us_ = 0;  // since the first
 };
 
-/// Deviation of a clock or its link from the clock model: a constant rate and a constant minimum delay.
-struct ClockDeparture {
-  /// backlog: queued telegrams arrive late, ever less so until the queue is empty.
-  enum class Kind { drift, clock_step, latency_step, backlog };
-  Kind kind = Kind::drift;
-  double size = 0;       ///< drift: [1/s] of the skew; steps: [s] forward, or later; backlog: [s] RMS
-  double std_error = 0;  ///< of the size
-  double skew = 0;       ///< at the first stamp
-  double skew_std_error = 0;
-  double at =
-      0;  ///< [s since the first stamp] time of a step: receipt of the next stamp less its excess delay
-  double at_std_error = 0;  ///< [s]
-  double p_value = 1;       ///< permutation test of the minimum delays
-  Gain gain;                ///< RMS of held-out minimum delays about the clock model
-
-  struct Competitor {
-    std::optional<Kind> kind;       ///< empty: no deviation
-    double log10_bayes_factor = 0;  ///< log10 of the Bayes factor against it
-  };
-  /// Other deviations that could explain the minimum delays, the most likely first. The Bayes factors come
-  /// from the BIC (normal errors of the minimum delays). Steps of clock and link compare by the device's own
-  /// time, see log10_odds_of_jump(). A backlog has no cause in the catalogue and no competitors.
-  std::vector<Competitor> competitors = {};
-
-  bool is_step() const { return kind == Kind::clock_step || kind == Kind::latency_step; }
-};
-
 /// Clock and link of a device without deviations; kNotTested where there are too few stamps.
 struct ClockFacts {
   double skew = kNotTested;  ///< hub seconds per device second − 1
@@ -80,20 +53,6 @@ inline constexpr std::size_t kMinOfClock = 10;  ///< minimum number of stamps fo
 
 /// Estimates skew and delays of a device.
 ClockFacts clock_facts(std::span<const CountedStamp> stamps);
-
-/// Tests the lower envelope of receipt less device time: the minimum delay in each of up to 64 windows. A
-/// step is attributed to the device's clock if the time between two counts jumps with it, and otherwise to
-/// the link.
-///
-/// @param tests  number of devices tested, for the correction of the p-value
-/// @return  the most significant deviation with p < 0.002, if there is one
-std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stamps, std::size_t tests,
-                                              std::uint64_t seed);
-
-/// Removes a step of the clock or of the link from the stamps. A drift stays.
-///
-/// @param departure  its time counts from the first stamp
-std::vector<CountedStamp> without_step(std::span<const CountedStamp> stamps, const ClockDeparture& departure);
 
 /// Clock line: the best straight line below all stamps (lower convex hull), in any order.
 ClockLine line_of(std::vector<Stamp> stamps);
@@ -117,9 +76,6 @@ struct MirrorFacts {
 /// @param step_interval  [s] interval of receipt times that contains the step of the clock
 std::vector<std::span<const CountedStamp>> unbroken_segments(
     std::span<const CountedStamp> passes, const std::optional<std::array<double, 2>>& step_interval = {});
-
-/// Interval that contains the step of the device's clock; empty without a step.
-std::optional<std::array<double, 2>> clock_step_interval(const std::optional<ClockDeparture>& departure);
 
 /// Estimates a mirror's period from its index passes.
 ///

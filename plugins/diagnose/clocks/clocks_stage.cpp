@@ -26,6 +26,7 @@ Parameter parameter(const char* name, const char* unit, double value, double std
 const char* cause_of(ClockDeparture::Kind kind) {
   switch (kind) {
     case ClockDeparture::Kind::drift:
+    case ClockDeparture::Kind::varying_drift:
       return "clock.drift";
     case ClockDeparture::Kind::clock_step:
       return "clock.step";
@@ -49,6 +50,8 @@ Finding finding_of(const ClockDeparture& departure, const std::string& device) {
   if (departure.kind == ClockDeparture::Kind::drift) {
     finding.parameters = {parameter("skew", "1", departure.skew, departure.skew_std_error),
                           parameter("drift", "1/s", departure.size, departure.std_error)};
+  } else if (departure.kind == ClockDeparture::Kind::varying_drift) {
+    finding.parameters = {parameter("rms", "s", departure.size, departure.std_error)};
   } else {
     finding.parameters = {parameter("by", "s", departure.size, departure.std_error),
                           parameter("at", "s", departure.at, departure.at_std_error)};
@@ -116,7 +119,7 @@ std::string caveat_of(const DeviceFacts& facts) {
 void DiagnoseClocksStage::describe(StageDescription<DiagnoseClocksStage>& d) {
   d.name("diagnose.clocks").summary("tests clocks, links and mirrors by the telegrams' timestamps");
   d.details(
-      "Receipt less device time has a lower envelope, since telegrams arrive late but never early. The stage evaluates the minimum delay in each of up to 64 windows of the recording. It tests for deviations from a clock of constant rate and a link of constant minimum delay: a drift of the clock (`clock.drift`), a step of the clock (`clock.step`: the device's own time jumps between two telegrams), and a step of the link's minimum delay (`latency.step`). A backlog, late telegrams without a common level, is reported as `unnamed` over time. The p-values come from permutation tests of the minimum delays, the gain from every other window (cross-validation). The stage also lists skews, delays, and the mirrors' rates against nominal. It uses the recording with the most stamps if there are several, separated by pauses of 5 s.");
+      "Receipt less device time has a lower envelope, since telegrams arrive late but never early. The stage evaluates the minimum delay in each of up to 64 windows of the recording. It tests for deviations from a clock of constant rate and a link of constant minimum delay: a drift of the clock (`clock.drift`; where its rate varies, with the RMS of the minimum delays about a clock of constant rate), a step of the clock (`clock.step`: the device's own time jumps between two telegrams), and a step of the link's minimum delay (`latency.step`). A backlog, late telegrams without a common level, is reported as `unnamed` over time. The p-values come from permutation tests of the minimum delays, the gain from every other window (cross-validation). The stage also lists skews, delays, and the mirrors' rates against nominal. It uses the recording with the most stamps if there are several, separated by pauses of 5 s.");
   d.takes<Scan>().takes<PlateReading>(Need::optional).takes<Findings>(Need::optional).gives<Findings>();
   d.option(
       "nominal_mirrors", &DiagnoseClocksStage::nominal_mirrors_,

@@ -12,7 +12,7 @@
 #include <crisp/stage_description.hpp>
 
 #include "pipeline/clocks/pauses.hpp"
-#include "plugins/diagnose/clocks/clock_stamps.hpp"
+#include "plugins/diagnose/clocks/clock_departure.hpp"
 
 namespace crisp {
 

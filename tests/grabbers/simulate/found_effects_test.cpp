@@ -166,6 +166,20 @@ TEST_F(FoundEffectsTest, ThatNoSimulatorKnowsAreNamed) {
   EXPECT_EQ(found.effects[0].owner, 0U);
 }
 
+TEST_F(FoundEffectsTest, ThatAreCurvesAreNamed) {
+  Findings findings;
+  findings.findings = {
+      finding("clock.drift", "laser1",
+              {{.name = "at0", .unit = "s", .value = 1e-3}, {.name = "span", .unit = "s", .value = 10}}),
+      finding("clock.drift", "laser2", {{.name = "rms", .unit = "s", .value = 1e-3}}),
+      finding("encoder.eccentricity", "plate", {{.name = "cos3", .unit = "rad", .value = 1e-3}})};
+  const FoundEffects found = effects(findings);
+  EXPECT_TRUE(found.effects.empty());
+  EXPECT_THAT(found.others, ElementsAre(HasSubstr("clock.drift of laser1: a curve"),
+                                        HasSubstr("clock.drift of laser2: the file holds the size"),
+                                        HasSubstr("encoder.eccentricity of plate: a curve")));
+}
+
 TEST_F(FoundEffectsTest, OfDevicesAndValuesThatCannotBeAreRefused) {
   const auto one = [](const std::string& scope, const Parameter& parameter) {
     Findings findings;

@@ -6,10 +6,12 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <tuple>
 
 #include "pipeline/statistics/robust_estimators.hpp"
+#include "plugins/diagnose/clocks/clock_departure.hpp"
 #include "plugins/diagnose/clocks/clock_plots.hpp"
 #include "plugins/diagnose/clocks/device_jumps.hpp"
 #include "tests/support/simulated_stamps.hpp"
@@ -25,6 +27,8 @@ constexpr std::int64_t kEpoch_ns = 1'700'000'000'000'000'000;
 struct Hidden {
   double skew = 40e-6;
   double drift = 0;
+  double wave = 0;       // [s] amplitude of a clock that runs fast and slow …
+  double wave_time = 1;  // [s] … with this period
   double clock_step = 0;
   double latency_step = 0;
   double at = 1e9;
@@ -43,8 +47,9 @@ StampTrack track_of(std::uint64_t seed, const Hidden& hidden, const test::Delays
     constexpr int kSome = 37;
     const double t = taken + (number++ % kSome == 0 ? hidden.sent_late : 0);
     const bool stepped = t >= hidden.at;
-    const double device =
-        t / (1 + hidden.skew) - hidden.drift * t * t / 2 + (stepped ? hidden.clock_step : 0);
+    const double device = t / (1 + hidden.skew) - hidden.drift * t * t / 2 +
+                          (stepped ? hidden.clock_step : 0) -
+                          hidden.wave * std::sin(2 * std::numbers::pi * t / hidden.wave_time);
     const double receipt = t + 0.001 + delays(random) + (stepped ? hidden.latency_step : 0) +
                            hidden.backlog * std::max(0.0, 1 - t / hidden.caught_up);
     track.add(counter++, kStart_us + static_cast<std::uint32_t>(static_cast<std::int64_t>(device * 1e6)),
@@ -143,6 +148,17 @@ TEST(ClockStamps, DistinguishABacklogFromALatencyStep) {
     EXPECT_LT(found->size, 0.4 * std::sqrt(caught_up / kDuration));
     const auto as_they_were = without_step(track.stamps(), *found);
     EXPECT_EQ(as_they_were.front().stamp.lead, track.stamps().front().stamp.lead);
+  }
+}
+
+TEST(ClockStamps, NameADriftThatVaries) {
+  for (const double periods : {1.0, 1.25, 2.0}) {
+    const Hidden hidden{.wave = 3e-4, .wave_time = kDuration / periods};
+    const auto found = clock_departure(track_of(11, hidden, kDelays).stamps(), 4, 1);
+    ASSERT_TRUE(found) << periods;
+    EXPECT_EQ(found->kind, ClockDeparture::Kind::varying_drift) << periods << ": no step";
+    EXPECT_THAT(found->size, testing::AllOf(testing::Gt(0.4 * 3e-4), testing::Lt(3e-4))) << "RMS";
+    EXPECT_TRUE(found->gain.significant_decrease());
   }
 }
 
