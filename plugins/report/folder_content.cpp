@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/report/folder_content.hpp"
 
-#include <fstream>
 #include <system_error>
 
 #include <crisp/calibration_file.hpp>
@@ -14,6 +13,7 @@
 #include "pipeline/stage/files_written.hpp"
 #include "plugins/report/calibration_json.hpp"
 #include "plugins/report/run_content.hpp"
+#include "plugins/report/use_json.hpp"
 
 namespace crisp {
 namespace {
@@ -26,19 +26,6 @@ constexpr const char* kBatch = "batch.json";
 bool is_file(const fs::path& file) {
   std::error_code none;
   return fs::is_regular_file(file, none);
-}
-
-/// Reads JSON and makes something of it.
-/// @throws Error that names the file, if it is no JSON, or not what `use` expects
-template <class Use>
-auto use_json(const fs::path& file, const Use& use) {
-  std::ifstream stream(file);
-  if (!stream) throw Error("cannot read " + file.string(), "check its rights");
-  try {
-    return use(Json::parse(stream));
-  } catch (const Json::exception& error) {
-    throw Error(file.string() + " is damaged: " + error.what(), "run the pipeline again");
-  }
 }
 
 /// All parts of a cloud as one.

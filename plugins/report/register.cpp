@@ -3,12 +3,14 @@
 
 #include "plugins/report/folder_stage.hpp"
 #include "plugins/report/report_stage.hpp"
+#include "plugins/report/run_inspector.hpp"
 
 namespace crisp {
 
 void register_report(Registrar& registrar) {
   registrar.stage<WriteReportStage>();
   registrar.stage<FolderReportStage>();
+  registrar.inspector(run_inspector());
 }
 
 }  // namespace crisp

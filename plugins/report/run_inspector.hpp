@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <crisp/inspector.hpp>
+
+namespace crisp {
+
+/// Describes the summary.json of a run.
+Inspector run_inspector();
+
+}  // namespace crisp
