@@ -2,10 +2,17 @@
 #include "grabbers/devices/device_timeline.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "pipeline/clocks/silence.hpp"
 
 namespace crisp {
+namespace {
+
+constexpr const char* kReceiptJumps =
+    "receipts that jump by over 0.5 s against the device's clock (the hub's clock was set, or items waited)";
+
+}  // namespace
 
 /// Counter gaps across a pause between two recordings are no loss, and clocks may be others after it.
 bool DeviceTimeline::ends_pause(std::int64_t time_ns) {
@@ -32,20 +39,25 @@ DeviceTimeline::Arrival DeviceTimeline::judge(const Item& item) {
   if (verdict == SequenceTracker::Verdict::Late) notes_.add("items that came late");
   const bool is_new = verdict != SequenceTracker::Verdict::Duplicate;
   if (!is_new) notes_.add(item.is_polled ? "scans read twice by a client" : "items that came twice");
+  has_begun_anew_ = has_begun_anew_ || is_reset || is_recording;
   return {.is_new = is_new, .begins_anew = is_reset || is_recording};
 }
 
 void DeviceTimeline::pass_on(const DeviceStamp& stamp) {
   const std::int64_t time_ns = stamp.receipt_ns;
-  const std::uint32_t since_us = stamp.device_us - last_us_;  // wraps as they do
-  last_us_ = stamp.device_us;
+  const std::uint32_t since_us = stamp.device_us - last_.device_us;  // wraps as they do
+  const double receipt_s = 1e-9 * static_cast<double>(time_ns - last_.receipt_ns);
+  last_ = stamp;
+  const bool is_other_clock = std::exchange(has_begun_anew_, false);
   if (items_++ == 0) {
     first_ns_ = last_ns_ = time_ns;
     return;
   }
   if (since_us == 0) ++standing_;
-  const double silence =
-      silence_between(1e-9 * static_cast<double>(time_ns - last_ns_), 1e-6 * static_cast<double>(since_us));
+  const double hub_s = 1e-9 * static_cast<double>(time_ns - last_ns_);
+  if (!is_other_clock && is_receipt_jump(receipt_s, 1e-6 * static_cast<std::int32_t>(since_us)))
+    notes_.add(kReceiptJumps);
+  const double silence = silence_between(hub_s, 1e-6 * static_cast<double>(since_us));
   if (silence > longest_silence_) {
     longest_silence_ = silence;
     silence_ns_ = last_ns_;

@@ -47,7 +47,8 @@ class DeviceTimeline {
   Counts notes_;
   std::uint64_t items_ = 0;  ///< passed on
   std::uint64_t standing_ = 0;
-  std::uint32_t last_us_ = 0;  ///< stamp of the last one passed on
+  DeviceStamp last_;             ///< of the last one passed on
+  bool has_begun_anew_ = false;  ///< clock and counter, since then
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   double longest_silence_ = 0;  ///< [s]
   std::int64_t silence_ns_ = 0;

@@ -52,6 +52,28 @@ TEST(DeviceTimeline, AStepOfTheHubsClockIsNoSilence) {
   EXPECT_NEAR(statistics_of(silent).longest_silence, 61 * 0.02, 1e-9);
 }
 
+TEST(DeviceTimeline, NotesReceiptsThatJump) {
+  const auto jumps = [](const DeviceTimeline& timeline) {
+    const DeviceStatistics statistics = statistics_of(timeline);
+    std::uint64_t sum = 0;
+    for (const auto& [what, n] : statistics.notes.all()) sum += what.starts_with("receipts") ? n : 0;
+    return sum;
+  };
+  DeviceTimeline ahead(nullptr), back(nullptr), silent(nullptr), reset(nullptr);
+  for (std::int64_t k = 0; k < 100; ++k) {
+    come(ahead, item(k, k < 50 ? 0 : 3.7));
+    come(back, item(k, k < 50 ? 0 : -0.8));
+    if (k < 30 || k >= 90) come(silent, item(k));
+    auto restarted = item(k);
+    if (k >= 50) restarted.stamp.device_us -= 50 * kInterval_us;
+    come(reset, restarted);
+  }
+  EXPECT_EQ(jumps(ahead), 1U);
+  EXPECT_EQ(jumps(back), 1U);
+  EXPECT_EQ(jumps(silent), 0U);
+  EXPECT_EQ(jumps(reset), 0U);
+}
+
 TEST(DeviceTimeline, CountsNoLossesOfAPollingClient) {
   DeviceTimeline timeline(nullptr);
   for (const std::int64_t k : {0, 5, 5, 10}) {
