@@ -82,8 +82,9 @@ struct TermInfo {
   /// For a term that is another member of a cause's family: the cause, which a departure of this term is
   /// reported as. See family_of().
   std::string family = {};
-  /// The zero of its quantity is a convention, so that a constant of the same kind belongs to it.
-  bool has_free_level = false;
+  /// The cause that is a constant of the same quantity, where this one's zero is a convention: then such a
+  /// constant belongs to it.
+  std::string level = {};
   bool is_fine =
       false;  ///< for an empirical term: it has many parameters, and is fitted only to the others' residual
 };

@@ -97,7 +97,7 @@ struct RangeIntensity final : DifferentiableTerm<RangeIntensity> {
         .details =
             "`r + a u + b u²` with `u = ln(I / 100)`, I the remission in the device's units; nothing where it is unknown (0). Millimetres to centimetres. As the remission falls with the incidence, it is confounded with range.incidence; neighbouring dark and light patches distinguish them.",
         .resolvable_by = "dark and light patches side by side",
-        .has_free_level = true};
+        .level = "range.offset"};
     return kInfo;
   }
   template <class T>

@@ -28,7 +28,7 @@ struct RangeWarmup final : DifferentiableTerm<RangeWarmup> {
             "`r + c (1 − exp(−t/T))`, t since the run's epoch. Millimetres to centimetres over minutes to hours. In a short run it is confounded with range.offset and a linear drift.",
         .resolvable_by = "a longer recording, from a cold start",
         .counts_from = CountsFrom::kRunsEpoch,
-        .has_free_level = true};
+        .level = "range.offset"};
     return kInfo;
   }
   template <class T>

@@ -46,6 +46,12 @@ std::optional<double> of_simple_form(const std::vector<TermParameters>& present,
   return same != simple->parameters.end() ? std::optional(same->value) : std::nullopt;
 }
 
+/// The cause that is the level of a term's family; empty if there is none.
+std::string level_of(const TermInfo& info, const TermRegistry& terms) {
+  const std::string& family = family_of(info);
+  return family.empty() ? std::string() : terms.get(family)->info().level;
+}
+
 /// Appends a term of one owner: as in the calibration, or in all of its forms.
 void append(std::vector<Candidate>& all, Candidate as, const std::vector<TermParameters>& present,
             const ModelTerm& term, const Coverage& coverage) {
@@ -97,14 +103,16 @@ std::vector<Candidate> candidates(const TermRegistry& terms, const Calibration& 
   for (const std::string& name : terms.names()) {
     const auto term = terms.get(name);
     if (!coverage.shares(term->info().counts_from)) continue;
+    const std::string level = level_of(term->info(), terms);
     if (term->info().scope == Scope::kPlate) {
-      append(all, {.owner = calibration.lasers.size(), .name = name}, calibration.plate_terms, *term,
-             coverage);
+      append(all, {.owner = calibration.lasers.size(), .name = name, .level = level}, calibration.plate_terms,
+             *term, coverage);
       continue;
     }
     for (std::size_t laser = 0; laser < calibration.lasers.size(); ++laser) {
       const LaserCalibration& own = calibration.lasers[laser];
-      append(all, {.owner = laser, .name = own.name + "." + name}, own.terms, *term, coverage);
+      append(all, {.owner = laser, .name = own.name + "." + name, .level = level}, own.terms, *term,
+             coverage);
     }
   }
   return all;

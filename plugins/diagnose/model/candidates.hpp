@@ -29,6 +29,7 @@ struct Candidate {
   std::string name;                    ///< "laser2.mirror.cone", "encoder.eccentricity"
   std::string covariate;               ///< see TermInfo: empty for a term with a formula of its own
   std::string family;                  ///< see family_of(): the cause, or empty
+  std::string level;                   ///< of the family: see TermInfo
 
   bool is_fine = false;  ///< see TermInfo
 
@@ -46,6 +47,11 @@ struct Candidate {
   }
   /// Whether both are members of one cause's family, of one owner.
   bool is_of_family(const Candidate& other) const { return cause_name() == other.cause_name(); }
+
+  /// Whether this is the level of another cause of the same laser, whose zero is a convention.
+  bool is_level_of(const Candidate& other) const {
+    return is_cause() && family == other.level && owner == other.owner;
+  }
 
   /// Whether both are forms of one term of one owner.
   bool is_form_of(const Candidate& other) const { return name == other.name; }

@@ -37,6 +37,7 @@ SelectedCandidate Competition::with_competing_families(const std::vector<std::si
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (!is_general_member(c) || !could_replace(c, one) || is_taken(c, taken)) continue;
     add_competitor(choice, c, remaining(own, {c}, taken) / sharing);
+    if (could_be_level(choice, c, taken)) add_competitor(choice, c, 0);
     if (alike.size() > own.size())
       add_competitor(choice, c, remaining(alike, in_each_laser(c, alike), taken) / sharing);
   }
@@ -80,6 +81,16 @@ std::vector<std::size_t> Competition::in_each_laser(std::size_t candidate,
 bool Competition::is_general_member(std::size_t candidate) const {
   const Candidate& one = jacobian_.candidates()[candidate];
   return one.is_cause() && one.is_shape() && !one.is_fine;
+}
+/// A curve of which the data bound the size to less than half of the level is none.
+bool Competition::could_be_level(const SelectedCandidate& choice, std::size_t cause,
+                                 const std::vector<std::size_t>& taken) const {
+  constexpr double kPart = 0.5;
+  constexpr double kErrors = 2;
+  const auto& candidates = jacobian_.candidates();
+  if (!candidates[choice.candidate].is_level_of(candidates[cause])) return false;
+  const ScoreTest curve = joint_score_test_given(taken, {cause}, jacobian_, equations_);
+  return curve.ranges + kErrors * curve.ranges_error > kPart * choice.test.ranges;
 }
 bool Competition::could_replace(std::size_t candidate, std::size_t one) const {
   const Candidate& other = jacobian_.candidates()[candidate];

@@ -51,6 +51,9 @@ class Competition {
   /// The same term in each laser of some candidates.
   std::vector<std::size_t> in_each_laser(std::size_t candidate, const std::vector<std::size_t>& some) const;
   bool is_general_member(std::size_t candidate) const;
+  /// Whether a candidate could be the level of a cause whose curve the data leave room for.
+  bool could_be_level(const SelectedCandidate& choice, std::size_t cause,
+                      const std::vector<std::size_t>& taken) const;
   /// Whether the candidate acts on the same beams, and is of another family.
   bool could_replace(std::size_t candidate, std::size_t one) const;
   bool is_taken(std::size_t candidate, const std::vector<std::size_t>& taken) const;

@@ -96,20 +96,17 @@ Finding finding_of(const Hypothesis& hypothesis, const Calibration& calibration,
 
 /// Whether an accepted hypothesis is the level of another one: of the same laser, in a family whose zero is a
 /// convention.
-bool is_level_of(const Hypothesis& one, const Hypothesis& other, const TermRegistry& terms) {
-  return one.accepted && other.accepted && one.candidate.family == "range.offset" &&
-         one.candidate.owner == other.candidate.owner && other.candidate.is_cause() &&
-         terms.get(other.candidate.family)->info().has_free_level;
+bool is_level_of(const Hypothesis& one, const Hypothesis& other) {
+  return one.accepted && other.accepted && one.candidate.is_level_of(other.candidate);
 }
 
 bool is_reported(const Hypothesis& one) { return one.candidate.is_cause() && !one.is_clock_line; }
 
 /// The hypothesis as part of which one is reported: the first member of its family, or that whose level it
 /// is.
-const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothesis>& all,
-                                const TermRegistry& terms) {
+const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothesis>& all) {
   const auto whole =
-      std::ranges::find_if(all, [&](const Hypothesis& other) { return is_level_of(one, other, terms); });
+      std::ranges::find_if(all, [&](const Hypothesis& other) { return is_level_of(one, other); });
   const Hypothesis& member = whole == all.end() ? one : *whole;
   return *std::ranges::find_if(all, [&](const Hypothesis& other) {
     return other.accepted == member.accepted && is_reported(other) &&
@@ -132,13 +129,13 @@ std::vector<Finding> causes_of(const Diagnosis& diagnosis, const Calibration& ca
   std::vector<Finding> findings;
   std::map<const Hypothesis*, std::size_t> place;
   for (const Hypothesis& hypothesis : all) {
-    if (!is_reported(hypothesis) || &reported_with(hypothesis, all, terms) != &hypothesis) continue;
+    if (!is_reported(hypothesis) || &reported_with(hypothesis, all) != &hypothesis) continue;
     place.emplace(&hypothesis, findings.size());
     findings.push_back(finding_of(hypothesis, calibration, diagnosis, terms, odds, noise));
   }
   for (const Hypothesis& hypothesis : all) {
     if (!is_reported(hypothesis)) continue;
-    const Hypothesis& with = reported_with(hypothesis, all, terms);
+    const Hypothesis& with = reported_with(hypothesis, all);
     if (&with == &hypothesis) continue;
     merge(findings[place.at(&with)], finding_of(hypothesis, calibration, diagnosis, terms, odds, noise));
   }
