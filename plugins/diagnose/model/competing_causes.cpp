@@ -36,10 +36,10 @@ SelectedCandidate Competition::with_competing_families(const std::vector<std::si
   });
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (!is_general_member(c) || !could_replace(c, one) || is_taken(c, taken)) continue;
-    add_competitor(choice, c, remaining(own, {c}, taken) / sharing);
+    add_competitor(choice, c, remaining(own, with_levels({c}), taken) / sharing);
     if (could_be_level(choice, c, taken)) add_competitor(choice, c, 0);
     if (alike.size() > own.size())
-      add_competitor(choice, c, remaining(alike, in_each_laser(c, alike), taken) / sharing);
+      add_competitor(choice, c, remaining(alike, with_levels(in_each_laser(c, alike)), taken) / sharing);
   }
   std::ranges::sort(choice.alternatives, {}, &CompetingCandidate::behind);
   return choice;
@@ -62,9 +62,23 @@ SelectedCandidate Competition::with_competitors(const std::vector<std::size_t>& 
 
 double Competition::remaining(const std::vector<std::size_t>& some, const std::vector<std::size_t>& instead,
                               const std::vector<std::size_t>& taken) const {
-  auto with = members_where(taken, [&](std::size_t t) { return std::ranges::find(some, t) == some.end(); });
-  with.insert(with.end(), instead.begin(), instead.end());
+  const auto is_in = [](const std::vector<std::size_t>& all, std::size_t one) {
+    return std::ranges::find(all, one) != all.end();
+  };
+  auto with = members_where(taken, [&](std::size_t t) { return !is_in(some, t); });
+  for (const std::size_t one : instead) {
+    if (!is_in(with, one) && !is_in(some, one)) with.push_back(one);
+  }
   return joint_score_test_given(with, some, jacobian_, equations_).bic;
+}
+std::vector<std::size_t> Competition::with_levels(std::vector<std::size_t> some) const {
+  const auto& candidates = jacobian_.candidates();
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const bool is_level =
+        std::ranges::any_of(some, [&](std::size_t s) { return candidates[c].is_level_of(candidates[s]); });
+    if (is_level) some.push_back(c);
+  }
+  return some;
 }
 std::vector<std::size_t> Competition::in_each_laser(std::size_t candidate,
                                                     const std::vector<std::size_t>& some) const {

@@ -50,6 +50,8 @@ class Competition {
                    const std::vector<std::size_t>& taken) const;
   /// The same term in each laser of some candidates.
   std::vector<std::size_t> in_each_laser(std::size_t candidate, const std::vector<std::size_t>& some) const;
+  /// Some candidates and the levels of those whose zero is a convention.
+  std::vector<std::size_t> with_levels(std::vector<std::size_t> some) const;
   bool is_general_member(std::size_t candidate) const;
   /// Whether a candidate could be the level of a cause whose curve the data leave room for.
   bool could_be_level(const SelectedCandidate& choice, std::size_t cause,
