@@ -42,29 +42,28 @@ Series difference(const Series& a, const Series& b) {
 /// A straight line by least squares.
 struct Line {
   double constant = 0;
-  double slope = 0;  // a stretch
+  double slope = 0;  // a second
 };
-Line line_of(const Series& series) {
+/// @param times  [s] of the series' values
+Line line_of(const Series& series, const std::vector<double>& times) {
   double n = 0, t = 0, tt = 0, v = 0, tv = 0;
   for (std::size_t i = 0; i < series.size(); ++i) {
     if (!std::isfinite(series[i])) continue;
-    const auto time = static_cast<double>(i);
     n += 1;
-    t += time;
-    tt += time * time;
+    t += times[i];
+    tt += times[i] * times[i];
     v += series[i];
-    tv += time * series[i];
+    tv += times[i] * series[i];
   }
   const double determinant = n * tt - t * t;
   const double slope = determinant > 0 ? (n * tv - t * v) / determinant : 0;
   return {.constant = n > 0 ? (v - slope * t) / n : 0, .slope = slope};
 }
 
-Series without_line(const Series& series) {
-  const Line line = line_of(series);
+Series without_line(const Series& series, const std::vector<double>& times) {
+  const Line line = line_of(series, times);
   Series left = series;
-  for (std::size_t i = 0; i < left.size(); ++i)
-    left[i] -= line.constant + line.slope * static_cast<double>(i);
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] -= line.constant + line.slope * times[i];
   return left;
 }
 
@@ -154,19 +153,20 @@ class DeviationSeries {
 
   /// The least leads, less what is known of the deviation, without each device's line.
   std::vector<Series> least_leads(const HubDeviation& known) const {
+    const std::vector<double> times = times_without(known);
     std::vector<Series> all;
     for (const auto* stamps : devices_) {
       const double skew = usual_change(least_leads(*stamps, known, 0)) / width_;
-      all.push_back(without_line(least_leads(*stamps, known, skew)));
+      all.push_back(without_line(least_leads(*stamps, known, skew), times));
     }
     return all;
   }
 
   /// The devices' skew that the deviation leaves, in the middle of them.
   double common_skew(const HubDeviation& known) const {
+    const std::vector<double> times = times_without(known);
     std::vector<double> skews;
-    for (const auto* stamps : devices_)
-      skews.push_back(line_of(least_leads(*stamps, known, 0)).slope / width_);
+    for (const auto* stamps : devices_) skews.push_back(line_of(least_leads(*stamps, known, 0), times).slope);
     return median_in_place(skews);
   }
 
@@ -176,7 +176,7 @@ class DeviationSeries {
     sum.steps_ = known.steps_;
     sum.width_ = width_;
     for (std::size_t i = 0; i < count_; ++i) {
-      const double time = begin_ + (static_cast<double>(i) + 0.5) * width_;
+      const double time = middle(i);
       if (!std::isfinite(more[i]) || sum.is_unsure(time)) continue;
       sum.times_.push_back(time);
       sum.values_.push_back(known.at(time) + more[i]);
@@ -216,10 +216,18 @@ class DeviationSeries {
     if (std::abs(common) > kMaxCommonSkew) add_rate(common, deviation);
   }
 
+  /// A deviation by steps alone.
   HubDeviation with_steps(std::vector<HubDeviation::Step> steps) const {
     HubDeviation deviation;
     deviation.steps_ = std::move(steps);
     deviation.width_ = width_;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (deviation.is_unsure(middle(i))) continue;
+      double value = 0;
+      for (const auto& step : deviation.steps_) value += step.at < middle(i) ? step.by : 0;
+      deviation.times_.push_back(middle(i));
+      deviation.values_.push_back(value);
+    }
     return deviation;
   }
 
@@ -234,17 +242,24 @@ class DeviationSeries {
       if (known.is_unsure(stamp.hub)) continue;
       const double lead = stamp.lead - known.at(stamp.hub);
       const std::size_t i = index(stamp.hub);
-      const double middle = begin_ + (static_cast<double>(i) + 0.5) * width_;
-      const double there = lead + skew * (middle - stamp.hub);
+      const double there = lead + skew * (middle(i) - stamp.hub);
       if (!(least[i] <= there)) least[i] = there;
     }
     return least;
   }
+  double middle(std::size_t stretch) const { return begin_ + (static_cast<double>(stretch) + 0.5) * width_; }
+  /// [s] Middles of the stretches on a uniform clock: skews do not add up over a time that was left out.
+  std::vector<double> times_without(const HubDeviation& known) const {
+    std::vector<double> times(count_);
+    for (std::size_t i = 0; i < count_; ++i) times[i] = middle(i) - known.at(middle(i));
+    return times;
+  }
   static void add_rate(double rate, HubDeviation& deviation) {
     if (deviation.times_.empty()) return;
-    const double first_time = deviation.times_.front(), first = deviation.values_.front();
+    const auto uniform = [&](std::size_t i) { return deviation.times_[i] - deviation.values_[i]; };
+    const double first_time = uniform(0), first = deviation.values_.front();
     for (std::size_t i = 0; i < deviation.times_.size(); ++i) {
-      deviation.values_[i] += rate * (deviation.times_[i] - first_time) - first;
+      deviation.values_[i] += rate * (uniform(i) - first_time) - first;
     }
   }
 
@@ -269,8 +284,10 @@ double HubDeviation::at(double hub) const {
 }
 
 bool HubDeviation::is_unsure(double hub) const {
+  // Set forward, the clock left out a time of which `at` is the middle; set back, it had a time twice.
+  const auto reach = [](const Step& step) { return step.by > 0 ? step.by / 2 : -step.by; };
   return std::ranges::any_of(
-      steps_, [&](const Step& step) { return std::abs(hub - step.at) < width_ + std::abs(step.by); });
+      steps_, [&](const Step& step) { return std::abs(hub - step.at) < width_ + reach(step); });
 }
 
 double HubDeviation::largest() const {

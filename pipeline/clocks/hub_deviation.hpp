@@ -17,8 +17,9 @@ struct ReceivedStamp {
 class HubDeviation {
  public:
   struct Step {
-    double at = 0;  ///< [s] hub time
+    double at = 0;  ///< [s] hub time: the middle of what the clock left out, or had twice
     double by = 0;  ///< [s] forwards
+    double begin() const { return at - (by > 0 ? by / 2 : 0); }  ///< [s] hub time before it was set
   };
 
   /// [s] At a receipt; constant before the first and after the last one known.

@@ -169,7 +169,8 @@ void ClockAligner::Windows::take_out_hub_deviation() {
   if (!deviation) return;
   for (auto& laser : tracks_.lasers()) laser.clock().take_out(*deviation);
   tracks_.plate().clock().take_out(*deviation);
-  for (const auto& step : deviation->steps()) add_step({.at = step.at, .by = step.by}, report_.hub_steps);
+  for (const auto& step : deviation->steps())
+    add_step({.at = step.begin(), .by = step.by}, report_.hub_steps);
   report_.hub_deviation = std::max(report_.hub_deviation, deviation->largest());
 }
 

@@ -86,6 +86,18 @@ TEST(HubDeviation, FindsStepsOfTheHubsClock) {
   }
 }
 
+TEST(HubDeviation, OfALongStepForwardKeepsTheDevicesSkews) {
+  const Deviation hub = [](double t) { return t < 2.7 ? 0 : 4.3; };
+  const auto found = find_hub_deviation(received_of_all(three_lasers_and_a_plate(), hub, 1, 6));
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->steps().size(), 1U);
+  EXPECT_NEAR(found->steps()[0].begin(), 2.7, 0.3);
+  EXPECT_FALSE(found->is_unsure(2.0)) << "what came before the gap came before the step";
+  EXPECT_FALSE(found->is_unsure(2.7 + 4.3 + 0.7));
+  // A skew of 100 ppm over the 4.3 s that were left out is 0.43 ms.
+  EXPECT_NEAR(found->at(8.5) - found->at(1.5), 4.3, 60e-6);
+}
+
 TEST(HubDeviation, FollowsAClockThatIsSlewed) {
   for (const double ppm : {500.0, -500.0, 5000.0}) {
     const Deviation hub = [=](double t) { return 1e-6 * ppm * (std::clamp(t, 6.0, 11.0) - 6); };
