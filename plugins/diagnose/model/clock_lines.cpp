@@ -52,7 +52,8 @@ void mark_clock_lines(std::vector<Hypothesis>& hypotheses, const Outcome& outcom
     if (!drift || one.candidate.owner >= skew_errors.size()) continue;
     const double mean = drift->skew.value + drift->growth.value * middle;
     const bool is_constant = std::abs(drift->growth.value) < kLineErrors * drift->growth.std_error;
-    one.is_clock_line = is_constant && std::abs(mean) < kLineErrors * skew_errors[one.candidate.owner];
+    const double error = std::hypot(drift->skew.std_error, skew_errors[one.candidate.owner]);
+    one.is_clock_line = is_constant && std::abs(mean) < kLineErrors * error;
   }
 }
 

@@ -48,6 +48,11 @@ TEST(ClockLines, AreCorrectedByASkewWithinTheirErrors) {
   EXPECT_TRUE(is_correction(17e-6, 0));
   EXPECT_TRUE(is_correction(-17e-6, 0));
   EXPECT_TRUE(is_correction(19e-6, -0.5e-6)) << "the mean skew counts: 16.5 ppm";
+  Fit vague = fit_of(24e-6, 0);
+  vague.outcome.covariance(0, 0) = 36e-12;
+  std::vector<Hypothesis> hypotheses = {vague.drift};
+  mark_clock_lines(hypotheses, vague.outcome, {0, 6e-6, 0}, kMiddle);
+  EXPECT_TRUE(hypotheses.front().is_clock_line) << "24 ppm, by 8.5 ppm of both errors";
 }
 
 TEST(ClockLines, DoNotExplainALargerOrAChangingSkew) {
