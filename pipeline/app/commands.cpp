@@ -105,7 +105,7 @@ ExitStatus validate_command(const fs::path& file, PipelineArguments arguments, c
     }
     const auto loaded = load_pipeline(root, file, arguments, run);
     print_warnings(loaded.pipeline);
-    std::cout << fmt::format("{}: right, {}\n", file.string(),
+    std::cout << fmt::format("{}: valid, {}\n", file.string(),
                              counted(loaded.pipeline.nodes.size(), "stage"));
   } catch (const Error& error) {
     print_errors(error);

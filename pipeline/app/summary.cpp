@@ -3,6 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include <crisp/calibration.hpp>
+#include <crisp/stage.hpp>
+
 #include "pipeline/app/format.hpp"
 #include "pipeline/files/json_text.hpp"
 
@@ -33,12 +38,12 @@ std::string stage_summary(const NodeResult& node, const nlohmann::ordered_json& 
     for (const auto& [name, value] : options.items())
       text += fmt::format("  {} = {}\n", name, json_text(value));
   }
+  for (const auto& caveat : node.report.caveats) text += indented("UNTRUSTED: " + caveat, "  ");
   for (const auto& line : node.report.lines) text += indented(line, "  ");
   for (const auto& [name, count] : node.report.counts) {
     if (count > 0 || verbose) text += fmt::format("  {:>10}  {}\n", format_count(count), name);
   }
   for (const auto& warning : node.report.warnings) text += indented("warning: " + warning, "  ");
-  for (const auto& caveat : node.report.caveats) text += indented("UNTRUSTED: " + caveat, "  ");
   for (const auto& file : node.report.written) text += fmt::format("  wrote {}\n", file.string());
   return fmt::format("{:<40}{:>12}\n{}", node.tag, format_duration(node.seconds), text);
 }
@@ -51,7 +56,13 @@ std::string summary_text(const RunRecord& record, bool verbose) {
     text += stage_summary(record.nodes[i], record.options[i], verbose);
   }
   text += fmt::format("{:<40}{:>12}\n", "in all", format_duration(record.seconds));
-  if (!record.is_trusted()) text += "The result is UNTRUSTED: see the caveats above.\n";
+  const bool calibrates = std::ranges::any_of(record.nodes, [](const NodeResult& node) {
+    return node.given.contains(std::string(KindName<Calibration>::value));
+  });
+  if (!record.is_trusted())
+    text += "The result is UNTRUSTED: see the caveats above.\n";
+  else if (calibrates)
+    text += "The result is trusted.\n";
   return text;
 }
 

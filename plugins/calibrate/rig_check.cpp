@@ -126,8 +126,7 @@ std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, con
       std::swap(exchanged.lasers[i], exchanged.lasers[j]);
       all.push_back({fmt::format("{} and {} are exchanged: each has the other's nominal values",
                                  nominal.lasers[j].name, name),
-                     "Exchange their addresses in the rig, or their cables",
-                     distance(found, exchanged, range), true});
+                     "Exchange their addresses in the rig", distance(found, exchanged, range), true});
     }
   }
   return all;
@@ -155,7 +154,7 @@ void add_if_outside(const std::string& laser, const Parameter& found, const Para
   const std::string remedy =
       limit.option.empty() ? "or give it a larger sd" : fmt::format("or raise {}", limit.option);
   caveats.push_back(fmt::format(
-      "{}.{} is {:.1f} {}, more than {} ({:.1f} {}) from the rig's nominal {:.1f} {}: the calibration is probably in a wrong local minimum. Check the rig's mount, direction and nominal values, {} if {} may be as far off",
+      "{}.{} is {:.1f} {}, not within {} ({:.1f} {}) of the rig's nominal {:.1f} {}: the calibration is probably in a wrong local minimum. Check the rig's mount, direction and nominal values, {} if {} may be as far off",
       laser, nominal.name, found.value * unit.factor, unit.name, what, limit.size * unit.factor, unit.name,
       nominal.value * unit.factor, unit.name, remedy, nominal.name));
 }
@@ -174,7 +173,7 @@ std::vector<std::string> exchanged_by_tau(const Calibration& found, const Rig& r
       if (has_tau_of(i, i) || has_tau_of(j, j) || !has_tau_of(i, j) || !has_tau_of(j, i)) continue;
       const double mm = shown_unit("m").factor;
       caveats.push_back(fmt::format(
-          "{0}.tau is {1:.1f} mm and {2}.tau is {3:.1f} mm, but the rig's nominal values are {4:.1f} mm and {5:.1f} mm: {0} and {2} are probably exchanged. Exchange their addresses in the rig, or their cables, and calibrate again",
+          "{0}.tau is {1:.1f} mm and {2}.tau is {3:.1f} mm, but the rig's nominal values are {4:.1f} mm and {5:.1f} mm: {0} and {2} are probably exchanged. Exchange their addresses in the rig, and calibrate again",
           found.lasers[i].name, found.lasers[i].tau.value * mm, found.lasers[j].name,
           found.lasers[j].tau.value * mm, rig.lasers[i].nominal.tau.value * mm,
           rig.lasers[j].nominal.tau.value * mm));

@@ -7,6 +7,7 @@ namespace {
 
 void register_all(crisp::Registrar& registrar) {
   register_near_stage(registrar);
+  register_reach_stage(registrar);
   register_drift_term(registrar);
   register_ripple_term(registrar);
   register_spread_measure(registrar);

@@ -22,8 +22,8 @@ struct ClockCurve {
   Gain gain;  ///< see gain_in_series()
 };
 
-/// The polynomial of second to twelfth order with the least BIC. Nothing where it leaves more than neighbouring
-/// minimum delays differ by: then their course is not smooth.
+/// The polynomial of second to twelfth order with the least BIC. Nothing where it leaves more than
+/// neighbouring minimum delays differ by: then their course is not smooth.
 std::optional<ClockCurve> smooth_curve(const Envelope& envelope, std::uint64_t seed);
 
 }  // namespace crisp

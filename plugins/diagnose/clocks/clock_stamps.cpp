@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/clocks/envelope.hpp"
 #include "pipeline/clocks/unwrap.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/diagnose/noise/permutation_test.hpp"
@@ -41,6 +42,12 @@ void StampTrack::add(std::uint16_t counter, std::uint32_t device_us, std::int64_
   const double device = 1e-6 * static_cast<double>(device_us_);
   const double hub = 1e-9 * static_cast<double>(receipt_ns - first_ns_);
   stamps_.push_back({.count = count, .stamp = {.device = device, .lead = hub - device}});
+}
+
+void StampTrack::take_out(const HubDeviation& deviation, double hub_s) {
+  const auto hub = [&](const CountedStamp& s) { return hub_s + receipt_of(s.stamp); };
+  std::erase_if(stamps_, [&](const CountedStamp& s) { return deviation.is_unsure(hub(s)); });
+  for (CountedStamp& s : stamps_) s.stamp.lead -= deviation.at(hub(s));
 }
 
 ClockFacts clock_facts(std::span<const CountedStamp> stamps) {

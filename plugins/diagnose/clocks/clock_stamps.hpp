@@ -10,6 +10,7 @@
 #include <crisp/findings.hpp>
 
 #include "pipeline/clocks/clock_line.hpp"
+#include "pipeline/clocks/hub_deviation.hpp"
 #include "pipeline/clocks/unwrap.hpp"
 
 namespace crisp {
@@ -30,6 +31,11 @@ class StampTrack {
   /// @param device_us  [µs] wraps at 2³²
   /// @param receipt_ns [ns]
   void add(std::uint16_t counter, std::uint32_t device_us, std::int64_t receipt_ns);
+  /// Takes out a deviation of the hub's clock, and the stamps that may have come before or after a step of
+  /// it.
+  ///
+  /// @param hub_s  [s] hub time of the first stamp, on the deviation's scale
+  void take_out(const HubDeviation& deviation, double hub_s);
   std::span<const CountedStamp> stamps() const { return stamps_; }
   std::int64_t first_ns() const { return first_ns_; }  ///< [ns] receipt time of the first stamp
 

@@ -237,8 +237,33 @@ void DiagnoseClocksStage::add_mirror(const Device& device, const MirrorFacts& fa
                           .accepted = gain.significant_decrease()});
 }
 
+/// [s] Hub time of a track's first stamp since the run's first.
+double DiagnoseClocksStage::hub_time(const StampTrack& track) const {
+  return 1e-9 * static_cast<double>(track.first_ns() - *first_ns_);
+}
+
+/// A deviation that all devices' clocks share is the hub's, and no finding of each.
+void DiagnoseClocksStage::take_out_hub_deviation(Context& context) {
+  std::vector<std::vector<ReceivedStamp>> stamps;
+  for (const Device& device : longest_) {
+    auto& received = stamps.emplace_back();
+    for (const CountedStamp& s : device.telegrams.stamps())
+      received.push_back({.hub = hub_time(device.telegrams) + receipt_of(s.stamp), .lead = s.stamp.lead});
+  }
+  const auto deviation = find_hub_deviation(stamps);
+  if (!deviation) return;
+  context.print(fmt::format(
+      "the hub's clock deviates by up to {:.3f} ms from those of all devices; the tests below are without that",
+      1e3 * deviation->largest()));
+  for (Device& device : longest_) {
+    device.telegrams.take_out(*deviation, hub_time(device.telegrams));
+    device.passes.take_out(*deviation, hub_time(device.passes));
+  }
+}
+
 void DiagnoseClocksStage::finish(Outputs& out, Context& context) {
   end_recording();
+  if (first_ns_) take_out_hub_deviation(context);
   Findings all;
   std::size_t tests = 0;
   for (const Device& device : longest_) tests += device.telegrams.stamps().empty() ? 0 : 1;

@@ -36,6 +36,8 @@ class DiagnoseClocksStage final : public Stage {
   Device& device(std::size_t index, const Rig& rig);
   void arrive(std::int64_t receipt_ns);
   void end_recording();
+  double hub_time(const StampTrack& track) const;
+  void take_out_hub_deviation(Context& context);
   void add_clock(const Device& device, std::size_t tests, Context& context, Findings& all) const;
   void add_mirror(const Device& device, const MirrorFacts& facts, std::uint64_t seed, Findings& all) const;
 

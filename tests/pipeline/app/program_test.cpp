@@ -50,7 +50,7 @@ TEST_F(ProgramTest, RunsAPipelineAndWritesItsResultSummaryAndProvenance) {
 TEST_F(ProgramTest, FindsInstalledPipelinesByName) {
   const auto found = crisp({"validate", "calibrate"});
   EXPECT_EQ(found.status, 0) << found.error;
-  EXPECT_THAT(found.out, HasSubstr("configs/calibrate.yaml: right"));
+  EXPECT_THAT(found.out, HasSubstr("configs/calibrate.yaml: valid"));
   const auto unknown = crisp({"run", "calibrat"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_EQ(
@@ -90,7 +90,7 @@ TEST_F(ProgramTest, EndsWithThreeWhenTheResultCannotBeTrusted) {
 TEST_F(ProgramTest, ValidatesWithoutOpeningInputOrOutput) {
   const auto outcome = crisp({"validate", path("sum.yaml")});
   EXPECT_EQ(outcome.status, 0) << outcome.error;
-  EXPECT_EQ(outcome.out, path("sum.yaml") + ": right, 3 stages\n");
+  EXPECT_EQ(outcome.out, path("sum.yaml") + ": valid, 3 stages\n");
 }
 
 TEST_F(ProgramTest, ValidatesARig) {

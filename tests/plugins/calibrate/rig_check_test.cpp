@@ -165,8 +165,8 @@ TEST(RigCheck, AParameterOutsideItsRangeIsReportedWithItsNominalValue) {
   EXPECT_THAT(
       check(calibration).caveats,
       ElementsAre(
-          HasSubstr("laser2.tau is 487.0 mm, more than tau_range (100.0 mm) from the rig's nominal 200.0 mm"),
-          HasSubstr("laser3.alpha is -35.0 deg, more than alpha_range (20.1 deg)")));
+          HasSubstr("laser2.tau is 487.0 mm, not within tau_range (100.0 mm) of the rig's nominal 200.0 mm"),
+          HasSubstr("laser3.alpha is -35.0 deg, not within alpha_range (20.1 deg)")));
 }
 
 TEST(RigCheck, TheRigsStandardDeviationsAreItsLimits) {
@@ -180,8 +180,8 @@ TEST(RigCheck, TheRigsStandardDeviationsAreItsLimits) {
   calibration.lasers[2].lambda.value += 4 * kDegree;  // without a standard deviation in the rig
   calibration.lasers[2].tau.value += 0.007;
   EXPECT_THAT(check(calibration, rig).caveats,
-              ElementsAre(HasSubstr("laser2.lambda is 124.0 deg, more than 3 standard deviations (3.0 deg)"),
-                          HasSubstr("laser3.tau is 207.0 mm, more than 3 standard deviations (6.0 mm)")));
+              ElementsAre(HasSubstr("laser2.lambda is 124.0 deg, not within 3 standard deviations (3.0 deg)"),
+                          HasSubstr("laser3.tau is 207.0 mm, not within 3 standard deviations (6.0 mm)")));
 }
 
 TEST(RigCheck, ALaserNearTheAxisMayBeOnEitherSideOfIt) {
