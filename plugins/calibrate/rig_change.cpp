@@ -109,9 +109,13 @@ std::vector<RigChange> other_mounts(const Rig& rig) {
 }
 
 std::vector<RigChange> exchanges(const Rig& rig) {
+  const auto is_one_device = [](const RigLaser& a, const RigLaser& b) {  // the beams of a 3D laser
+    return a.address == b.address && a.topic == b.topic;
+  };
   std::vector<RigChange> all;
   for (std::size_t j = 1; j < rig.lasers.size(); ++j) {
     for (std::size_t i = 0; i < j; ++i) {
+      if (is_one_device(rig.lasers[i], rig.lasers[j])) continue;
       RigChange change = no_change(rig);
       change.words =
           fmt::format("the addresses of {} and {} exchanged", rig.lasers[i].name, rig.lasers[j].name);

@@ -34,7 +34,7 @@ RigChange no_change(const Rig& rig);
 /// The plate counting the other way round.
 RigChange other_direction(const Rig& rig);
 
-/// Two lasers exchanged, each pair in turn.
+/// Two lasers of different devices exchanged, each pair in turn.
 std::vector<RigChange> exchanges(const Rig& rig);
 
 /// A laser upside down, and its mount turned by 180, 90 and 45 degrees either way.

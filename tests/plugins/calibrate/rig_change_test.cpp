@@ -92,6 +92,13 @@ TEST_F(RigChanges, ExchangedLasersHaveEachOthersMount) {
               ElementsAre(FloatNear(0.4F - 0.7F, 1e-6F), FloatNear(1.1F - 0.1F, 1e-6F)));
 }
 
+TEST_F(RigChanges, BeamsOfOneDeviceAreNotExchanged) {
+  rig_.lasers[1].address = rig_.lasers[0].address;
+  EXPECT_TRUE(exchanges(rig_).empty());
+  rig_.lasers[1].topic = "/scan2";
+  EXPECT_EQ(exchanges(rig_).size(), 1U);
+}
+
 TEST_F(RigChanges, CombinationsThatChangeLasersAlikeComeFirst) {
   const auto all = combinations({changes_of_laser(rig_, 0), changes_of_laser(rig_, 1)}, 100);
   ASSERT_EQ(all.size(), 36U);
