@@ -17,5 +17,6 @@ if(NOT CRISP_DEBIAN)  # which has them in Debian's form
   install(FILES LICENSE CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
 endif()
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
-install(DIRECTORY tests/examples  # where the pages' links lead
-        DESTINATION "${CMAKE_INSTALL_DOCDIR}/tests" COMPONENT documentation)
+# Where the pages' links lead.
+install(DIRECTORY configs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
+install(DIRECTORY tests/examples DESTINATION "${CMAKE_INSTALL_DOCDIR}/tests" COMPONENT documentation)

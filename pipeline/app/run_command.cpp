@@ -46,7 +46,7 @@ void run_with_progress(RecordedRun& run, const RunRequest& request) {
   if (!request.quiet) {
     hooks.progress = [&](const std::string& tag, const Progress& progress) { printer.show(tag, progress); };
     hooks.caveat = [&](const std::string& tag, const std::string& caveat) {
-      printer.log(fmt::format("untrusted so far: {}: {}", tag, caveat));
+      printer.log(fmt::format("untrusted so far (a later stage may resolve it): {}: {}", tag, caveat));
     };
   }
   run.run(std::move(hooks));
