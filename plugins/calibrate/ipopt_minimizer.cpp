@@ -82,8 +82,8 @@ struct Question {
   std::unique_lock<std::mutex>& lock;  ///< of the solvers, held while Ipopt works
 };
 
-/// The problem in Ipopt's interface: variables y with x = start + scale * y. Without borders the scale is the
-/// box's basis. With borders it is diagonal, so that they are bounds of single variables, beyond which Ipopt
+/// The problem in Ipopt's interface: variables y with x = start + V y. Without borders V is the box's basis.
+/// With borders it is diagonal, so that they are bounds of single variables, beyond which Ipopt
 /// never evaluates. One object serves many searches of the same size.
 class BoxProblem final : public Ipopt::TNLP {
  public:
@@ -113,7 +113,7 @@ class BoxProblem final : public Ipopt::TNLP {
   }
 
   const Minimum& best() const { return best_; }
-  /// Whether the way led out of the box, where the objective makes no sense. (Never with borders.)
+  /// Whether the last step led out of the box, where the objective makes no sense. (Never with borders.)
   bool left_the_box() const { return is_outside_; }
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
@@ -216,7 +216,7 @@ class BoxProblem final : public Ipopt::TNLP {
   Index size_;
   Borders borders_;
   const Question* question_ = nullptr;
-  Eigen::MatrixXd variables_;  ///< columns: what a unit of each y changes x by
+  Eigen::MatrixXd variables_;  ///< V: each column is what a unit of one y changes x by
   Eigen::VectorXd x_;
   Eigen::VectorXd gradient_;
   double value_ = 0;

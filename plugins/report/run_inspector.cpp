@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
-
+#include "pipeline/files/json_text.hpp"
 #include "plugins/report/use_json.hpp"
 
 namespace crisp {
@@ -14,10 +13,7 @@ using Json = nlohmann::ordered_json;
 
 /// Recognizes the first keys that a run writes.
 bool is_run(std::string_view head) {
-  std::string packed;
-  for (const char c : head) {
-    if (std::isspace(static_cast<unsigned char>(c)) == 0) packed += c;
-  }
+  const std::string packed = without_space(head);
   return packed.starts_with(R"({"crisp":")") && packed.find(R"(,"command":")") != std::string::npos &&
          packed.find(R"(,"pipeline":")") != std::string::npos;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/clocks/clock_curve.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>

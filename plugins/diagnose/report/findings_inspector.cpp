@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "pipeline/data/fit_statistics.hpp"
 #include "pipeline/files/findings_file.hpp"
+#include "pipeline/files/json_text.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"
 
 namespace crisp {
@@ -64,11 +64,7 @@ Inspection inspect_findings(const std::filesystem::path& file, const Rig&) {
 /// Recognizes the first keys that findings_json() writes.
 bool is_findings(std::string_view head) {
   constexpr std::string_view kBegin = R"({"crisp":1,"findings":[)";
-  std::string packed;
-  for (const char c : head.substr(0, 2 * kBegin.size())) {
-    if (std::isspace(static_cast<unsigned char>(c)) == 0) packed += c;
-  }
-  return packed.starts_with(kBegin);
+  return without_space(head.substr(0, 2 * kBegin.size())).starts_with(kBegin);
 }
 
 }  // namespace
