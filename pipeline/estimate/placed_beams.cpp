@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/estimate/placed_beams.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include <crisp/error.hpp>
@@ -18,6 +19,23 @@ Measurements lengthened(Measurements beams) {
   constexpr float kFurther = 1;  // [m]
   for (float& range : beams.range) range += kFurther;
   return beams;
+}
+
+Eigen::Vector3d at(const Vectors& vectors, std::size_t i) {
+  return {vectors.x[i], vectors.y[i], vectors.z[i]};
+}
+
+void set(Vectors& vectors, std::size_t i, const Eigen::Vector3d& value) {
+  vectors.x[i] = value.x();
+  vectors.y[i] = value.y();
+  vectors.z[i] = value.z();
+}
+
+Eigen::Matrix3Xd columns(const Vectors& vectors, const std::vector<std::size_t>& which) {
+  Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(which.size()));
+  for (std::size_t k = 0; k < which.size(); ++k)
+    columns.col(static_cast<Eigen::Index>(k)) = at(vectors, which[k]);
+  return columns;
 }
 
 }  // namespace
@@ -52,16 +70,28 @@ PlacedBeams::PlacedBeams(const SensorModel& model, const Sample& sample) {
   const RecordingNumbers recording(*sample.plate);
   for_blocks(n, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d point(points_.x[i], points_.y[i], points_.z[i]);
-      const Eigen::Vector3d further(directions_.x[i], directions_.y[i], directions_.z[i]);
-      const Eigen::Vector3d direction = (further - point).normalized();
-      directions_.x[i] = direction.x();
-      directions_.y[i] = direction.y();
-      directions_.z[i] = direction.z();
+      const Eigen::Vector3d way = at(directions_, i) - at(points_, i);
+      set(directions_, i, way.normalized());
       points_.x[i] += static_cast<double>(recording.of(sample.beams.time[i])) * kApart;
       views_[i] = 2U * sample.beams.laser[i] + (sample.beams.mirror_angle[i] > 0 ? 1U : 0U);
     }
   });
+}
+
+void PlacedBeams::align_with(const PlacedBeams& other, const Sample& sample) {
+  const RecordingNumbers recording(*sample.plate);
+  std::vector<std::vector<std::size_t>> beams(recording.count());
+  for (std::size_t i = 0; i < sample.beams.size(); ++i)
+    beams[recording.of(sample.beams.time[i])].push_back(i);
+  for (const std::vector<std::size_t>& of_one : beams) {
+    if (of_one.empty()) continue;
+    const Eigen::Matrix3Xd from = columns(points_, of_one);
+    const Eigen::Isometry3d motion(Eigen::umeyama(from, columns(other.points_, of_one), false));
+    for (const std::size_t i : of_one) {
+      set(points_, i, motion * at(points_, i));
+      set(directions_, i, motion.linear() * at(directions_, i));
+    }
+  }
 }
 
 }  // namespace crisp

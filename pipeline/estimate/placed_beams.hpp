@@ -29,6 +29,12 @@ class PlacedBeams {
     return {.points = points_.view(), .directions = directions_.view(), .views = views_, .noise = noise};
   }
 
+  /// Moves each recording's cloud rigidly, as a whole, to where another model places the same beams (least
+  /// squares; Umeyama 1991).
+  ///
+  /// @param sample  that of both
+  void align_with(const PlacedBeams& other, const Sample& sample);
+
  private:
   Vectors points_;
   Vectors directions_;

@@ -17,6 +17,7 @@
 #include "pipeline/data/shown_unit.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/identifiability.hpp"
+#include "pipeline/estimate/requested_terms.hpp"
 #include "pipeline/estimate/standard_errors.hpp"
 #include "pipeline/estimate/surfel_refiner.hpp"
 
@@ -31,6 +32,12 @@ std::optional<std::string> caveat_of_half_a_turn(const SensorModel& model, const
   return fmt::format(
       "the plate turned by {:.0f} degrees only: one laser then sees no surface twice, and only the flatness of surfaces determines its pose",
       way * 180 / std::numbers::pi);
+}
+
+/// How many of the parameters are λ, τ, α and η, which the surfaces' shape hangs on.
+std::size_t of_base(const std::vector<std::size_t>& parameters, const SensorModel& model) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(parameters, [&](std::size_t p) { return !declared(model, p); }));
 }
 
 /// Where most parameters are held, the few that are free rest on what is assumed of the others. A steady
@@ -72,7 +79,7 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
   const auto caveat = caveat_of_half_a_turn(start, inside);
   FreeParameters possible =
       free_parameters(start, inside.beams, settings.fixed, settings.terms, settings.forms);
-  const std::size_t all = possible.free.size();
+  const std::size_t all = of_base(possible.free, start);
   FreeParameters parameters = identifiable_parameters(std::move(possible), start, inside, ParameterPrior{});
   SurfelRefiner refiner(with_nominal(start, parameters.unobservable, settings.prior), std::move(inside),
                         parameters.free, settings);
@@ -94,7 +101,7 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
   refiner.widen_by_shared_errors();
   refiner.consider_held(parameters.unobservable);
   const auto caveat_of_fixed = refiner.consider_fixed(fixed_parameters(start, sample, settings));
-  const auto caveat_of_most = caveat_of_few(refiner.free().size(), all, sample);
+  const auto caveat_of_most = caveat_of_few(of_base(refiner.free(), start), all, sample);
   Refinement result = refiner.result();
   if (round > 0) check_errors(result.outcome, sample.beams, settings.surfels.floor, settings.prior);
   result.outcome.unobservable = std::move(parameters.unobservable);

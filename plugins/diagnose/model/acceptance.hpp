@@ -20,7 +20,7 @@ struct AcceptanceFits {
 ///
 /// 1. Effects of several lasers must exceed what surfaces that are no planes resemble.
 /// 2. A hypothesis must improve the fit on held-out turns (cross-validation).
-/// 3. It must be significant in the joint fit (Wald test).
+/// 3. It must be significant in the joint fit (Wald test; score test if parameters are held).
 /// 4. A cause must explain more than the systematic residual that the extended model leaves.
 ///
 /// A constant skew within the error of a clock's line is kept, but marked as no cause (see clock_lines.hpp).

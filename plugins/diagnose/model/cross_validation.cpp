@@ -11,6 +11,7 @@
 
 #include <crisp/rqe.hpp>
 
+#include "pipeline/data/degree.hpp"
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
@@ -22,7 +23,9 @@ namespace {
 
 using Turn = CrossValidator::Score::Turn;
 
-constexpr std::size_t kMinTurns = 4;
+constexpr double kMinTurns = 4;
+constexpr double kMinPieces = 8;
+constexpr double kNarrow = 15 * kDegree;  // a quarter of the shortest harmonic's period
 
 /// Turn of the plate and recording of each beam.
 struct Pieces {
@@ -50,7 +53,7 @@ Pieces pieces_of(const Sample& sample) {
     pieces.recording.push_back(recording);
   }
   double piece = 2 * std::numbers::pi;
-  if (way < static_cast<double>(kMinTurns) * piece) piece = way / (2 * kMinTurns) * (1 + 1e-9);
+  if (way < kMinTurns * piece) piece = std::min(kNarrow, way / kMinPieces * (1 + 1e-9));
   std::uint32_t before = 0;  // recording borders so far; each ends a turn
   for (std::size_t i = 0; i < turned.size(); ++i) {
     if (i > 0 && pieces.recording[i] != pieces.recording[i - 1]) ++before;
@@ -137,6 +140,7 @@ CrossValidator::CrossValidator(Halves halves, const SensorModel& chooser, const 
   const SurfaceObservations observations(chooser, halves_.held_out, settings, kBeams);
   surfels_ = observations.surfels();
   halves_.held_out.beams.cos_incidence = observations.sample().beams.cos_incidence;
+  reference_.emplace(chooser, halves_.held_out);
   const auto reported = observations.beams().noise;
   given_noise_.assign(reported.begin(), reported.end());
   double squares = 0;
@@ -151,7 +155,8 @@ CrossValidator::CrossValidator(Halves halves, const SensorModel& chooser, const 
 }
 
 CrossValidator::Score CrossValidator::score(const SensorModel& model) const {
-  const PlacedBeams placed(model, halves_.held_out);
+  PlacedBeams placed(model, halves_.held_out);
+  placed.align_with(*reference_, halves_.held_out);
   const BeamsView beams = placed.view(given_noise_);
   Score score;
   score.turns.resize(halves_.turn.empty() ? 0 : std::ranges::max(halves_.turn) + std::size_t{1});

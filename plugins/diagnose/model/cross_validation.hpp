@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <crisp/findings.hpp>
 
+#include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/surfels.hpp"
 
@@ -19,11 +21,13 @@ struct Halves {
 };
 
 /// Splits by recordings if there are several, otherwise by turns of the plate. A recording of fewer than four
-/// turns is split by eighths.
+/// turns is split by pieces of 15°, or by eighths if these are shorter: half of a turn alone leaves the
+/// harmonics of the plate angle open.
 Halves halves_of(const Sample& sample);
 
 /// Held-out cross-validation of sensor models by the distances of beams to surfaces. The beams and their
-/// surfaces are selected once, with a model that has none of the terms under test.
+/// surfaces are selected once, with a model that has none of the terms under test. Rigid motions of a whole
+/// cloud count for nothing: two fits may differ by a rotation that the data do not determine.
 class CrossValidator {
  public:
   CrossValidator(Halves halves, const SensorModel& chooser, const SurfelSettings& settings);
@@ -53,6 +57,7 @@ class CrossValidator {
   Halves halves_;
   SurfelSettings settings_;
   Surfels surfels_;
+  std::optional<PlacedBeams> reference_;  ///< the held-out beams by the selecting model
   std::vector<float> given_noise_;  ///< relative noise of the held-out beams
   double noise_ = 0;                ///< [σ] of the residuals of the selecting model
 };

@@ -13,32 +13,47 @@ namespace {
 
 constexpr const char* kMayBeTheScenes =
     "several lasers share it, and it is small: deviations of real surfaces from planes make effects of this size";
-constexpr const char* kIsNothing =
-    "it is not significant in the joint fit with the other accepted effects (Wald test)";
+constexpr const char* kIsNothing = "it is not significant in the joint fit with the other accepted effects";
+
+std::string name_in_model(const Candidate& candidate, std::size_t parameter) {
+  return (candidate.laser() ? "" : "plate.") + candidate.name + "." +
+         candidate.term.parameters[parameter].name;
+}
+
+/// Parameters of a candidate in a joint fit.
+struct Estimates {
+  std::vector<Eigen::Index> at;    ///< estimated sizes
+  std::vector<Eigen::Index> form;  ///< estimated shape parameters
+  std::vector<double> off;         ///< of the sizes, from neutral
+  bool has_held = false;           ///< whether a size is held at a value that is not neutral
+};
+
+Estimates estimates_of(const Candidate& candidate, const Outcome& outcome, const TermInfo& info) {
+  Estimates estimates;
+  const auto places = parameter_indices(candidate, outcome);
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    const EffectParameter& parameter = info.parameters[p];
+    const std::size_t index = outcome.model.index(name_in_model(candidate, p));
+    const double off = outcome.model.values()[static_cast<Eigen::Index>(index)] - parameter.neutral;
+    if (!places[p]) {
+      estimates.has_held = estimates.has_held || (!parameter.shape && off != 0);
+    } else if (parameter.shape) {
+      estimates.form.push_back(*places[p]);
+    } else {
+      estimates.at.push_back(*places[p]);
+      estimates.off.push_back(off);
+    }
+  }
+  return estimates;
+}
 
 /// Wald test of the estimate under the null hypothesis of a neutral term. A term passes of which no parameter
 /// was estimated. The form is held at its estimate, since a neutral term has none, and counts as a parameter.
 ///
 /// @param p_value  largest that passes
-AcceptanceTest wald_test(const Candidate& candidate, const Outcome& outcome, const TermInfo& info,
-                         double p_value) {
+AcceptanceTest wald_test(const Estimates& estimates, const Outcome& outcome, double p_value) {
   AcceptanceTest test{.name = "Wald test", .threshold = p_value, .p_value = 0, .passed = true};
-  const auto places = parameter_indices(candidate, outcome);
-  std::vector<Eigen::Index> at;
-  std::vector<Eigen::Index> form;
-  std::vector<double> off;
-  for (std::size_t p = 0; p < places.size(); ++p) {
-    if (!places[p]) continue;
-    if (info.parameters[p].shape) {
-      form.push_back(*places[p]);
-      continue;
-    }
-    at.push_back(*places[p]);
-    off.push_back(
-        outcome.model
-            .values()[static_cast<Eigen::Index>(outcome.free[static_cast<std::size_t>(*places[p])])] -
-        info.parameters[p].neutral);
-  }
+  const auto& [at, form, off, has_held] = estimates;
   if (at.empty()) return test;
   Eigen::MatrixXd covariance = outcome.covariance(at, at);
   if (!form.empty()) {
@@ -55,14 +70,23 @@ AcceptanceTest wald_test(const Candidate& candidate, const Outcome& outcome, con
   return test;
 }
 
+/// Test of a term of which some parameters are held at their estimates: the others' null hypothesis says
+/// nothing of the term, but the score test's has all of them neutral.
+AcceptanceTest score_test_of(const Hypothesis& hypothesis, double p_value) {
+  return {.name = "score test",
+          .statistic = hypothesis.test.wald,
+          .threshold = p_value,
+          .p_value = hypothesis.test.p_value,
+          .passed = hypothesis.test.p_value < p_value};
+}
+
 }  // namespace
 
 std::vector<std::optional<Eigen::Index>> parameter_indices(const Candidate& candidate,
                                                            const Outcome& outcome) {
   std::vector<std::optional<Eigen::Index>> places(candidate.term.parameters.size());
   for (std::size_t p = 0; p < places.size(); ++p) {
-    const std::string name =
-        (candidate.laser() ? "" : "plate.") + candidate.name + "." + candidate.term.parameters[p].name;
+    const std::string name = name_in_model(candidate, p);
     for (std::size_t k = 0; k < outcome.free.size(); ++k) {
       if (outcome.model.names()[outcome.free[k]] == name) places[p] = static_cast<Eigen::Index>(k);
     }
@@ -96,7 +120,9 @@ bool reject_insignificant(std::vector<Hypothesis>& hypotheses, const Outcome& ou
   for (Hypothesis& one : hypotheses) {
     if (!one.accepted) continue;
     const TermInfo& info = terms.get(one.candidate.term.term)->info();
-    one.decide(wald_test(one.candidate, outcome, info, p_value), kIsNothing);
+    const Estimates estimates = estimates_of(one.candidate, outcome, info);
+    one.decide(estimates.has_held ? score_test_of(one, p_value) : wald_test(estimates, outcome, p_value),
+               kIsNothing);
     has_rejected = has_rejected || !one.accepted;
   }
   return has_rejected;

@@ -18,8 +18,9 @@ std::vector<std::optional<Eigen::Index>> parameter_indices(const Candidate& cand
 /// alike, and many causes absorb a part of them.
 void reject_scene_artifacts(std::vector<Hypothesis>& hypotheses);
 
-/// Rejects accepted terms that are not significant in the joint fit (Wald test of all parameters of a term
-/// but its form). A term may have been needed only next to others that were then rejected.
+/// Rejects accepted terms that are not significant in the joint fit: by the Wald test of all parameters of a
+/// term but its form, or by the term's score test if the fit holds some of them, since these data determine
+/// combinations only. A term may have been needed only next to others that were then rejected.
 ///
 /// @param p_value  significance level
 /// @return         whether a term was rejected; if so, refit without it and call this again

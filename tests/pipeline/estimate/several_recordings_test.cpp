@@ -58,6 +58,26 @@ TEST(SeveralRecordings, StandFartherApartThanAnyBeamGoes) {
   }
 }
 
+TEST(SeveralRecordings, AreAlignedEachByItself) {
+  const test::Several all = test::several(in_two_places());
+  Calibration turned = nominal_calibration(default_rig());
+  const SensorModel model(turned);
+  for (LaserCalibration& laser : turned.lasers) laser.lambda.value += 0.3;
+  const Sample inside = covered(all.sample(), -0.1, 0.1);
+  const PlacedBeams before(model, inside);
+  PlacedBeams after(SensorModel(turned), inside);
+  after.align_with(before, inside);
+  const BeamsView to = before.view();
+  const BeamsView moved = after.view();
+  for (std::size_t i = 0; i < inside.beams.size(); ++i) {
+    ASSERT_NEAR(moved.points.x[i], to.points.x[i], 1e-9);
+    ASSERT_NEAR(moved.points.y[i], to.points.y[i], 1e-9);
+    ASSERT_NEAR(moved.points.z[i], to.points.z[i], 1e-9);
+    ASSERT_NEAR(moved.directions.x[i], to.directions.x[i], 1e-9);
+    ASSERT_NEAR(moved.directions.y[i], to.directions.y[i], 1e-9);
+  }
+}
+
 TEST(SeveralRecordings, HaveNoBlocksInTheirPauses) {
   const test::Several all = test::several(in_two_places());
   const auto blocks = recording_blocks(all.beams);

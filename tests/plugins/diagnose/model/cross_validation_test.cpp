@@ -60,5 +60,16 @@ TEST(CrossValidator, EstimatesNoGainWithoutAChange) {
   }
 }
 
+TEST(CrossValidator, ScoresNoRigidMotion) {
+  const auto recording = test::hidden(4, 6, office(), {});
+  Calibration turned = recording.scanner.truth;
+  for (LaserCalibration& laser : turned.lasers) laser.lambda.value += 0.4;  // of the whole cloud about z
+  const SensorModel truth(recording.scanner.truth, built_in_terms());
+  const CrossValidator held_out(halves_of(recording.sample()), truth, {});
+  const auto score = held_out.score(truth);
+  for (const Gain& gain : CrossValidator::gains(score, held_out.score(SensorModel(turned, built_in_terms()))))
+    EXPECT_NEAR(gain.after, gain.before, 1e-9) << gain.metric;
+}
+
 }  // namespace
 }  // namespace crisp

@@ -86,6 +86,22 @@ TEST(Significance, TestsTheParametersOfATermJointly) {
       << "they are correlated";
 }
 
+TEST(Significance, TakesTheScoreTestWhereParametersAreHeld) {
+  const auto verdict = [](double held, double p_value) {
+    Outcome fit = outcome(0, held, 0.001);
+    fit.free.erase(fit.free.begin() + 2);  // of range.intensity, b alone was estimated
+    fit.covariance = 1e-6 * Eigen::MatrixXd::Identity(3, 3);
+    std::vector<Hypothesis> found = {of_first_laser("range.intensity")};
+    found[0].test.p_value = p_value;
+    reject_insignificant(found, fit, built_in_terms(), 1e-3);
+    return found[0];
+  };
+  EXPECT_TRUE(verdict(0.02, 1e-9).accepted) << "a is held at 20 mm: b of one standard error decides nothing";
+  EXPECT_FALSE(verdict(0.02, 0.01).accepted);
+  EXPECT_EQ(verdict(0.02, 1e-9).tests.back().name, "score test");
+  EXPECT_FALSE(verdict(0, 1e-9).accepted) << "a is held at zero, so b is all there is";
+}
+
 TEST(Significance, HoldsTheFormOfATerm) {
   // A short recording hardly determines the time constant: c and T are known together to a tenth of c alone.
   const auto p_is_small = [](double c) {
