@@ -70,17 +70,49 @@ void AngleShiftModel::fit() {
     values[i] = shifts_[static_cast<std::size_t>(i)].shift;
   }
   weights_ = Eigen::VectorXd::Ones(n);
-  Eigen::MatrixXd inverse;
   for (int round = 0; round < kRounds; ++round) {
     const Eigen::MatrixXd weighted = weights_.asDiagonal() * rows;
     const Eigen::MatrixXd normal = rows.transpose() * weighted + kPrior * Eigen::MatrixXd::Identity(m, m);
-    inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(m, m));
-    solution_ = inverse * (weighted.transpose() * values);
+    inverse_ = normal.ldlt().solve(Eigen::MatrixXd::Identity(m, m));
+    solution_ = inverse_ * (weighted.transpose() * values);
     residuals_ = values - rows * solution_;
     const double limit = kHuber * scale();
     for (Eigen::Index i = 0; i < n; ++i) weights_[i] = std::min(1.0, limit / std::abs(residuals_[i]));
   }
-  covariance_ = inverse * clustered_scores(rows) * inverse;
+  covariance_ = inverse_ * clustered_scores(rows) * inverse_;
+}
+
+std::vector<AngleShiftModel::StepScore> AngleShiftModel::step_scores() const {
+  constexpr double kLeft = 0.01;  // share of a step's squares that the other parameters must not absorb
+  struct Sums {
+    double gradient = 0;
+    double weight = 0;
+    Eigen::VectorXd cross;  // with the other parameters
+  };
+  const Sums none{.cross = Eigen::VectorXd::Zero(column(times_.size()))};
+  const auto add = [](Sums& to, double sign, const Sums& other) {
+    to.gradient += sign * other.gradient;
+    to.weight += sign * other.weight;
+    to.cross += sign * other.cross;
+  };
+  std::map<std::int64_t, Sums> changes;  // of the sums from one block to the next
+  for (std::size_t i = 0; i < shifts_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const Sums own{.gradient = weights_[k] * residuals_[k],
+                   .weight = weights_[k],
+                   .cross = weights_[k] * row(shifts_[i])};
+    add(changes.try_emplace(block_of(shifts_[i].earlier) + 1, none).first->second, 1, own);
+    add(changes.try_emplace(block_of(shifts_[i].later) + 1, none).first->second, -1, own);
+  }
+  std::vector<StepScore> scores;
+  Sums sum = none;
+  for (const auto& [block, change] : changes) {
+    add(sum, 1, change);
+    const double left = sum.weight - sum.cross.dot(inverse_ * sum.cross);
+    if (!(left > kLeft * sum.weight)) continue;
+    scores.push_back({.block = block, .gain = sum.gradient * sum.gradient / left, .shifts = sum.weight});
+  }
+  return scores;
 }
 
 Eigen::MatrixXd AngleShiftModel::clustered_scores(const Eigen::MatrixXd& rows) const {

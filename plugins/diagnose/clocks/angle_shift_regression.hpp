@@ -30,7 +30,16 @@ class AngleShiftModel {
   /// steps lie across the same shifts.
   double std_error(std::size_t step) const;
   const Eigen::VectorXd& residuals() const { return residuals_; }  ///< [rad] n
-  const Eigen::VectorXd& weights() const { return weights_; }      ///< n, up to 1
+
+  /// Score test of one more step.
+  struct StepScore {
+    std::int64_t block = 0;  ///< at whose beginning
+    double gain = 0;         ///< [rad²] decrease of the weighted squares, the other parameters refitted
+    double shifts = 0;       ///< weights of those across it
+  };
+  /// At the beginning of each block across which there are shifts, by time. A lag times a change of rate
+  /// resembles a step where the plate accelerates: what the other parameters absorb is taken into account.
+  std::vector<StepScore> step_scores() const;
 
   /// [s] Duration of the blocks that count as independent.
   static constexpr double kBlock = 0.1;
@@ -48,7 +57,8 @@ class AngleShiftModel {
   std::vector<double> times_;
   Eigen::VectorXd solution_;
   Eigen::VectorXd residuals_;
-  Eigen::VectorXd weights_;
+  Eigen::VectorXd weights_;  // n, up to 1
+  Eigen::MatrixXd inverse_;  // of the normal equations' matrix
   Eigen::MatrixXd covariance_;
 };
 

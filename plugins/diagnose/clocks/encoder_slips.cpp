@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/diagnose/clocks/encoder_slips.hpp"
 
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
@@ -56,38 +58,19 @@ bool is_near(std::span<const EncoderSlip> slips, double time) {
 
 /// The supported candidate of the largest gain, and all others of similar gain. A plate that reverses passes
 /// its angles in the opposite order, so two times then explain the same shifts.
-std::vector<StepCandidate> best_candidates(std::span<const AngleShift> shifts, const AngleShiftModel& model,
+std::vector<StepCandidate> best_candidates(const AngleShiftModel& model,
                                            const std::set<std::int64_t>& supported,
                                            std::span<const EncoderSlip> known) {
   constexpr double kNear = 0.3;  // of the largest gain
-  struct Score {
-    double gradient = 0;
-    double information = 0;
-  };
-  std::map<std::int64_t, Score> changes;  // of the sums from one block to the next
-  for (std::size_t i = 0; i < shifts.size(); ++i) {
-    const double weight = model.weights()[static_cast<Eigen::Index>(i)];
-    const double gradient = weight * model.residuals()[static_cast<Eigen::Index>(i)];
-    Score& begin = changes[block_of(shifts[i].earlier) + 1];
-    begin.gradient += gradient;
-    begin.information += weight;
-    Score& end = changes[block_of(shifts[i].later) + 1];
-    end.gradient -= gradient;
-    end.information -= weight;
-  }
-  constexpr double kMin = 2;  // shifts
+  constexpr double kMin = 2;     // shifts
   std::vector<StepCandidate> candidates;
   double best = 0;  // largest gain of a supported candidate
-  Score sum;
-  for (const auto& [block, change] : changes) {
-    sum.gradient += change.gradient;
-    sum.information += change.information;
-    const double time = kBlock * static_cast<double>(block);
-    if (sum.information < kMin || is_near(known, time)) continue;
-    const bool is_supported = supported.contains(block);
-    const double gain = sum.gradient * sum.gradient / sum.information;
-    candidates.push_back({.time = time, .gain = gain, .is_supported = is_supported});
-    if (is_supported) best = std::max(best, gain);
+  for (const AngleShiftModel::StepScore& score : model.step_scores()) {
+    const double time = kBlock * static_cast<double>(score.block);
+    if (score.shifts < kMin || is_near(known, time)) continue;
+    const bool is_supported = supported.contains(score.block);
+    candidates.push_back({.time = time, .gain = score.gain, .is_supported = is_supported});
+    if (is_supported) best = std::max(best, score.gain);
   }
   std::erase_if(candidates,
                 [&](const StepCandidate& each) { return !(each.gain > kNear * best) || best == 0; });
@@ -122,6 +105,34 @@ std::optional<EncoderSlip> step_in_readings(double time, double size, const Plat
   return slip;
 }
 
+/// Combines the size of a slip that shows in the readings with their own step: that of a parabola with a step
+/// (least squares), where the plate turns so smoothly that the encoder's steps are all that is left.
+void sharpen(EncoderSlip& slip, const PlateTrajectory& plate, double angle_step) {
+  constexpr std::ptrdiff_t kAround = 12;  // readings on either side
+  constexpr double kSmooth = 1.5;         // [errors of rounding to a step]
+  const auto times = plate.times();
+  const auto middle = std::ranges::upper_bound(times, slip.at) - times.begin();
+  const auto end = static_cast<std::ptrdiff_t>(times.size());
+  if (!slip.is_in_readings || middle < kAround || middle + kAround > end) return;
+  Eigen::Matrix<double, 2 * kAround, 4> rows;
+  Eigen::Matrix<double, 2 * kAround, 1> angles;
+  for (std::ptrdiff_t k = 0; k < 2 * kAround; ++k) {
+    const auto n = static_cast<std::size_t>(middle - kAround + k);
+    const double time = times[n] - slip.at;
+    rows.row(k) << 1, time, time * time, times[n] > slip.at ? 1 : 0;
+    angles[k] = plate.angles()[n];
+  }
+  const Eigen::Matrix4d inverse = (rows.transpose() * rows).inverse();
+  const Eigen::Vector4d fit = inverse * (rows.transpose() * angles);
+  const double rounding = angle_step / std::sqrt(12.0);
+  const double left = (angles - rows * fit).norm() / std::sqrt(2.0 * kAround - 4);
+  if (left > kSmooth * rounding) return;
+  const double variance = std::pow(std::max(left, rounding), 2) * inverse(3, 3);
+  const double own = slip.by_std_error * slip.by_std_error;
+  slip.by = (slip.by * variance + fit[3] * own) / (variance + own);
+  slip.by_std_error = std::sqrt(variance * own / (variance + own));
+}
+
 /// A slip of this size at the best candidate that shows in the readings, otherwise at the first candidate.
 EncoderSlip located(const std::vector<StepCandidate>& candidates, double size, const PlateTrajectory& plate,
                     double angle_step) {
@@ -146,8 +157,7 @@ bool is_significant(const EncoderSlip& slip) {
 class SlipSearch {
  public:
   SlipSearch(std::span<const AngleShift> shifts, double angle_step, std::vector<EncoderSlip>& found)
-      : shifts_(shifts),
-        angle_step_(angle_step),
+      : angle_step_(angle_step),
         found_(found),
         model_(shifts, times_of(found)),
         supported_(supported_blocks(shifts)) {
@@ -160,7 +170,7 @@ class SlipSearch {
     const std::size_t known = found_.size();
     update();
     while (found_.size() < kMaxSlips) {
-      const auto candidates = best_candidates(shifts_, model_, supported_, found_);
+      const auto candidates = best_candidates(model_, supported_, found_);
       if (candidates.empty()) break;
       AngleShiftModel trial = model_;
       trial.add(candidates.front().time);
@@ -216,7 +226,6 @@ class SlipSearch {
     }
   }
 
-  std::span<const AngleShift> shifts_;
   double angle_step_ = 0;
   std::vector<EncoderSlip>& found_;
   std::vector<double> before_;  // [rad] part of each slip that the shifts were measured without
@@ -287,6 +296,7 @@ EncoderSlips find_encoder_slips(const Measurements& beams, const PlateTrajectory
     }
     corrected = without_slips(plate, result.slips);
   }
+  for (EncoderSlip& slip : result.slips) sharpen(slip, plate, angle_step);
   std::ranges::sort(result.slips, {}, &EncoderSlip::at);
   return result;
 }

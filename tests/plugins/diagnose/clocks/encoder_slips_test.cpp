@@ -116,7 +116,8 @@ TEST(EncoderSlips, AreEstimatedWithTheirSizeAndTime) {
         slips_of({.steps = {{.at = 3.2011, .by = -1.5 * kDegree}}, .lag = 0.014, .seed = seed});
     ASSERT_THAT(found.slips, SizeIs(1)) << seed;
     const EncoderSlip& slip = found.slips.front();
-    EXPECT_NEAR(slip.by, -1.5 * kDegree, std::max(0.05 * kDegree, 4 * slip.by_std_error));
+    EXPECT_NEAR(slip.by, -1.5 * kDegree, 4 * slip.by_std_error);
+    EXPECT_LT(slip.by_std_error, 0.02 * kDegree) << "as the readings show it";
     EXPECT_NEAR(slip.at, 3.2011, 0.003);
     EXPECT_TRUE(slip.is_in_readings);
     EXPECT_LT(found.ci95[1], 0);
