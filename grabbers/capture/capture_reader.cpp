@@ -87,6 +87,7 @@ void CaptureReader::Traffic::take_ip(const IpPacket& ip, std::int64_t time_ns) {
   const auto packet = dissect_transport(ip, damaged);
   if (damaged) totals.losses.add("packets with damaged headers");
   if (!packet) return;
+  if (packet->missing > 0) ++totals.truncated;
   if (auto* flow = find_flow(*packet)) flow->take(*packet, time_ns);
 }
 

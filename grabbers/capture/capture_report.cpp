@@ -6,6 +6,7 @@
 
 #include <numbers>
 
+#include "grabbers/capture/loss_warnings.hpp"
 #include "pipeline/data/counted.hpp"
 #include "pipeline/data/recordings.hpp"
 
@@ -124,6 +125,7 @@ nlohmann::json to_json(const CaptureStatistics& statistics) {
   return {{"packets", statistics.packets},
           {"bytes", statistics.bytes},
           {"file_bytes", statistics.file_bytes},
+          {"truncated_packets", statistics.truncated},
           {"first", seconds(statistics.first_ns)},
           {"last", seconds(statistics.last_ns)},
           {"duration", seconds(statistics.last_ns - statistics.first_ns)},
@@ -159,6 +161,7 @@ std::string to_text(const CaptureStatistics& statistics) {
   std::string text = extent_of(statistics);
   for (const auto& [link_type, n] : statistics.link_types.all()) text += fmt::format(", {}", link_type);
   for (const auto& remark : statistics.remarks) text += "\n  " + remark;
+  if (statistics.truncated > 0) text += "\n  " + truncated_packets(statistics);
   if (statistics.pauses > 0) {
     text += fmt::format(
         "\n  {} recordings in sequence, with {:.1f} s of pauses in all between them (of {:.0f} s and more, which are no losses; a forward step of the hub's clock looks like a pause)",

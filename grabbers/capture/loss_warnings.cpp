@@ -6,6 +6,7 @@
 
 #include "grabbers/capture/capture_report.hpp"
 #include "grabbers/capture/packet.hpp"
+#include "pipeline/data/counted.hpp"
 
 namespace crisp {
 namespace {
@@ -37,12 +38,19 @@ std::string unreadable(const DeviceStatistics& device, double above, double up_t
 
 }  // namespace
 
+std::string truncated_packets(const CaptureStatistics& statistics) {
+  return fmt::format(
+      "{} of {} are cut off by the recording's snap length, and what they carried is lost: record whole packets (tcpdump -s 0)",
+      statistics.truncated, counted(statistics.packets, "packet"));
+}
+
 std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, const std::string& source) {
   std::vector<std::string> warnings;
   const auto warn = [&](const std::string& what) {
     warnings.push_back(source.empty() ? what : source + ": " + what);
   };
   for (const auto& remark : statistics.remarks) warn(remark);
+  if (statistics.truncated > 0) warn(truncated_packets(statistics));
   if (const auto cut_off = statistics.losses.of(file_loss::kCutOff); cut_off > 0) {
     warn(fmt::format("the file ends {} bytes into a record: the recording or the copy was truncated",
                      cut_off));

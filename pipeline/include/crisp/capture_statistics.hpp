@@ -98,6 +98,7 @@ struct CaptureStatistics {
   std::uint64_t packets = 0;         ///< in the capture, of any sender
   std::uint64_t bytes = 0;           ///< of the packets
   std::uint64_t file_bytes = 0;      ///< read from the file
+  std::uint64_t truncated = 0;       ///< packets of which the recording kept a part only (its snap length)
   std::int64_t first_ns = 0;         ///< [ns since the Unix epoch] time of the first packet
   std::int64_t last_ns = 0;          ///< [ns since the Unix epoch] time of the last packet
   std::uint64_t pauses = 0;          ///< of kPause and more, between recordings: nothing came at all

@@ -7,14 +7,17 @@
 
 #include <crisp/capture_reader.hpp>
 
+#include "grabbers/capture/loss_warnings.hpp"
 #include "tests/grabbers/capture/scenario.hpp"
 #include "tests/grabbers/capture/temporary_folder.hpp"
 
 namespace crisp {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAreArray;
 using testing::SizeIs;
+using testing::StartsWith;
 
 std::vector<Frame> in_link_layer(std::vector<Frame> frames, Bytes (*convert)(ByteView)) {
   for (auto& frame : frames) frame.bytes = convert(frame.bytes);
@@ -128,6 +131,24 @@ TEST(CaptureReader, LosesOneTelegramWithALostSegmentAndNamesIt) {
   EXPECT_EQ(losses.of("lost telegrams, by their counter"), 1U);
   EXPECT_EQ(losses.of("bytes of TCP missing from the capture"), 400U);
   EXPECT_EQ(losses.of("telegrams cut by a gap or an end"), 1U);
+}
+
+TEST(CaptureReader, CountsPacketsThatTheRecordingCutOff) {
+  constexpr std::size_t kSnapLength = 96;
+  const Scenario scenario{.scans = 20, .beams = 541};
+  auto frames = scenario.frames();
+  std::uint64_t cut = 0;
+  for (auto& frame : frames) {
+    if (frame.bytes.size() <= kSnapLength) continue;
+    frame.original_size = static_cast<std::uint32_t>(frame.bytes.size());
+    frame.bytes.resize(kSnapLength);
+    ++cut;
+  }
+  const auto reading = read_capture(pcap_file(frames));
+  EXPECT_GE(cut, 20U);
+  EXPECT_EQ(reading.statistics.truncated, cut);
+  EXPECT_THAT(loss_warnings(reading.statistics),
+              Contains(StartsWith(std::to_string(cut) + " of " + std::to_string(frames.size()))));
 }
 
 TEST(CaptureReader, GivesItemsInOrderWhereManySegmentsAreLost) {
