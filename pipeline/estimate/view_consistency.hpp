@@ -51,7 +51,7 @@ std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const Beam
 /// "walls" or "floors and ceilings".
 const char* in_words(Orientation orientation);
 
-/// The least consistent pair of a partition's views, as a caveat, if less than half of its beams agree.
+/// The least consistent pair of a partition's views, as a caveat, if less than 70 % of its beams agree.
 std::optional<std::string> inconsistency(const ViewPartition& partition,
                                          const std::vector<ViewConsistency>& pairs);
 

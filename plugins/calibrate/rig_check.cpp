@@ -5,132 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/each_parameter.hpp"
 #include "pipeline/data/shown_unit.hpp"
+#include "plugins/calibrate/rig_mistakes.hpp"
 
 namespace crisp {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kFullTurn = 2 * std::numbers::pi;
 constexpr double kReach = 3;  // standard deviations of a nominal value that a parameter may be off
-
-/// Standard deviations of one laser's nominal values: the rig's, or else half of a range. Nominal values of λ
-/// are not needed by the search, so that they may be rough.
-struct NominalErrors {
-  NominalErrors(const LaserCalibration& nominal, const ParameterPrior& range)
-      : lambda(nominal.lambda.std_error > 0 ? nominal.lambda.std_error : 15 * kDegree),
-        tau(nominal.tau.std_error > 0 ? nominal.tau.std_error : range.tau / 2),
-        alpha(nominal.alpha.std_error > 0 ? nominal.alpha.std_error : range.alpha / 2) {}
-  double lambda, tau, alpha;
-};
-
-double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
-
-double square(double x) { return x * x; }
-
-/// Squared distance of one laser from its nominal values, in their standard deviations.
-///
-/// @param turn  [rad] by which the calibration's frame is turned against the rig's
-double distance(const LaserCalibration& found, const LaserCalibration& nominal, double turn,
-                const ParameterPrior& range) {
-  const NominalErrors error(nominal, range);
-  const auto at = [&](double lambda, double tau, double alpha) {
-    return square(wrapped(lambda - nominal.lambda.value - turn) / error.lambda) +
-           square((tau - nominal.tau.value) / error.tau) +
-           square(wrapped(alpha - nominal.alpha.value) / error.alpha);
-  };
-  const double lambda = found.lambda.value, tau = found.tau.value, alpha = found.alpha.value;
-  return std::min(at(lambda, tau, alpha), at(lambda + kPi, -tau, alpha + kPi));  // both place beams alike
-}
-
-/// Squared distance of all lasers, in the frame in which it is smallest.
-double distance(const Calibration& found, const Calibration& nominal, const ParameterPrior& range) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t reference = 0; reference < found.lasers.size(); ++reference) {
-    for (const double half_turn : {0.0, kPi}) {
-      const double turn =
-          found.lasers[reference].lambda.value - nominal.lasers[reference].lambda.value + half_turn;
-      double sum = 0;
-      for (std::size_t k = 0; k < found.lasers.size(); ++k) {
-        sum += distance(found.lasers[k], nominal.lasers[k], turn, range);
-      }
-      least = std::min(least, sum);
-    }
-  }
-  return least;
-}
-
-/// A possible mistake of a rig, with the calibration's distance from nominal values under it.
-struct Hypothesis {
-  std::string statement;
-  std::string remedy;
-  double distance = 0;
-  bool is_exchange = false;  ///< of lasers: whichever was exchanged, the scene keeps its sense
-};
-
-Hypothesis other_direction(const Calibration& calibration, double distance) {
-  const bool is_clockwise = calibration.direction == CountDirection::clockwise;
-  const char* states = is_clockwise ? "clockwise" : "counter-clockwise";
-  const char* counts = is_clockwise ? "counter-clockwise" : "clockwise";
-  return {
-      .statement = fmt::format(
-          "the encoder counts {}, not {}, by the signs of tau and alpha and the order of the lasers: the cloud is the mirror image of the scene",
-          counts, states),
-      .remedy =
-          fmt::format("Set plate.direction: {} in the rig", is_clockwise ? "counter_clockwise" : "clockwise"),
-      .distance = distance};
-}
-
-/// What is wrong in the rig, and what to change. Several hypotheses, the nearest first: the nominal values do
-/// not decide between them.
-std::string caveat_of(const std::vector<Hypothesis>& alternatives) {
-  if (alternatives.size() == 1) return alternatives[0].statement + ". " + alternatives[0].remedy;
-  std::string caveat = fmt::format(
-      "{} corrections of the rig fit, the likeliest first, and the recording cannot decide between them",
-      alternatives.size());
-  for (std::size_t k = 0; k < alternatives.size(); ++k)
-    caveat += fmt::format("; {}) {}. {}", k + 1, alternatives[k].statement, alternatives[k].remedy);
-  const bool is_exchange = std::ranges::all_of(alternatives, &Hypothesis::is_exchange);
-  return caveat +
-         (is_exchange
-              ? ". Find out on the scanner which one is true"
-              : ". Find out on the scanner which one is true: a wrong correction gives a mirror image of the scene");
-}
-
-std::vector<Hypothesis> hypotheses(const Calibration& found, const Rig& rig, const ParameterPrior& range) {
-  const Calibration nominal = nominal_calibration(rig);
-  std::vector<Hypothesis> all = {other_direction(found, distance(mirrored(found), nominal, range))};
-  Calibration all_turned = nominal;
-  for (LaserCalibration& laser : all_turned.lasers) laser.alpha.value += kPi;
-  if (nominal.lasers.size() > 1) {
-    all.push_back(
-        {"all lasers are mounted upside down, or their mounts are off by 180 degrees, compared with the rig",
-         "Turn each mount, or each nominal alpha, by 180 degrees in the rig",
-         distance(found, all_turned, range)});
-  }
-  for (std::size_t i = 0; i < nominal.lasers.size(); ++i) {
-    const std::string& name = nominal.lasers[i].name;
-    Calibration turned = nominal;
-    turned.lasers[i].alpha.value += kPi;
-    all.push_back(
-        {fmt::format("{} is mounted upside down, or its mount is off by 180 degrees, compared with the rig",
-                     name),
-         fmt::format("Turn {}'s mount, or its nominal alpha, by 180 degrees in the rig", name),
-         distance(found, turned, range)});
-    for (std::size_t j = 0; j < i; ++j) {
-      Calibration exchanged = nominal;
-      std::swap(exchanged.lasers[i], exchanged.lasers[j]);
-      all.push_back({fmt::format("{} and {} are exchanged: each has the other's nominal values",
-                                 nominal.lasers[j].name, name),
-                     "Exchange their addresses in the rig", distance(found, exchanged, range), true});
-    }
-  }
-  return all;
-}
 
 /// Largest distance of a parameter from its nominal value, with its description.
 struct Limit {
@@ -146,7 +32,8 @@ Limit limit_of(const Parameter& nominal, double range) {
 void add_if_outside(const std::string& laser, const Parameter& found, const Parameter& nominal,
                     const Limit& limit, std::vector<std::string>& caveats) {
   const bool is_angle = nominal.unit == "rad";
-  const double off = is_angle ? wrapped(found.value - nominal.value) : found.value - nominal.value;
+  const double off =
+      is_angle ? std::remainder(found.value - nominal.value, kFullTurn) : found.value - nominal.value;
   if (limit.size == 0 || std::abs(off) <= limit.size) return;
   const ShownUnit unit = shown_unit(nominal.unit);
   const std::string what =
@@ -182,6 +69,17 @@ std::vector<std::string> exchanged_by_tau(const Calibration& found, const Rig& r
   return caveats;
 }
 
+/// λ without a standard deviation, which is searched around the whole circle.
+void add_if_elsewhere(const LaserCalibration& found, const Parameter& nominal,
+                      std::vector<std::string>& caveats) {
+  constexpr double kFar = 45 * kDegree;  // three standard deviations of a rough value
+  const double off = std::abs(std::remainder(found.lambda.value - nominal.value, kFullTurn));
+  if (nominal.std_error > 0 || off < kFar + kReach * found.lambda.std_error) return;
+  caveats.push_back(fmt::format(
+      "{}.lambda is {:.1f} deg, {:.0f} deg from the rig's nominal {:.1f} deg: a laser has another's address, a nominal lambda is wrong, or the calibration is in a wrong local minimum. Check the addresses and each lambda in the rig, or give lambda an sd",
+      found.name, found.lambda.value / kDegree, off / kDegree, nominal.value / kDegree));
+}
+
 /// Each parameter that is farther from its nominal value than the rig or the search allows.
 std::vector<std::string> outside(const Calibration& found, const Rig& rig, const ParameterPrior& range) {
   std::vector<std::string> caveats = exchanged_by_tau(found, rig, range);
@@ -191,7 +89,10 @@ std::vector<std::string> outside(const Calibration& found, const Rig& rig, const
     const auto add = [&](const Parameter& value, const Parameter& expected, const Limit& limit) {
       add_if_outside(laser.name, value, expected, limit, caveats);
     };
-    if (laser.lambda.free) add(laser.lambda, nominal.lambda, limit_of(nominal.lambda, 0));
+    if (laser.lambda.free) {
+      add(laser.lambda, nominal.lambda, limit_of(nominal.lambda, 0));
+      add_if_elsewhere(laser, nominal.lambda, caveats);
+    }
     add(laser.tau, nominal.tau, limit_of(nominal.tau, range.tau));
     add(laser.alpha, nominal.alpha, limit_of(nominal.alpha, range.alpha));
     if (laser.eta.free) add(laser.eta, nominal.eta, limit_of(nominal.eta, 0));
@@ -210,7 +111,7 @@ Calibration mirrored(const Calibration& calibration) {
       calibration.lasers, [](const LaserCalibration& laser) { return !laser.lambda.free; });
   const double kept = reference != calibration.lasers.end() ? reference->lambda.value : 0;
   for (LaserCalibration& laser : result.lasers) {
-    laser.lambda.value = kept + wrapped(kept - laser.lambda.value);
+    laser.lambda.value = kept + std::remainder(kept - laser.lambda.value, kFullTurn);
     laser.tau.value = -laser.tau.value;
     laser.alpha.value = -laser.alpha.value;
   }
@@ -239,7 +140,7 @@ Calibration match_form_of_rig(Calibration calibration, const Rig& rig) {
     LaserCalibration& laser = calibration.lasers[k];
     const double nominal = rig.lasers[k].nominal.alpha.value;
     laser.tau.value = -laser.tau.value;
-    laser.alpha.value = nominal + wrapped(laser.alpha.value + kPi - nominal);
+    laser.alpha.value = nominal + std::remainder(laser.alpha.value + kFullTurn / 2 - nominal, kFullTurn);
   }
   const std::size_t m = calibration.covariance_order.size();
   const auto changes_sign = [&](std::size_t k) { return calibration.covariance_order[k].ends_with(".tau"); };
@@ -269,32 +170,32 @@ std::vector<std::string> far_from_nominal(const Calibration& calibration, const 
 }
 
 RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const ParameterPrior& range) {
-  constexpr double kClearly = 12;       // a likelihood ratio of 400
-  constexpr double kFitsPerLaser = 12;  // three values, each within two standard deviations
-  const double as_it_is = distance(calibration, nominal_calibration(rig), range);
-  const auto all = hypotheses(calibration, rig, range);
-  const Hypothesis& mirror_image = all.front();
-  const Hypothesis& nearest = *std::ranges::min_element(all, {}, &Hypothesis::distance);
+  constexpr double kClearly = 12;  // a likelihood ratio of 400
+  constexpr double kFits = 12;     // three values of a laser, each within two standard deviations
+  const double as_it_is = distance_from_nominal(calibration, nominal_calibration(rig), range).sum;
+  const auto all = rig_mistakes(calibration, rig, range);
+  const RigMistake& mirror_image = all.front();
+  const RigMistake& nearest = *std::ranges::min_element(all, {}, &RigMistake::sum);
   // A lone laser that is upside down makes the mirror image. Where the rig leaves the direction open, it is
   // that.
   const bool may_be_mirrored =
-      rig.plate.direction == CountDirection::automatic && mirror_image.distance < nearest.distance + kClearly;
-  const Hypothesis& best = may_be_mirrored ? mirror_image : nearest;
-  const bool fits = best.distance < kFitsPerLaser * static_cast<double>(rig.lasers.size());
-  const bool is_explained = fits && best.distance + kClearly < as_it_is;
+      rig.plate.direction == CountDirection::automatic && mirror_image.sum() < nearest.sum() + kClearly;
+  const RigMistake& best = may_be_mirrored ? mirror_image : nearest;
+  const auto fits = [](const RigMistake& one) { return one.distance.largest < kFits; };
+  const bool is_explained = fits(best) && best.sum() + kClearly < as_it_is;
   RigCheck check{.is_mirrored = is_explained && &best == &mirror_image,
                  .is_explained = is_explained,
-                 .knows_direction = as_it_is + kClearly < mirror_image.distance};
+                 .knows_direction = as_it_is + kClearly < mirror_image.sum()};
   if (!is_explained) {
     check.caveats = outside(calibration, rig, range);
     return check;
   }
-  std::vector<Hypothesis> alternatives = {best};
-  for (const Hypothesis& other : all) {
+  std::vector<RigMistake> alternatives = {best};
+  for (const RigMistake& other : all) {
     const bool is_other = &other != &best && !may_be_mirrored;
-    if (is_other && other.distance < best.distance + kClearly) alternatives.push_back(other);
+    if (is_other && fits(other) && other.sum() < best.sum() + kClearly) alternatives.push_back(other);
   }
-  std::ranges::stable_sort(alternatives, {}, &Hypothesis::distance);
+  std::ranges::stable_sort(alternatives, {}, &RigMistake::sum);
   check.caveats = {caveat_of(alternatives)};
   return check;
 }

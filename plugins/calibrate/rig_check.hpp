@@ -32,10 +32,11 @@ struct RigCheck {
 /// Compares a calibration with the rig's nominal values. Neither RQE nor surfels can do it: a mirrored scene
 /// has the same RQE, and so has one whose lasers have exchanged their names.
 ///
-/// A contradiction is explained, where that fits clearly better, by one of: counts that grow the other way;
-/// two exchanged lasers; a laser mounted upside down. Where several fit equally well, as counts and
-/// upside-down lasers do for two lasers that face each other, the caveat has all of them. Otherwise each τ
-/// and α outside its range is reported by itself.
+/// A contradiction is explained, where that fits clearly better and all lasers, by one of: counts that grow
+/// the other way; two exchanged lasers; a laser mounted upside down; azimuths of the other sign. Where
+/// several fit equally well, as counts and upside-down lasers do for two lasers that face each other, the
+/// caveat has all of them. Otherwise each τ and α outside its range, and each λ far from its nominal value,
+/// is reported by itself.
 ///
 /// @param calibration  one laser for each of the rig's, in its order
 /// @param range        [m, rad] how far τ and α may be from their nominal values

@@ -24,6 +24,7 @@ MAKERS = (
     "plugins/calibrate/fit_check.cpp",
     "plugins/calibrate/rig_check.cpp",
     "plugins/calibrate/rig_hypotheses.cpp",
+    "plugins/calibrate/rig_mistakes.cpp",
     "plugins/calibrate/rqe_calibration.cpp",
     "plugins/clock/alignment_report.cpp",
     "plugins/diagnose/clocks/clocks_stage.cpp",

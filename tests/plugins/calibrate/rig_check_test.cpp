@@ -154,8 +154,32 @@ TEST(RigCheck, ExchangesThatFitAreListedWithTheLikeliestFirst) {
   const RigCheck result = check(calibration, rig);
   ASSERT_EQ(result.caveats.size(), 1U);
   EXPECT_THAT(result.caveats[0], HasSubstr("laser1 and laser2 are exchanged"));
+  EXPECT_THAT(result.caveats[0], HasSubstr("each lambda has the other sign")) << "0, -104 and 127 for -231";
   EXPECT_THAT(result.caveats[0], testing::Not(HasSubstr("mirror image")));
-  EXPECT_LT(result.caveats[0].find("laser1 and laser2"), result.caveats[0].find("2) "));
+  EXPECT_LT(result.caveats[0].find("laser1 and laser2"), result.caveats[0].find("3) "));
+}
+
+TEST(RigCheck, AzimuthsOfTheOtherSignAreNoExchange) {
+  Rig rig = default_rig();
+  rig.lasers[1].nominal.lambda.value = 165 * kDegree;
+  rig.lasers[2].nominal.lambda.value = 40 * kDegree;
+  Calibration calibration = found(8, rig);
+  for (LaserCalibration& laser : calibration.lasers) laser.lambda.value *= -1;
+  EXPECT_THAT(check(calibration, rig).caveats,
+              ElementsAre(testing::AllOf(HasSubstr("each lambda has the other sign"),
+                                         testing::Not(HasSubstr("exchanged")))));
+}
+
+TEST(RigCheck, ALambdaFarFromItsNominalValueIsReported) {
+  Rig rig = default_rig();
+  Calibration calibration = found(9, rig);
+  calibration.lasers[1].lambda.value += 65 * kDegree;
+  EXPECT_THAT(check(calibration, rig).caveats, ElementsAre(HasSubstr("laser2.lambda is")));
+  calibration.lasers[1].lambda.value -= 35 * kDegree;
+  EXPECT_THAT(check(calibration, rig).caveats, IsEmpty()) << "rough nominal values are no mistake";
+  calibration.lasers[1].lambda.value += 35 * kDegree;
+  calibration.lasers[1].lambda.std_error = 20 * kDegree;
+  EXPECT_THAT(check(calibration, rig).caveats, IsEmpty());
 }
 
 TEST(RigCheck, AParameterOutsideItsRangeIsReportedWithItsNominalValue) {
