@@ -9,7 +9,7 @@
 #include <crisp/capture_reader.hpp>
 
 #include "grabbers/capture/dissect.hpp"
-#include "grabbers/capture/flow.hpp"
+#include "grabbers/capture/flow_decoder.hpp"
 #include "grabbers/capture/fragments.hpp"
 #include "grabbers/capture/ordered_capture.hpp"
 #include "grabbers/capture/reorder_buffer.hpp"
@@ -24,20 +24,20 @@ constexpr std::string_view kPlateMark = "$PPLT,";
 }  // namespace
 
 struct CaptureReader::Traffic {
-  Traffic(const std::filesystem::path& path, Devices all, const CaptureSettings& how)
+  Traffic(const std::filesystem::path& path, DeviceRegistry all, const CaptureSettings& how)
       : file(path, [this, stop = how.interrupted] { return interrupted || (stop && stop()); }),
         devices(std::move(all)),
         settings(how) {}
 
   std::atomic<bool> interrupted = false;
   OrderedCapture file;
-  Devices devices;
+  DeviceRegistry devices;
   CaptureSettings settings;
   FragmentAssembler fragments;
-  std::unordered_map<FlowKey, std::unique_ptr<Flow>> flows;
-  std::vector<Flow*> rig_flows;
+  std::unordered_map<FlowKey, std::unique_ptr<FlowDecoder>> flows;
+  std::vector<FlowDecoder*> rig_flows;
   ReorderBuffer<HubItem> merge;
-  Flow::Give give = [this](HubItem item) {
+  FlowDecoder::Give give = [this](HubItem item) {
     const std::int64_t time_ns = receipt_ns(item);
     merge.push(time_ns, std::move(item));
   };
@@ -48,7 +48,7 @@ struct CaptureReader::Traffic {
 
   bool read_packet();
   void take_ip(const IpPacket& ip, std::int64_t time_ns);
-  Flow* find_flow(const TransportPacket& packet);
+  FlowDecoder* find_flow(const TransportPacket& packet);
   void forget_flows();
   std::int64_t limit_ns();
   void finish();
@@ -91,7 +91,7 @@ void CaptureReader::Traffic::take_ip(const IpPacket& ip, std::int64_t time_ns) {
   if (auto* flow = find_flow(*packet)) flow->take(*packet, time_ns);
 }
 
-Flow* CaptureReader::Traffic::find_flow(const TransportPacket& packet) {
+FlowDecoder* CaptureReader::Traffic::find_flow(const TransportPacket& packet) {
   const auto found = flows.find(packet.key);
   if (found != flows.end()) return found->second.get();
   auto* known = devices.known(packet.key);
@@ -100,7 +100,7 @@ Flow* CaptureReader::Traffic::find_flow(const TransportPacket& packet) {
   if (known == nullptr && (!has_content || (packet.key.transport == Transport::Udp && !like_a_plate)))
     return nullptr;
   if (flows.size() >= kMaxFlows) forget_flows();
-  auto flow = std::make_unique<Flow>(packet.key, devices, known, settings, give);
+  auto flow = std::make_unique<FlowDecoder>(packet.key, devices, known, settings, give);
   if (known != nullptr) rig_flows.push_back(flow.get());
   return flows.emplace(packet.key, std::move(flow)).first->second.get();
 }
@@ -110,8 +110,8 @@ void CaptureReader::Traffic::forget_flows() {
   std::vector<std::int64_t> ages;
   for (const auto& [key, flow] : flows) ages.push_back(flow->last_ns());
   const std::int64_t middle = median_in_place(ages);
-  const auto old = [&](const Flow& flow) { return flow.last_ns() <= middle; };
-  std::erase_if(rig_flows, [&](const Flow* flow) { return old(*flow); });
+  const auto old = [&](const FlowDecoder& flow) { return flow.last_ns() <= middle; };
+  std::erase_if(rig_flows, [&](const FlowDecoder* flow) { return old(*flow); });
   for (auto& [key, flow] : flows) {
     if (old(*flow)) flow->finish();
   }
@@ -132,7 +132,7 @@ std::int64_t CaptureReader::Traffic::limit_ns() {
 void CaptureReader::Traffic::finish() {
   ended = true;
   fragments.finish();
-  std::vector<std::pair<FlowKey, Flow*>>
+  std::vector<std::pair<FlowKey, FlowDecoder*>>
       ordered;  // so that what ends gives comes in the same order everywhere
   for (auto& [key, flow] : flows) ordered.emplace_back(key, flow.get());
   std::sort(ordered.begin(), ordered.end());
@@ -159,7 +159,7 @@ std::optional<HubItem> CaptureReader::Traffic::next() {
 
 CaptureReader::CaptureReader(const std::filesystem::path& file, const Rig& rig,
                              const CaptureSettings& settings)
-    : traffic_(std::make_unique<Traffic>(file, Devices(rig), settings)) {}
+    : traffic_(std::make_unique<Traffic>(file, DeviceRegistry(rig), settings)) {}
 
 CaptureReader::CaptureReader(std::unique_ptr<Traffic> traffic) : traffic_(std::move(traffic)) {}
 CaptureReader::~CaptureReader() = default;
@@ -192,11 +192,11 @@ CaptureStatistics CaptureReader::statistics() const {
   return statistics;
 }
 
-void check_addresses(const Rig& rig) { const Devices devices(rig); }
+void check_addresses(const Rig& rig) { const DeviceRegistry devices(rig); }
 
 CaptureStatistics inspect_capture(const std::filesystem::path& file, const CaptureSettings& settings,
                                   const RigPlate& plate) {
-  Devices devices;
+  DeviceRegistry devices;
   if (plate.line) devices.add(plate);
   CaptureReader reader(std::make_unique<CaptureReader::Traffic>(file, std::move(devices), settings));
   while (reader.next()) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "grabbers/emulate/emulated_device.hpp"
-#include "grabbers/wire/cola_message.hpp"
+#include "grabbers/wire/cola_encoding.hpp"
 
 namespace crisp {
 

@@ -104,7 +104,7 @@ struct CaptureRecorder::File {
 
   PcapWriter pcap;
   FrameSorter sorter;
-  HubTraffic hub;
+  HubTrafficEncoder hub;
   std::vector<bool> connected;
   std::optional<std::int64_t> first_ns, latest_ns;  ///< of the items
 };

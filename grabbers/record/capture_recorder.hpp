@@ -12,7 +12,7 @@
 #include <crisp/hub_item.hpp>
 #include <crisp/rig.hpp>
 
-#include "grabbers/capture/hub_traffic.hpp"
+#include "grabbers/capture/hub_traffic_encoder.hpp"
 #include "grabbers/capture/pcap_writer.hpp"
 #include "pipeline/data/batcher.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "grabbers/simulate/world.hpp"
+#include "grabbers/simulate/scenario.hpp"
 
 namespace crisp {
 

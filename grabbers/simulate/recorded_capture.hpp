@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "grabbers/capture/hub_traffic.hpp"
+#include "grabbers/capture/hub_traffic_encoder.hpp"
 #include "grabbers/capture/pcap_writer.hpp"
 #include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/recording.hpp"
@@ -66,7 +66,7 @@ class RecordedCapture {
   PcapWriter file_;
   FrameSorter sorter_;
   FaultyWire wire_;
-  HubTraffic hub_;
+  HubTrafficEncoder hub_;
   std::vector<std::size_t> restarts_;  ///< of each laser
   std::int64_t latest_ns_ = 0;
 };

@@ -10,7 +10,7 @@
 #include <crisp/calibration.hpp>
 #include <crisp/rig.hpp>
 
-#include "grabbers/simulate/mirror.hpp"
+#include "grabbers/simulate/mirror_rotation.hpp"
 #include "grabbers/simulate/motion.hpp"
 #include "grabbers/simulate/noise.hpp"
 

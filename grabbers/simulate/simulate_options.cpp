@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/scenario_options.hpp"
 #include "grabbers/simulate/simulate_stage.hpp"
-#include "grabbers/simulate/world_options.hpp"
 
 namespace crisp {
 

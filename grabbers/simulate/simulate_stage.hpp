@@ -14,7 +14,7 @@
 #include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/recorded_capture.hpp"
 #include "grabbers/simulate/recording.hpp"
-#include "grabbers/simulate/world.hpp"
+#include "grabbers/simulate/scenario.hpp"
 #include "pipeline/data/degree.hpp"
 
 namespace crisp {

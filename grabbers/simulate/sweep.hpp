@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "grabbers/simulate/mirror.hpp"
+#include "grabbers/simulate/mirror_rotation.hpp"
 #include "grabbers/simulate/motion.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scene.hpp"

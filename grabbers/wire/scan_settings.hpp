@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "grabbers/wire/cola_message.hpp"
+#include "grabbers/wire/cola_encoding.hpp"
 
 namespace crisp {
 

@@ -3,7 +3,7 @@
 
 #include "pipeline/estimate/surface_association.hpp"
 #include "pipeline/quality/blocks.hpp"
-#include "pipeline/quality/end_residuals.hpp"
+#include "pipeline/quality/surfel_end_rejection.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "pipeline/quality/wall_segments.hpp"
 

@@ -18,7 +18,7 @@
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/estimate/identifiability.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
-#include "pipeline/estimate/standard_errors.hpp"
+#include "pipeline/estimate/standard_error_check.hpp"
 #include "pipeline/estimate/surfel_refiner.hpp"
 
 namespace crisp {

@@ -3,7 +3,7 @@
 
 #include <crisp/effect_catalogue.hpp>
 
-#include "pipeline/model/terms/families.hpp"
+#include "pipeline/model/terms/register_terms.hpp"
 
 namespace crisp {
 

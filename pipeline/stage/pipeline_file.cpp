@@ -16,7 +16,7 @@
 #include "pipeline/stage/files_written.hpp"
 #include "pipeline/stage/option_yaml.hpp"
 #include "pipeline/stage/pipeline_plan.hpp"
-#include "pipeline/stage/settings.hpp"
+#include "pipeline/stage/setting_overrides.hpp"
 #include "pipeline/stage/unknown_names.hpp"
 #include "pipeline/stage/variables.hpp"
 

@@ -196,7 +196,7 @@ void ClockAligner::Windows::settle(double begin, double end) {
 }
 
 void ClockAligner::Windows::hand_out(double limit) {
-  PlateTiming& plate = tracks_.plate();
+  EncoderTimestamper& plate = tracks_.plate();
   const std::int64_t epoch_ns = tracks_.epoch_ns();
   std::vector<TimedScan> scans;
   for (auto& laser : tracks_.lasers()) laser.take_before(limit, scans);

@@ -16,7 +16,7 @@ constexpr std::uint64_t kStanding = 5;   // stamps in a row that are the same: t
 
 }  // namespace
 
-DeviceStamps::DeviceStamps(std::string device, FittedClock clock, double period, StandingClock standing)
+DeviceStamps::DeviceStamps(std::string device, WindowedClockFit clock, double period, StandingClock standing)
     : standing_(standing), time_(std::move(device)), clock_(std::move(clock)), period_(period) {}
 
 DeviceStamps::Arrival DeviceStamps::accept(std::uint16_t counter, std::uint32_t raw_us,

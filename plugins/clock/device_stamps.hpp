@@ -11,7 +11,7 @@
 
 #include "pipeline/clocks/counted_time.hpp"
 #include "pipeline/clocks/unwrap.hpp"
-#include "plugins/clock/fitted_clock.hpp"
+#include "plugins/clock/windowed_clock_fit.hpp"
 
 namespace crisp {
 
@@ -32,7 +32,7 @@ class DeviceStamps {
   };
 
   /// @param period [s] nominal time between two counts; 0 if it is not known
-  DeviceStamps(std::string device, FittedClock clock, double period,
+  DeviceStamps(std::string device, WindowedClockFit clock, double period,
                StandingClock standing = StandingClock::leave_out);
 
   /// @param hub         [s since the epoch] receipt
@@ -43,8 +43,8 @@ class DeviceStamps {
   void set_period(double seconds) { period_ = seconds; }
   double period() const { return period_; }  ///< [s] of device time between two counts; 0 if not known
 
-  FittedClock& clock() { return clock_; }
-  const FittedClock& clock() const { return clock_; }
+  WindowedClockFit& clock() { return clock_; }
+  const WindowedClockFit& clock() const { return clock_; }
   const std::optional<ClockMap>& map() const { return clock_.map(); }
   /// An item came that is of no use, as its times contradict each other.
   void count_damaged() {
@@ -78,7 +78,7 @@ class DeviceStamps {
   StandingClock standing_;
   TimeUnwrapper time_;
   CountedTime counted_;
-  FittedClock clock_;
+  WindowedClockFit clock_;
   DeviceReport report_;
   bool any_ = false;
   bool receipts_begin_ = false;  ///< with the next item they take the place of its clock

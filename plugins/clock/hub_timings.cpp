@@ -11,11 +11,11 @@ namespace {
 DeviceStamps stamps_of(const std::string& device, const AlignmentSettings& settings) {
   const auto standing =
       settings.source == TimeSource::receipt ? StandingClock::by_receipt : StandingClock::leave_out;
-  return {device, FittedClock(device, settings.drift), 0, standing};
+  return {device, WindowedClockFit(device, settings.drift), 0, standing};
 }
 
-std::vector<LaserTiming> tracks_of(const Rig& rig, const AlignmentSettings& settings) {
-  std::vector<LaserTiming> tracks;
+std::vector<ScanTimestamper> tracks_of(const Rig& rig, const AlignmentSettings& settings) {
+  std::vector<ScanTimestamper> tracks;
   for (const auto& laser : rig.lasers) {
     tracks.emplace_back(laser, stamps_of(laser.name, settings), settings.source,
                         settings.mirror_half_width.value_or(0));
@@ -34,7 +34,7 @@ HubTimings::HubTimings(const Rig& rig, const AlignmentSettings& settings)
 void HubTimings::begin_anew() {
   lasers_ = tracks_of(rig_, settings_);
   const auto before = plate_.latest_reading();
-  plate_ = PlateTiming(rig_.plate, stamps_of(rig_.plate.name, settings_), settings_.source);
+  plate_ = EncoderTimestamper(rig_.plate, stamps_of(rig_.plate.name, settings_), settings_.source);
   if (before) plate_.follow_on(*before);
   unknown_lasers_ = 0;
   handed_out_ = 0;
@@ -54,7 +54,7 @@ double HubTimings::arrive(std::int64_t receipt_ns) {
   return hub;
 }
 
-LaserTiming* HubTimings::track_of(const Scan& scan) {
+ScanTimestamper* HubTimings::track_of(const Scan& scan) {
   if (scan.laser < lasers_.size()) return &lasers_[scan.laser];
   ++unknown_lasers_;
   return nullptr;

@@ -11,8 +11,8 @@
 
 #include "pipeline/clocks/pauses.hpp"
 #include "pipeline/data/pool.hpp"
-#include "plugins/clock/laser_timing.hpp"
-#include "plugins/clock/plate_timing.hpp"
+#include "plugins/clock/encoder_timestamper.hpp"
+#include "plugins/clock/scan_timestamper.hpp"
 
 namespace crisp {
 
@@ -28,14 +28,14 @@ class HubTimings {
   /// Forgets all but the epoch and where the plate was: what comes now is of another recording.
   void begin_anew();
   /// The track that a scan belongs to; nullptr, and counted, if the rig has no such laser.
-  LaserTiming* track_of(const Scan& scan);
+  ScanTimestamper* track_of(const Scan& scan);
 
-  std::vector<LaserTiming>& lasers() { return lasers_; }
-  const std::vector<LaserTiming>& lasers() const { return lasers_; }
+  std::vector<ScanTimestamper>& lasers() { return lasers_; }
+  const std::vector<ScanTimestamper>& lasers() const { return lasers_; }
   /// Measurements of a scan, on the hub's clock.
   std::shared_ptr<const Measurements> measurements_of(const TimedScan& scan);
-  PlateTiming& plate() { return plate_; }
-  const PlateTiming& plate() const { return plate_; }
+  EncoderTimestamper& plate() { return plate_; }
+  const EncoderTimestamper& plate() const { return plate_; }
   std::int64_t epoch_ns() const { return epoch_ns_; }
   double now() const { return now_; }  ///< [s since the epoch] latest receipt
 
@@ -51,8 +51,8 @@ class HubTimings {
  private:
   Rig rig_;
   AlignmentSettings settings_;
-  std::vector<LaserTiming> lasers_;
-  PlateTiming plate_;
+  std::vector<ScanTimestamper> lasers_;
+  EncoderTimestamper plate_;
   Pool<Measurements> measurements_;
   Pauses pauses_;
   std::int64_t epoch_ns_ = 0;

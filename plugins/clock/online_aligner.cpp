@@ -61,7 +61,7 @@ OnlineAligner::Queue::Queue(const Rig& rig, const AlignmentSettings& alignment, 
 
 void OnlineAligner::Queue::add(std::shared_ptr<const Scan> scan) {
   const double hub = tracks_.arrive(scan->receipt_ns);
-  LaserTiming* laser = tracks_.track_of(*scan);
+  ScanTimestamper* laser = tracks_.track_of(*scan);
   if (laser == nullptr) return;
   if (!laser->add(std::move(scan), hub)) return;
   laser->clock().follow(settings_.window);
@@ -75,14 +75,14 @@ void OnlineAligner::Queue::add(std::shared_ptr<const Scan> scan) {
 
 void OnlineAligner::Queue::add(const PlateReading& reading) {
   const double hub = tracks_.arrive(reading.receipt_ns);
-  PlateTiming& plate = tracks_.plate();
+  EncoderTimestamper& plate = tracks_.plate();
   if (plate.add(reading, hub)) plate.clock().follow(settings_.window);
   plate.forget_before(hub - kReadingsKept);
   release();
 }
 
 bool OnlineAligner::Queue::is_covered(const TimedScan& scan) const {
-  const PlateTiming& plate = tracks_.plate();
+  const EncoderTimestamper& plate = tracks_.plate();
   if (plate.clock().followed() < settings_.warm_up) return false;
   const auto latest = plate.latest();
   return latest && *latest >= last_beam(scan) + settings_.greatest_lag;

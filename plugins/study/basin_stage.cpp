@@ -5,7 +5,7 @@
 #include <crisp/atomic_file.hpp>
 #include <crisp/error.hpp>
 
-#include "grabbers/simulate/world_options.hpp"
+#include "grabbers/simulate/scenario_options.hpp"
 #include "plugins/study/basin_text.hpp"
 #include "plugins/study/rqe.hpp"
 #include "plugins/study/run_json.hpp"

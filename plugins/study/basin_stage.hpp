@@ -6,7 +6,7 @@
 #include <crisp/context.hpp>
 #include <crisp/stage_description.hpp>
 
-#include "grabbers/simulate/world.hpp"
+#include "grabbers/simulate/scenario.hpp"
 #include "plugins/study/basin.hpp"
 #include "plugins/study/part_file.hpp"
 

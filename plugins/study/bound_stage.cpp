@@ -10,7 +10,7 @@
 #include <crisp/atomic_file.hpp>
 
 #include "grabbers/simulate/device_effects.hpp"
-#include "grabbers/simulate/world_options.hpp"
+#include "grabbers/simulate/scenario_options.hpp"
 #include "plugins/study/bound_text.hpp"
 #include "plugins/study/parameter_kind.hpp"
 

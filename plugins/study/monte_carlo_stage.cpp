@@ -10,7 +10,7 @@
 
 #include "grabbers/simulate/device_effects.hpp"
 #include "grabbers/simulate/real_devices.hpp"
-#include "grabbers/simulate/world_options.hpp"
+#include "grabbers/simulate/scenario_options.hpp"
 #include "plugins/study/rqe.hpp"
 #include "plugins/study/run_json.hpp"
 #include "plugins/study/table.hpp"

@@ -6,7 +6,7 @@
 #include <crisp/error.hpp>
 #include <crisp/hub_item.hpp>
 
-#include "grabbers/capture/hub_traffic.hpp"
+#include "grabbers/capture/hub_traffic_encoder.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 
@@ -73,7 +73,7 @@ class CaptureScript::Network {
   }
   void send_scan(std::size_t laser, bool is_unknown, ByteView telegram, std::int64_t ns) {
     const std::size_t connection = laser + (is_unknown ? kLasers : 0);
-    HubTraffic& hub = is_unknown ? other_ : own_;
+    HubTrafficEncoder& hub = is_unknown ? other_ : own_;
     if (!connected_.at(connection)) hub.connect(laser, ns - kSecond / 100);
     connected_[connection] = true;
     hub.telegram(laser, telegram, ns);
@@ -92,7 +92,7 @@ class CaptureScript::Network {
 
   std::vector<Frame> frames_;
   FrameSorter sorter_;
-  HubTraffic own_, other_;
+  HubTrafficEncoder own_, other_;
   std::array<bool, 2 * kLasers> connected_{};
 };
 

@@ -11,11 +11,11 @@ namespace crisp {
 /// From all that was recorded to measurements: for each stretch of time first the plate's trajectory, then
 /// all measurements in it, one scan after the other in the order of their beginnings over all lasers.
 ///
-/// Stamps are fitted window by window (see FittedClock), and what lies between the middles of two windows is
-/// handed out as soon as the second is fitted, so that memory holds two windows and not the recording. A
-/// recording shorter than one and a half windows has one line and is handed out in one piece. The automatic
-/// window is 60 s, and doubles, up to 240 s, while delays are so rough that they leave a line less certain
-/// than the drift over the window.
+/// Stamps are fitted window by window (see WindowedClockFit), and what lies between the middles of two
+/// windows is handed out as soon as the second is fitted, so that memory holds two windows and not the
+/// recording. A recording shorter than one and a half windows has one line and is handed out in one piece.
+/// The automatic window is 60 s, and doubles, up to 240 s, while delays are so rough that they leave a line
+/// less certain than the drift over the window.
 ///
 /// After a pause of all devices (kPause) another recording begins, which has nothing in common with the one
 /// before it but the epoch. Where the devices' clocks ran on, the hub's clock was set forward: that is

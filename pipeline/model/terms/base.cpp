@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "pipeline/model/rotation.hpp"
-#include "pipeline/model/terms/families.hpp"
+#include "pipeline/model/terms/register_terms.hpp"
 
 namespace crisp {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "pipeline/data/degree.hpp"
-#include "pipeline/model/terms/families.hpp"
+#include "pipeline/model/terms/register_terms.hpp"
 
 namespace crisp {
 namespace {

@@ -2,7 +2,7 @@
 // By how much the plate is elsewhere than its encoder reads, φ being what it reads and ω its rate.
 #include <cmath>
 
-#include "pipeline/model/terms/families.hpp"
+#include "pipeline/model/terms/register_terms.hpp"
 
 namespace crisp {
 namespace {

@@ -2,7 +2,7 @@
 // What a laser's mirror does to a beam. In the laser's frame: the scan plane is z = 0, θ = 0 along x.
 #include <cmath>
 
-#include "pipeline/model/terms/families.hpp"
+#include "pipeline/model/terms/register_terms.hpp"
 
 namespace crisp {
 namespace {

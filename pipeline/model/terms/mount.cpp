@@ -3,7 +3,7 @@
 // the tangent (the way of increasing φ), z the spin axis.
 #include <cmath>
 
-#include "pipeline/model/terms/families.hpp"
+#include "pipeline/model/terms/register_terms.hpp"
 
 namespace crisp {
 namespace {

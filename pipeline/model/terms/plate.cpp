@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "pipeline/model/rotation.hpp"
-#include "pipeline/model/terms/families.hpp"
+#include "pipeline/model/terms/register_terms.hpp"
 
 namespace crisp {
 namespace {

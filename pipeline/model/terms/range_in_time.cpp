@@ -2,7 +2,7 @@
 // Corrections of a laser's ranges over time, t being the hub's time since the run's epoch.
 #include <cmath>
 
-#include "pipeline/model/terms/families.hpp"
+#include "pipeline/model/terms/register_terms.hpp"
 
 namespace crisp {
 namespace {

@@ -3,7 +3,7 @@
 // interpolated.
 #include <numbers>
 
-#include "pipeline/model/terms/families.hpp"
+#include "pipeline/model/terms/register_terms.hpp"
 
 namespace crisp {
 namespace {

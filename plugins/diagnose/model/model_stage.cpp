@@ -10,7 +10,7 @@
 
 #include <crisp/registrar.hpp>
 
-#include "pipeline/data/fit_statistics.hpp"
+#include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/plot/write_plot.hpp"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/data/fit_statistics.hpp"
+#include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "pipeline/files/findings_file.hpp"
 #include "pipeline/files/json_text.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"

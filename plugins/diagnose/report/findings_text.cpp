@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "pipeline/data/fit_statistics.hpp"
+#include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "pipeline/data/shown_unit.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "pipeline/data/degree.hpp"
-#include "pipeline/data/fit_statistics.hpp"
+#include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "pipeline/data/shown_unit.hpp"
 #include "plugins/diagnose/report/residual_density_plot.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pipeline/data/fit_statistics.hpp"
+#include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "plugins/diagnose/scans/passes.hpp"
 
 namespace crisp {

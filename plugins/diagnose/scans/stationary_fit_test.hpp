@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/data/fit_statistics.hpp"
+#include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "plugins/diagnose/scans/interleave.hpp"
 
 namespace crisp {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/data/fit_statistics.hpp"
+#include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "plugins/diagnose/scans/scan_prediction_errors.hpp"
 
 namespace crisp {

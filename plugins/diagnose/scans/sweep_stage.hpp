@@ -10,7 +10,7 @@
 #include <crisp/context.hpp>
 #include <crisp/stage_description.hpp>
 
-#include "pipeline/data/fit_statistics.hpp"
+#include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "plugins/diagnose/scans/scan_prediction_errors.hpp"
 
 namespace crisp {

@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "grabbers/wire/cola_message.hpp"
+#include "grabbers/wire/cola_encoding.hpp"
 
 namespace crisp {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "grabbers/emulate/emulator.hpp"
 #include "grabbers/live/live_source.hpp"
-#include "grabbers/wire/cola_message.hpp"
+#include "grabbers/wire/cola_encoding.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 #include "tests/grabbers/live/live_support.hpp"
 #include "tests/support/simulated_items.hpp"

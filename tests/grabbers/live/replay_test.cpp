@@ -13,7 +13,7 @@
 #include <crisp/capture_reader.hpp>
 
 #include "grabbers/emulate/emulator.hpp"
-#include "plugins/clock/laser_timing.hpp"
+#include "plugins/clock/scan_timestamper.hpp"
 #include "tests/grabbers/live/live_support.hpp"
 #include "tests/grabbers/live/recorded_dialogue.hpp"
 #include "tests/grabbers/wire/samples.hpp"
@@ -68,8 +68,8 @@ std::vector<std::shared_ptr<const Scan>> replay(const std::vector<std::shared_pt
 }
 
 DeviceReport align(const std::vector<std::shared_ptr<const Scan>>& scans) {
-  LaserTiming track(RigLaser{.name = "real"}, DeviceStamps("real", FittedClock("real", 5e-8), 0),
-                    TimeSource::clock, 0);
+  ScanTimestamper track(RigLaser{.name = "real"}, DeviceStamps("real", WindowedClockFit("real", 5e-8), 0),
+                        TimeSource::clock, 0);
   for (const auto& scan : scans) {
     track.add(scan, 1e-9 * static_cast<double>(scan->receipt_ns - scans.front()->receipt_ns));
   }

@@ -9,7 +9,7 @@
 #include <crisp/capture_reader.hpp>
 #include <crisp/error.hpp>
 
-#include "grabbers/wire/cola_message.hpp"
+#include "grabbers/wire/cola_encoding.hpp"
 #include "grabbers/wire/scan_data.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/stage_driver.hpp"

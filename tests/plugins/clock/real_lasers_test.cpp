@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "grabbers/wire/scan_conversion.hpp"
-#include "plugins/clock/laser_timing.hpp"
+#include "plugins/clock/scan_timestamper.hpp"
 #include "tests/grabbers/wire/samples.hpp"
 
 namespace crisp {
@@ -27,7 +27,7 @@ struct Timed {
 
 Timed align_dialogue(const std::string& name) {
   const RigLaser laser{.name = "real"};
-  LaserTiming track(laser, DeviceStamps("real", FittedClock("real", 5e-8), 0), TimeSource::clock, 0);
+  ScanTimestamper track(laser, DeviceStamps("real", WindowedClockFit("real", 5e-8), 0), TimeSource::clock, 0);
   std::ifstream file(shared_data() / "sick" / name);
   for (const auto& entry : nlohmann::json::parse(file)) {
     const auto& tcp = entry.at("_source").at("layers").at("tcp");

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/quality/end_residuals.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "pipeline/quality/surfel_end_rejection.hpp"
 #include "tests/pipeline/quality/clouds.hpp"
 
 namespace crisp {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/devices/devices.hpp"
+#include "grabbers/devices/device_registry.hpp"
 
 #include <fmt/format.h>
 
@@ -37,7 +37,7 @@ void count_silences_at_the_ends(std::vector<DeviceStatistics>& all) {
 
 bool is_sick_port(std::uint16_t port) { return port == 2111 || port == 2112; }
 
-Devices::Devices(const Rig& rig) {
+DeviceRegistry::DeviceRegistry(const Rig& rig) {
   for (std::size_t i = 0; i < rig.lasers.size(); ++i) {
     add(DeviceKind::Laser, rig.lasers[i].name, rig.lasers[i].address, static_cast<std::uint16_t>(i));
   }
@@ -45,13 +45,14 @@ Devices::Devices(const Rig& rig) {
   add(rig.plate);
 }
 
-void Devices::add(const RigPlate& plate) {
+void DeviceRegistry::add(const RigPlate& plate) {
   if (plate.address.ip.empty()) return;
   add(DeviceKind::Plate, plate.name, plate.address, 0);
   known_.back()->line = plate.line;
 }
 
-void Devices::add(DeviceKind kind, const std::string& name, const Address& address, std::uint16_t index) {
+void DeviceRegistry::add(DeviceKind kind, const std::string& name, const Address& address,
+                         std::uint16_t index) {
   if (address.ip.empty()) {
     throw Error(name + " has no address in the rig", "give the address that its packets come from");
   }
@@ -71,7 +72,7 @@ void Devices::add(DeviceKind kind, const std::string& name, const Address& addre
       Device{DeviceLog(kind, name, address, index, pauses_.get()), index, kind, *ip, address.port}));
 }
 
-Devices::Device* Devices::known(const FlowKey& key) {
+DeviceRegistry::Device* DeviceRegistry::known(const FlowKey& key) {
   for (const auto& device : known_) {
     const bool laser = device->kind == DeviceKind::Laser;
     if (device->ip != key.from.ip || (laser && key.transport != Transport::Tcp)) continue;
@@ -81,7 +82,7 @@ Devices::Device* Devices::known(const FlowKey& key) {
   return nullptr;
 }
 
-Devices::Device* Devices::other(const FlowKey& key, DeviceKind kind) {
+DeviceRegistry::Device* DeviceRegistry::other(const FlowKey& key, DeviceKind kind) {
   constexpr std::size_t kMax = 256;
   const auto place = std::pair(key.from, kind);
   const auto found = others_.find(place);
@@ -92,7 +93,7 @@ Devices::Device* Devices::other(const FlowKey& key, DeviceKind kind) {
   return others_.emplace(place, std::move(device)).first->second.get();
 }
 
-std::vector<DeviceStatistics> Devices::statistics() const {
+std::vector<DeviceStatistics> DeviceRegistry::statistics() const {
   std::vector<DeviceStatistics> all;
   for (const auto& device : known_) all.push_back(device->log.statistics());
   if (wired_encoder_) all.push_back(wired_encoder_->statistics());

@@ -30,10 +30,10 @@ namespace crisp {
 /// A reset of the device begins a new segment, which has nothing in common with the one before it. Where the
 /// shortest delay becomes another (see step_of_delay()), the clock goes on in one line, and what comes later
 /// is taken to be as late as what came before.
-class FittedClock {
+class WindowedClockFit {
  public:
   /// @param bend [1/s] largest change of the clock's rate in a second
-  FittedClock(std::string device, double bend);
+  WindowedClockFit(std::string device, double bend);
 
   /// @param device_us [µs] unwrapped device time, later than all before
   /// @param hub       [s since the epoch] receipt

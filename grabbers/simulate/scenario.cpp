@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/simulate/world.hpp"
+#include "grabbers/simulate/scenario.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

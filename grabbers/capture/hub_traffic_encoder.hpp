@@ -17,10 +17,10 @@ namespace crisp {
 
 /// Encodes the data of a rig's devices as frames on the hub's network interface: a TCP connection a
 /// laser, over which the hub has subscribed to scans, and the plate's datagrams.
-class HubTraffic {
+class HubTrafficEncoder {
  public:
   /// @throws Error if an address of the rig is none, or the hub's own (192.168.0.100, fe80::100)
-  HubTraffic(const Rig& rig, ColaLanguage language, FrameSink sink);
+  HubTrafficEncoder(const Rig& rig, ColaLanguage language, FrameSink sink);
 
   /// Opens a laser's first connection, or a new one; its handshake and subscription end 2 ms after time_ns.
   void connect(std::size_t laser, std::int64_t time_ns);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/quality/end_residuals.hpp"
+#include "pipeline/quality/surfel_end_rejection.hpp"
 
 #include <algorithm>
 #include <array>

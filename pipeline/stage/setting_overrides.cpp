@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/settings.hpp"
+#include "pipeline/stage/setting_overrides.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/clock/plate_timing.hpp"
+#include "plugins/clock/encoder_timestamper.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ std::int32_t counted(std::uint32_t from, std::uint32_t to) { return static_cast<
 
 }  // namespace
 
-PlateTiming::PlateTiming(const RigPlate& plate, DeviceStamps stamps, TimeSource source)
+EncoderTimestamper::EncoderTimestamper(const RigPlate& plate, DeviceStamps stamps, TimeSource source)
     : counts_per_revolution_(plate.counts_per_revolution),
       angle_per_count_(plate.angle_per_count()),
       stamps_(std::move(stamps)),
@@ -35,7 +35,7 @@ PlateTiming::PlateTiming(const RigPlate& plate, DeviceStamps stamps, TimeSource 
   }
 }
 
-bool PlateTiming::is_continuous(const DeviceStamp& from, const PlateReading& reading) {
+bool EncoderTimestamper::is_continuous(const DeviceStamp& from, const PlateReading& reading) {
   constexpr double kMaxDelay = 1;       // [s]
   constexpr double kLargestError = 60;  // [s] beyond which a wrap of the clock could be mistaken for chance
   const auto [hub_s, device_us] =
@@ -44,7 +44,7 @@ bool PlateTiming::is_continuous(const DeviceStamp& from, const PlateReading& rea
   return tolerance < kLargestError && std::abs(1e-6 * static_cast<double>(device_us) - hub_s) < tolerance;
 }
 
-bool PlateTiming::add(const PlateReading& reading, double hub) {
+bool EncoderTimestamper::add(const PlateReading& reading, double hub) {
   if (before_) zero_is_new_ = !is_continuous(*before_, reading);
   before_.reset();
   const double receipt = hub - 1e-6 * reading.handover_us;  // as if it had been sent at once
@@ -80,7 +80,7 @@ bool PlateTiming::add(const PlateReading& reading, double hub) {
   return true;
 }
 
-void PlateTiming::take(const Reading& next) {
+void EncoderTimestamper::take(const Reading& next) {
   if (taken_ > 0) {
     interval_ = std::max(next.device - last_.device, 1e-6);
     rate_ = static_cast<double>(next.count - last_.count) / interval_;
@@ -91,7 +91,7 @@ void PlateTiming::take(const Reading& next) {
   readings_.push_back(next);
 }
 
-void PlateTiming::classify_jump(const Reading& next) {
+void EncoderTimestamper::classify_jump(const Reading& next) {
   // One such reading is damaged; several that go on from one another are right, and either the first of all
   // readings were damaged, or the encoder has a new zero.
   jumps_ = jumps_ > 0 && !has_jumped(jumped_, next) ? jumps_ + 1 : 1;
@@ -106,38 +106,38 @@ void PlateTiming::classify_jump(const Reading& next) {
   }
 }
 
-bool PlateTiming::has_jumped(const Reading& from, const Reading& to) const {
+bool EncoderTimestamper::has_jumped(const Reading& from, const Reading& to) const {
   const double elapsed = to.device - from.device;
   const double deviation = std::abs(static_cast<double>(to.count - from.count) - rate_ * elapsed);
   const double of_whole_counts = 2 * (1 + elapsed / interval_);  // a coarse encoder shows its rate coarsely
   return deviation > counts_per_revolution_ * (kSlack + kFastestChange * elapsed * elapsed) + of_whole_counts;
 }
 
-void PlateTiming::undo_reset() {
+void EncoderTimestamper::undo_reset() {
   if (zero_is_lost_ && !before_reset_.zero_is_lost) --after_lost_zero_;
   zero_is_lost_ = before_reset_.zero_is_lost;
   last_ = before_reset_.last;
   while (!readings_.empty() && readings_.back().device > last_.device) readings_.pop_back();
 }
 
-bool PlateTiming::has_lost_zero(const PlateReading& reading, double receipt) const {
+bool EncoderTimestamper::has_lost_zero(const PlateReading& reading, double receipt) const {
   const double change = counted(static_cast<std::uint32_t>(last_.count), reading.count);
   const double residual_if_continued = std::abs(change - rate_ * (receipt - last_.receipt));
   const double residual_if_restarted = std::abs(counted(0, reading.count) - rate_ * 1e-6 * reading.device_us);
   return residual_if_restarted < residual_if_continued;
 }
 
-double PlateTiming::time(const Reading& reading) const {
+double EncoderTimestamper::time(const Reading& reading) const {
   return source_ == TimeSource::receipt ? reading.receipt : stamps_.map()->to_hub(reading.device);
 }
 
-std::optional<double> PlateTiming::latest() const {
+std::optional<double> EncoderTimestamper::latest() const {
   if (readings_.empty() || !stamps_.map()) return {};
   return time(readings_.back());
 }
 
-PlateTrajectory PlateTiming::piece(double begin, double end, std::int64_t epoch_ns,
-                                   const PlateMotionSettings& settings) {
+PlateTrajectory EncoderTimestamper::piece(double begin, double end, std::int64_t epoch_ns,
+                                          const PlateMotionSettings& settings) {
   if (readings_.empty() || !stamps_.map()) return {};
   const auto is_before = [&](double limit) {
     return [&, limit](const Reading& r) { return time(r) < limit; };
@@ -162,7 +162,7 @@ PlateTrajectory PlateTiming::piece(double begin, double end, std::int64_t epoch_
   return {epoch_ns, std::move(times), std::move(angles), settings.max_gap, std::move(new_zeros)};
 }
 
-void PlateTiming::forget_before(double hub) {
+void EncoderTimestamper::forget_before(double hub) {
   const auto keep = std::find_if(readings_.begin(), readings_.end(),
                                  [&](const Reading& reading) { return reading.receipt >= hub; });
   readings_.erase(readings_.begin(), keep);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/clock/laser_timing.hpp"
+#include "plugins/clock/scan_timestamper.hpp"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ double seconds(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
 
 }  // namespace
 
-bool LaserTiming::add(std::shared_ptr<const Scan> scan, double hub) {
+bool ScanTimestamper::add(std::shared_ptr<const Scan> scan, double hub) {
   if (scan->echoes.empty() || scan->echoes.front().ranges.empty()) {
     ++without_ranges_;
     return false;
@@ -48,7 +48,7 @@ bool LaserTiming::add(std::shared_ptr<const Scan> scan, double hub) {
   return true;
 }
 
-void LaserTiming::count_beams(const Scan& scan, const Measurements& measurements) {
+void ScanTimestamper::count_beams(const Scan& scan, const Measurements& measurements) {
   const auto& all = measurements.beam;
   std::size_t came_back = all.size();
   if (scan.echoes.size() > 1) {  // of a beam as many as came back
@@ -58,18 +58,18 @@ void LaserTiming::count_beams(const Scan& scan, const Measurements& measurements
   without_echo_ += scan.echoes.front().ranges.size() - came_back;
 }
 
-double LaserTiming::base(const Pending& scan, double device_time) const {
+double ScanTimestamper::base(const Pending& scan, double device_time) const {
   if (source_ == TimeSource::receipt) return scan.stamp_receipt;
   return stamps_.map()->to_hub(device_time);
 }
 
-std::size_t LaserTiming::count_before(double limit) const {
+std::size_t ScanTimestamper::count_before(double limit) const {
   std::size_t n = 0;
   while (n < pending_.size() && base(pending_[n], pending_[n].stamp.time) < limit) ++n;
   return n;
 }
 
-void LaserTiming::take_before(double limit, std::vector<TimedScan>& out) {
+void ScanTimestamper::take_before(double limit, std::vector<TimedScan>& out) {
   if (!stamps_.map()) return;
   const std::size_t due = count_before(limit + kAhead);
   const std::size_t seen = std::min(due + kNeighbours, pending_.size());
@@ -93,7 +93,7 @@ void LaserTiming::take_before(double limit, std::vector<TimedScan>& out) {
   pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(n));
 }
 
-std::string LaserTiming::stamp_warning() const {
+std::string ScanTimestamper::stamp_warning() const {
   const DeviceReport report = stamps_.report();
   if (report.by_receipt || 2 * report.standing > report.received) return {};  // stamps that never move
   const double handover = handovers_.quantile(0.5);

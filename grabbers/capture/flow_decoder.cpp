@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/capture/flow.hpp"
+#include "grabbers/capture/flow_decoder.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -18,8 +18,8 @@ bool is_request(const ColaTelegram& telegram) {
 
 }  // namespace
 
-Flow::Flow(const FlowKey& key, Devices& devices, Devices::Device* known, const CaptureSettings& settings,
-           const Give& give)
+FlowDecoder::FlowDecoder(const FlowKey& key, DeviceRegistry& devices, DeviceRegistry::Device* known,
+                         const CaptureSettings& settings, const Give& give)
     : key_(key),
       devices_(devices),
       device_(known),
@@ -34,7 +34,7 @@ Flow::Flow(const FlowKey& key, Devices& devices, Devices::Device* known, const C
   if (sure) speech_ = laser ? Speech::Cola : Speech::Plate;
 }
 
-std::unique_ptr<PlateFramer> Flow::plate_framer() const {
+std::unique_ptr<PlateFramer> FlowDecoder::plate_framer() const {
   const auto bytes = key_.transport == Transport::Tcp ? PlateBytes::stream : PlateBytes::datagrams;
   return std::make_unique<PlateFramer>(device_ == nullptr ? std::nullopt : device_->line, bytes);
 }
@@ -42,7 +42,7 @@ std::unique_ptr<PlateFramer> Flow::plate_framer() const {
 /// Whether to take the packet now. Where checksums are usually right, one with a wrong checksum is damaged,
 /// and the hub did not take it either; where they are usually wrong, some network card is to blame. The first
 /// wrong ones wait until it is clear which.
-bool Flow::trust(const TransportPacket& packet, std::int64_t time_ns) {
+bool FlowDecoder::trust(const TransportPacket& packet, std::int64_t time_ns) {
   if (packet.checksum == ChecksumVerdict::Right) {
     ++right_checksums_;
     dropped_ += doubtful_.size();
@@ -63,19 +63,19 @@ bool Flow::trust(const TransportPacket& packet, std::int64_t time_ns) {
 }
 
 /// Checksums are wrong here as a habit: what waited is good.
-void Flow::take_doubtful() {
+void FlowDecoder::take_doubtful() {
   for (auto& [packet, payload, time_ns] : std::exchange(doubtful_, {})) {
     packet.payload = payload;
     take_trusted(packet, time_ns);
   }
 }
 
-void Flow::take(const TransportPacket& packet, std::int64_t time_ns) {
+void FlowDecoder::take(const TransportPacket& packet, std::int64_t time_ns) {
   last_ns_ = time_ns;
   if (trust(packet, time_ns)) take_trusted(packet, time_ns);
 }
 
-void Flow::take_trusted(const TransportPacket& packet, std::int64_t time_ns) {
+void FlowDecoder::take_trusted(const TransportPacket& packet, std::int64_t time_ns) {
   if (packet.missing > 0) ++cut_short_;
   if (key_.transport == Transport::Tcp) {
     if (packet.syn && speech_ == Speech::Nothing) {  // a new connection may carry something else
@@ -91,7 +91,7 @@ void Flow::take_trusted(const TransportPacket& packet, std::int64_t time_ns) {
   }
 }
 
-void Flow::data(ByteView bytes, std::int64_t arrival_ns) {
+void FlowDecoder::data(ByteView bytes, std::int64_t arrival_ns) {
   if (cola_) cola_->feed(bytes, arrival_ns, [&](const ColaFrame& frame) { take_frame(frame); });
   if (plate_) plate_->feed(bytes, arrival_ns, [&](const PlateReading& reading) { take_reading(reading); });
   if (speech_ != Speech::Unknown) {
@@ -107,18 +107,18 @@ void Flow::data(ByteView bytes, std::int64_t arrival_ns) {
   }
 }
 
-void Flow::gap() {
+void FlowDecoder::gap() {
   if (cola_) cola_->gap([&](const ColaFrame& frame) { take_frame(frame); });
   if (plate_) plate_->gap([&](const PlateReading& reading) { take_reading(reading); });
 }
 
-void Flow::repeated(ByteView bytes) {
+void FlowDecoder::repeated(ByteView bytes) {
   if (device_ == nullptr || speech_ != Speech::Cola) return;
   ColaFramer().feed(bytes, 0, [&](const ColaFrame& frame) { device_->log.note_repeated(frame); });
 }
 
 /// Whether the flow speaks this language of a device that is known from now on.
-bool Flow::settle(Speech speech) {
+bool FlowDecoder::settle(Speech speech) {
   if (speech_ == Speech::Unknown) {
     const auto kind = speech == Speech::Cola ? DeviceKind::Laser : DeviceKind::Plate;
     if (device_ == nullptr) device_ = devices_.other(key_, kind);
@@ -127,7 +127,7 @@ bool Flow::settle(Speech speech) {
   return speech_ == speech;
 }
 
-void Flow::take_frame(const ColaFrame& frame) {
+void FlowDecoder::take_frame(const ColaFrame& frame) {
   if (speech_ == Speech::Unknown && device_ == nullptr) {
     const auto telegram = parse_cola(frame.payload, frame.language);
     if (!telegram) return;
@@ -142,15 +142,15 @@ void Flow::take_frame(const ColaFrame& frame) {
   give_(std::move(scan));
 }
 
-void Flow::take_reading(const PlateReading& reading) {
+void FlowDecoder::take_reading(const PlateReading& reading) {
   if (!settle(Speech::Plate)) return;
   const auto fresh = device_->log.take(reading);
   if (fresh && is_of_rig()) give_(*fresh);
 }
 
-void Flow::expire(std::int64_t now_ns) { tcp_.expire(now_ns); }
+void FlowDecoder::expire(std::int64_t now_ns) { tcp_.expire(now_ns); }
 
-std::optional<std::int64_t> Flow::waiting_since(std::int64_t earliest_ns) const {
+std::optional<std::int64_t> FlowDecoder::waiting_since(std::int64_t earliest_ns) const {
   std::optional<std::int64_t> since;
   for (const auto waiting : {tcp_.waiting_since(), cola_ ? cola_->waiting_since() : std::nullopt}) {
     if (waiting && *waiting >= earliest_ns) since = std::min(since.value_or(*waiting), *waiting);
@@ -158,14 +158,14 @@ std::optional<std::int64_t> Flow::waiting_since(std::int64_t earliest_ns) const 
   return since;
 }
 
-void Flow::finish() {
+void FlowDecoder::finish() {
   take_doubtful();
   tcp_.finish();
   gap();
   if (device_ != nullptr && (speech_ == Speech::Cola || speech_ == Speech::Plate)) report();
 }
 
-void Flow::report() {
+void FlowDecoder::report() {
   auto& log = device_->log;
   const auto& tcp = tcp_.counts();
   log.lose("packets with a wrong checksum", dropped_);

@@ -16,7 +16,7 @@ namespace crisp {
 bool is_sick_port(std::uint16_t port);
 
 /// The devices of a capture: those of the rig, by their addresses, and unknown ones, by their telegrams.
-class Devices {
+class DeviceRegistry {
  public:
   struct Device {
     DeviceLog log;
@@ -28,8 +28,8 @@ class Devices {
   };
 
   /// @throws Error if an address of the rig is none, or two devices have the same
-  explicit Devices(const Rig& rig);
-  Devices() = default;  ///< without a rig: all devices are others
+  explicit DeviceRegistry(const Rig& rig);
+  DeviceRegistry() = default;  ///< without a rig: all devices are others
   /// Adds a plate that sends readings of its own; one without an address is left out.
   void add(const RigPlate& plate);
 

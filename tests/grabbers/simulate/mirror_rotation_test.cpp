@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/simulate/mirror.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,8 @@
 #include <vector>
 
 #include <crisp/error.hpp>
+
+#include "grabbers/simulate/mirror_rotation.hpp"
 
 namespace crisp {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/wire/cola_message.hpp"
+#include "grabbers/wire/cola_encoding.hpp"
 
 #include "grabbers/wire/binary_fields.hpp"
 #include "grabbers/wire/text_fields.hpp"

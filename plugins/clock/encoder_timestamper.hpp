@@ -9,15 +9,15 @@
 
 #include "pipeline/data/encoder_smoothing.hpp"
 #include "plugins/clock/device_stamps.hpp"
-#include "plugins/clock/laser_timing.hpp"
+#include "plugins/clock/scan_timestamper.hpp"
 
 namespace crisp {
 
 /// The encoder readings on their way to a trajectory.
-class PlateTiming {
+class EncoderTimestamper {
  public:
   /// @throws Error if the rig gives no counts a revolution
-  PlateTiming(const RigPlate& plate, DeviceStamps stamps, TimeSource source);
+  EncoderTimestamper(const RigPlate& plate, DeviceStamps stamps, TimeSource source);
 
   /// @param hub [s since the epoch] receipt
   /// @return whether the clock has another stamp
@@ -37,8 +37,8 @@ class PlateTiming {
   void forget_before(double hub);
 
   bool idle() const { return readings_.empty(); }
-  FittedClock& clock() { return stamps_.clock(); }
-  const FittedClock& clock() const { return stamps_.clock(); }
+  WindowedClockFit& clock() { return stamps_.clock(); }
+  const WindowedClockFit& clock() const { return stamps_.clock(); }
   /// With the silences before its first and after its last reading [s since the epoch].
   DeviceReport report(double begin, double end) const { return stamps_.report(begin, end); }
   /// Readings that came after the encoder had lost its zero: of no use, the angles have nothing in common.

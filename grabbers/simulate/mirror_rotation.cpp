@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/simulate/mirror.hpp"
+#include "grabbers/simulate/mirror_rotation.hpp"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/capture/hub_traffic.hpp"
+#include "grabbers/capture/hub_traffic_encoder.hpp"
 
 #include <string>
 #include <utility>
 
 #include <crisp/error.hpp>
 
-#include "grabbers/wire/cola_message.hpp"
+#include "grabbers/wire/cola_encoding.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_data.hpp"
 
@@ -43,14 +43,14 @@ Address with_port(Address address, std::uint16_t usual) {
 
 }  // namespace
 
-HubTraffic::HubTraffic(const Rig& rig, ColaLanguage language, FrameSink sink)
+HubTrafficEncoder::HubTrafficEncoder(const Rig& rig, ColaLanguage language, FrameSink sink)
     : language_(language), sink_(std::move(sink)), lasers_(rig.lasers.size()) {
   const Address& plate = rig.plate.address;
   if (!rig.plate.encoder_of) plate_.emplace(with_port(plate, kPlatePort), hub_for(plate, kPlatePort), sink_);
   for (const RigLaser& laser : rig.lasers) addresses_.push_back(with_port(laser.address, kLaserPort));
 }
 
-void HubTraffic::connect(std::size_t laser, std::int64_t time_ns) {
+void HubTrafficEncoder::connect(std::size_t laser, std::int64_t time_ns) {
   const auto port = static_cast<std::uint16_t>(kFirstClientPort + connections_++ % kClientPorts);
   const Address& server = addresses_.at(laser);
   auto& connection = lasers_.at(laser);
@@ -63,15 +63,15 @@ void HubTraffic::connect(std::size_t laser, std::int64_t time_ns) {
                    time_ns + 2 * kMillisecond);
 }
 
-void HubTraffic::telegram(std::size_t laser, ByteView bytes, std::int64_t time_ns) {
+void HubTrafficEncoder::telegram(std::size_t laser, ByteView bytes, std::int64_t time_ns) {
   lasers_.at(laser)->send(TcpSide::Server, bytes, time_ns);
 }
 
-void HubTraffic::reading(const PlateReading& reading) {
+void HubTrafficEncoder::reading(const PlateReading& reading) {
   if (plate_) plate_->send(as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
 }
 
-void HubTraffic::close(std::int64_t time_ns) {
+void HubTrafficEncoder::close(std::int64_t time_ns) {
   for (const auto& laser : lasers_) {
     if (laser) laser->close(time_ns);
   }

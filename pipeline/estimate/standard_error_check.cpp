@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/estimate/standard_errors.hpp"
+#include "pipeline/estimate/standard_error_check.hpp"
 
 #include <fmt/format.h>
 

@@ -10,21 +10,21 @@
 #include <crisp/hub_item.hpp>
 
 #include "grabbers/capture/tcp_stream.hpp"
-#include "grabbers/devices/devices.hpp"
+#include "grabbers/devices/device_registry.hpp"
 #include "grabbers/wire/plate_framer.hpp"
 
 namespace crisp {
 
 /// One direction of one conversation between two ends: finds out what it carries, and hands telegrams and
 /// readings to the device that sent them.
-class Flow final : public StreamSink {
+class FlowDecoder final : public StreamSink {
  public:
   using Give = std::function<void(HubItem)>;
 
   /// @param known the rig's device at the flow's beginning, or nullptr
   /// @param give  takes what a device of the rig measured
-  Flow(const FlowKey& key, Devices& devices, Devices::Device* known, const CaptureSettings& settings,
-       const Give& give);
+  FlowDecoder(const FlowKey& key, DeviceRegistry& devices, DeviceRegistry::Device* known,
+              const CaptureSettings& settings, const Give& give);
 
   void take(const TransportPacket& packet, std::int64_t time_ns);
   void expire(std::int64_t now_ns);
@@ -55,8 +55,8 @@ class Flow final : public StreamSink {
   void report();
 
   FlowKey key_;
-  Devices& devices_;
-  Devices::Device* device_ = nullptr;
+  DeviceRegistry& devices_;
+  DeviceRegistry::Device* device_ = nullptr;
   CaptureSettings settings_;
   const Give& give_;
   Speech speech_ = Speech::Unknown;

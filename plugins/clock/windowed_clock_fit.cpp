@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugins/clock/fitted_clock.hpp"
+#include "plugins/clock/windowed_clock_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -43,9 +43,10 @@ double mean_device(std::span<const Stamp> stamps) {
 
 }  // namespace
 
-FittedClock::FittedClock(std::string device, double bend) : device_(std::move(device)), bend_(bend) {}
+WindowedClockFit::WindowedClockFit(std::string device, double bend)
+    : device_(std::move(device)), bend_(bend) {}
 
-void FittedClock::add(std::int64_t device_us, double hub) {
+void WindowedClockFit::add(std::int64_t device_us, double hub) {
   hub -= hub_ahead_;
   if (cut_) {
     segments_.push_back({.first_us = device_us, .first_hub = hub, .hull = LowerHull(bend_)});
@@ -60,7 +61,7 @@ void FittedClock::add(std::int64_t device_us, double hub) {
   ++stamps_;
 }
 
-void FittedClock::drop_last() {
+void WindowedClockFit::drop_last() {
   if (segments_.empty() || segments_.back().stamps.size() < 2) return;
   Segment& segment = segments_.back();
   const double first = segment.stamps.front().device;
@@ -70,7 +71,7 @@ void FittedClock::drop_last() {
   --stamps_;
 }
 
-void FittedClock::drop_last_segment() {
+void WindowedClockFit::drop_last_segment() {
   if (segments_.size() < 2) {  // the one before is settled and gone
     cut();
     return;
@@ -80,7 +81,7 @@ void FittedClock::drop_last_segment() {
   segments_.pop_back();
 }
 
-void FittedClock::follow(double window) {
+void WindowedClockFit::follow(double window) {
   while (segments_.size() > 2) segments_.pop_front();  // the last may still turn out to be none
   Segment& segment = segments_.back();
   forget_before(segment, segment.last_device - window);
@@ -103,12 +104,12 @@ void FittedClock::follow(double window) {
   delays_.add(std::abs(latest.lead - line.lead(latest.device)));
 }
 
-double FittedClock::followed() const {
+double WindowedClockFit::followed() const {
   return segments_.empty() || !segments_.back().followed ? 0 : segments_.back().last_device;
 }
 
 /// Forgets what a line of the stamps from `device` [s] on does not need: the hull keeps one vertex before.
-void FittedClock::forget_before(Segment& segment, double device) {
+void WindowedClockFit::forget_before(Segment& segment, double device) {
   const auto vertices = segment.hull.vertices();
   const auto inside =
       std::ranges::find_if(vertices, [&](const Stamp& vertex) { return vertex.device > device; });
@@ -121,12 +122,12 @@ void FittedClock::forget_before(Segment& segment, double device) {
   if (kept - stamps.begin() > stamps.end() - kept) stamps.erase(stamps.begin(), kept);
 }
 
-ClockLine FittedClock::line_of(const Segment& segment) {
+ClockLine WindowedClockFit::line_of(const Segment& segment) {
   const auto vertices = segment.hull.vertices();
   return line_by_convex_hull(vertices, 0.5 * (vertices.front().device + segment.last_device));
 }
 
-std::optional<FittedClock::WindowFit> FittedClock::fit(const Segment& segment, double end) const {
+std::optional<WindowedClockFit::WindowFit> WindowedClockFit::fit(const Segment& segment, double end) const {
   WindowFit fit;
   for (const auto& stamp : segment.stamps) {
     if (segment.hub(stamp) < end) fit.stamps.push_back(stamp);
@@ -141,7 +142,7 @@ std::optional<FittedClock::WindowFit> FittedClock::fit(const Segment& segment, d
   return fit;
 }
 
-std::vector<ReceivedStamp> FittedClock::unsettled() const {
+std::vector<ReceivedStamp> WindowedClockFit::unsettled() const {
   std::vector<ReceivedStamp> stamps;
   const auto longest =
       std::ranges::max_element(segments_, {}, [](const Segment& segment) { return segment.stamps.size(); });
@@ -151,7 +152,7 @@ std::vector<ReceivedStamp> FittedClock::unsettled() const {
   return stamps;
 }
 
-void FittedClock::take_out(const HubDeviation& deviation) {
+void WindowedClockFit::take_out(const HubDeviation& deviation) {
   for (Segment& segment : segments_) {
     if (segment.stamps.empty()) continue;
     const double first = segment.stamps.front().device;
@@ -169,7 +170,7 @@ void FittedClock::take_out(const HubDeviation& deviation) {
   hub_ahead_ += deviation.at_end();
 }
 
-void FittedClock::take_out_steps() {
+void WindowedClockFit::take_out_steps() {
   constexpr int kMax = 8;  // a link that is so restless has no shortest delay
   for (auto& segment : segments_) {
     for (int n = 0; n < kMax; ++n) {
@@ -181,7 +182,7 @@ void FittedClock::take_out_steps() {
 }
 
 /// The usual part stays: for a segment without a line yet, the longer one.
-void FittedClock::take_out(Segment& segment, const DelayStep& step) {
+void WindowedClockFit::take_out(Segment& segment, const DelayStep& step) {
   auto& stamps = segment.stamps;
   const auto at = [&](std::size_t i) { return stamps.begin() + static_cast<std::ptrdiff_t>(i); };
   const double first = stamps.front().device;
@@ -198,7 +199,7 @@ void FittedClock::take_out(Segment& segment, const DelayStep& step) {
 }
 
 /// From the stamps that are not settled, of which the first was at `first` [s], and what settled ones left.
-void FittedClock::make_hull_anew(Segment& segment, double first) const {
+void WindowedClockFit::make_hull_anew(Segment& segment, double first) const {
   LowerHull hull(bend_);
   for (const Stamp& vertex : segment.hull.vertices()) {
     if (vertex.device < first) hull.add(vertex);
@@ -207,7 +208,7 @@ void FittedClock::make_hull_anew(Segment& segment, double first) const {
   segment.hull = std::move(hull);
 }
 
-double FittedClock::uncertainty(double end) const {
+double WindowedClockFit::uncertainty(double end) const {
   double uncertainty = 0;
   for (const auto& segment : segments_) {
     const auto window = fit(segment, end);
@@ -217,7 +218,7 @@ double FittedClock::uncertainty(double end) const {
   return uncertainty;
 }
 
-void FittedClock::settle(double begin, double end) {
+void WindowedClockFit::settle(double begin, double end) {
   for (auto& segment : segments_) {
     settle(segment, begin, end);
     const bool ended = &segment != &segments_.back();
@@ -226,7 +227,7 @@ void FittedClock::settle(double begin, double end) {
   while (segments_.size() > 1 && segments_.front().stamps.empty()) segments_.pop_front();
 }
 
-void FittedClock::settle(Segment& segment, double begin, double end) {
+void WindowedClockFit::settle(Segment& segment, double begin, double end) {
   const auto window = fit(segment, end);
   if (!window) return;
   const auto& [stamps, line, errors] = *window;
@@ -242,7 +243,7 @@ void FittedClock::settle(Segment& segment, double begin, double end) {
 }
 
 /// For a segment whose receipts all lie ahead of the hub's latest time, once its deviation is taken out.
-void FittedClock::settle_all(Segment& segment) {
+void WindowedClockFit::settle_all(Segment& segment) {
   if (segment.stamps.empty()) return;
   double latest = -std::numeric_limits<double>::infinity();
   for (const Stamp& stamp : segment.stamps) latest = std::max(latest, segment.hub(stamp));
@@ -250,7 +251,7 @@ void FittedClock::settle_all(Segment& segment) {
          std::nextafter(latest, std::numeric_limits<double>::infinity()));
 }
 
-void FittedClock::append_piece(const ClockPiece& piece) {
+void WindowedClockFit::append_piece(const ClockPiece& piece) {
   if (!map_) {
     map_.emplace(ClockMap{.device = device_, .pieces = ClockPieces(piece)});
   } else if (piece.device_begin > map_->pieces.back().device_begin) {
@@ -258,7 +259,7 @@ void FittedClock::append_piece(const ClockPiece& piece) {
   }
 }
 
-void FittedClock::carry_on(Segment& segment, const Knot& knot) {
+void WindowedClockFit::carry_on(Segment& segment, const Knot& knot) {
   if (!segment.first_knot) {
     // A scan's own stamp is earlier than its transmission's, which began the segment.
     const double begin = segment.device(0) - (map_ ? 0.75e-6 * kResetGap_us : 0);
@@ -281,7 +282,7 @@ void FittedClock::carry_on(Segment& segment, const Knot& knot) {
   ++knots_;
 }
 
-void FittedClock::close(Segment& segment) {
+void WindowedClockFit::close(Segment& segment) {
   if (!segment.last_knot) return;
   const Knot& first = *segment.first_knot;
   const Knot& last = *segment.last_knot;
@@ -298,11 +299,11 @@ void FittedClock::close(Segment& segment) {
   squared_errors_ += std::pow(skew_error * segment.last_device, 2);
 }
 
-bool FittedClock::idle() const {
+bool WindowedClockFit::idle() const {
   return std::all_of(segments_.begin(), segments_.end(), [](const Segment& s) { return s.stamps.empty(); });
 }
 
-void FittedClock::finish() {
+void WindowedClockFit::finish() {
   std::optional<double> followed_error;
   if (map_ && !segments_.empty() && segments_.back().followed) {
     const LineErrors errors = errors_of_line(segments_.back().stamps, line_of(segments_.back()));

@@ -15,9 +15,9 @@
 namespace crisp {
 
 /// The scans of one laser on their way to being timed.
-class LaserTiming {
+class ScanTimestamper {
  public:
-  LaserTiming(RigLaser laser, DeviceStamps stamps, TimeSource source, std::size_t mirror_half_width)
+  ScanTimestamper(RigLaser laser, DeviceStamps stamps, TimeSource source, std::size_t mirror_half_width)
       : laser_(std::move(laser)),
         stamps_(std::move(stamps)),
         source_(source),
@@ -31,8 +31,8 @@ class LaserTiming {
   void take_before(double limit, std::vector<TimedScan>& out);
 
   bool idle() const { return pending_.empty(); }
-  FittedClock& clock() { return stamps_.clock(); }
-  const FittedClock& clock() const { return stamps_.clock(); }
+  WindowedClockFit& clock() { return stamps_.clock(); }
+  const WindowedClockFit& clock() const { return stamps_.clock(); }
   const RigLaser& laser() const { return laser_; }
   DeviceReport report() const { return stamps_.report(); }
   /// With the silences before its first and after its last scan [s since the epoch].

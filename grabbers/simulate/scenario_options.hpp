@@ -9,8 +9,8 @@
 #include <crisp/stage_description.hpp>
 
 #include "grabbers/simulate/real_devices.hpp"
+#include "grabbers/simulate/scenario.hpp"
 #include "grabbers/simulate/settings.hpp"
-#include "grabbers/simulate/world.hpp"
 
 namespace crisp {
 
@@ -22,7 +22,7 @@ void describe_scene(StageDescription<S>& d, Way way) {
   d.option("scene_file", way, &SceneChoice::file, "scene file in YAML, instead of `scene`");
 }
 
-/// @param way  to a LikenessChoice
+/// @param way  to a RealismChoice
 template <class S, class Way>
 void describe_realism(StageDescription<S>& d, Way way) {
   d.option(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/wire/cola_message.hpp"
-
 #include <gtest/gtest.h>
+
+#include "grabbers/wire/cola_encoding.hpp"
 
 namespace crisp {
 namespace {
