@@ -79,7 +79,7 @@ void CaptureStage::process(const Inputs&, Outputs& out, Context& context) {
 Error CaptureStage::nothing_found(const std::string& others) const {
   return Error(fmt::format("{} holds no scan and no reading of the rig's devices", file_.string()),
                others.empty() ? "it holds no telegrams of any laser or plate: check the captured interface"
-                              : "it holds " + others + ": correct the addresses in the rig");
+                              : "it holds " + others + ": correct the addresses and ports in the rig");
 }
 
 Error CaptureStage::nothing_left() const {

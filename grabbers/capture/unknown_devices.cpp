@@ -45,7 +45,7 @@ std::vector<std::string> caveats_of_addresses(const std::vector<CaptureStatistic
     const auto others = titles_of_unknown_devices(captures, {device.kind});
     if (others.empty()) continue;
     caveats.push_back(
-        fmt::format("there is no data of {}, but of an unknown {}; correct the addresses in the rig",
+        fmt::format("there is no data of {}, but of an unknown {}; correct the addresses and ports in the rig",
                     title(device), fmt::join(others, ", a ")));
   }
   return caveats;

@@ -215,18 +215,18 @@ ViewPartition by_half(const Sample& sample) {
       .views = {"the front halves of the sweeps", "the back halves"},
       .of_beam = {},
       .advice =
-          "the rig's mount or counts_per_revolution is probably wrong, or the encoder is eccentric. Check both; configs/diagnose.yaml searches for the cause"};
+          "the rig's mount or counts_per_revolution is probably wrong, or the encoder is eccentric. Check both; `crisp diagnose` searches for the cause"};
   for (const float angle : sample.beams.mirror_angle) partition.of_beam.push_back(angle > 0 ? 1 : 0);
   return partition;
 }
 
 ViewPartition by_quarter(const Sample& sample) {
   ViewPartition partition{
-      .views = {"the recording's first quarter", "its second quarter", "its third quarter",
-                "its last quarter"},
+      .views = {"the recording's first quarter", "the recording's second quarter",
+                "the recording's third quarter", "the recording's last quarter"},
       .of_beam = {},
       .advice =
-          "the encoder slipped or lost counts, the rig's counts_per_revolution is wrong, or the scanner was moved. Check the encoder; configs/diagnose.yaml searches for the cause"};
+          "the encoder slipped or lost counts, the rig's counts_per_revolution is wrong, or the scanner was moved. Check the encoder; `crisp diagnose` searches for the cause, and corrects a slip"};
   const auto recordings = recordings_of(*sample.plate);
   const RecordingNumbers numbers(*sample.plate);
   for (const double time : sample.beams.time) {

@@ -26,7 +26,7 @@ Caveats of_misfit(const Refinement& refined, double noise) {
   const double scatter = refined.scatter > 0 ? refined.scatter : noise;
   if (misfit <= kPoorFit * scatter) return {};
   return {fmt::format(
-      "the beams' residuals against their surfaces are {:.1f} mm (RMS), {:.1f} times the ranges' noise ({:.1f} mm): the rig is slightly wrong, or the sensor model lacks an effect. Check the rig's mount and counts_per_revolution; configs/diagnose.yaml searches for the effect",
+      "the beams' residuals against their surfaces are {:.1f} mm (RMS), {:.1f} times the ranges' noise ({:.1f} mm): the rig is slightly wrong, or the sensor model lacks an effect. Check the rig's mount and counts_per_revolution; `crisp diagnose` searches for the effect",
       misfit * 1e3, misfit / scatter, scatter * 1e3)};
 }
 

@@ -12,6 +12,7 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/estimate/base_parameters.hpp"
+#include "pipeline/estimate/identifiability.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/grid_search.hpp"
 #include "plugins/calibrate/wall_straightness.hpp"
@@ -46,11 +47,16 @@ class InPlaneCalibration {
         settings_(settings),
         bunches_(turns_both_ways(both_)) {}
 
+  /// By the laser's own beams, if they show it: at constant speed they do not, and its start is kept until
+  /// all lasers are compared.
   void find_eta(std::size_t laser) {
     const Sample front = of_laser(front_, laser);
     const Sample own = front.beams.size() < kFewBeams ? of_laser(back_, laser) : front;
     const auto free = those_free({slot(model_, laser, kEta)});
     if (own.beams.size() < kFewBeams || free.empty()) return;
+    if (identifiable_parameters({.free = free, .unobservable = {}}, model_, own, settings_.range)
+            .free.empty())
+      return;
     const double centre = centres_of(settings_.range, model_, free)[0];
     const double reach = range_of(settings_.range, model_.names()[free[0]]);
     constexpr int kSteps = 25;  // to either side

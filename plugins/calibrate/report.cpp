@@ -106,14 +106,14 @@ void report_direction(const Calibration& calibration, const Calibration& start, 
 void report(const std::optional<CrossValidation>& halves, Context& context) {
   if (!halves) {
     context.print(
-        "cross-validation: the plate turned too little, or half of the beams determines too little");
+        "no cross-validation, which needs two turns of the plate, and that half of the turns determines what all do");
     return;
   }
   context.report(
       {{"cross_validation",
         {{"difference", halves->difference}, {"expected", halves->expected}, {"ratio", halves->ratio()}}}});
   context.print(fmt::format(
-      "cross-validation: fitted to either half of the turns, the clouds differ by {:.2f} mm (RMS), {:.1f} times their standard errors (1 is expected; less where all turns share an error)",
+      "cross-validation: fitted to either half of the turns, the clouds differ by {:.2f} mm (RMS), {:.1f} times their standard errors (1 or less is good)",
       halves->difference * 1e3, halves->ratio()));
 }
 

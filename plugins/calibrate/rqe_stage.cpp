@@ -161,7 +161,7 @@ void RqeStage::finish(Outputs& out, Context& context) {
   }
   report(calibration, {}, context);
   context.print(
-      "standard errors include the ranges' noise, but not the bias of RQE's optimum of some millimetres, which calibrate.refine removes");
+      "standard errors include the ranges' noise, but not the bias of RQE's optimum of some millimetres and tenths of a degree, or some degrees for lasers that see one side, which calibrate.refine removes");
   out.give(std::move(calibration));
 }
 

@@ -83,7 +83,7 @@ bool HubTimings::has_readings() const { return plate_.clock().stamps() > 1; }
 void HubTimings::refuse_if_missing() const {
   if (!has_scans()) {
     throw Error("there is no scan of any laser of the rig",
-                "check the addresses in the rig, or the recording");
+                "check the addresses in the rig, and what was lost of the recording");
   }
   const DeviceReport plate = plate_.report(begin_.value_or(now_), now_);
   if (!has_readings() && plate.standing > 0) {

@@ -137,7 +137,7 @@ TEST_F(CaptureStageTest, MarksALaserOfAnotherAddressUntrusted) {
   EXPECT_THAT(
       result.report.caveats,
       testing::ElementsAre(
-          "there is no data of laser2 (192.168.0.20), but of an unknown laser at 192.168.0.2:2112; correct the addresses in the rig",
+          "there is no data of laser2 (192.168.0.20), but of an unknown laser at 192.168.0.2:2112; correct the addresses and ports in the rig",
           HasSubstr("there is no data of laser3")));
 }
 

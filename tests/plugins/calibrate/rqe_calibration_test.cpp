@@ -59,6 +59,32 @@ TEST(CalibrateByRqe, ReportsThatAConstantSpeedDoesNotDetermineTheLags) {
   }
 }
 
+TEST(CalibrateByRqe, FindsALagAgainstAKnownAzimuthAtConstantSpeed) {
+  // A laser's own beams do not show its lag then, and any value in its range is as good: the azimuth is
+  // known.
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    auto scanner = misplaced_scanner(seed, 3.0);
+    scanner.motion = {.kind = MotionKind::constant, .max_rate = 1.4985};
+    const auto recording = simulate_measurements(scanner, office());
+    const Calibration truth = SensorModel(recording.truth).calibration();
+    SensorModel start(nominal_calibration(default_rig()));
+    RqeCalibrationSettings settings = quick();
+    settings.in_plane.range.eta = 0.1;
+    for (const LaserCalibration& laser : truth.lasers) {
+      settings.in_plane.range.nominal[laser.name + ".lambda"] = {.value = laser.lambda.value,
+                                                                 .std_error = 0.2 * kDegree};
+      start = with_one(start, start.index(laser.name + ".lambda"), laser.lambda.value);
+    }
+    const auto measure = rqe_measure();
+    const Outcome outcome = calibrate_by_rqe(start, sample_of(recording), *measure, settings);
+    for (std::size_t k = 1; k < truth.lasers.size(); ++k) {
+      const auto eta = static_cast<Eigen::Index>(outcome.model.index(truth.lasers[k].name + ".eta"));
+      const double against_first = truth.lasers[k].eta.value - truth.lasers[0].eta.value;
+      EXPECT_NEAR(outcome.model.values()[eta], against_first, 4e-3) << seed << ": RQE is off by a degree";
+    }
+  }
+}
+
 TEST(CalibrateByRqe, LeavesWhatItDoesNotDetermineAtItsStart) {
   const auto recording = simulate_measurements(misplaced_scanner(1, 3.0), office());
   const SensorModel start(nominal_calibration(default_rig()));
