@@ -2,6 +2,8 @@
 #include "plugins/diagnose/model/acceptance.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "plugins/diagnose/model/clock_lines.hpp"
 #include "plugins/diagnose/model/residual_variance.hpp"
@@ -20,12 +22,10 @@ void refit_accepted(Diagnosis& diagnosis, const AcceptanceFits& fits) {
   diagnosis.after = fits.refit(with_terms(found, with_values_of(found, kept)));
 }
 
-}  // namespace
-
-void accept_or_reject(Diagnosis& diagnosis, const CrossValidator::Score& plain, const AcceptanceFits& fits,
-                      const TermRegistry& terms, const DiagnosisSettings& settings, double middle) {
+/// Rules 2 to 4, for the hypotheses that are accepted so far.
+void judge(Diagnosis& diagnosis, const CrossValidator::Score& plain, const AcceptanceFits& fits,
+           const TermRegistry& terms, const DiagnosisSettings& settings) {
   std::vector<Hypothesis>& all = diagnosis.hypotheses;
-  reject_scene_artifacts(all);
   accept_if_it_generalizes(all, plain, diagnosis.after.outcome.model.calibration(), fits.held_out);
   if (!std::ranges::all_of(all, &Hypothesis::accepted)) refit_accepted(diagnosis, fits);
   while (reject_insignificant(all, diagnosis.after.outcome, terms, settings.selection.p_value))
@@ -33,7 +33,45 @@ void accept_or_reject(Diagnosis& diagnosis, const CrossValidator::Score& plain, 
   const double noise = settings.refinement.surfels.noise;
   while (reject_if_residual_exceeds(all, fits.compare(diagnosis.after), noise))
     refit_accepted(diagnosis, fits);
-  mark_clock_lines(all, diagnosis.after.outcome, settings.skew_errors, middle);
+}
+
+/// Accepts effects that surfaces resemble, if they explain all that is left: surfaces resemble no cause that
+/// well.
+///
+/// @param with  the diagnosis in which no effect was rejected for that reason, judged
+/// @return      whether they are accepted
+bool explains_the_rest(Diagnosis& with, const std::vector<std::size_t>& small, double p_value,
+                       double smallest) {
+  if (!(p_value > smallest)) return false;
+  bool has_accepted = false;
+  for (const std::size_t one : small) {
+    Hypothesis& hypothesis = with.hypotheses[one];
+    if (!hypothesis.accepted) continue;
+    has_accepted = true;
+    hypothesis.decide(
+        {.name = "goodness of fit with it", .threshold = smallest, .p_value = p_value, .passed = true}, {});
+  }
+  return has_accepted;
+}
+
+}  // namespace
+
+void accept_or_reject(Diagnosis& diagnosis, const CrossValidator::Score& plain, const AcceptanceFits& fits,
+                      const TermRegistry& terms, const DiagnosisSettings& settings, double middle) {
+  const double smallest = settings.selection.p_value;
+  Diagnosis with = diagnosis;
+  reject_scene_artifacts(diagnosis.hypotheses);
+  std::vector<std::size_t> small;
+  for (std::size_t one = 0; one < diagnosis.hypotheses.size(); ++one) {
+    if (!diagnosis.hypotheses[one].accepted) small.push_back(one);
+  }
+  judge(diagnosis, plain, fits, terms, settings);
+  if (!small.empty() && !(fits.compare(diagnosis.after).p_value > smallest)) {
+    judge(with, plain, fits, terms, settings);
+    if (explains_the_rest(with, small, fits.compare(with.after).p_value, smallest))
+      diagnosis = std::move(with);
+  }
+  mark_clock_lines(diagnosis.hypotheses, diagnosis.after.outcome, settings.skew_errors, middle);
 }
 
 }  // namespace crisp

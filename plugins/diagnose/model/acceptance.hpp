@@ -18,7 +18,8 @@ struct AcceptanceFits {
 /// Decides which hypotheses the extended model keeps. It refits the model to those that are accepted, and
 /// records each test in its hypothesis. The rules, in their order:
 ///
-/// 1. Effects of several lasers must exceed what surfaces that are no planes resemble.
+/// 1. Effects of several lasers must exceed what surfaces that are no planes resemble, unless the residuals
+///    agree with the simulation with them alone.
 /// 2. A hypothesis must improve the fit on held-out turns (cross-validation).
 /// 3. It must be significant in the joint fit (Wald test; score test if parameters are held).
 /// 4. A cause must explain more than the systematic residual that the extended model leaves.
