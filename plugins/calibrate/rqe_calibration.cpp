@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include <crisp/error.hpp>
@@ -74,10 +75,16 @@ class RqeCalibration {
 
   Outcome run() {
     const SensorModel start = model_;
-    Eigen::MatrixXd covariance = minimize();
-    while (hold_unobservable(covariance)) {  // at the start's value, so that the others are found with that
-      model_ = start;
-      covariance = parameters_.free.empty() ? Eigen::MatrixXd() : minimize();
+    Eigen::MatrixXd covariance;
+    while (!parameters_.free.empty()) {
+      const Sample used = minimize();
+      if (!hold_lags_without_minimum()) {
+        report(0.8, "standard errors");
+        covariance = scatter(used);
+        if (!hold_unobservable(covariance)) break;
+      }
+      model_ = start;  // so that the others are found with the held ones there
+      covariance = {};
     }
     return {.model = model_,
             .free = parameters_.free,
@@ -89,19 +96,15 @@ class RqeCalibration {
   }
 
  private:
-  /// Minimizes over the free parameters, and returns their covariance.
-  Eigen::MatrixXd minimize() {
+  /// Minimizes over the free parameters; the beams that were used at last.
+  Sample minimize() {
     in_plane();
-    Sample used = crisp::in_plane(sample_, settings_.in_plane.half_width, Half::kBoth);
-    if (settings_.full_field) used = full_field_from_each_minimum();
-    refuse_a_lag_without_end();
-    report(0.8, "standard errors");
-    return scatter(used);
+    if (settings_.full_field) return full_field_from_each_minimum();
+    return crisp::in_plane(sample_, settings_.in_plane.half_width, Half::kBoth);
   }
 
   /// Holds the parameters that are less well determined than by their ranges; whether there were any.
   bool hold_unobservable(const Eigen::MatrixXd& covariance) {
-    if (parameters_.free.empty()) return false;
     auto known = observability(inverse(covariance), parameters_.free, model_.names(),
                                ranges_of(settings_.in_plane.range, model_, parameters_.free));
     parameters_.free = std::move(known.known);
@@ -122,19 +125,22 @@ class RqeCalibration {
     return inside;
   }
 
-  /// A lag at the end of its range shows that RQE has no minimum near the start.
-  void refuse_a_lag_without_end() const {
-    for (const std::size_t parameter : parameters_.free) {
-      const std::string& name = model_.names()[parameter];
-      const double value = model_.values()[static_cast<Eigen::Index>(parameter)];
-      if (!is_at_the_end(settings_.in_plane.range, name, value)) continue;
-      const auto period = scene_repeat(sample_);
-      if (period && contradicts_counts(*period)) throw Error(counts_caveat(*period));
-      throw Error(
-          fmt::format("{} reached {:.0f} ms, the end of its search range: RQE has no minimum there", name,
-                      value * 1e3),
-          "check the rig's mount, lambda and tau, and record several turns of the plate; if lags may be as large, raise eta_range");
-    }
+  /// Holds lags that reached the end of their range: RQE has no minimum near the start then, as where the
+  /// plate hardly changes its rate; whether there were any.
+  ///
+  /// @throws Error  if counts that are wrong are the reason
+  bool hold_lags_without_minimum() {
+    const auto has_no_minimum = [&](std::size_t parameter) {
+      return is_at_the_end(settings_.in_plane.range, model_.names()[parameter],
+                           model_.values()[static_cast<Eigen::Index>(parameter)]);
+    };
+    const std::size_t before = not_estimated_.size();
+    std::ranges::copy_if(parameters_.free, std::back_inserter(not_estimated_), has_no_minimum);
+    if (not_estimated_.size() == before) return false;
+    const auto period = scene_repeat(sample_);
+    if (period && contradicts_counts(*period)) throw Error(counts_caveat(*period));
+    std::erase_if(parameters_.free, has_no_minimum);
+    return true;
   }
 
   /// Leaves τ and α as they are where a laser sees next to nothing on one side of the spin axis: there is no

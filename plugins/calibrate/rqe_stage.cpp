@@ -4,6 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include <crisp/all_errors.hpp>
 #include <crisp/registrar.hpp>
 
@@ -14,6 +18,27 @@
 #include "plugins/calibrate/single_beam_refusal.hpp"
 
 namespace crisp {
+namespace {
+
+void report_held(const std::vector<std::string>& names, std::string_view why, Context& context) {
+  if (names.empty()) return;
+  context.print(fmt::format("{} {} held: {}, and RQE does not determine {} (calibrate.refine estimates {})",
+                            fmt::join(names, ", "), names.size() == 1 ? "is" : "are", why,
+                            names.size() == 1 ? "it" : "them", names.size() == 1 ? "it" : "them"));
+}
+
+void report_not_estimated(const Outcome& outcome, Context& context) {
+  std::vector<std::string> lags;
+  std::vector<std::string> poses;
+  for (const std::size_t parameter : outcome.not_estimated) {
+    const std::string& name = outcome.model.names()[parameter];
+    (name.ends_with(".eta") ? lags : poses).push_back(name);
+  }
+  report_held(poses, "the laser sees one side of the spin axis only", context);
+  report_held(lags, "the entropy falls as far as the end of the lag's range", context);
+}
+
+}  // namespace
 
 void RqeStage::describe(StageDescription<RqeStage>& d) {
   d.name("calibrate.rqe")
@@ -151,14 +176,7 @@ void RqeStage::finish(Outputs& out, Context& context) {
         "the calibration increased the cloud's Rényi quadratic entropy: it is worse than its start");
   }
   if (outcome.free.empty()) context.mark_untrusted("RQE determines none of the parameters");
-  if (!outcome.not_estimated.empty()) {
-    std::vector<std::string> names;
-    for (const std::size_t parameter : outcome.not_estimated)
-      names.push_back(outcome.model.names()[parameter]);
-    context.print(fmt::format(
-        "{} are held: the laser sees one side of the spin axis only, and RQE does not determine them (calibrate.refine estimates them)",
-        fmt::join(names, ", ")));
-  }
+  report_not_estimated(outcome, context);
   report(calibration, {}, context);
   context.print(
       "standard errors include the ranges' noise, but not the bias of RQE's optimum of some millimetres and tenths of a degree, or some degrees for lasers that see one side, which calibrate.refine removes");

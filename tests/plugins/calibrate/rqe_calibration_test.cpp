@@ -85,6 +85,25 @@ TEST(CalibrateByRqe, FindsALagAgainstAKnownAzimuthAtConstantSpeed) {
   }
 }
 
+TEST(CalibrateByRqe, HoldsLagsThatReachTheEndOfTheirRange) {
+  auto scanner = misplaced_scanner(1, 3.0);
+  for (auto& laser : scanner.truth.lasers) laser.eta.value = 0.03;
+  const auto recording = simulate_measurements(scanner, office());
+  const SensorModel start(nominal_calibration(default_rig()));
+  RqeCalibrationSettings settings = quick();
+  settings.in_plane.range.eta = 0.01;
+  const auto measure = rqe_measure();
+  const Outcome outcome = calibrate_by_rqe(start, sample_of(recording), *measure, settings);
+  ASSERT_EQ(outcome.not_estimated.size(), 3U);
+  for (const std::size_t held : outcome.not_estimated) {
+    EXPECT_THAT(start.names()[held], testing::EndsWith(".eta"));
+    EXPECT_EQ(outcome.model.values()[static_cast<Eigen::Index>(held)], 0);
+    EXPECT_THAT(outcome.free, testing::Not(testing::Contains(held)));
+  }
+  EXPECT_GE(outcome.free.size(), 6U) << "the others are found with the lags held";
+  EXPECT_EQ(outcome.covariance.rows(), static_cast<Eigen::Index>(outcome.free.size()));
+}
+
 TEST(CalibrateByRqe, LeavesWhatItDoesNotDetermineAtItsStart) {
   const auto recording = simulate_measurements(misplaced_scanner(1, 3.0), office());
   const SensorModel start(nominal_calibration(default_rig()));
