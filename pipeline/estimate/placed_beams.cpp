@@ -4,8 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include <crisp/error.hpp>
-
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/quality/blocks.hpp"
 
@@ -40,6 +38,11 @@ Eigen::Matrix3Xd columns(const Vectors& vectors, const std::vector<std::size_t>&
 
 }  // namespace
 
+UncoveredBeams::UncoveredBeams()
+    : Error("an eta moved some beams out of the time span of the encoder readings",
+            "check the rig's eta, the clock stages, and whether the encoder was recorded from begin to end") {
+}
+
 Vectors place_all(const SensorModel& model, const Measurements& beams, const PlateTrajectory& plate) {
   Vectors points;
   points.assign(beams.size(), 0);
@@ -51,11 +54,7 @@ Vectors place_all(const SensorModel& model, const Measurements& beams, const Pla
     std::ranges::copy(run.z, points.z.begin() + first);
     placed += run.x.size();
   });
-  if (placed != beams.size()) {
-    throw Error(
-        "an eta moved some beams out of the time span of the encoder readings",
-        "check the rig's eta, the clock stages, and whether the encoder was recorded from begin to end");
-  }
+  if (placed != beams.size()) throw UncoveredBeams();
   return points;
 }
 

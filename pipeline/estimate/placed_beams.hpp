@@ -5,13 +5,21 @@
 #include <span>
 #include <vector>
 
+#include <crisp/error.hpp>
+
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/surfels.hpp"
 
 namespace crisp {
 
+/// The model moves beams in time beyond the encoder readings.
+class UncoveredBeams final : public Error {
+ public:
+  UncoveredBeams();
+};
+
 /// Places n beams by a model.
-/// @throws Error  if encoder readings do not cover all of them
+/// @throws UncoveredBeams  if encoder readings do not cover all of them
 Vectors place_all(const SensorModel& model, const Measurements& beams, const PlateTrajectory& plate);
 
 /// Beams placed by a model, with their directions: the input of the surfel segmentation. Each recording

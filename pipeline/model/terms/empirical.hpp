@@ -48,11 +48,11 @@ class EmpiricalTerm final : public DifferentiableTerm<EmpiricalTerm> {
       case Over::kRemission:
         return change_by(std::log(std::max(1.0, beam.remission)), beam, p);
       case Over::kTime:
-        return change_by(T(beam.hub_time / p.back()), beam, p);
+        return change_by_ratio(beam.hub_time, beam, p);
       case Over::kPlateRate:
         return change_by(T(beam.plate_rate), beam, p);
       case Over::kRangePhase:
-        return change_by((2 * std::numbers::pi * beam.measured_range) / p.back(), beam, p);
+        return change_by_ratio(2 * std::numbers::pi * beam.measured_range, beam, p);
     }
   }
 
@@ -62,6 +62,18 @@ class EmpiricalTerm final : public DifferentiableTerm<EmpiricalTerm> {
     constexpr double kGrazing = 0.03;
     return std::sqrt(-std::log(std::clamp(std::abs(cosine), kGrazing, 1.0)));
   }
+
+  /// By a quantity that the model does not change, relative to the last parameter. Where that is held, the
+  /// ratio has no derivatives, which would take most of the time.
+  template <class T>
+  void change_by_ratio(double numerator, Beam<T>& beam, std::span<const T> p) const {
+    if (has_derivatives(p.back()))
+      change_by(T(numerator / p.back()), beam, p);
+    else
+      change_by(numerator / scalar(p.back()), beam, p);
+  }
+  static bool has_derivatives(double) { return false; }
+  static bool has_derivatives(const Jet& value) { return !value.v.isZero(0); }
 
   template <class X, class T>
   void change_by(const X& x, Beam<T>& beam, std::span<const T> p) const {

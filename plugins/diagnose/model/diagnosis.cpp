@@ -9,10 +9,12 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include <crisp/error.hpp>
 
 #include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/model/terms_in.hpp"
 #include "plugins/diagnose/model/acceptance.hpp"
 #include "plugins/diagnose/model/cross_validation.hpp"
@@ -175,13 +177,31 @@ class Diagnoser {
       }
       if (names_of(next) == names_of(state.chosen)) return;
       state.report(0.7, "refining the extended model");
-      state.chosen = refine_nonlinear(next, result.after.outcome.model, search.base(), observations,
-                                      state.is_close ? settings_.refine_beams : settings_.beams, terms_);
+      const auto before = std::exchange(
+          state.chosen, refine_nonlinear(next, result.after.outcome.model, search.base(), observations,
+                                         state.is_close ? settings_.refine_beams : settings_.beams, terms_));
       for (const Candidate& candidate : state.chosen) {
         if (!candidate.other_forms.empty()) result.other_forms[candidate.name] = candidate.other_forms;
       }
-      result.after = refined(with_terms(result.after.outcome.model.calibration(), state.chosen), sample_);
+      try {
+        result.after = refined(with_terms(result.after.outcome.model.calibration(), state.chosen), sample_);
+      } catch (const UncoveredBeams&) {
+        if (!reject_new_time_terms(state, before)) throw;
+      }
     }
+  }
+
+  /// Rejects new terms that move beams in time, where the model with them left the encoder readings: no clock
+  /// is that wrong. Returns to the candidates before; false if none of the new ones is such a term.
+  bool reject_new_time_terms(SearchState& state, const std::vector<Candidate>& before) const {
+    const std::set<std::string> known = names_of(before);
+    const std::size_t rejected = state.rejected.size();
+    for (const Candidate& one : state.chosen) {
+      if (known.contains(one.name)) continue;
+      if (terms_.get(one.term.term)->info().phase == Phase::kTime) state.rejected.insert(one.name);
+    }
+    state.chosen = before;
+    return state.rejected.size() > rejected;
   }
 
   /// Adds the covariance over forms: the refinement gives only the curvature at the best form.
