@@ -36,10 +36,11 @@ class Rotation {
     std::tie(sy_, cy_) = sine_and_cosine(y);
     std::tie(sz_, cz_) = sine_and_cosine(z);
   }
-  Vector3<T> operator()(const Vector3<T>& v) const {
-    const T x = cz_ * v.x() - sz_ * v.y();
-    const T y = sz_ * v.x() + cz_ * v.y();
-    const T z = cy_ * v.z() - sy_ * x;
+  template <class V>
+  Vector3<V> operator()(const Vector3<V>& v) const {
+    const V x = cz_ * v.x() - sz_ * v.y();
+    const V y = sz_ * v.x() + cz_ * v.y();
+    const V z = cy_ * v.z() - sy_ * x;
     return {cy_ * x + sy_ * v.z(), cx_ * y - sx_ * z, sx_ * y + cx_ * z};
   }
 
@@ -48,8 +49,10 @@ class Rotation {
 };
 
 /// Rotates a beam, its origin and its direction, about the origin of the frame.
-template <class T>
-void rotate(Beam<T>& beam, const Rotation<T>& rotation) {
+///
+/// @param rotation  by numbers, or by angles with derivatives
+template <class T, class A>
+void rotate(Beam<T>& beam, const Rotation<A>& rotation) {
   beam.origin = rotation(beam.origin);
   beam.direction = rotation(beam.direction);
 }

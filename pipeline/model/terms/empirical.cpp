@@ -128,6 +128,22 @@ std::vector<double> finer_ranges() {
 
 }  // namespace
 
+void EmpiricalTerm::apply(std::span<Beam<double>> beams, std::span<const double> parameters) const {
+  for (auto& beam : beams) change(beam, parameters);
+}
+
+void EmpiricalTerm::apply(std::span<Beam<Jet>> beams, std::span<const Jet> parameters) const {
+  const bool has_derivatives =
+      std::ranges::any_of(parameters, [](const Jet& parameter) { return !parameter.v.isZero(0); });
+  if (has_derivatives) {
+    for (auto& beam : beams) change(beam, parameters);
+    return;
+  }
+  std::vector<double> values;
+  for (const Jet& parameter : parameters) values.push_back(parameter.a);
+  for (auto& beam : beams) change(beam, std::span<const double>(values));
+}
+
 EmpiricalTerm::EmpiricalTerm(On on, Over over, Shape shape, std::string family)
     : on_(on), over_(over), shape_(std::move(shape)) {
   const OnName what = describe(on);

@@ -16,7 +16,7 @@ namespace crisp {
 
 /// Describes a departure by its shape: what is off, over what. It is the general member of a cause's family
 /// where only that cause has its invariances, and else a departure that no cause of the catalogue explains.
-class EmpiricalTerm final : public DifferentiableTerm<EmpiricalTerm> {
+class EmpiricalTerm final : public ModelTerm {
  public:
   enum class On { kRange, kMirrorAngle, kElevation, kPlateAngle, kLag, kBase, kTilt };
   enum class Over {
@@ -34,8 +34,21 @@ class EmpiricalTerm final : public DifferentiableTerm<EmpiricalTerm> {
   EmpiricalTerm(On on, Over over, Shape shape, std::string family = {});
   const TermInfo& info() const override { return info_; }
 
-  template <class T>
-  void change(Beam<T>& beam, std::span<const T> p) const {
+  void apply(std::span<Beam<double>> beams, std::span<const double> parameters) const override;
+  /// Of a chain's many parameters eight have derivatives in one pass. Where none of this term's has, its
+  /// coefficients are numbers, which takes a fraction of the time.
+  void apply(std::span<Beam<Jet>> beams, std::span<const Jet> parameters) const override;
+
+ private:
+  /// √(−ln cos β), in which both 1/cos β and β are smooth.
+  static double incidence(double cosine) {
+    constexpr double kGrazing = 0.03;
+    return std::sqrt(-std::log(std::clamp(std::abs(cosine), kGrazing, 1.0)));
+  }
+
+  /// @param p  P is double, or T
+  template <class T, class P>
+  void change(Beam<T>& beam, std::span<const P> p) const {
     switch (over_) {
       case Over::kMirrorAngle:
         return change_by(beam.measured_mirror, beam, p);
@@ -48,35 +61,16 @@ class EmpiricalTerm final : public DifferentiableTerm<EmpiricalTerm> {
       case Over::kRemission:
         return change_by(std::log(std::max(1.0, beam.remission)), beam, p);
       case Over::kTime:
-        return change_by_ratio(beam.hub_time, beam, p);
+        return change_by(beam.hub_time / p.back(), beam, p);
       case Over::kPlateRate:
         return change_by(T(beam.plate_rate), beam, p);
       case Over::kRangePhase:
-        return change_by_ratio(2 * std::numbers::pi * beam.measured_range, beam, p);
+        return change_by((2 * std::numbers::pi * beam.measured_range) / p.back(), beam, p);
     }
   }
 
- private:
-  /// √(−ln cos β), in which both 1/cos β and β are smooth.
-  static double incidence(double cosine) {
-    constexpr double kGrazing = 0.03;
-    return std::sqrt(-std::log(std::clamp(std::abs(cosine), kGrazing, 1.0)));
-  }
-
-  /// By a quantity that the model does not change, relative to the last parameter. Where that is held, the
-  /// ratio has no derivatives, which would take most of the time.
-  template <class T>
-  void change_by_ratio(double numerator, Beam<T>& beam, std::span<const T> p) const {
-    if (has_derivatives(p.back()))
-      change_by(T(numerator / p.back()), beam, p);
-    else
-      change_by(numerator / scalar(p.back()), beam, p);
-  }
-  static bool has_derivatives(double) { return false; }
-  static bool has_derivatives(const Jet& value) { return !value.v.isZero(0); }
-
-  template <class X, class T>
-  void change_by(const X& x, Beam<T>& beam, std::span<const T> p) const {
+  template <class X, class T, class P>
+  void change_by(const X& x, Beam<T>& beam, std::span<const P> p) const {
     const auto weights = shape_.weights(x);
     const auto shape = [&] { return sum(weights, p); };
     switch (on_) {
@@ -97,19 +91,20 @@ class EmpiricalTerm final : public DifferentiableTerm<EmpiricalTerm> {
         beam.time += shape();
         break;
       case On::kBase:
-        beam.origin += along_axes(weights, p);
+        beam.origin += along_axes(weights, p).template cast<T>();
         break;
       case On::kTilt: {
-        const Vector3<T> turn = along_axes(weights, p);
-        rotate(beam, Rotation<T>(turn.x(), turn.y(), turn.z()));
+        const auto turn = along_axes(weights, p);
+        rotate(beam, Rotation(turn.x(), turn.y(), turn.z()));
         break;
       }
     }
   }
-  template <class X, class T>
-  Vector3<T> along_axes(const ShapeWeights<X>& weights, std::span<const T> p) const {
+  template <class X, class P>
+  auto along_axes(const ShapeWeights<X>& weights, std::span<const P> p) const {
     const std::size_t n = shape_.coefficients();
-    return {sum(weights, p), sum(weights, p.subspan(n)), sum(weights, p.subspan(2 * n))};
+    return Vector3<decltype(X() * P())>{sum(weights, p), sum(weights, p.subspan(n)),
+                                        sum(weights, p.subspan(2 * n))};
   }
 
   On on_;

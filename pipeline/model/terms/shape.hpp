@@ -19,9 +19,9 @@ namespace crisp {
 template <class X>
 using ShapeWeights = boost::container::static_vector<std::pair<std::size_t, X>, 12>;
 
-template <class X, class T>
-T sum(const ShapeWeights<X>& weights, std::span<const T> coefficients) {
-  T result(0);
+template <class X, class P>
+auto sum(const ShapeWeights<X>& weights, std::span<const P> coefficients) {
+  decltype(X() * P()) result(0);
   for (const auto& [k, weight] : weights) result += weight * coefficients[k];
   return result;
 }
