@@ -44,9 +44,9 @@ std::vector<std::string> caveats_of_addresses(const std::vector<CaptureStatistic
     if (device.name.empty() || items[title(device)] > 0) continue;
     const auto others = titles_of_unknown_devices(captures, {device.kind});
     if (others.empty()) continue;
-    caveats.push_back(
-        fmt::format("there is no data of {}, but of an unknown {}; correct the addresses and ports in the rig",
-                    title(device), fmt::join(others, ", a ")));
+    caveats.push_back(fmt::format(
+        "there is no data of {}, but of an unknown {}; correct the addresses and ports in the rig",
+        title(device), fmt::join(others, ", a ")));
   }
   return caveats;
 }

@@ -58,8 +58,8 @@ class CrossValidator {
   SurfelSettings settings_;
   Surfels surfels_;
   std::optional<PlacedBeams> reference_;  ///< the held-out beams by the selecting model
-  std::vector<float> given_noise_;  ///< relative noise of the held-out beams
-  double noise_ = 0;                ///< [σ] of the residuals of the selecting model
+  std::vector<float> given_noise_;        ///< relative noise of the held-out beams
+  double noise_ = 0;                      ///< [σ] of the residuals of the selecting model
 };
 
 }  // namespace crisp

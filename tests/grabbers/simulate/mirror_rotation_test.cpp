@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "grabbers/simulate/mirror_rotation.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,8 +8,6 @@
 #include <vector>
 
 #include <crisp/error.hpp>
-
-#include "grabbers/simulate/mirror_rotation.hpp"
 
 namespace crisp {
 namespace {

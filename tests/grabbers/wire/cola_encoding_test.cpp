@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
 #include "grabbers/wire/cola_encoding.hpp"
+
+#include <gtest/gtest.h>
 
 namespace crisp {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/data/goodness_of_fit_tests.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "pipeline/data/goodness_of_fit_tests.hpp"
 
 namespace crisp {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/estimate/standard_error_check.hpp"
+
 #include <gmock/gmock.h>
 
 #include <crisp/error.hpp>
-
-#include "pipeline/estimate/standard_error_check.hpp"
 
 namespace crisp {
 namespace {

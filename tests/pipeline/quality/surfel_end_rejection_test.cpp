@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "pipeline/quality/surfel_end_rejection.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-#include "pipeline/quality/surfel_end_rejection.hpp"
 #include "tests/pipeline/quality/clouds.hpp"
 
 namespace crisp {
