@@ -175,10 +175,6 @@ Orientation orientation_of(const Surfel& surfel) {
   return std::abs(surfel.normal.z()) > kLevel ? Orientation::level : Orientation::upright;
 }
 
-/// Of consistent beams: with the true calibration it is 0.88 to 0.99, in halls and streets as well as in
-/// rooms.
-constexpr double kMinShare = 0.7;
-
 /// Whether a view agrees with one besides these two, wherever they overlap.
 bool agrees_with_a_third(const std::string& view, const ViewConsistency& pair,
                          const std::vector<ViewConsistency>& pairs) {
@@ -190,7 +186,7 @@ bool agrees_with_a_third(const std::string& view, const ViewConsistency& pair,
     if (!is_first) at->second = std::min(at->second, one.share);
   }
   return std::ranges::any_of(least, [&](const auto& third) {
-    return third.first != pair.view && third.first != pair.other && third.second >= kMinShare;
+    return third.first != pair.view && third.first != pair.other && third.second >= kConsistentShare;
   });
 }
 
@@ -287,10 +283,10 @@ const char* in_words(Orientation orientation) {
 std::optional<std::string> inconsistency(const ViewPartition& partition,
                                          const std::vector<ViewConsistency>& pairs) {
   const auto least = std::ranges::min_element(pairs, {}, &ViewConsistency::share);
-  if (least == pairs.end() || least->share >= kMinShare) return std::nullopt;
+  if (least == pairs.end() || least->share >= kConsistentShare) return std::nullopt;
   return fmt::format(
       "{} and {} agree on {:.0f} % of the {} in common directions (expected above {:.0f} %): {}", least->view,
-      least->other, 100 * least->share, in_words(least->orientation), 100 * kMinShare,
+      least->other, 100 * least->share, in_words(least->orientation), 100 * kConsistentShare,
       fmt::format(fmt::runtime(partition.advice), suspect_of(*least, pairs)));
 }
 

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/calibrate/cloud_objective.hpp"
 
-#include <crisp/error.hpp>
-
 #include "pipeline/estimate/placed_beams.hpp"
 
 namespace crisp {
 namespace {
 
 Vectors as_arrays(const Placed& placed, const Sample& sample) {
-  if (placed.index.size() != sample.beams.size()) {
-    throw Error(
-        "an eta moved some beams out of the time span of the encoder readings",
-        "check the rig's eta, the clock stages, and whether the encoder was recorded from begin to end");
-  }
+  if (placed.index.size() != sample.beams.size()) throw UncoveredBeams();
   Vectors arrays;
   arrays.assign(placed.index.size(), 0);
   for (std::size_t i = 0; i < placed.index.size(); ++i) {

@@ -87,8 +87,8 @@ std::vector<std::string> check_silence(const Measurements& beams, const Rig& rig
 }
 
 bool agrees_well(const Refinement& refined) {
-  constexpr double kWell = 0.7;
-  return !refined.views.empty() && std::ranges::min(refined.views, {}, &ViewConsistency::share).share > kWell;
+  return !refined.views.empty() &&
+         std::ranges::min(refined.views, {}, &ViewConsistency::share).share > kConsistentShare;
 }
 
 double misfit_of(const Refinement& refined, double noise) { return std::sqrt(refined.chi2) * noise; }

@@ -65,8 +65,10 @@ void accept_or_reject(Diagnosis& diagnosis, const CrossValidator::Score& plain, 
   for (std::size_t one = 0; one < diagnosis.hypotheses.size(); ++one) {
     if (!diagnosis.hypotheses[one].accepted) small.push_back(one);
   }
+  // Where even the whole extended model leaves something, they do not explain all.
+  const bool may_explain = !small.empty() && fits.compare(with.after).p_value > smallest;
   judge(diagnosis, plain, fits, terms, settings);
-  if (!small.empty() && !(fits.compare(diagnosis.after).p_value > smallest)) {
+  if (may_explain && !(fits.compare(diagnosis.after).p_value > smallest)) {
     judge(with, plain, fits, terms, settings);
     if (explains_the_rest(with, small, fits.compare(with.after).p_value, smallest))
       diagnosis = std::move(with);

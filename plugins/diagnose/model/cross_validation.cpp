@@ -140,7 +140,7 @@ CrossValidator::CrossValidator(Halves halves, const SensorModel& chooser, const 
   const SurfaceObservations observations(chooser, halves_.held_out, settings, kBeams);
   surfels_ = observations.surfels();
   halves_.held_out.beams.cos_incidence = observations.sample().beams.cos_incidence;
-  reference_.emplace(chooser, halves_.held_out);
+  reference_ = observations.placed();
   const auto reported = observations.beams().noise;
   given_noise_.assign(reported.begin(), reported.end());
   double squares = 0;

@@ -24,6 +24,7 @@ class SurfaceObservations {
   const Sample& sample() const { return sample_; }
   const Surfels& surfels() const { return surfels_; }  ///< with `most` beams
   BeamsView beams() const { return placed_.view(noise_); }
+  const PlacedBeams& placed() const { return placed_; }
   Coverage coverage() const { return coverage_; }
 
   /// Normal equations at the model, in the Jacobian's columns, with divisions into blocks of correlated
