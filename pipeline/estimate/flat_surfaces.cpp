@@ -15,7 +15,10 @@ class Patches final : public FlatSurfaces {
   Patches(const SurfelSettings& settings, int searches) : settings_(settings), searches_(searches) {}
 
   const Surfels& update(const BeamsView& beams, double last_step) override {
-    if (!is_searching_) return surfels_;
+    if (!is_searching_) {
+      refit_all(surfels_, beams, settings_);
+      return surfels_;
+    }
     is_searching_ = last_step > kSmallStep && round_++ < searches_;
     if (is_searching_) {
       // Cells along edges belong to no surface of their own, but their beams carry much information.

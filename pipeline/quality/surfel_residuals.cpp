@@ -66,12 +66,37 @@ std::vector<SurfelResidual> from_own_plane(const Surfel& surfel, std::span<const
   return residuals;
 }
 
+/// The same, with the weights that the beams have.
+std::vector<SurfelResidual> weighted_from_own_plane(const Surfel& surfel, const Surfels& surfels,
+                                                    const BeamsView& beams, const SurfelSettings& settings) {
+  auto residuals = from_own_plane(surfel, surfels.beams_of(surfel), beams, settings);
+  for (std::size_t k = 0; k < residuals.size(); ++k) residuals[k].weight = surfels.weights[surfel.begin + k];
+  return residuals;
+}
+
+/// @param plane  see fit()
+void move(Surfel& surfel, const Eigen::Vector3d& plane) {
+  surfel.middle += plane[0] * surfel.normal;
+  surfel.normal = (surfel.normal - plane[1] * surfel.u - plane[2] * surfel.v).normalized();
+  surfel.v = surfel.normal.cross(surfel.u).normalized();
+  surfel.u = surfel.v.cross(surfel.normal);
+}
+
+void refit(Surfel& surfel, const Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings) {
+  constexpr int kRounds = 3;           // where a beam meets the plane depends on the plane
+  constexpr double kSmallTurn = 1e-3;  // [rad] small against the angle at which beams still count
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::Vector3d plane = fit(surfel, weighted_from_own_plane(surfel, surfels, beams, settings));
+    move(surfel, plane);
+    if (plane.tail<2>().norm() < kSmallTurn) return;
+  }
+}
+
 }  // namespace
 
 std::vector<SurfelResidual> residuals_of(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams,
                                          const SurfelSettings& settings) {
-  auto residuals = from_own_plane(surfel, surfels.beams_of(surfel), beams, settings);
-  for (std::size_t k = 0; k < residuals.size(); ++k) residuals[k].weight = surfels.weights[surfel.begin + k];
+  auto residuals = weighted_from_own_plane(surfel, surfels, beams, settings);
   const Eigen::Vector3d plane = fit(surfel, residuals);
   for (SurfelResidual& r : residuals) {
     r.distance -= plane.dot(Eigen::Vector3d(1, r.u, r.v));
@@ -80,16 +105,17 @@ std::vector<SurfelResidual> residuals_of(const Surfel& surfel, const Surfels& su
   return residuals;
 }
 
+void refit_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings) {
+  for_each_index(surfels.surfels.size(),
+                 [&](std::size_t s) { refit(surfels.surfels[s], surfels, beams, settings); });
+}
+
 void refine(Surfel& surfel, Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings) {
   const auto members = surfels.beams_of(surfel);
   auto residuals = from_own_plane(surfel, members, beams, settings);
   if (settings.outlier > 0) weigh(residuals, members, beams.views, settings.outlier);
   for (std::size_t k = 0; k < residuals.size(); ++k) surfels.weights[surfel.begin + k] = residuals[k].weight;
-  const Eigen::Vector3d plane = fit(surfel, residuals);
-  surfel.middle += plane[0] * surfel.normal;
-  surfel.normal = (surfel.normal - plane[1] * surfel.u - plane[2] * surfel.v).normalized();
-  surfel.v = surfel.normal.cross(surfel.u).normalized();
-  surfel.u = surfel.v.cross(surfel.normal);
+  move(surfel, fit(surfel, residuals));
 }
 
 void refine_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings) {

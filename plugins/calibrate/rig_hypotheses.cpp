@@ -24,7 +24,8 @@ namespace {
 
 constexpr std::size_t kBeams = 100'000;    // enough to see whether they fit
 constexpr std::size_t kOwnBeams = 15'000;  // of one laser, where all together are tried afterwards
-constexpr double kSteps = 20;              // about as many changes as are tried
+constexpr double kMore = 1.15;  // of the beams on flat surfaces, where the unchanged rig fits as well
+constexpr double kSteps = 20;   // about as many changes as are tried
 constexpr const char* kMirrorZero = "mount.mirror_zero";
 
 /// "0.000" and not "-0.000".
@@ -125,7 +126,6 @@ const RigErrorSearch::Fit& RigErrorSearch::fit_of_rig() {
 
 std::optional<std::string> RigErrorSearch::counts() {
   constexpr double kResolved = 0.003;  // of a turn
-  constexpr double kMore = 1.15;       // of the beams on flat surfaces
   if (!period_) return std::nullopt;
   if (contradicts_counts(*period_)) return counts_caveat(*period_);
   const double turns = period_->angle / (2 * std::numbers::pi);
@@ -147,7 +147,8 @@ bool RigErrorSearch::fits_with(const RigChange& change, const Sample& sample, co
   if (settings_.report)
     settings_.report(std::min(0.99, static_cast<double>(step_++) / kSteps), "what if " + change.words);
   const Fit changed = fit_with(change, sample);
-  return changed.fits && changed.beams > unchanged.beams;
+  const double times = unchanged.fits ? kMore : 1;
+  return changed.fits && static_cast<double>(changed.beams) > times * static_cast<double>(unchanged.beams);
 }
 
 std::vector<RigChange> RigErrorSearch::those_that_fit(const std::vector<RigChange>& changes) {
@@ -192,10 +193,11 @@ std::vector<RigChange> RigErrorSearch::of_all() {
 }
 
 std::optional<std::string> RigErrorSearch::any() {
-  // Where the rig as it stands fits as well, by the same few beams, no change of it explains anything.
-  if (fit_of_rig().fits) return std::nullopt;
   if (!fit_of_rig().mistake.empty()) return fit_of_rig().mistake;
+  // A scene that wrong counts have squeezed can fit as well, by fewer beams.
   std::vector<RigChange> found = of_plate();
+  // Where the rig as it stands fits, by the same few beams, no change of a laser explains anything.
+  if (found.empty() && fit_of_rig().fits) return std::nullopt;
   if (found.empty()) found = of_some();  // a tenth of the time that all lasers together take
   if (found.empty()) found = of_all();
   if (found.empty()) return std::nullopt;

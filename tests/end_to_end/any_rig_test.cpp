@@ -51,6 +51,11 @@ TEST_F(AnyRig, ACoarseEncoderCountsInTheStandardErrors) {
   is_right_and_trusted(167);
 }
 
+TEST_F(AnyRig, AWallThatBeamsGrazeDoesNotTurnLasersNearTheAxis) {
+  is_right_and_trusted(5213, {"fault=none", "duration=10", "has_effect=1", "has_mixed_pixels=0", "lasers=2",
+                              "effect=none", "counts=40000"});
+}
+
 TEST_F(AnyRig, InACorridorTheNominalLambdaDeterminesTheDirection) { is_right_and_trusted(160); }
 
 TEST_F(AnyRig, ALoneLaserDeterminesTheDirectionByTheSignOfItsTau) { is_right_and_trusted(622, {}); }
