@@ -8,6 +8,8 @@
 
 #include <crisp/sensor_model.hpp>
 
+#include "pipeline/model/chain_jacobian.hpp"
+
 namespace crisp {
 
 /// A term that a model does not have, at neutral values, which change no beam.
@@ -19,9 +21,7 @@ struct AddedTerm {
 };
 
 /// Derivatives of beams' ends with respect to parameters of terms that a model does not have. They equal
-/// those of a model with these terms. Each term is differentiated by itself, in the state that the beam has
-/// in the term's phase; the chain then carries the change of that state to the beam's end. So the chain is
-/// differentiated with respect to a few quantities of the beam instead of hundreds of parameters.
+/// those of a model with these terms.
 class AddedTerms {
  public:
   /// @param of_laser  for each laser of the model, its own terms and the plate's; none for those beyond its
@@ -36,22 +36,8 @@ class AddedTerms {
                  std::size_t stride, std::span<double> rows) const;
 
  private:
-  /// A term with some of its parameters seeded in a Jet's derivatives.
-  struct Seeded {
-    std::shared_ptr<const ModelTerm> term;
-    std::vector<Jet> parameters;
-  };
-  /// Terms of one phase that are differentiated in one pass.
-  struct Pass {
-    Phase phase;
-    std::vector<Seeded> terms;
-    std::vector<std::size_t> columns;
-  };
-  static std::vector<Pass> passes_of(const std::vector<AddedTerm>& terms);
-
-  std::vector<LaserChain> chains_;
-  std::vector<std::vector<double>> values_;  // by laser, of the chain's parameters
-  std::vector<std::vector<Pass>> passes_;    // by laser, in order of phases
+  SensorModel model_;  // whose chains of_laser_ refers to
+  std::vector<ChainJacobian<1>> of_laser_;
 };
 
 }  // namespace crisp

@@ -20,20 +20,39 @@ concept PlateMotion = requires(Plate plate, double t) {
 inline double scalar(double value) { return value; }
 inline double scalar(const Jet& value) { return value.a; }
 
-/// Lets the terms of one phase change the beams.
-template <class T>
-void apply_phase(const LaserChain& chain, Phase phase, std::span<const T> parameters,
-                 std::span<Beam<T>> beams) {
-  for (const auto& [term, first] : chain.phases[static_cast<std::size_t>(phase)]) {
-    term->apply(beams, parameters.subspan(first, term->info().parameters.size()));
-  }
+inline constexpr std::size_t kBaseParameters = 4;  ///< of a chain, its first: λ, τ, α, η
+
+/// Whether the phase's terms correct a reading, each by itself, or move the beam one after the other: see
+/// Beam.
+inline bool is_reading(Phase phase) {
+  return phase != Phase::kBeam && phase != Phase::kMount && phase != Phase::kBase;
 }
 
-/// Does nothing after a phase of trace().
-struct NothingAfter {
-  template <class T>
-  void operator()(Phase, std::span<Beam<T>>) const {}
+/// A place in a chain: ahead of a term of a phase, or at the phase's end.
+struct ChainPlace {
+  Phase phase{};
+  std::size_t term = 0;  ///< index among the phase's; their number: at its end
+  bool operator==(const ChainPlace&) const = default;
 };
+
+/// Does nothing at the places of trace().
+struct VisitsNothing {
+  template <class T>
+  void operator()(ChainPlace, std::span<Beam<T>>) const {}
+};
+
+/// Lets the terms of one phase change the beams.
+template <class T, class Visit = VisitsNothing>
+void apply_phase(const LaserChain& chain, Phase phase, std::span<const T> parameters,
+                 std::span<Beam<T>> beams, const Visit& visit = {}) {
+  const auto& terms = chain.phases[static_cast<std::size_t>(phase)];
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    visit(ChainPlace{phase, k}, beams);
+    terms[k].term->apply(beams,
+                         parameters.subspan(terms[k].first_slot, terms[k].term->info().parameters.size()));
+  }
+  visit(ChainPlace{phase, terms.size()}, beams);
+}
 
 /// Applies the whole chain to beams of one laser. Beams at whose time the plate's angle is unknown are marked
 /// false in `known` and have no point.
@@ -42,15 +61,11 @@ struct NothingAfter {
 /// @param parameters  in the order of chain.slots
 /// @param beams       with the measurements filled in; the rest is set here
 /// @param plate       φ(t) [rad] on the hub's clock
-/// @param after       after(phase, beams) is called at the end of each phase, and may change what that has
-/// set
-template <class T, PlateMotion Plate, class After = NothingAfter>
+/// @param visit       visit(place, beams) is called at each place, and may change what the phase has set
+template <class T, PlateMotion Plate, class Visit = VisitsNothing>
 [[gnu::flatten]] void trace(const LaserChain& chain, std::span<const T> parameters, std::span<Beam<T>> beams,
-                            Plate& plate, std::span<bool> known, const After& after = {}) {
-  const auto end = [&](Phase phase) {
-    apply_phase(chain, phase, parameters, beams);
-    after(phase, beams);
-  };
+                            Plate& plate, std::span<bool> known, const Visit& visit = {}) {
+  const auto end = [&](Phase phase) { apply_phase(chain, phase, parameters, beams, visit); };
   const Mounting<T> laser{.lambda = parameters[0], .tau = parameters[1], .alpha = parameters[2]};
   const T& eta = parameters[3];
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points with their derivatives: of equation (2) alone in closed form, of chains with terms by automatic
-// differentiation.
+// Points with their derivatives: of equation (2) alone in closed form, of chains with terms by the chain
+// rule.
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include <crisp/sensor_model.hpp>
 
+#include "pipeline/model/chain_jacobian.hpp"
 #include "pipeline/model/mixed_batch.hpp"
 #include "pipeline/model/traced_runs.hpp"
 
@@ -30,21 +33,6 @@ FreeSlots free_slots(const std::vector<LaserChain>& chains, const std::vector<st
     }
   }
   return result;
-}
-
-/// The parameters of each laser; the free ones from column `first` on are seeded in a Jet's derivatives.
-std::vector<std::vector<Jet>> seeded_parameters(const std::vector<LaserChain>& chains,
-                                                const Eigen::VectorXd& values, const FreeSlots& free,
-                                                std::size_t first) {
-  std::vector<std::vector<Jet>> all;
-  for (std::size_t laser = 0; laser < chains.size(); ++laser) {
-    const auto plain = chain_values(chains[laser], values);
-    auto& seeded = all.emplace_back(plain.begin(), plain.end());
-    const auto& own = free.slots[laser];
-    const std::size_t last = std::min(first + static_cast<std::size_t>(Jet::DIMENSION), own.size());
-    for (std::size_t k = first; k < last; ++k) seeded[own[k]].v[static_cast<Eigen::Index>(k - first)] = 1;
-  }
-  return all;
 }
 
 /// Placed points and their derivatives, where all chains are equation (2) alone.
@@ -81,28 +69,81 @@ Placed place_bare(const Measurements& beams, const PlateTrajectory& plate,
   return result;
 }
 
-/// Derivatives of placed points by automatic differentiation, in as many passes as it takes to seed every
-/// free parameter in one of a Jet's derivatives.
-void differentiate(const Measurements& beams, const PlateTrajectory& plate,
-                   const std::vector<LaserChain>& chains, const Eigen::VectorXd& values,
-                   const FreeSlots& slots, PointDerivatives& derivatives) {
-  constexpr std::size_t kWidth = Jet::DIMENSION;
-  for (std::size_t first = 0; first < derivatives.stride; first += kWidth) {
-    const auto seeded = seeded_parameters(chains, values, slots, first);
-    const auto count = static_cast<Eigen::Index>(std::min(kWidth, derivatives.stride - first));
-    auto column = static_cast<Eigen::Index>(first);
-    Tracer<Jet> tracer(beams, plate);
-    for (std::size_t i = 0; i < beams.size();) {
-      const std::size_t laser = beams.laser[i];
-      i = tracer.trace_run(chains[laser], seeded[laser], i, [&](std::size_t, const Beam<Jet>& beam) {
-        const Vector3<Jet> x = beam.point();
-        for (int axis = 0; axis < 3; ++axis) {
-          derivatives.values.row(axis).segment(column, count) = x[axis].v.head(count).transpose();
-        }
-        column += static_cast<Eigen::Index>(derivatives.stride);
-      });
+/// The terms of a chain that have free parameters.
+///
+/// @param slots  of the free parameters, which are numbered by column
+std::vector<VariedTerm> varied_terms(const LaserChain& chain, const std::vector<double>& values,
+                                     const std::vector<std::size_t>& slots) {
+  std::vector<VariedTerm> varied;
+  for (std::size_t p = 0; p < chain.phases.size(); ++p) {
+    const auto phase = static_cast<Phase>(p);
+    const auto& terms = chain.phases[p];
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      const auto count = terms[k].term->info().parameters.size();
+      const auto first = values.begin() + static_cast<std::ptrdiff_t>(terms[k].first_slot);
+      VariedTerm own{.term = terms[k].term,
+                     .place = {phase, is_reading(phase) ? terms.size() : k},
+                     .values = {first, first + static_cast<std::ptrdiff_t>(count)},
+                     .parameters = {},
+                     .columns = {}};
+      for (std::size_t column = 0; column < slots.size(); ++column) {
+        if (slots[column] < terms[k].first_slot || slots[column] >= terms[k].first_slot + count) continue;
+        own.parameters.push_back(slots[column] - terms[k].first_slot);
+        own.columns.push_back(column);
+      }
+      if (!own.columns.empty()) varied.push_back(std::move(own));
     }
   }
+  return varied;
+}
+
+/// The first `count` slots of a chain that are free.
+std::vector<SeededSlot> seeded_slots(const std::vector<std::size_t>& slots, std::size_t count) {
+  std::vector<SeededSlot> seeded;
+  for (std::size_t column = 0; column < slots.size(); ++column) {
+    if (slots[column] < count) seeded.push_back({.slot = slots[column], .column = column});
+  }
+  return seeded;
+}
+
+/// @param slots  of the free parameters, which are numbered by column
+ChainJacobian<3> jacobian_of(const LaserChain& chain, const Eigen::VectorXd& all,
+                             const std::vector<std::size_t>& slots) {
+  const auto values = chain_values(chain, all);
+  // Few parameters are differentiated at once.
+  if (slots.size() <= static_cast<std::size_t>(Jet::DIMENSION))
+    return {chain, values, seeded_slots(slots, chain.slots.size()), {}};
+  return {chain, values, seeded_slots(slots, kBaseParameters), varied_terms(chain, values, slots)};
+}
+
+/// Placed points and their derivatives, where chains have terms.
+Placed place_chains(const Measurements& beams, const PlateTrajectory& plate,
+                    const std::vector<LaserChain>& chains, const Eigen::VectorXd& values,
+                    const FreeSlots& free, PointDerivatives& derivatives) {
+  std::vector<ChainJacobian<3>> of_laser;
+  for (std::size_t laser = 0; laser < chains.size(); ++laser)
+    of_laser.push_back(jacobian_of(chains[laser], values, free.slots[laser]));
+  Placed result;
+  result.points.resize(3, static_cast<Eigen::Index>(beams.size()));
+  result.index.reserve(beams.size());
+  std::vector<Eigen::Index> first_column(beams.size());
+  for (std::size_t i = 0; i < beams.size();) {
+    check_laser(of_laser.size(), beams, i);
+    i = of_laser[beams.laser[i]].differentiate(
+        beams, i, plate, Eigen::Matrix3d::Identity(),
+        [&](std::size_t k, const Eigen::Vector3d& end) {
+          first_column[k] = static_cast<Eigen::Index>(result.index.size() * derivatives.stride);
+          result.points.col(static_cast<Eigen::Index>(result.index.size())) = end;
+          result.index.push_back(static_cast<std::uint32_t>(k));
+        },
+        [&](std::size_t k, std::size_t column, const Eigen::Vector3d& moved) {
+          derivatives.values.col(first_column[k] + static_cast<Eigen::Index>(column)) = moved;
+        });
+  }
+  result.points.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(result.index.size()));
+  derivatives.values.conservativeResize(Eigen::NoChange,
+                                        static_cast<Eigen::Index>(result.index.size() * derivatives.stride));
+  return result;
 }
 
 }  // namespace
@@ -114,17 +155,10 @@ Placed SensorModel::place(const Measurements& beams, const PlateTrajectory& plat
   derivatives.columns = slots.columns;
   derivatives.stride = 0;
   for (const auto& columns : slots.columns) derivatives.stride = std::max(derivatives.stride, columns.size());
-  const auto room_for = [&](std::size_t points) {
-    derivatives.values.setZero(3, static_cast<Eigen::Index>(points * derivatives.stride));
-  };
-  if (std::ranges::all_of(fixed_->chains, &LaserChain::bare)) {
-    room_for(beams.size());
-    return place_bare(beams, plate, fixed_->chains, *bare_, slots, derivatives);
-  }
-  Placed result = place(beams, plate);
-  room_for(result.index.size());
-  differentiate(beams, plate, fixed_->chains, values_, slots, derivatives);
-  return result;
+  derivatives.values.setZero(3, static_cast<Eigen::Index>(beams.size() * derivatives.stride));
+  return std::ranges::all_of(fixed_->chains, &LaserChain::bare)
+             ? place_bare(beams, plate, fixed_->chains, *bare_, slots, derivatives)
+             : place_chains(beams, plate, fixed_->chains, values_, slots, derivatives);
 }
 
 }  // namespace crisp

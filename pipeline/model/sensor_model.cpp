@@ -13,8 +13,6 @@
 namespace crisp {
 namespace {
 
-constexpr std::size_t kBaseParameters = 4;  // λ, τ, α, η
-
 void add_terms(LaserChain& chain, const std::vector<TermParameters>& terms, std::size_t first_value,
                Scope scope, const TermRegistry& registry) {
   for (const auto& given : terms) {

@@ -28,13 +28,19 @@ inline void check_epochs(const Measurements& beams, const PlateTrajectory& plate
   }
 }
 
+/// @throws Error if beam i is of none of the calibration's lasers
+inline void check_laser(std::size_t lasers, const Measurements& beams, std::size_t i) {
+  if (beams.laser[i] < lasers) return;
+  throw Error("the measurements contain laser " + std::to_string(beams.laser[i] + 1) +
+                  ", but the calibration has only " + std::to_string(lasers),
+              "use the calibration of the recorded rig");
+}
+
 /// The chain of the laser that measured beam i.
 inline const LaserChain& chain_of(const std::vector<LaserChain>& chains, const Measurements& beams,
                                   std::size_t i) {
-  if (beams.laser[i] < chains.size()) return chains[beams.laser[i]];
-  throw Error("the measurements contain laser " + std::to_string(beams.laser[i] + 1) +
-                  ", but the calibration has only " + std::to_string(chains.size()),
-              "use the calibration of the recorded rig");
+  check_laser(chains.size(), beams, i);
+  return chains[beams.laser[i]];
 }
 
 /// End of the run of measurements of one laser that starts at `begin`, at most `most` long.
