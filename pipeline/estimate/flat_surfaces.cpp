@@ -21,10 +21,7 @@ class Patches final : public FlatSurfaces {
     }
     is_searching_ = last_step > kSmallStep && round_++ < searches_;
     if (is_searching_) {
-      // Cells along edges belong to no surface of their own, but their beams carry much information.
-      surfels_ = find_surfels(beams, settings_);
-      surfels_ = associate_with_surfaces(surfels_, beams, settings_, {.margin = settings_.smallest});
-      refine_all(surfels_, beams, settings_);
+      find(beams, settings_);
     } else {
       complete(beams);
     }
@@ -34,11 +31,22 @@ class Patches final : public FlatSurfaces {
   bool is_settled() const override { return !is_searching_; }
 
  private:
-  /// Settles how far surfaces go and which of them count. Not earlier: as long as parameters are off, views
-  /// disagree, and most on what is far away.
+  void find(const BeamsView& beams, const SurfelSettings& settings) {
+    // Cells along edges belong to no surface of their own, but their beams carry much information.
+    surfels_ = associate_with_surfaces(find_surfels(beams, settings), beams, settings,
+                                       {.margin = settings.smallest});
+    refine_all(surfels_, beams, settings);
+  }
+
+  /// Settles which pieces are of one surface, how far surfaces go and which of them count. Not earlier: as
+  /// long as parameters are off, walls are bent, and views disagree, most on what is far away.
   void complete(const BeamsView& beams) {
+    constexpr double kBump = 0.5;
     constexpr double kSpacings = 4;
     constexpr double kMore = 1.3;
+    SurfelSettings strict = settings_;
+    strict.max_bump = kBump;
+    find(beams, strict);
     surfels_ =
         grow_surfaces(surfels_, beams, settings_, {.margin = settings_.smallest, .spacings = kSpacings});
     refine_all(surfels_, beams, settings_);

@@ -7,14 +7,15 @@ namespace crisp {
 
 /// Sums over points, from which their plane follows; to be added.
 struct Moments {
-  double count = 0;
+  double count = 0;  ///< or the sum of their weights
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
 
-  void add(const Eigen::Vector3d& point) {
-    count += 1;
-    sum += point;
-    squares += point * point.transpose();
+  void add(const Eigen::Vector3d& point, double weight = 1) {
+    const Eigen::Vector3d weighted = weight * point;
+    count += weight;
+    sum += weighted;
+    squares += weighted * point.transpose();
   }
   Moments& operator+=(const Moments& other);
 };

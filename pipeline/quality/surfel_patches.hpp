@@ -51,9 +51,9 @@ struct FlatRegion {
 };
 
 /// Joins pieces, from the one with the most points on, while they keep to the plane of what is joined
-/// already.
-std::vector<FlatRegion> joined(const std::vector<FlatPatch>& patches, const SurfelCells& cells,
-                               const SurfelSettings& settings);
+/// already, and each view by itself sees one plane.
+std::vector<FlatRegion> joined(const std::vector<FlatPatch>& patches, const BeamsView& beams,
+                               const SurfelCells& cells, const SurfelSettings& settings);
 
 /// The region of each beam: the one near which it ends and whose cells it meets, if it is near no other.
 inline constexpr std::uint32_t kNoRegion = ~std::uint32_t{0};

@@ -99,7 +99,7 @@ Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
   check(beams, settings);
   const SurfelCells cells = cells_of(beams, settings);
   const auto pieces = flat_patches(beams, cells, settings);
-  const auto regions = joined(pieces, cells, settings);
+  const auto regions = joined(pieces, beams, cells, settings);
   Surfels result;
   result.surfels.resize(regions.size());
   sort_members(region_of_beams(beams, cells, pieces, regions, settings), result);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,10 @@ struct SurfelSettings {
   double max_excess = 1;     ///< by which the variance within views may exceed that of the noise, relatively
   double max_tilt = 0.05;    ///< [rad] between neighbouring pieces of one surface
   double max_offset = 0.03;  ///< [m] between neighbouring pieces of one surface
+  /// [standard deviations of the noise across] by which views may see neighbouring pieces in different
+  /// planes. Only a calibration that is nearly right makes each view's own surfaces flat; infinite: they are
+  /// not compared.
+  double max_bump = std::numeric_limits<double>::infinity();
   std::uint32_t min_points = 20;  ///< of a surfel
   double outlier = 4.7;  ///< [σ] distance from which a beam no longer counts (Tukey's biweight); 0: all do
 };

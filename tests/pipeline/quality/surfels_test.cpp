@@ -140,6 +140,29 @@ TEST(Surfels, StaySmallOnWhatIsBent) {
   }
 }
 
+TEST(Surfels, AreDividedAtAStepWhereViewsAreCompared) {
+  constexpr double kStep = 0.025;  // [m] two standard deviations of the noise
+  auto scan = look_down(40000, 12, 0, 0, 6);
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (scan.points.x[i] > 0) scan.points.z[i] += kStep;
+  }
+  const auto beams_of_largest = [&](const SurfelSettings& settings) {
+    const auto found = find_surfels(scan.beams(), settings);
+    return found.surfels.at(0).end - found.surfels.at(0).begin;
+  };
+  EXPECT_GT(beams_of_largest({}), 30000U);
+  const SurfelSettings compared{.largest = 1, .max_bump = 0.5};
+  EXPECT_LT(beams_of_largest(compared), 21000U);
+
+  const auto found = find_surfels(scan.beams(), compared);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Surfel& side = found.surfels.at(s);
+    const double beams = side.end - side.begin;
+    EXPECT_GT(beams, 17000);
+    EXPECT_NEAR(side.middle.z(), side.middle.x() > 0 ? kStep : 0, 5 * 0.012 / std::sqrt(beams));
+  }
+}
+
 TEST(Surfels, AreNotFoundInScatter) {
   auto scan = look_down(20000, 3, 0, 0, 5);
   std::mt19937_64 random(6);
