@@ -2,7 +2,6 @@
 #include "plugins/diagnose/model/surface_observations.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include <crisp/error.hpp>
@@ -19,8 +18,23 @@
 namespace crisp {
 namespace {
 
+/// Only the beams that count: what was cut off a surface does not return when the others are weighed anew.
+Surfels counting(const Surfels& surfels) {
+  Surfels some;
+  for (const Surfel& surfel : surfels.surfels) {
+    std::vector<std::uint32_t> beams;
+    for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
+      if (surfels.weights[k] > 0) beams.push_back(surfels.members[k]);
+    }
+    some.add(surfel, beams);
+  }
+  return some;
+}
+
+/// The surfaces as a refinement completes them.
 Surfels surfaces(const BeamsView& beams, const SurfelSettings& settings) {
-  const Surfels found = patches(settings, 1)->update(beams, std::numeric_limits<double>::infinity());
+  Surfels found = counting(patches(settings, 0)->update(beams, 0));
+  refine_all(found, beams, settings);
   if (found.surfels.empty()) {
     throw Error("no beam meets a flat surface, so the sensor model cannot be tested",
                 "reduce `min_cell`, or record in a place with walls");
