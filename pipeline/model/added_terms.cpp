@@ -12,8 +12,8 @@ ChainPlace end_of(const LaserChain& chain, Phase phase) {
 
 }  // namespace
 
-AddedTerms::AddedTerms(const SensorModel& model, const std::vector<std::vector<AddedTerm>>& of_laser)
-    : model_(model) {
+AddedTerms::AddedTerms(SensorModel model, const std::vector<std::vector<AddedTerm>>& of_laser)
+    : model_(std::move(model)) {
   for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
     const LaserChain& chain = model_.chain(laser);
     std::vector<VariedTerm> varied;

@@ -26,7 +26,7 @@ class AddedTerms {
  public:
   /// @param of_laser  for each laser of the model, its own terms and the plate's; none for those beyond its
   /// end
-  AddedTerms(const SensorModel& model, const std::vector<std::vector<AddedTerm>>& of_laser);
+  AddedTerms(SensorModel model, const std::vector<std::vector<AddedTerm>>& of_laser);
 
   /// Sets rows[row of the beam · stride + column] to normal · ∂x/∂parameter [m] for beams that the encoder
   /// readings cover. Thread-safe.

@@ -195,8 +195,8 @@ void ChainJacobian<kRows>::differentiate_group(const std::vector<std::size_t>& g
       for (Jet* quantity : set_by(place.phase, beam)) quantity->v[seed++] += 1;
     }
   });
-  for (std::size_t g = 0; g < group.size(); ++g) {
-    if (group[g] != kSeeded) end_slopes_[group[g]].resize(jets_.size());
+  for (const std::size_t item : group) {
+    if (item != kSeeded) end_slopes_[item].resize(jets_.size());
   }
   for (std::size_t i = 0; i < jets_.size(); ++i) {
     const Vector3<Jet> end = jets_[i].point();

@@ -9,6 +9,7 @@
 #include "pipeline/quality/sort_unique.hpp"
 #include "pipeline/quality/surfel_patches.hpp"
 #include "pipeline/quality/view_flatness.hpp"
+#include "pipeline/quality/view_planes.hpp"
 
 namespace crisp {
 namespace {
@@ -56,63 +57,23 @@ bool keeps_to(const Plane& plane, const FlatPatch& patch, const SurfelSettings& 
          std::abs(plane.distance(patch.plane.middle)) <= settings.max_offset;
 }
 
-/// Sums over the beams of each view that sees a piece, weighted by their noise across it [1/m²].
-struct OneView {
-  std::uint32_t view = 0;
-  double beams = 0;
-  Moments moments;
-};
-using OfViews = std::vector<OneView>;  // ascending
-
-OfViews views_of(const FlatPatch& patch, const BeamsView& beams, const SurfelCells& cells,
-                 const ViewNumbers& views, const SurfelSettings& settings) {
-  OfViews result;
-  for (std::uint32_t k = cells.begin[patch.first_cell]; k < cells.begin[patch.last_cell]; ++k) {
-    const std::uint32_t i = cells.order.index[k];
-    const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
-    const double across = settings.noise * patch.plane.normal.dot(direction);
-    auto own = std::ranges::lower_bound(result, views.of_beam[i], {}, &OneView::view);
-    if (own == result.end() || own->view != views.of_beam[i])
-      own = result.insert(own, {.view = views.of_beam[i], .beams = 0, .moments = {}});
-    own->beams += 1;
-    own->moments.add(cells.point(beams, i), 1 / (across * across + settings.floor * settings.floor));
-  }
+/// The planes in which views see each piece; none where they are not compared.
+std::vector<ViewPlanes> view_planes(const std::vector<FlatPatch>& patches, const BeamsView& beams,
+                                    const SurfelCells& cells, const SurfelSettings& settings) {
+  std::vector<ViewPlanes> result(patches.size());
+  if (!std::isfinite(settings.max_bump)) return result;
+  const ViewNumbers views(beams);
+  for_each_index(patches.size(), [&](std::size_t p) {
+    const FlatPatch& patch = patches[p];
+    for (std::uint32_t k = cells.begin[patch.first_cell]; k < cells.begin[patch.last_cell]; ++k) {
+      const std::uint32_t i = cells.order.index[k];
+      const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
+      const double across = settings.noise * patch.plane.normal.dot(direction);
+      result[p].add(views.of_beam[i], cells.point(beams, i),
+                    1 / (across * across + settings.floor * settings.floor));
+    }
+  });
   return result;
-}
-
-OneView& of_view(OfViews& all, std::uint32_t view) {
-  const auto own = std::ranges::lower_bound(all, view, {}, &OneView::view);
-  return own != all.end() && own->view == view ? *own
-                                               : *all.insert(own, {.view = view, .beams = 0, .moments = {}});
-}
-
-/// Weighted squares of the distances from the points' best plane.
-double squares_left(const Moments& moments) {
-  return moments.count * std::pow(plane_of(moments).extent[0], 2);
-}
-
-/// Whether the views that see both a region and a piece see them in one plane: by how much a common plane
-/// of each view fits worse than two, beyond chance and bumps.
-///
-/// @param bump  [standard deviations of the noise across]
-bool is_one_plane(const OfViews& region, const OfViews& piece, double bump) {
-  constexpr double kLost = 3;    // parameters of a plane
-  constexpr double kChance = 4;  // standard deviations
-  double worse = 0;
-  double lost = 0;
-  double fewer = 0;
-  auto own = region.begin();
-  for (const OneView& of_piece : piece) {
-    own = std::ranges::lower_bound(own, region.end(), of_piece.view, {}, &OneView::view);
-    if (own == region.end()) break;
-    if (own->view != of_piece.view || own->beams <= kLost || of_piece.beams <= kLost) continue;
-    Moments both = own->moments;
-    both += of_piece.moments;
-    worse += squares_left(both) - squares_left(own->moments) - squares_left(of_piece.moments);
-    fewer += std::min(own->beams, of_piece.beams);
-    lost += kLost;
-  }
-  return worse <= lost + kChance * std::sqrt(2 * lost) + bump * bump * fewer;
 }
 
 /// Assigns beams to regions.
@@ -185,10 +146,7 @@ class BeamSorter {
 std::vector<FlatRegion> joined(const std::vector<FlatPatch>& patches, const BeamsView& beams,
                                const SurfelCells& cells, const SurfelSettings& settings) {
   const auto touching = contacts(patches, cells);
-  const ViewNumbers views(beams);
-  std::vector<OfViews> of_views(patches.size());
-  for_each_index(patches.size(),
-                 [&](std::size_t p) { of_views[p] = views_of(patches[p], beams, cells, views, settings); });
+  const auto planes = view_planes(patches, beams, cells, settings);
   std::vector<std::size_t> by_count(patches.size());
   std::iota(by_count.begin(), by_count.end(), std::size_t{0});
   std::ranges::stable_sort(by_count, std::ranges::greater{},
@@ -198,21 +156,17 @@ std::vector<FlatRegion> joined(const std::vector<FlatPatch>& patches, const Beam
   for (const std::size_t seed : by_count) {
     if (taken[seed]) continue;
     FlatRegion region{{seed}, patches[seed].moments, patches[seed].plane};
-    OfViews seen = of_views[seed];
+    ViewPlanes seen = planes[seed];
     taken[seed] = true;
     for (std::size_t k = 0; k < region.patches.size(); ++k) {
       for (const std::size_t other : touching[region.patches[k]]) {
         if (taken[other] || !keeps_to(region.plane, patches[other], settings)) continue;
-        if (!is_one_plane(seen, of_views[other], settings.max_bump)) continue;
+        if (!seen.continues(planes[other], settings.max_bump)) continue;
         taken[other] = true;
         region.patches.push_back(other);
         region.moments += patches[other].moments;
         region.plane = plane_of(region.moments);
-        for (const OneView& more : of_views[other]) {
-          OneView& own = of_view(seen, more.view);
-          own.beams += more.beams;
-          own.moments += more.moments;
-        }
+        seen += planes[other];
       }
     }
     regions.push_back(std::move(region));
