@@ -43,7 +43,7 @@ class Patches final : public FlatSurfaces {
   void complete(const BeamsView& beams) {
     constexpr double kBump = 0.5;
     constexpr double kSpacings = 4;
-    constexpr MisfitLimit kLimit{.times = 1.3, .least = 0.3};
+    constexpr double kMore = 1.3;
     SurfelSettings strict = settings_;
     strict.max_bump = kBump;
     find(beams, strict);
@@ -52,7 +52,7 @@ class Patches final : public FlatSurfaces {
     refine_all(surfels_, beams, settings_);
     for_each_index(surfels_.surfels.size(),
                    [&](std::size_t s) { cut_strange_ends(surfels_.surfels[s], surfels_, beams, settings_); });
-    reject_inconsistent(surfels_, beams, settings_, kLimit);
+    reject_inconsistent(surfels_, beams, settings_, kMore);
   }
 
   SurfelSettings settings_;

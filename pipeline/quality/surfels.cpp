@@ -112,14 +112,14 @@ Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
   });
   // Where each view is but a line, an edge resembles lines that disagree.
   constexpr double kFarMore = 3;
-  reject_inconsistent(result, beams, settings, {.times = kFarMore, .least = 1});
+  reject_inconsistent(result, beams, settings, kFarMore);
   std::ranges::stable_sort(result.surfels, std::ranges::greater{},
                            [](const Surfel& surfel) { return surfel.end - surfel.begin; });
   return result;
 }
 
 void reject_inconsistent(Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
-                         const MisfitLimit& limit) {
+                         double times) {
   constexpr double kChance = 2.1;  // 3 standard deviations of n beams' root mean square, times √n
   std::vector<double> misfits(found.surfels.size());
   for_each_index(misfits.size(),
@@ -142,7 +142,7 @@ void reject_inconsistent(Surfels& found, const BeamsView& beams, const SurfelSet
   for (std::size_t s = 0; s < misfits.size(); ++s) {
     const Surfel& surfel = found.surfels[s];
     const double chance = kChance / std::sqrt(std::max(1U, surfel.end - surfel.begin));
-    if (misfits[s] <= (limit.times + chance) * std::max(median, limit.least)) kept.push_back(surfel);
+    if (misfits[s] <= (times + chance) * std::max(median, 1.0)) kept.push_back(surfel);
   }
   found.surfels = std::move(kept);
 }

@@ -75,16 +75,12 @@ struct Surfels {
 /// The result is the same on any number of threads.
 Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings);
 
-/// Up to where the beams of a surfel may miss its plane, in units of what noise explains (RMS).
-struct MisfitLimit {
-  double times = 1;  ///< so many times as much as most, and what chance makes of so few beams
-  double least = 1;  ///< what most miss theirs by, at least: noise may be lower than SurfelSettings::noise
-};
-
-/// Leaves out surfels whose beams miss their plane by far more than those of most surfels do. A wrong
-/// calibration makes views disagree on all surfaces; those that do much worse are edges, bent, or two sides
-/// of something thin.
+/// Leaves out surfels whose beams miss their plane by far more than those of most surfels do, in units of
+/// what noise explains. A wrong calibration makes views disagree on all surfaces; those that do much worse
+/// are edges, or two sides of something thin.
+///
+/// @param times  so many times as much as most, and what chance makes of so few beams
 void reject_inconsistent(Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
-                         const MisfitLimit& limit);
+                         double times);
 
 }  // namespace crisp

@@ -2,6 +2,7 @@
 #include "plugins/diagnose/model/surface_observations.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <crisp/error.hpp>
@@ -31,10 +32,16 @@ Surfels counting(const Surfels& surfels) {
   return some;
 }
 
-/// The surfaces as a refinement completes them.
-Surfels surfaces(const BeamsView& beams, const SurfelSettings& settings) {
-  Surfels found = counting(patches(settings, 0)->update(beams, 0));
-  refine_all(found, beams, settings);
+Surfels found_by(SurfacesOf of, const BeamsView& beams, const SurfelSettings& settings) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  if (of == SurfacesOf::kSearch) return patches(settings, 1)->update(beams, kFar);
+  Surfels completed = counting(patches(settings, 0)->update(beams, kFar));
+  refine_all(completed, beams, settings);
+  return completed;
+}
+
+Surfels surfaces(SurfacesOf of, const BeamsView& beams, const SurfelSettings& settings) {
+  const Surfels found = found_by(of, beams, settings);
   if (found.surfels.empty()) {
     throw Error("no beam meets a flat surface, so the sensor model cannot be tested",
                 "reduce `min_cell`, or record in a place with walls");
@@ -71,16 +78,16 @@ Surfels thinned(const Surfels& surfels, std::size_t most) {
 
 SurfaceObservations::SurfaceObservations(const SensorModel& model, Sample sample,
                                          const SurfelSettings& settings, std::size_t most,
-                                         std::function<bool()> interrupted)
+                                         std::function<bool()> interrupted, SurfacesOf of)
     : sample_(std::move(sample)),
       placed_(model, sample_),
       settings_(settings),
       interrupted_(std::move(interrupted)) {
-  all_ = surfaces(placed_.view(), settings_);
+  all_ = surfaces(of, placed_.view(), settings_);
   sample_.beams.cos_incidence = incidences(all_, placed_.view());
   // Terms of the incidence angle move beams, mostly those of grazing incidence, and thereby the surfaces.
   if (PlacedBeams moved(model, sample_); are_elsewhere(moved.view(), placed_.view())) {
-    all_ = surfaces(moved.view(), settings_);
+    all_ = surfaces(of, moved.view(), settings_);
     sample_.beams.cos_incidence = incidences(all_, moved.view());
     placed_ = PlacedBeams(model, sample_);
   }

@@ -11,6 +11,10 @@
 
 namespace crisp {
 
+/// Which surfaces beams are compared with: those that a refinement ends with, for the sensor model; or those
+/// that it begins with, which neither grow into edges nor end before them, for what edges do to ranges.
+enum class SurfacesOf { kRefinement, kSearch };
+
 /// Flat surfaces in the beams of a sample, with the normal equations at a model. Surfaces are selected
 /// without regard to the agreement of the views on them.
 class SurfaceObservations {
@@ -19,7 +23,8 @@ class SurfaceObservations {
   /// @param most    number of beams on surfels(), evenly subsampled
   /// @param interrupted  cancellation query of equations(), called from several threads
   SurfaceObservations(const SensorModel& model, Sample sample, const SurfelSettings& settings,
-                      std::size_t most, std::function<bool()> interrupted = {});
+                      std::size_t most, std::function<bool()> interrupted = {},
+                      SurfacesOf of = SurfacesOf::kRefinement);
 
   const Sample& sample() const { return sample_; }
   const Surfels& surfels() const { return surfels_; }  ///< with `most` beams

@@ -32,7 +32,7 @@ constexpr std::size_t kTooFew = 1000;  // minimum number of ranges for a noise m
 SurfaceObservations all_of(const SensorModel& model, const Sample& sample, double noise) {
   SurfelSettings settings;
   settings.noise = noise;
-  return {model, sample, settings, std::numeric_limits<std::size_t>::max()};
+  return {model, sample, settings, std::numeric_limits<std::size_t>::max(), {}, SurfacesOf::kSearch};
 }
 
 }  // namespace

@@ -187,32 +187,19 @@ TEST(Surfels, AreLeftOutWhereBeamsMissThemByMoreThanElsewhere) {
   auto surfels = find_surfels(scan.beams(), settings);
   const auto all = surfels.surfels.size();
   ASSERT_GT(all, 3U);
-  constexpr MisfitLimit kLimit{.times = 1.3};
-  reject_inconsistent(surfels, scan.beams(), settings, kLimit);
+  constexpr double kMore = 1.3;
+  reject_inconsistent(surfels, scan.beams(), settings, kMore);
   EXPECT_EQ(surfels.surfels.size(), all);
 
   const Surfel odd = surfels.surfels[2];
   roughen(scan, surfels, odd, 0.02);
-  reject_inconsistent(surfels, scan.beams(), settings, kLimit);
+  reject_inconsistent(surfels, scan.beams(), settings, kMore);
   EXPECT_EQ(surfels.surfels.size(), all - 1);
   for (const Surfel& surfel : surfels.surfels) EXPECT_NE(surfel.begin, odd.begin);
 
   // But a wrong calibration roughens all of them.
   for (const Surfel& surfel : surfels.surfels) roughen(scan, surfels, surfel, 0.02);
-  reject_inconsistent(surfels, scan.beams(), settings, kLimit);
-  EXPECT_EQ(surfels.surfels.size(), all - 1);
-}
-
-TEST(Surfels, AreJudgedByTheOthersWhereTheNoiseIsLowerThanStated) {
-  auto scan = test::scan_room(20000, {{0, 0}, {0, 0}}, 0.003, 8);
-  const SurfelSettings settings{.noise = 0.012};
-  auto surfels = find_surfels(scan.beams(), settings);
-  const auto all = surfels.surfels.size();
-  ASSERT_GT(all, 3U);
-  roughen(scan, surfels, surfels.surfels[2], 0.009);  // less than the stated noise, three times the true one
-  reject_inconsistent(surfels, scan.beams(), settings, {.times = 1.3, .least = 1});
-  EXPECT_EQ(surfels.surfels.size(), all);
-  reject_inconsistent(surfels, scan.beams(), settings, {.times = 1.3, .least = 0.3});
+  reject_inconsistent(surfels, scan.beams(), settings, kMore);
   EXPECT_EQ(surfels.surfels.size(), all - 1);
 }
 

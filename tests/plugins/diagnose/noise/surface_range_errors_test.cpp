@@ -88,8 +88,9 @@ class AssociatedBeams {
     const LagRange lag = lag_range(model, 0);
     SurfelSettings settings;
     settings.noise = sigma;
-    return {model, covered(recording.sample(), lag.earliest, lag.latest), settings,
-            std::numeric_limits<std::size_t>::max()};
+    return {model,    covered(recording.sample(), lag.earliest, lag.latest),
+            settings, std::numeric_limits<std::size_t>::max(),
+            {},       SurfacesOf::kSearch};
   }
 
   test::Recording recording_;
