@@ -38,6 +38,27 @@ Plane plane_of(const Moments& moments) {
   return plane;
 }
 
+ViewSums ViewSums::of(const Moments& weighted, double count, const Plane& plane) {
+  const Eigen::Vector3d& middle = plane.middle;
+  const Eigen::Vector3d sum = weighted.sum - weighted.count * middle;
+  const Eigen::Matrix3d squares = weighted.squares - weighted.sum * middle.transpose() -
+                                  middle * weighted.sum.transpose() +
+                                  weighted.count * middle * middle.transpose();
+  ViewSums sums;
+  sums.count_ = count;
+  sums.weight_ = weighted.count;
+  sums.u_ = plane.u.dot(sum);
+  sums.v_ = plane.v.dot(sum);
+  sums.distance_ = plane.normal.dot(sum);
+  sums.uu_ = plane.u.dot(squares * plane.u);
+  sums.uv_ = plane.u.dot(squares * plane.v);
+  sums.vv_ = plane.v.dot(squares * plane.v);
+  sums.u_distance_ = plane.u.dot(squares * plane.normal);
+  sums.v_distance_ = plane.v.dot(squares * plane.normal);
+  sums.squares_ = plane.normal.dot(squares * plane.normal);
+  return sums;
+}
+
 ViewSums& ViewSums::operator+=(const ViewSums& other) {
   count_ += other.count_;
   weight_ += other.weight_;

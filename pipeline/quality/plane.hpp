@@ -58,6 +58,12 @@ class ViewSums {
 
   ViewSums& operator+=(const ViewSums& other);
 
+  /// The sums of points with these moments.
+  ///
+  /// @param weighted  of the points, weighted [1/m²]
+  /// @param plane     the common one
+  static ViewSums of(const Moments& weighted, double count, const Plane& plane);
+
   double count() const { return count_; }
   Eigen::Matrix3d matrix() const;  ///< weighted, of the products of 1, u and v
   Eigen::Vector3d vector() const;  ///< and of theirs with the distance

@@ -161,7 +161,7 @@ std::vector<FlatRegion> joined(const std::vector<FlatPatch>& patches, const Beam
     for (std::size_t k = 0; k < region.patches.size(); ++k) {
       for (const std::size_t other : touching[region.patches[k]]) {
         if (taken[other] || !keeps_to(region.plane, patches[other], settings)) continue;
-        if (!seen.continues(planes[other], settings.max_bump)) continue;
+        if (!seen.continues(planes[other], region.plane, settings.max_bump)) continue;
         taken[other] = true;
         region.patches.push_back(other);
         region.moments += patches[other].moments;

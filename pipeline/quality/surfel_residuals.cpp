@@ -82,11 +82,21 @@ void move(Surfel& surfel, const Eigen::Vector3d& plane) {
   surfel.u = surfel.v.cross(surfel.normal);
 }
 
+/// Mean |cosine| between the beams and the normal.
+double mean_incidence(const std::vector<SurfelResidual>& residuals) {
+  double sum = 0;
+  for (const SurfelResidual& r : residuals) sum += std::abs(r.incidence);
+  return sum / static_cast<double>(std::max<std::size_t>(1, residuals.size()));
+}
+
 void refit(Surfel& surfel, const Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings) {
   constexpr int kRounds = 3;           // where a beam meets the plane depends on the plane
   constexpr double kSmallTurn = 1e-3;  // [rad] small against the angle at which beams still count
+  constexpr double kSteep = 0.8;       // met so steeply, a plane's turns of some degrees matter little
   for (int round = 0; round < kRounds; ++round) {
-    const Eigen::Vector3d plane = fit(surfel, weighted_from_own_plane(surfel, surfels, beams, settings));
+    const auto residuals = weighted_from_own_plane(surfel, surfels, beams, settings);
+    if (mean_incidence(residuals) > kSteep) return;
+    const Eigen::Vector3d plane = fit(surfel, residuals);
     move(surfel, plane);
     if (plane.tail<2>().norm() < kSmallTurn) return;
   }

@@ -40,8 +40,9 @@ std::vector<SurfelResidual> residuals_of(const Surfel& surfel, const Surfels& su
 void refine(Surfel& surfel, Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings);
 void refine_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings);
 
-/// Moves the planes to where their beams now are, with the weights as they are. Residuals are linear in the
-/// change of a plane; a plane that beams graze may turn by only a fraction of that angle before they are not.
+/// Moves planes that most beams meet aslant to where their beams now are, with the weights as they are.
+/// Residuals are linear in the change of a plane; one that beams graze may turn by only a fraction of that
+/// angle before they are not.
 void refit_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings);
 
 }  // namespace crisp

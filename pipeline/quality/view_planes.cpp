@@ -7,9 +7,10 @@
 namespace crisp {
 namespace {
 
-/// Weighted squares of the distances from the points' best plane.
-double squares_left(const Moments& moments) {
-  return moments.count * std::pow(plane_of(moments).extent[0], 2);
+/// Weighted squares of the distances from the view's own plane.
+double squares_left(const Moments& moments, double beams, const Plane& plane) {
+  const ViewSums sums = ViewSums::of(moments, beams, plane);
+  return sums.squares_left(sums.fit());
 }
 
 }  // namespace
@@ -35,7 +36,7 @@ ViewPlanes& ViewPlanes::operator+=(const ViewPlanes& other) {
   return *this;
 }
 
-bool ViewPlanes::continues(const ViewPlanes& other, double bump) const {
+bool ViewPlanes::continues(const ViewPlanes& other, const Plane& plane, double bump) const {
   constexpr double kLost = 3;    // parameters of a plane
   constexpr double kChance = 4;  // standard deviations
   double worse = 0;
@@ -49,7 +50,8 @@ bool ViewPlanes::continues(const ViewPlanes& other, double bump) const {
     if (own->view != their.view || own->beams <= kLost || their.beams <= kLost) continue;
     Moments both = own->moments;
     both += their.moments;
-    worse += squares_left(both) - squares_left(own->moments) - squares_left(their.moments);
+    worse += squares_left(both, own->beams + their.beams, plane) -
+             squares_left(own->moments, own->beams, plane) - squares_left(their.moments, their.beams, plane);
     bumps += bump * bump * std::min(own->beams, their.beams);
     lost += kLost;
   }

@@ -19,8 +19,9 @@ class ViewPlanes {
   /// Whether the views that see both pieces see them in one plane: a common plane of each view fits no worse
   /// than two, but for chance and bumps.
   ///
-  /// @param bump  [standard deviations of the noise across]
-  bool continues(const ViewPlanes& other, double bump) const;
+  /// @param plane  of the surface, from which a view's own plane is tilted by no more than some degrees
+  /// @param bump   [standard deviations of the noise across]
+  bool continues(const ViewPlanes& other, const Plane& plane, double bump) const;
 
  private:
   struct OfView {
