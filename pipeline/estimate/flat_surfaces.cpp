@@ -12,11 +12,12 @@ namespace {
 
 class Patches final : public FlatSurfaces {
  public:
-  Patches(const SurfelSettings& settings, int searches) : settings_(settings), searches_(searches) {}
+  Patches(const SurfelSettings& settings, int searches, bool swept)
+      : settings_(settings), searches_(searches), swept_(swept) {}
 
   const Surfels& update(const BeamsView& beams, double last_step) override {
     if (!is_searching_) {
-      refit_all(surfels_, beams, settings_);
+      if (swept_) refit_all(surfels_, beams, settings_);
       return surfels_;
     }
     is_searching_ = last_step > kSmallStep && round_++ < searches_;
@@ -45,8 +46,8 @@ class Patches final : public FlatSurfaces {
     constexpr double kSpacings = 4;
     constexpr double kMore = 1.3;
     SurfelSettings strict = settings_;
-    strict.max_bump = kBump;
-    find(beams, strict);
+    if (swept_) strict.max_bump = kBump;
+    if (swept_ || surfels_.surfels.empty()) find(beams, strict);
     surfels_ =
         grow_surfaces(surfels_, beams, settings_, {.margin = settings_.smallest, .spacings = kSpacings});
     refine_all(surfels_, beams, settings_);
@@ -57,6 +58,7 @@ class Patches final : public FlatSurfaces {
 
   SurfelSettings settings_;
   int searches_;
+  bool swept_;
   Surfels surfels_;
   int round_ = 0;
   bool is_searching_ = true;
@@ -90,8 +92,8 @@ class UprightWalls final : public FlatSurfaces {
 
 }  // namespace
 
-std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings, int searches) {
-  return std::make_unique<Patches>(settings, searches);
+std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings, int searches, bool swept) {
+  return std::make_unique<Patches>(settings, searches, swept);
 }
 
 std::unique_ptr<FlatSurfaces> upright_walls(const SurfelSettings& settings, int searches) {

@@ -29,7 +29,9 @@ class FlatSurfaces {
 /// Patches and walls that beams of a full field of view see: see find_surfels().
 ///
 /// @param searches  rounds after which they are kept, at the latest
-std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings, int searches);
+/// @param swept     whether each view sees areas; beams that do not sweep see lines, whose own planes are not
+/// the walls'
+std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings, int searches, bool swept = true);
 
 /// Upright walls that beams in the plate's plane see as lines: see wall_lines().
 std::unique_ptr<FlatSurfaces> upright_walls(const SurfelSettings& settings, int searches);

@@ -4,6 +4,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <utility>
 
 #include <crisp/error.hpp>
@@ -16,6 +18,24 @@
 #include "pipeline/estimate/surfel_jacobian.hpp"
 
 namespace crisp {
+
+namespace {
+
+/// Whether the mirror of each laser sweeps: beams that were fired in one direction do not.
+bool is_swept(const Measurements& beams) {
+  constexpr float kSweep = 0.5F;  // [rad]
+  std::map<std::uint16_t, std::pair<float, float>> spans;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const float angle = beams.mirror_angle[i];
+    auto& [least, most] = spans.try_emplace(beams.laser[i], angle, angle).first->second;
+    least = std::min(least, angle);
+    most = std::max(most, angle);
+  }
+  return std::ranges::all_of(spans,
+                             [](const auto& of) { return of.second.second - of.second.first > kSweep; });
+}
+
+}  // namespace
 
 LagRange refined_lags(const SensorModel& start, const ParameterPrior& prior) {
   const LagRange lags = lag_range(start, prior.eta);
@@ -30,8 +50,9 @@ SurfelRefiner::SurfelRefiner(const SensorModel& start, Sample sample, std::vecto
       sample_(std::move(sample)),
       free_(std::move(free)),
       settings_(settings),
-      surfaces_(is_in_plane(sample_) ? upright_walls(settings.surfels, settings.searches)
-                                     : patches(settings.surfels, settings.searches)) {}
+      surfaces_(is_in_plane(sample_)
+                    ? upright_walls(settings.surfels, settings.searches)
+                    : patches(settings.surfels, settings.searches, is_swept(sample_.beams))) {}
 
 bool SurfelRefiner::step() {
   const PlacedBeams placed(model_, sample_);
