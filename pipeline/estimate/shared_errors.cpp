@@ -117,6 +117,11 @@ Eigen::VectorXd widening(const NormalEquations& equations) {
   return wider.sqrt();
 }
 
+Eigen::VectorXd widening_with_prior(const Eigen::VectorXd& by, const Eigen::VectorXd& of_prior) {
+  const Eigen::ArrayXd prior = of_prior.array().max(0).min(1);
+  return ((1 - prior) / by.array().square() + prior).rsqrt();
+}
+
 Eigen::MatrixXd widened(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& by) {
   const Eigen::VectorXd excess = (by.array().square() - 1).sqrt();
   return covariance + excess.asDiagonal() * covariance * excess.asDiagonal();

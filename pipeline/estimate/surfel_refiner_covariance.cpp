@@ -56,7 +56,9 @@ void SurfelRefiner::widen_by_shared_errors() {
   const auto equations =
       normal_equations(found_, placed.view(noise_), free_.size(), surfel_rows(model_, sample_, free_),
                        settings_.surfels, shared_errors(sample_.beams, found_, placed.view(noise_)));
-  covariance_ = widened(covariance_, widening(equations));
+  const Eigen::VectorXd of_prior =
+      covariance_.diagonal().cwiseQuotient(ranges_of(settings_.prior, model_, free_).cwiseAbs2());
+  covariance_ = widened(covariance_, widening_with_prior(widening(equations), of_prior));
   if (settings_.angle_step > 0) covariance_ = widened(covariance_, widening_by_quantization(equations));
 }
 

@@ -99,6 +99,15 @@ TEST(Widened, MakesNoCombinationBetterKnown) {
   EXPECT_GE(more.eigenvalues().minCoeff(), -1e-12);
 }
 
+TEST(WideningWithPrior, LeavesWhatThePriorKnows) {
+  const Eigen::Vector3d by(5, 5, 5);
+  // Known from the data, from both alike, and from the prior alone.
+  const Eigen::VectorXd wider = widening_with_prior(by, Eigen::Vector3d(1e-9, 0.5, 1));
+  EXPECT_NEAR(wider[0], 5, 1e-6);
+  EXPECT_NEAR(wider[1] * wider[1], 1 / (0.5 / 25 + 0.5), 1e-12);
+  EXPECT_NEAR(wider[2], 1, 1e-12);
+}
+
 using Change = std::function<void(ScannerSettings&)>;
 using Spoil = std::function<void(SimulatedMeasurements&)>;
 
