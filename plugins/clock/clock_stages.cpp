@@ -119,7 +119,8 @@ void ConvexHullStage::describe(StageDescription<ConvexHullStage>& d) {
       .summary("transforms all stamps to the hub's clock, by the convex hull below them");
   d.details(
       "Telegrams are delayed, never early: the device's clock is the highest line below all pairs of transmission and receipt time, an edge of their lower convex hull (Zhang, Liu, Xia 2002). Long recordings have a line per window, and the map is linear between the windows' centres, so that it follows a clock's drift. A reset of a device begins a new line. After a pause of 5 s without items from any device another recording begins, independent of the one before it.\n\n"
-      "Each beam gets its firing time: the mirror's motion is estimated from the scans' own stamps, since mirrors turn up to 0.6 % slower than nominal, and wander.");
+      "Each beam gets its firing time: the mirror's motion is estimated from the scans' own stamps, since mirrors turn up to 0.6 % slower than nominal, and wander.\n\n"
+      "Prints for each device: its stamps; its clock's skew and the standard error (`+-`), in ppm, above zero where the clock is slower than the hub's; median and 95 % quantile of the delays beyond the shortest, in microseconds (`median/us`, `95 %/us`; below a millisecond is good); lost telegrams and resets of the clock.");
   describe_alignment(d);
   describe_windows(d);
   describe_fit(d);
