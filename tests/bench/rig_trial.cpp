@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Calibration of any rig: tests/independent draws rigs, scenes, motions, clocks and mistakes from seeds, and
 // configs/calibrate.yaml gets the capture and the rig's file. Prints a line for each draw, and in the end how
-// many were right and trusted, which mistakes were reported, and the coverage of the standard errors.
+// many were right and trusted, which mistakes were reported, the coverage of the standard errors, and whether
+// configs/bound.yaml foretold from the rig's file what would be determined.
 //
 //     rig_trial FIRST DRAWS [NAME=VALUE...]      as independent_scanner has them: fault=mount, duration=8
 #include <fmt/format.h>
@@ -15,30 +16,75 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <crisp/calibration_file.hpp>
 
+#include "pipeline/data/degree.hpp"
 #include "tests/end_to_end/drawn_rig.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 
 namespace crisp {
 namespace {
 
+/// What study.bound expects of a recording with this rig.
+struct Expected {
+  std::string problem;               // with which study.bound ended
+  std::vector<std::string> names;    // of all parameters but the gauge
+  std::vector<std::string> unknown;  // those that are not determined
+  double tau = 0;                    // m, largest standard error
+  double angle = 0;                  // rad, the same of lambda and alpha
+
+  bool is_gauge(const std::string& name) const { return std::ranges::count(names, name) == 0; }
+  bool is_good() const { return problem.empty() && unknown.empty() && tau < 2e-3 && angle < 0.3 * kDegree; }
+  std::string text() const {
+    if (!problem.empty()) return "bound: " + problem;
+    if (!unknown.empty()) return fmt::format("bound: not {}", fmt::join(unknown, ", "));
+    return fmt::format("bound: {:.2f} mm, {:.3f} deg", tau * 1e3, angle / kDegree);
+  }
+};
+
+Expected expect(const test::PipelineFixture& fixture, const test::DrawnRig& drawn) {
+  std::vector<std::string> set = {"study.bound.refine=false"};
+  for (const auto& option : drawn.plan()) set.push_back("study.bound." + option);
+  const auto outcome = fixture.run("bound.yaml", {}, "bound", set, drawn.rig());
+  Expected expected;
+  if (outcome.summary.is_null() || outcome.status != ExitStatus::done) {
+    expected.problem = outcome.console.substr(0, outcome.console.find('\n'));
+    return expected;
+  }
+  for (const auto& [name, entry] : outcome.stage("study.bound").at("report").at("parameters").items()) {
+    expected.names.push_back(name);
+    if (!entry.contains("std_error_with_steps")) {
+      expected.unknown.push_back(name);
+      continue;
+    }
+    const auto error = entry.at("std_error_with_steps").get<double>();
+    if (name.ends_with(".eta")) continue;
+    double& largest = name.ends_with(".tau") ? expected.tau : expected.angle;
+    largest = std::max(largest, error);
+  }
+  return expected;
+}
+
 class RigTrial {
  public:
   void run(std::uint64_t seed, const std::vector<std::string>& fixed) {
     const test::PipelineFixture fixture;
     const test::DrawnRig drawn(fixture / "drawn", seed, fixed);
+    const Expected expected = drawn.fault() == "none" ? expect(fixture, drawn) : Expected{};
     const auto begin = std::chrono::steady_clock::now();
     const auto outcome = fixture.run("calibrate.yaml", drawn.capture(), "out", {}, drawn.rig());
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     std::string verdict = outcome.status == ExitStatus::done ? "trusted" : "untrusted";
-    std::vector<std::string> wrong;
+    std::vector<std::string> wrong, held;
     if (std::ranges::count(outcome.files, "calibration.yaml") == 0) {
       verdict = "refused";
     } else {
       for (const auto& parameter : drawn.compare(read_calibration(fixture / "out/calibration.yaml"))) {
+        // A lambda that nothing bounds is the gauge.
+        if (!parameter.free && !expected.is_gauge(parameter.name)) held.push_back(parameter.name);
         if (parameter.is_wrong()) {
           wrong.push_back(
               fmt::format("{} {:.1f} s.e.", parameter.name, std::abs(parameter.error) / parameter.std_error));
@@ -52,6 +98,14 @@ class RigTrial {
     ++verdicts_[drawn.fault()][verdict];
     fmt::print("{:<5} {:<9} {:<17} {:.0f} s; {}; {}\n", seed, drawn.fault(), verdict, took.count(),
                drawn.words(), fmt::join(wrong, ", "));
+    if (drawn.fault() == "none") {
+      const bool is_determined = verdict != "refused" && held.empty();
+      ++foretold_[{expected.problem.empty() && expected.unknown.empty(), is_determined}];
+      if (expected.is_good()) ++where_bound_is_good_[verdict];
+      fmt::print("      {}", expected.text());
+      if (!held.empty()) fmt::print("; held: {}", fmt::join(held, ", "));
+      fmt::print("\n");
+    }
     if (outcome.status != ExitStatus::done) print_reasons(outcome.console);
     std::fflush(stdout);
   }
@@ -62,6 +116,14 @@ class RigTrial {
       fmt::print("{}:", fault);
       for (const auto& [verdict, draws] : verdicts) fmt::print("  {} {}", draws, verdict);
       fmt::print("\n");
+    }
+    fmt::print("bound below 2 mm and 0.3 deg:");
+    for (const auto& [verdict, draws] : where_bound_is_good_) fmt::print("  {} {}", draws, verdict);
+    fmt::print("\n");
+    for (const auto& [determined, draws] : foretold_) {
+      fmt::print("  {} {} by the bound, {} by the calibration\n", draws,
+                 determined.first ? "determined" : "not determined",
+                 determined.second ? "determined" : "not determined");
     }
     for (const auto& [kind, scores] : scores_) {
       const auto within = [&scores = scores](double errors) {
@@ -88,6 +150,8 @@ class RigTrial {
   }
 
   std::map<std::string, std::map<std::string, int>> verdicts_;  // by fault
+  std::map<std::string, int> where_bound_is_good_;              // by verdict; right rigs
+  std::map<std::pair<bool, bool>, int> foretold_;               // determined by the bound, by the calibration
   std::map<std::string, std::vector<double>> scores_;           // errors in standard errors, by kind
 };
 

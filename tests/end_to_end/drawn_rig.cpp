@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "pipeline/data/degree.hpp"
 
@@ -29,6 +30,37 @@ double size_of(const std::vector<FoundParameter>& pose) {
 
 FoundParameter found(const std::string& name, const Parameter& parameter, double error) {
   return {.name = name, .error = error, .std_error = parameter.std_error, .free = parameter.free};
+}
+
+/// Of the scenes and motions that study.bound has, the nearest ones: it has no tunnel.
+std::vector<std::string> plan_of(const YAML::Node& truth) {
+  const auto scene = truth["scene"].as<std::string>();
+  const auto motion = truth["motion"].as<std::string>();
+  const auto duration = truth["duration"].as<double>();
+  const double rate = truth["turns"].as<double>() / duration;
+  std::string lasers;
+  for (const auto& entry : truth["lasers"]) {
+    const YAML::Node& laser = entry.second;
+    const auto kind = laser["kind"].as<std::string>();
+    const auto step = laser["step_deg"].as<double>();
+    const auto [first, last] = kind == "lms1xx"   ? std::pair(-45.0, 225.0)
+                               : kind == "lms5xx" ? std::pair(-5.0, 185.0)
+                                                  : std::pair(0.0, 360 - step);
+    lasers +=
+        fmt::format("{}{}: {{first_angle: {}deg, last_angle: {}deg, step: {}deg, mirror_frequency: {}Hz}}",
+                    lasers.empty() ? "" : ", ", entry.first.as<std::string>(), first, last, step,
+                    laser["rate"].as<double>());
+  }
+  const auto [slowest, fastest] = motion == "constant" ? std::pair(1.0, 1.0)
+                                  : motion == "ripple" ? std::pair(0.97, 1.03)
+                                                       : std::pair(0.6, 1.6);
+  constexpr double kLongest = 20;  // s: observability does not depend on more
+  return {"scene=" + (scene == "tunnel" ? "hall" : scene),
+          "motion=" + (motion == "varied" || motion == "ripple" ? "varying" : motion),
+          fmt::format("min_rate={}Hz", slowest * rate),
+          fmt::format("max_rate={}Hz", fastest * rate),
+          fmt::format("duration={}s", std::min(duration, kLongest)),
+          "lasers={" + lasers + "}"};
 }
 
 }  // namespace
@@ -55,6 +87,7 @@ DrawnRig::DrawnRig(const std::filesystem::path& folder, std::uint64_t seed,
              .rms = effect["rms"].as<double>()};
   words_ = fmt::format("{}, {}, {:.0f} s;", truth["scene"].as<std::string>(),
                        truth["motion"].as<std::string>(), truth["duration"].as<double>());
+  plan_ = plan_of(truth);
   for (const auto& entry : truth["lasers"]) {
     const YAML::Node& laser = entry.second;
     const auto number = [&](const char* key) { return laser[key].as<double>(); };

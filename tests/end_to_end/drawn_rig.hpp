@@ -46,6 +46,9 @@ class DrawnRig {
     return words_;
   }  ///< "office, varied, 12 s; lms1xx at 45, lms5xx at 90 deg"
 
+  /// What is known before the recording, as options of study.bound: "duration=8s".
+  const std::vector<std::string>& plan() const { return plan_; }
+
   /// All parameters but the gauge, of the lasers that sent anything. (λ, −τ, α + 180°) is what (λ + 180°, τ,
   /// α) is, and all lasers at once turn with the frame.
   std::vector<FoundParameter> compare(const Calibration& found) const;
@@ -63,6 +66,7 @@ class DrawnRig {
   std::string fault_;
   InjectedEffect effect_;
   std::string words_;
+  std::vector<std::string> plan_;
   std::vector<Laser> lasers_;
 };
 
