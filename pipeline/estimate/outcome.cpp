@@ -13,12 +13,18 @@
 namespace crisp {
 namespace {
 
-std::string remark(const Parameter& parameter, const std::string& name, const Calibration& calibration) {
+/// Why a parameter has no standard error, and where its value is from.
+///
+/// @param change  of the value from nominal [SI]
+std::string remark(const Parameter& parameter, const std::string& name, const Calibration& calibration,
+                   double change) {
+  constexpr double kSmall = 1e-9;
   const auto& list = calibration.unobservable;
   const bool unknown =
       std::any_of(list.begin(), list.end(), [&](const auto& u) { return u.parameter == name; });
-  if (unknown) return "not observable";
-  return parameter.free ? "" : "kept";
+  if (!unknown && parameter.free) return "";
+  const std::string why = unknown ? "not observable" : "kept";
+  return std::abs(change) > kSmall ? why + ", at the value of an earlier stage" : why;
 }
 
 /// Number of decimals that show two digits of the error; four without an error, or for a large one.
@@ -78,7 +84,7 @@ std::string table_of(const Calibration& calibration, const Rig& rig) {
     const std::string error = p.free ? fmt::format("{:.{}f}", p.std_error * as.factor, decimals) : "";
     table +=
         fmt::format("{:<24}{:>12.{}f} {:<3} {:>9}  {:>+10.{}f}  {}\n", name, p.value * as.factor, decimals,
-                    as.name, error, change * as.factor, decimals, remark(p, name, calibration));
+                    as.name, error, change * as.factor, decimals, remark(p, name, calibration, change));
   });
   table.pop_back();
   return table;
