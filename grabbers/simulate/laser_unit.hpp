@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "grabbers/simulate/link.hpp"
-#include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/recording_settings.hpp"
 #include "grabbers/simulate/sweep.hpp"
 #include "grabbers/wire/scan_data.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 

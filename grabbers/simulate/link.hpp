@@ -5,7 +5,7 @@
 #include <string>
 
 #include "grabbers/simulate/device_clock.hpp"
-#include "grabbers/simulate/random.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "grabbers/simulate/random.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 

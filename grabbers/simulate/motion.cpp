@@ -9,8 +9,8 @@
 
 #include <crisp/error.hpp>
 
-#include "grabbers/simulate/random.hpp"
 #include "pipeline/data/internal_error.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "grabbers/simulate/random.hpp"
 #include "pipeline/model/range_variance.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 

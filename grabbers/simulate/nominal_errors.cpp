@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-#include "grabbers/simulate/random.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "grabbers/simulate/link.hpp"
 #include "grabbers/simulate/motion.hpp"
-#include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/recording_settings.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 

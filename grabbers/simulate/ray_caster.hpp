@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/scene.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 

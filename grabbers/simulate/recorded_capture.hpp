@@ -7,8 +7,8 @@
 
 #include "grabbers/capture/hub_traffic_encoder.hpp"
 #include "grabbers/capture/pcap_writer.hpp"
-#include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/recording.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 

@@ -8,8 +8,8 @@
 
 #include <crisp/error.hpp>
 
-#include "grabbers/simulate/random.hpp"
 #include "pipeline/files/nearest.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 namespace {

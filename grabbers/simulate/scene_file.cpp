@@ -7,12 +7,12 @@
 #include <numbers>
 #include <optional>
 
-#include "grabbers/simulate/random.hpp"
+#include "grabbers/simulate/point_yaml.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
 #include "grabbers/simulate/scene_geometry.hpp"
-#include "grabbers/simulate/scene_points.hpp"
 #include "grabbers/simulate/shapes.hpp"
 #include "pipeline/files/yaml_map.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 namespace {

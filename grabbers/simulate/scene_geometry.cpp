@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "grabbers/simulate/scene_points.hpp"
+#include "grabbers/simulate/point_yaml.hpp"
 #include "grabbers/simulate/shapes.hpp"
 #include "pipeline/files/nearest.hpp"
 

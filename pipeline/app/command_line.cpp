@@ -6,7 +6,7 @@
 #include "pipeline/app/installed_pipelines.hpp"
 #include "pipeline/app/own_pipelines.hpp"
 #include "pipeline/app/own_process.hpp"
-#include "pipeline/app/usage_error.hpp"
+#include "pipeline/app/usage_message.hpp"
 #include "pipeline/app/whole_number.hpp"
 
 namespace crisp {

@@ -17,7 +17,7 @@
 #include <crisp/error.hpp>
 
 #include "pipeline/batch/job_message.hpp"
-#include "pipeline/batch/job_table.hpp"
+#include "pipeline/batch/running_jobs.hpp"
 
 namespace crisp {
 namespace {
@@ -40,7 +40,7 @@ void send_end(int socket, const JobEnd& end) {
 }
 
 /// Executes a message's command; false if the batch process is gone.
-bool obey(int socket, JobTable& jobs) {
+bool obey(int socket, RunningJobs& jobs) {
   const auto message = receive(socket, 0);
   if (!message) return false;
   const auto fields = split_fields(*message);
@@ -61,7 +61,7 @@ bool obey(int socket, JobTable& jobs) {
   sigprocmask(SIG_BLOCK, &child_ended, nullptr);
   const int ended = signalfd(-1, &child_ended, SFD_CLOEXEC | SFD_NONBLOCK);
   {
-    JobTable jobs(run, {socket, ended});
+    RunningJobs jobs(run, {socket, ended});
     while (true) {
       std::vector<pollfd> polled = {{.fd = socket, .events = POLLIN, .revents = 0},
                                     {.fd = ended, .events = POLLIN, .revents = 0}};

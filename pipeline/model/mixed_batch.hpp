@@ -8,7 +8,7 @@
 #include <crisp/measurements.hpp>
 #include <crisp/plate_trajectory.hpp>
 
-#include "pipeline/model/base_kinematics.hpp"
+#include "pipeline/model/simd_placement.hpp"
 
 namespace crisp {
 

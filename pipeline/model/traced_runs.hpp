@@ -13,8 +13,8 @@
 #include <crisp/sensor_model.hpp>
 
 #include "pipeline/data/internal_error.hpp"
-#include "pipeline/model/base_kinematics.hpp"
 #include "pipeline/model/chain.hpp"
+#include "pipeline/model/simd_placement.hpp"
 
 namespace crisp {
 

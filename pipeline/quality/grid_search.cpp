@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/searches.hpp"
 #include "pipeline/quality/spatial_order.hpp"
 #include "pipeline/quality/sum_on_lattice.hpp"
 #include "pipeline/quality/sum_over_tiles.hpp"
+#include "pipeline/quality/truncation_bound.hpp"
 
 namespace crisp {
 namespace {

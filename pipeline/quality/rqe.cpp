@@ -6,8 +6,8 @@
 #include <crisp/rqe.hpp>
 
 #include "pipeline/quality/blocks.hpp"
-#include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/searches.hpp"
+#include "pipeline/quality/truncation_bound.hpp"
 
 namespace crisp {
 

@@ -5,8 +5,8 @@
 #include <crisp/neighbour_search.hpp>
 
 #include "pipeline/quality/blocks.hpp"
-#include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/searches.hpp"
+#include "pipeline/quality/truncation_bound.hpp"
 
 namespace crisp {
 namespace {

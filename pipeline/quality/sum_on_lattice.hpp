@@ -6,7 +6,7 @@
 #include <crisp/neighbour_search.hpp>
 #include <crisp/points.hpp>
 
-#include "pipeline/quality/kernel.hpp"
+#include "pipeline/quality/truncation_bound.hpp"
 
 namespace crisp {
 

@@ -6,8 +6,8 @@
 #include <crisp/neighbour_search.hpp>
 #include <crisp/points.hpp>
 
-#include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/tiles.hpp"
+#include "pipeline/quality/truncation_bound.hpp"
 
 namespace crisp {
 

@@ -10,7 +10,7 @@
 #include <crisp/plugin.hpp>
 #include <crisp/plugin_loader.hpp>
 
-#include "pipeline/stage/shared_object.hpp"
+#include "pipeline/stage/plugin_check.hpp"
 
 namespace crisp {
 namespace {

@@ -7,8 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <random>
 #include <vector>
+
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 
@@ -19,12 +20,12 @@ class BlockDraws {
   BlockDraws(std::size_t size, std::size_t block, std::uint64_t seed)
       : size_(size),
         block_(std::clamp<std::size_t>(block, 1, std::max<std::size_t>(size, 1))),
-        random_(seed) {}
+        random_(seed, "bootstrap") {}
 
   std::vector<std::size_t> draw() {
     std::vector<std::size_t> picked;
     while (picked.size() < size_) {
-      const std::size_t begin = random_() % (size_ - block_ + 1);
+      const std::size_t begin = random_.below(size_ - block_ + 1);
       for (std::size_t k = 0; k < block_ && picked.size() < size_; ++k) picked.push_back(begin + k);
     }
     return picked;
@@ -33,7 +34,7 @@ class BlockDraws {
  private:
   std::size_t size_;
   std::size_t block_;
-  std::mt19937_64 random_;
+  RandomStream random_;
 };
 
 struct Spread {

@@ -8,7 +8,7 @@
 
 #include <crisp/clock_aligner.hpp>
 
-#include "pipeline/clocks/forward_step.hpp"
+#include "pipeline/clocks/hub_forward_step.hpp"
 #include "pipeline/data/recordings.hpp"
 #include "plugins/clock/hub_timings.hpp"
 #include "plugins/clock/received.hpp"

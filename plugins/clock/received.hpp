@@ -8,7 +8,7 @@
 
 #include <crisp/scan.hpp>
 
-#include "pipeline/clocks/forward_step.hpp"
+#include "pipeline/clocks/hub_forward_step.hpp"
 
 namespace crisp {
 

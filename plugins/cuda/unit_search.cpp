@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "pipeline/quality/blocks.hpp"
-#include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/searches.hpp"
+#include "pipeline/quality/truncation_bound.hpp"
 
 namespace crisp::cuda {
 namespace {

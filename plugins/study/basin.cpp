@@ -6,9 +6,9 @@
 
 #include <crisp/error.hpp>
 
-#include "grabbers/simulate/random.hpp"
 #include "pipeline/estimate/base_parameters.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "grabbers/simulate/random.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 

@@ -5,8 +5,8 @@
 
 #include <crisp/rqe.hpp>
 
-#include "pipeline/quality/kernel.hpp"
 #include "pipeline/quality/searches.hpp"
+#include "pipeline/quality/truncation_bound.hpp"
 #include "plugins/cuda/gpu.hpp"
 #include "tests/bench/walls.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <crisp/points.hpp>
 
-#include "pipeline/quality/kernel.hpp"
+#include "pipeline/quality/truncation_bound.hpp"
 
 namespace crisp::bench {
 

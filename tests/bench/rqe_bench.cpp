@@ -7,7 +7,7 @@
 #include <crisp/neighbour_search.hpp>
 #include <crisp/rqe.hpp>
 
-#include "pipeline/quality/kernel.hpp"
+#include "pipeline/quality/truncation_bound.hpp"
 #include "tests/bench/walls.hpp"
 
 namespace crisp {

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <random>
 #include <set>
 #include <utility>
 
 #include "pipeline/data/degree.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/diagnose/clocks/angle_shift_regression.hpp"
 
@@ -237,12 +237,12 @@ class SlipSearch {
 std::array<double, 2> interval_of_change(const std::vector<std::array<double, 3>>& blocks,
                                          std::uint64_t seed) {
   constexpr std::size_t kDraws = 1000;
-  std::mt19937_64 random(seed);
+  RandomStream random(seed, "slips");
   std::vector<double> changes(kDraws);
   for (double& change : changes) {
     std::array<double, 3> sum{};
     for (std::size_t k = 0; k < blocks.size(); ++k) {
-      const auto& block = blocks[random() % blocks.size()];
+      const auto& block = blocks[random.below(blocks.size())];
       for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += block[c];
     }
     change = std::sqrt(sum[1] / sum[2]) - std::sqrt(sum[0] / sum[2]);

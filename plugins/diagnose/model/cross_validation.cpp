@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <random>
 
 #include <crisp/rqe.hpp>
 
@@ -15,6 +14,7 @@
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 #include "pipeline/statistics/weighted_mean.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 
@@ -193,10 +193,10 @@ std::vector<Gain> CrossValidator::gains(const Score& before, const Score& after)
   std::vector<Gain> gains;
   if (all.size() < 2) return gains;
   // A fixed seed: every metric gets the same bootstrap samples.
-  std::mt19937_64 random(all.size());
+  RandomStream random(all.size(), "turns");
   std::vector<std::vector<std::size_t>> draws(kDraws, std::vector<std::size_t>(all.size()));
   for (auto& drawn : draws) {
-    for (auto& turn : drawn) turn = all[random() % all.size()];
+    for (auto& turn : drawn) turn = all[random.below(all.size())];
   }
   const auto count = static_cast<double>(all.size());
   const double wider = quantile(boost::math::students_t(count - 1), 0.975) * std::sqrt(count / (count - 1));

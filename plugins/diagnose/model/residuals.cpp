@@ -4,10 +4,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "pipeline/estimate/relative_noise.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
@@ -98,11 +98,10 @@ double shared_square(const Residuals& residuals, const WeightedResiduals& values
 
 WeightedResiduals simulated(const Residuals& residuals, const std::vector<double>& noise,
                             std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  RandomStream random(seed, "residuals");
   const std::size_t n = residuals.size();
   WeightedResiduals made{.value = std::vector<double>(n), .weight = std::vector<double>(n)};
-  for (std::size_t k = 0; k < n; ++k) made.value[k] = noise[k] * residuals.reported[k] * normal(random);
+  for (std::size_t k = 0; k < n; ++k) made.value[k] = noise[k] * residuals.reported[k] * random.normal();
   for (std::size_t s = 0; s < residuals.planes.size(); ++s) {
     const auto members = static_cast<Eigen::Index>(residuals.first[s + 1] - residuals.first[s]);
     if (members == 0) continue;

@@ -14,6 +14,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/statistics/multiple_testing.hpp"
 #include "pipeline/statistics/quantile_groups.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 #include "plugins/diagnose/noise/common_mode_range_error.hpp"
 #include "plugins/diagnose/noise/noise_components.hpp"
 
@@ -190,7 +191,7 @@ struct Simulator {
 
 /// Simulates ranges in place of the measured ones, with the device's quantization.
 RangeErrors made_by(const Simulator& by, RangeErrors errors, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
+  RandomStream random(seed, "ranges");
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const double at = double{errors.range[i]} + (by.curve.size() > 0 ? by.curve[errors.block[i]] : 0);
     double range = at + by.model.drawn(random, errors.echo(i), errors.beam[i]);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/statistics/random_stream.hpp"
 #include "plugins/diagnose/noise/expectation_step.hpp"
 
 namespace crisp {
@@ -188,13 +189,13 @@ double NoiseModel::normal_score(double value, const EchoConditions& echo, std::u
   return below < above ? -score_above(below) : score_above(above);
 }
 
-double NoiseModel::drawn(std::mt19937_64& random, const EchoConditions& echo, std::uint16_t beam) const {
+double NoiseModel::drawn(RandomStream& random, const EchoConditions& echo, std::uint16_t beam) const {
   const Parts all = parts_of(*this, beam);
-  double left = std::uniform_real_distribution<>(0, 1)(random);
+  double left = random.uniform();
   std::size_t k = 0;
   while (k + 1 < all.count && left >= all.all[k].share) left -= all.all[k++].share;
   const Part& part = all.all[k];
-  return part.mean + part.scale * deviation(echo, beam) * std::normal_distribution<>()(random);
+  return part.mean + part.scale * deviation(echo, beam) * random.normal();
 }
 
 NoiseModel fitted(const NoiseModel& like, const RangeErrors& errors, double settled) {

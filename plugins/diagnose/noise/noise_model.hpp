@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <random>
 #include <vector>
 
 #include "pipeline/model/range_variance.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 
@@ -64,7 +64,7 @@ struct NoiseModel {
   double normal_score(double value, const EchoConditions& echo, std::uint16_t beam) const;
 
   /// [m] Draws a random error.
-  double drawn(std::mt19937_64& random, const EchoConditions& echo, std::uint16_t beam) const;
+  double drawn(RandomStream& random, const EchoConditions& echo, std::uint16_t beam) const;
 
   /// [m²] Variance including the tail and both peaks.
   double variance(const EchoConditions& echo, std::uint16_t beam) const;

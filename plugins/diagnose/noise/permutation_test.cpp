@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <random>
 
 #include "pipeline/clocks/series.hpp"
 #include "pipeline/statistics/bootstrap.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
 #include "pipeline/statistics/monte_carlo_test.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 namespace {
@@ -77,9 +77,9 @@ PermutationTest test_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& 
   // All permutations have the same sum of squares, so the largest inner product decides.
   const Eigen::MatrixXd unit = off_base(base, columns).colwise().normalized();
   Eigen::VectorXd left = off_base(base, values);
-  std::mt19937_64 random(seed);
+  RandomStream random(seed, "permutations");
   const auto permuted = [&] {
-    std::ranges::shuffle(left, random);
+    random.shuffle(left);
     return (unit.transpose() * left).cwiseAbs().maxCoeff();
   };
   test.p_value = monte_carlo_test(fit.product, kShuffles, permuted).p_value;

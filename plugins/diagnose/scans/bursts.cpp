@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "pipeline/statistics/monte_carlo_test.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 namespace {
@@ -43,9 +43,9 @@ Bursts find_bursts(const std::vector<double>& receipts, const std::vector<double
   bursts.longest = *most - *least;
 
   constexpr std::size_t kShuffles = 999;
-  std::mt19937_64 random(seed);
+  RandomStream random(seed, "bursts");
   const auto permuted = [&] {
-    std::shuffle(delays.begin(), delays.end(), random);
+    random.shuffle(delays);
     std::vector<double> times;
     for (std::size_t k = 0; k < stamps.size(); ++k) times.push_back(stamps[k] + delays[k]);
     return share_together(std::move(times), bursts.interval);

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <random>
 #include <utility>
+
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 namespace {
@@ -105,12 +106,12 @@ MonteCarloTest LagContrast::permutation_test(std::uint64_t seed,
                                              const std::vector<std::size_t>& kinds) const {
   const std::vector<double> between = matrix();
   const auto alike = groups(kinds);
-  std::mt19937_64 random(seed);
+  RandomStream random(seed, "lags");
   std::vector<std::size_t> order(rows_.size());
   return monte_carlo_test(contrast(), kShuffles, [&] {
     for (const auto& places : alike) {
       auto scans = places;
-      std::ranges::shuffle(scans, random);
+      random.shuffle(scans);
       for (std::size_t k = 0; k < places.size(); ++k) order[places[k]] = scans[k];
     }
     return contrast_of(

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <span>
 
 #include "pipeline/statistics/monte_carlo_test.hpp"
 #include "pipeline/statistics/multiple_testing.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/diagnose/scans/lag_contrast.hpp"
 #include "plugins/diagnose/scans/stationary_profiles.hpp"
@@ -201,15 +201,15 @@ class Simulation {
   }
   /// Draws permuted, sign-flipped noise of the measured scans. Sampling without replacement avoids identical
   /// scans.
-  std::vector<StationaryPhase> draw(std::mt19937_64& random) {
+  std::vector<StationaryPhase> draw(RandomStream& random) {
     std::vector<StationaryPhase> made = phases_;
     for (std::size_t r = 0; r < made.size(); ++r) {
-      for (auto& of_class : noise_[r]) std::ranges::shuffle(of_class, random);
+      for (auto& of_class : noise_[r]) random.shuffle(of_class);
       std::vector<std::size_t> next(truth_.shifts.size(), 0);
       for (std::size_t i = 0; i < made[r].rows.size(); ++i) {
         const std::size_t kind = made[r].kinds[i];
         Row row = noise_[r][kind][next[kind]++];
-        const double sign = random() % 2 == 0 ? 1 : -1;
+        const double sign = random.sign();
         for (std::size_t k = 0; k < row.size(); ++k) {
           row[k] =
               sign * row[k] + straight_at(truth_.references[r], static_cast<double>(k) + truth_.shifts[kind]);
@@ -240,7 +240,7 @@ FitStatistics with_interleave(const std::vector<StationaryPhase>& phases, std::s
   const Left left = left_of(phases, &found);
   const double seen = left.lags.contrast();
   Simulation simulation(phases, found);
-  std::mt19937_64 random(seed);
+  RandomStream random(seed, "scans");
   const auto between_kinds = monte_carlo_test(seen, kSimulations, [&] {
     const std::vector<StationaryPhase> made = simulation.draw(random);
     const InterleaveModel again = fitted(made, reference, is_moved);

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <random>
+
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 namespace {
@@ -62,9 +63,9 @@ std::vector<double> chances_of(const std::vector<Course>& courses, std::uint64_t
   std::vector<double> seen;
   for (const Course& course : courses) seen.push_back(course.size(signs));
   std::vector<double> chances(courses.size(), 1.0 / (kSweepDraws + 1));
-  std::mt19937_64 random(seed);
+  RandomStream random(seed, "signs");
   for (int i = 0; i < kSweepDraws; ++i) {
-    for (double& sign : signs) sign = random() % 2 == 0 ? 1 : -1;
+    for (double& sign : signs) sign = random.sign();
     double largest = 0;
     for (const Course& course : courses) largest = std::max(largest, course.size(signs));
     for (std::size_t k = 0; k < courses.size(); ++k) {

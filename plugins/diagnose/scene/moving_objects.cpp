@@ -2,9 +2,9 @@
 #include "plugins/diagnose/scene/moving_objects.hpp"
 
 #include <algorithm>
-#include <random>
 
 #include "pipeline/statistics/multiple_testing.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 namespace crisp {
 namespace {
@@ -24,14 +24,14 @@ class Grid {
   }
 
   /// Permutes the scans within each beam.
-  void scatter_randomly(std::mt19937_64& random) {
+  void scatter_randomly(RandomStream& random) {
     const std::vector<Shot> before = std::move(shots_);
     shots_.clear();
     for (const Shot& shot : before) is_far_[index(shot)] = false;
-    std::uniform_int_distribution<std::uint32_t> any(0, static_cast<std::uint32_t>(scans_) - 1);
+    const auto any = [&] { return static_cast<std::uint32_t>(random.below(scans_)); };
     for (const Shot& shot : before) {
-      std::uint32_t scan = any(random);
-      while (is_far_[index({shot.beam, scan})]) scan = any(random);
+      std::uint32_t scan = any();
+      while (is_far_[index({shot.beam, scan})]) scan = any();
       add(shot.beam, scan);
     }
   }
@@ -99,7 +99,7 @@ class Grid {
 
 /// Permutation test: p-value of the number of clustered shots.
 double p_value_of(std::size_t together, Grid grid, std::size_t shuffles, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
+  RandomStream random(seed, "moving objects");
   for (std::size_t shuffle = 0; shuffle < shuffles; ++shuffle) {
     grid.scatter_randomly(random);
     if (grid.together().size() >= together)

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <random>
 
 #include "pipeline/statistics/monte_carlo_test.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp {
@@ -177,12 +177,13 @@ std::size_t hidden_together(const ChangingDirections& directions) {
   return count;
 }
 
-void shuffle_times(std::mt19937_64& random, std::vector<Visibility>& views) {
+void shuffle_times(RandomStream& random, std::vector<Visibility>& views) {
   std::vector<std::size_t> known;
   for (std::size_t when = 0; when < views.size(); ++when) {
     if (views[when] != Visibility::kNone) known.push_back(when);
   }
-  for (std::size_t k = known.size(); k > 1; --k) std::swap(views[known[k - 1]], views[known[random() % k]]);
+  for (std::size_t k = known.size(); k > 1; --k)
+    std::swap(views[known[k - 1]], views[known[random.below(k)]]);
 }
 
 }  // namespace
@@ -213,7 +214,7 @@ double p_value(const ChangingDirections& directions, std::uint64_t seed) {
   const auto together = [](const ChangingDirections& some) {
     return static_cast<double>(hidden_together(some));
   };
-  std::mt19937_64 random(seed);
+  RandomStream random(seed, "visibility");
   ChangingDirections shuffled = directions;
   const auto permuted = [&] {
     for (auto& views : shuffled.views) shuffle_times(random, views);

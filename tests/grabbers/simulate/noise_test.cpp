@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-#include "tests/grabbers/simulate/moments.hpp"
+#include "tests/support/moments.hpp"
 
 namespace crisp {
 namespace {

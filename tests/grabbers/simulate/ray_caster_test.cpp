@@ -9,9 +9,9 @@
 
 #include <crisp/error.hpp>
 
-#include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/scenes.hpp"
 #include "grabbers/simulate/shapes.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 #include "tests/grabbers/simulate/random_direction.hpp"
 
 namespace crisp {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grabbers/simulate/random.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 #include "tests/grabbers/simulate/random_direction.hpp"
 
 namespace crisp {

@@ -10,7 +10,7 @@
 
 #include <crisp/error.hpp>
 
-#include "grabbers/simulate/random.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 #include "tests/grabbers/simulate/random_direction.hpp"
 
 namespace crisp {

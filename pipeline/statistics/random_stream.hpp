@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <random>
 #include <string_view>
+#include <utility>
 
 namespace crisp {
 
@@ -12,7 +14,7 @@ namespace crisp {
 /// so that what one device draws does not depend on what another one did.
 class RandomStream {
  public:
-  /// @param seed  of the whole simulation
+  /// @param seed  of the whole run
   /// @param name  what the stream is for, "laser1.noise"
   RandomStream(std::uint64_t seed, std::string_view name);
 
@@ -21,7 +23,20 @@ class RandomStream {
   double normal();                          ///< mean 0, variance 1, by the polar method of Marsaglia and Bray
   double exponential(double mean);          ///< ≥ 0
   bool chance(double probability);          ///< true with this probability
+  double sign();                            ///< −1 or 1
+  /// 0 to n − 1, each as often. @param n  1 or more
+  std::size_t below(std::size_t n);
   std::uint64_t bits() { return engine_(); }  ///< 64 random bits
+
+  /// Puts the elements in an order of which each is as likely (Fisher and Yates).
+  template <class Elements>
+  void shuffle(Elements& elements) {
+    for (auto n = static_cast<std::size_t>(std::size(elements)); n > 1; --n) {
+      const auto begin = std::begin(elements);
+      std::swap(*(begin + static_cast<std::ptrdiff_t>(n - 1)),
+                *(begin + static_cast<std::ptrdiff_t>(below(n))));
+    }
+  }
 
  private:
   std::mt19937_64 engine_;

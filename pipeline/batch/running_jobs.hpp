@@ -15,15 +15,15 @@ namespace crisp {
 
 /// The processes of the jobs that run, as the launcher's process sees them: it starts, signals and reaps
 /// them.
-class JobTable {
+class RunningJobs {
  public:
   /// @param run            is called in the job's process
   /// @param close_in_jobs  descriptors of the launcher's that a job must not hold
-  JobTable(const JobLauncher::Run& run, std::vector<int> close_in_jobs);
+  RunningJobs(const JobLauncher::Run& run, std::vector<int> close_in_jobs);
   /// Kills all jobs.
-  ~JobTable();
-  JobTable(const JobTable&) = delete;
-  JobTable& operator=(const JobTable&) = delete;
+  ~RunningJobs();
+  RunningJobs(const RunningJobs&) = delete;
+  RunningJobs& operator=(const RunningJobs&) = delete;
 
   /// @return how it ended, if the system refused to start it
   std::optional<JobEnd> start(const Job& job);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compiled once for each instruction set, and chosen from when the program runs (Google Highway).
-#include "pipeline/model/base_kinematics.hpp"
+#include "pipeline/model/simd_placement.hpp"
 
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "pipeline/model/base_kinematics.cpp"
+#define HWY_TARGET_INCLUDE "pipeline/model/simd_placement.cpp"
 #include <hwy/foreach_target.h>
 // after foreach_target.h
 #include <hwy/highway.h>

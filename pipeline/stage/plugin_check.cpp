@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/stage/shared_object.hpp"
+#include "pipeline/stage/plugin_check.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

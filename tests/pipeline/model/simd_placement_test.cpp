@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/model/base_kinematics.hpp"
+#include "pipeline/model/simd_placement.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/simulate/scene_points.hpp"
+#include "grabbers/simulate/point_yaml.hpp"
 
 #include <fmt/format.h>
 

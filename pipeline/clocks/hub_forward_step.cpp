@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/clocks/forward_step.hpp"
+#include "pipeline/clocks/hub_forward_step.hpp"
 
 #include <algorithm>
 #include <cmath>

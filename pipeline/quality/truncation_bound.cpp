@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/quality/kernel.hpp"
+#include "pipeline/quality/truncation_bound.hpp"
 
 #include <fmt/format.h>
 

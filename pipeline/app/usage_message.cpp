@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/app/usage_error.hpp"
+#include "pipeline/app/usage_message.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline/batch/job_table.hpp"
+#include "pipeline/batch/running_jobs.hpp"
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -36,15 +36,15 @@ std::string last_lines(const std::string& text) {
 
 }  // namespace
 
-JobTable::JobTable(const JobLauncher::Run& run, std::vector<int> close_in_jobs)
+RunningJobs::RunningJobs(const JobLauncher::Run& run, std::vector<int> close_in_jobs)
     : run_(run), close_in_jobs_(std::move(close_in_jobs)) {}
 
-JobTable::~JobTable() {
+RunningJobs::~RunningJobs() {
   for (const auto& [process, job] : running_) kill(-process, SIGKILL);
   while (waitpid(-1, nullptr, 0) > 0 || errno == EINTR) continue;
 }
 
-void JobTable::become(const Job& job, int error) const {
+void RunningJobs::become(const Job& job, int error) const {
   const pid_t launcher = getppid();
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -76,7 +76,7 @@ void JobTable::become(const Job& job, int error) const {
   _exit(status);  // what lives until the end of the program is the launcher's
 }
 
-std::optional<JobEnd> JobTable::start(const Job& job) {
+std::optional<JobEnd> RunningJobs::start(const Job& job) {
   const auto refused = [&] {
     return JobEnd{.id = job.id,
                   .exit_status = 1,
@@ -102,19 +102,19 @@ std::optional<JobEnd> JobTable::start(const Job& job) {
   return std::nullopt;
 }
 
-void JobTable::signal(std::uint64_t id, int signal) {
+void RunningJobs::signal(std::uint64_t id, int signal) {
   for (const auto& [process, job] : running_) {
     if (job.id == id) kill(-process, signal);
   }
 }
 
-void JobTable::add_to(std::vector<pollfd>& polled) const {
+void RunningJobs::add_to(std::vector<pollfd>& polled) const {
   for (const auto& [process, job] : running_) {
     if (job.error >= 0) polled.push_back({.fd = job.error, .events = POLLIN, .revents = 0});
   }
 }
 
-void JobTable::read_error(Running& job) {
+void RunningJobs::read_error(Running& job) {
   std::array<char, 4096> block{};
   while (job.error >= 0) {
     const ssize_t count = read(job.error, block.data(), block.size());
@@ -130,11 +130,11 @@ void JobTable::read_error(Running& job) {
   }
 }
 
-void JobTable::read_errors() {
+void RunningJobs::read_errors() {
   for (auto& [process, job] : running_) read_error(job);
 }
 
-std::vector<JobEnd> JobTable::reap() {
+std::vector<JobEnd> RunningJobs::reap() {
   std::vector<JobEnd> ended;
   int status = 0;
   rusage usage{};

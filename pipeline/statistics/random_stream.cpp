@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grabbers/simulate/random.hpp"
+#include "pipeline/statistics/random_stream.hpp"
 
 #include <cmath>
 
@@ -46,5 +46,15 @@ double RandomStream::normal() {
 double RandomStream::exponential(double mean) { return -mean * std::log1p(-uniform()); }
 
 bool RandomStream::chance(double probability) { return uniform() < probability; }
+
+double RandomStream::sign() { return engine_() >> 63U == 0 ? -1 : 1; }
+
+std::size_t RandomStream::below(std::size_t n) {
+  // The remainder of the last, incomplete round of n would be drawn more often.
+  const std::uint64_t incomplete = (0 - std::uint64_t{n}) % n;
+  std::uint64_t drawn = engine_();
+  while (drawn < incomplete) drawn = engine_();
+  return drawn % n;
+}
 
 }  // namespace crisp
