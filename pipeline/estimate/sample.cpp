@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/data/degree.hpp"
 #include "pipeline/data/recordings.hpp"
 
 namespace crisp {
@@ -77,6 +76,19 @@ Sample longest_recording(const Sample& sample) {
   for (const double time : sample.beams.time) ++beams[number.of(time)];
   const auto longest = static_cast<std::size_t>(std::ranges::max_element(beams) - beams.begin());
   return select(sample, [&](std::size_t i) { return number.of(sample.beams.time[i]) == longest; });
+}
+
+std::map<std::uint16_t, float> mirror_sweeps(const Measurements& beams) {
+  std::map<std::uint16_t, std::pair<float, float>> spans;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const float angle = beams.mirror_angle[i];
+    auto& [least, most] = spans.try_emplace(beams.laser[i], angle, angle).first->second;
+    least = std::min(least, angle);
+    most = std::max(most, angle);
+  }
+  std::map<std::uint16_t, float> sweeps;
+  for (const auto& [laser, span] : spans) sweeps[laser] = span.second - span.first;
+  return sweeps;
 }
 
 Sample of_laser(const Sample& sample, std::size_t laser) {

@@ -3,9 +3,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include <crisp/sensor_model.hpp>
+
+#include "pipeline/data/degree.hpp"
 
 namespace crisp {
 
@@ -20,6 +23,12 @@ Sample select(const Sample& sample, const std::function<bool(std::size_t)>& keep
 
 /// The beams of the recording that has the most of them: see recordings_of().
 Sample longest_recording(const Sample& sample);
+
+/// [rad] Over which each laser's beams spread, by its number.
+std::map<std::uint16_t, float> mirror_sweeps(const Measurements& beams);
+
+/// [rad] A mirror sweeps over more than this; the beams of a single-beam device have all but one angle.
+inline constexpr float kLeastSweep = 30 * kDegree;
 
 /// The beams of one laser.
 Sample of_laser(const Sample& sample, std::size_t laser);

@@ -4,8 +4,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <map>
 #include <utility>
 
 #include <crisp/error.hpp>
@@ -23,16 +21,8 @@ namespace {
 
 /// Whether the mirror of each laser sweeps: beams that were fired in one direction do not.
 bool is_swept(const Measurements& beams) {
-  constexpr float kSweep = 0.5F;  // [rad]
-  std::map<std::uint16_t, std::pair<float, float>> spans;
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    const float angle = beams.mirror_angle[i];
-    auto& [least, most] = spans.try_emplace(beams.laser[i], angle, angle).first->second;
-    least = std::min(least, angle);
-    most = std::max(most, angle);
-  }
-  return std::ranges::all_of(spans,
-                             [](const auto& of) { return of.second.second - of.second.first > kSweep; });
+  return std::ranges::all_of(mirror_sweeps(beams),
+                             [](const auto& of_laser) { return of_laser.second > kLeastSweep; });
 }
 
 }  // namespace

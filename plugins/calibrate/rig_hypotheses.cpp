@@ -34,13 +34,9 @@ double without_sign_of_zero(double value) { return std::abs(value) < 5e-4 ? 0 : 
 /// "laser1.mount.mirror_zero" for each laser whose mirror sweeps: the mount of a single-beam device is not
 /// identifiable.
 std::vector<std::string> mount_terms(const Sample& sample, const Rig& rig) {
-  constexpr float kSweep = 30 * kDegree;
   std::vector<std::string> terms;
-  for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
-    const Sample own = of_laser(sample, laser);
-    if (own.beams.size() == 0) continue;
-    const auto [first, last] = std::ranges::minmax(own.beams.mirror_angle);
-    if (last - first > kSweep) terms.push_back(rig.lasers[laser].name + "." + kMirrorZero);
+  for (const auto& [laser, sweep] : mirror_sweeps(sample.beams)) {
+    if (sweep > kLeastSweep) terms.push_back(rig.lasers[laser].name + "." + kMirrorZero);
   }
   return terms;
 }

@@ -21,6 +21,21 @@ TEST(Sample, InPlaneKeepsTheTwoBeamsAtNinetyDegrees) {
   EXPECT_EQ(std::set<int>(front.beams.beam.begin(), front.beams.beam.end()), std::set<int>{0});
 }
 
+TEST(Sample, KnowsWhichLasersSweep) {
+  const Measurements beams{.range = {1, 1, 1, 1, 1},
+                           .mirror_angle = {-1, 0.5, 0, 0.51, 2},
+                           .time = {0, 1, 2, 3, 4},
+                           .laser = {0, 2, 0, 2, 0},
+                           .remission = {0, 0, 0, 0, 0},
+                           .beam = {0, 0, 0, 0, 0},
+                           .cos_incidence = {}};
+  const auto sweeps = mirror_sweeps(beams);
+  EXPECT_EQ(sweeps.size(), 2U);
+  EXPECT_FLOAT_EQ(sweeps.at(0), 3);
+  EXPECT_GT(sweeps.at(0), kLeastSweep);
+  EXPECT_LT(sweeps.at(2), kLeastSweep);
+}
+
 TEST(Sample, CoveredLeavesOutWhatAnEtaInTheRangeWouldPushOffThePlatesReadings) {
   const auto& plate = recording().plate;
   const auto sample = covered(sample_of(recording()), -0.4, 0.3);
