@@ -10,6 +10,7 @@
 
 #include "pipeline/estimate/bound.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/identifiability.hpp"
 #include "pipeline/estimate/observability.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 
@@ -42,11 +43,18 @@ HitFlat hit_flat(const SimulatedMeasurements& all, const Scene& scene) {
   return hit;
 }
 
+/// Where `some` of `all` are among them.
+std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& some,
+                                    const std::vector<std::size_t>& all) {
+  std::vector<Eigen::Index> at;
+  for (const std::size_t slot : some) at.push_back(std::ranges::find(all, slot) - all.begin());
+  return at;
+}
+
 /// The least errors of `known`, which are some of `free`; infinite for the rest.
 Eigen::VectorXd errors_of_known(const Eigen::MatrixXd& information, const std::vector<std::size_t>& free,
                                 const std::vector<std::size_t>& known) {
-  std::vector<Eigen::Index> at;
-  for (const std::size_t slot : known) at.push_back(std::ranges::find(free, slot) - free.begin());
+  const std::vector<Eigen::Index> at = places_of(known, free);
   const Eigen::VectorXd least = least_std_errors(information(at, at));
   Eigen::VectorXd errors =
       Eigen::VectorXd::Constant(information.rows(), std::numeric_limits<double>::infinity());
@@ -77,8 +85,10 @@ SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const
   std::vector<Eigen::Vector3d> normals;
   for (const Surface& surface : scene.surfaces) normals.push_back(normal_of(surface));
   const SensorModel truth(exact.truth, terms);
-  const FreeParameters parameters = free_parameters(truth, exact.beams, {});
-  const auto& free = parameters.free;
+  const FreeParameters possible = free_parameters(truth, exact.beams, {});
+  const auto& free = possible.free;
+  // As in calibration: however many beams there are, they do not determine what hardly moves a point.
+  const FreeParameters parameters = identifiable_parameters(possible, truth, hit.sample, ParameterPrior{});
   ParameterPrior prior = RefinementSettings{}.prior;
   prior.nominal = nominal_values(scanner.rig);
   Eigen::VectorXd from_rig = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free.size()));
@@ -94,8 +104,9 @@ SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const
   };
   const Eigen::MatrixXd information = information_with(0);
   const double step = std::abs(scanner.rig.plate.angle_per_count());
-  const Observability reported =
-      observability(information, free, truth.names(), ranges_of(prior, truth, free));
+  const std::vector<Eigen::Index> at = places_of(parameters.free, free);
+  const Observability reported = observability(information(at, at), parameters.free, truth.names(),
+                                               ranges_of(prior, truth, parameters.free));
 
   SceneBound bound{.parameters = {},
                    .std_errors = errors_of_known(information, free, reported.known),

@@ -17,10 +17,12 @@ struct SceneBound {
   Eigen::VectorXd std_errors;
   /// m [SI]: the same where the plate's angle is known but by the steps of its encoder, counted as noise.
   Eigen::VectorXd with_steps;
-  std::vector<Unobservable> unobservable;  ///< not determined better than before the recording
-  std::vector<std::size_t> beams_on;       ///< by surface of the scene
-  std::size_t beams = 0;                   ///< of which something came back
-  std::size_t no_echo = 0;                 ///< of which nothing did
+  /// Not determined better than before the recording, or not by the plate's motion: see
+  /// identifiable_parameters().
+  std::vector<Unobservable> unobservable;
+  std::vector<std::size_t> beams_on;  ///< by surface of the scene
+  std::size_t beams = 0;              ///< of which something came back
+  std::size_t no_echo = 0;            ///< of which nothing did
 };
 
 /// The scanner with exact ranges and an exact encoder; its mirrors and where its beams mix are the same.

@@ -157,6 +157,21 @@ TEST(SceneBound, AtConstantSpeedKnowsEtaOnlyWithLambda) {
   EXPECT_THAT(bound_csv(bound), HasSubstr("\nlaser2.eta,s,,,,\"laser2.lambda + 9.425 * laser2.eta\"\n"));
 }
 
+TEST(SceneBound, ASpeedThatHardlyChangesDeterminesNoEta) {
+  ScannerSettings scanner;
+  scanner.duration = 4;
+  scanner.field.step = 2 * kDegree;
+  const MotionSettings varying{.kind = MotionKind::varying, .min_rate = 0.495, .max_rate = 0.505};
+  const SceneBound bound =
+      scene_bound(scanner, office(), make_motion(varying, scanner.duration, 1), BeamChoice::kAll);
+  std::vector<std::string> names;
+  for (const Unobservable& lost : bound.unobservable) {
+    names.push_back(lost.parameter);
+    EXPECT_THAT(lost.reason, HasSubstr("motion of the plate"));
+  }
+  EXPECT_THAT(names, testing::UnorderedElementsAre("laser1.eta", "laser2.eta", "laser3.eta"));
+}
+
 TEST(RefinementAccuracy, IsNoBetterThanTheBoundAndNotFarFromIt) {
   ScannerSettings scanner;
   scanner.duration = 2;
