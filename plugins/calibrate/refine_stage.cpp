@@ -30,12 +30,19 @@ bool are_resolved(const std::vector<std::string>& caveats, const RigCheck& refin
   });
 }
 
+RoundReporter reporter(Context& context) {
+  return [&context](int round) {
+    context.progress(static_cast<double>(round) / (round + 4), fmt::format("round {}", round + 1));
+    return !context.interrupted();
+  };
+}
+
 }  // namespace
 
 void RefineStage::describe(StageDescription<RefineStage>& d) {
   d.name("calibrate.refine").summary("refines a calibration by least squares against flat surfaces");
   d.details(
-      "Weighted least squares in the distances of all beams from their flat surfaces (surfels), with the surfaces' planes as unknowns. Unlike the optimum of an entropy it is unbiased, with a tenth of the scatter, but it needs a start within some centimetres: calibrate.rqe, or calibrate.load. Unobservable parameters stay at the start's values.\n\n"
+      "Weighted least squares in the distances of all beams from their flat surfaces (surfels), with the surfaces' planes as unknowns. Unlike the optimum of an entropy it is unbiased, with a tenth of the scatter, but it needs a start within some centimetres: calibrate.rqe, or calibrate.load. If its views disagree, it is repeated from the rig's nominal values, and that result is taken if it fits. Unobservable parameters stay at the start's values.\n\n"
       "The clocks' standard errors, where they are known (clock.convex_hull), are part of those of eta.\n\n"
       "Several recordings (separated by pauses of 5 s) may be of different places: surfaces are segmented in each by itself, and each has lags of its own, whose mean is eta.\n\n"
       "If all beams lie in the plate's plane (two of each laser), the walls are assumed to be upright.");
@@ -98,10 +105,7 @@ void RefineStage::finish(Outputs& out, Context& context) {
   Calibration with_terms = *start_;
   add_requested_terms(with_terms, settings_.terms, terms);
   const SensorModel start(with_terms, terms);
-  const auto on_round = [&](int round) {
-    context.progress(static_cast<double>(round) / (round + 4), fmt::format("round {}", round + 1));
-    return !context.interrupted();
-  };
+  const RoundReporter on_round = reporter(context);
   Refinement refined = refine_by_surfels(start, sample, settings_, on_round);
   if (RecordingNumbers(*sample.plate).count() > 1 && !context.interrupted()) {
     const RecordingLags lags = lags_of_recordings(refined.outcome.model, sample, settings_);
@@ -109,6 +113,7 @@ void RefineStage::finish(Outputs& out, Context& context) {
     sample = with_common_lags(std::move(sample), lags);
     refined = refine_by_surfels(start, sample, settings_, on_round);
   }
+  if (auto better = refined_from_rig(sample, refined, context)) refined = std::move(*better);
   if (context.interrupted()) return;
 
   const auto halves =
@@ -130,6 +135,32 @@ void RefineStage::finish(Outputs& out, Context& context) {
   if (halves) calibration.quality["cross_validation"] = halves->ratio();
   report(calibration, *start_, context);
   out.give(std::move(calibration));
+}
+
+std::optional<Refinement> RefineStage::refined_from_rig(const Sample& sample, const Refinement& refined,
+                                                        Context& context) const {
+  if (refined.views.empty() || agrees_well(refined) || context.interrupted()) return std::nullopt;
+  const auto& terms = context.run().registrar->get<TermRegistry>();
+  Calibration nominal = nominal_calibration(context.rig());
+  nominal.direction = start_->direction;
+  add_requested_terms(nominal, settings_.terms, terms);
+  const auto least = [](const Refinement& of) {
+    return 100 * std::ranges::min(of.views, {}, &ViewConsistency::share).share;
+  };
+  try {
+    Refinement again = refine_by_surfels(SensorModel(nominal, terms), sample, settings_, reporter(context));
+    const Calibration found = calibration_of(again.outcome, context.rig());
+    if (!agrees_well(again) || !again.outcome.caveats.empty() ||
+        !check_with_rig(found, context.rig(), {}).caveats.empty()) {
+      return std::nullopt;
+    }
+    context.print(fmt::format(
+        "refined from the rig's nominal values, since the stage before ended in a local minimum: from its values views agree on at least {:.0f} % of their common flat surfaces, from the rig's on {:.0f} %",
+        least(refined), least(again)));
+    return again;
+  } catch (const Error&) {
+    return std::nullopt;  // no flat surfaces from there
+  }
 }
 
 std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refinement& refined,
@@ -188,8 +219,12 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
       context.print("probably for that reason: " + caveat);
   }
   const RigCheck check = check_with_rig(calibration, context.rig(), {});
-  note_direction(calibration, check);
-  report_direction(calibration, *start_, context);
+  note_direction(calibration, context.rig(), check);
+  const bool was_open = std::ranges::count(start_->caveats, kDirectionIsOpen) > 0;
+  if (!leaves_direction_open(context.rig(), check))
+    report_direction(calibration, *start_, context);
+  else if (!was_open)
+    context.mark_untrusted(std::string(kDirectionIsOpen));
   if (of_rig.empty() && of_fit.empty() && are_resolved(start_->caveats, check)) {
     context.resolve_caveats(KindName<Calibration>::value,
                             "the refined calibration fits, and agrees with the rig");

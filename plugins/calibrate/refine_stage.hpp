@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,11 @@ class RefineStage final : public Stage {
  private:
   void judge(const Sample& sample, const Refinement& refined, Calibration& calibration,
              Context& context) const;
+
+  /// A refinement from the rig's nominal values that fits, where the given one does not: the entropy of a
+  /// short recording may be least far from the optimum.
+  std::optional<Refinement> refined_from_rig(const Sample& sample, const Refinement& refined,
+                                             Context& context) const;
 
   /// Mistakes of the rig, as caveats: mounts always, the rest where the views do not agree well.
   std::vector<std::string> mistakes(const Sample& sample, const Refinement& refined, Measure& measure,

@@ -208,11 +208,15 @@ std::optional<Calibration> in_direction_of_rig(const Calibration& calibration, c
   return turned;
 }
 
-void note_direction(Calibration& calibration, const RigCheck& check) {
+bool leaves_direction_open(const Rig& rig, const RigCheck& check) {
+  return rig.plate.direction == CountDirection::automatic && !check.knows_direction && !check.is_explained;
+}
+
+void note_direction(Calibration& calibration, const Rig& rig, const RigCheck& check) {
   calibration.provenance.erase(kDirectionSource);
   if (check.knows_direction)
     calibration.provenance[kDirectionSource] = kFromRecording;
-  else if (!check.is_explained)
+  else if (!check.is_explained && !leaves_direction_open(rig, check))
     calibration.provenance[kDirectionSource] = kFromRig;
 }
 

@@ -54,8 +54,8 @@ inline constexpr const char* kFromRecording = "recording";
 inline constexpr const char* kFromRig = "rig";
 
 /// Sets that entry of a calibration that check_with_rig() has compared; removes it where the rig is
-/// contradicted.
-void note_direction(Calibration& calibration, const RigCheck& check);
+/// contradicted, or nothing determines the direction.
+void note_direction(Calibration& calibration, const Rig& rig, const RigCheck& check);
 
 /// The message of in_direction_of_rig().
 inline constexpr const char* kCountsClockwise =
@@ -63,6 +63,10 @@ inline constexpr const char* kCountsClockwise =
 
 /// The caveat of a calibration that leaves it open, which more accurate values may resolve.
 extern const std::string_view kDirectionIsOpen;
+
+/// Whether the rig leaves the direction to the calibration, and its mirror image agrees with the nominal
+/// values as well.
+bool leaves_direction_open(const Rig& rig, const RigCheck& check);
 
 /// The parameters whose standard error is about that which the rig gives them.
 std::vector<std::string> known_from_rig_only(const Calibration& calibration, const ParameterPrior& prior);

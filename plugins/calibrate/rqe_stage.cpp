@@ -126,7 +126,7 @@ Calibration RqeStage::compared_with_rig(Calibration calibration, Context& contex
       return std::move(*turned);
     }
   }
-  note_direction(calibration, check);
+  note_direction(calibration, context.rig(), check);
   report_direction(calibration, {}, context);
   if (finds_direction && !check.knows_direction) {
     calibration.caveats.emplace_back(kDirectionIsOpen);

@@ -76,6 +76,13 @@ TEST_F(AnyRig, ADirectionThatNothingShowsIsNotGuessed) {
   is_untrusted_with(11, {}, "the encoder's sense of rotation is undetermined");
 }
 
+TEST_F(AnyRig, ADirectionThatOnlyTheEntropysOptimumShowsIsNotTrusted) {
+  // Addresses of lasers that face each other are exchanged: the mirror image agrees with the rig.
+  is_untrusted_with(8010, {"duration=8"}, "the encoder's sense of rotation is undetermined");
+}
+
+TEST_F(AnyRig, AnEntropysLocalMinimumIsLeftByTheRigsValues) { is_right_and_trusted(8505, {}); }
+
 TEST_F(AnyRig, ADirectionThatOnlyTheRigKnowsIsCalledSo) {
   const auto outcome = calibrate(573, {"duration=6"});  // stated wrongly, and a mirror image agrees as well
   EXPECT_THAT(outcome.console, HasSubstr("counter_clockwise is known from the rig only"));

@@ -72,7 +72,7 @@ TEST(RigCheck, TheOrderOfTheLasersDeterminesTheDirectionOfRadialScanPlanes) {
   for (auto& laser : rig.lasers) laser.nominal.alpha.value = 90 * kDegree;
   EXPECT_TRUE(check(found(4, rig), rig).knows_direction);
   Calibration three = found(4, rig);
-  note_direction(three, check(three, rig));
+  note_direction(three, rig, check(three, rig));
   EXPECT_EQ(three.provenance.at(kDirectionSource), kFromRecording);
   EXPECT_TRUE(check(mirrored(found(4, rig)), rig).is_mirrored);
   rig.lasers.resize(2);
@@ -80,8 +80,13 @@ TEST(RigCheck, TheOrderOfTheLasersDeterminesTheDirectionOfRadialScanPlanes) {
   const RigCheck two = check(found(4, rig), rig);
   EXPECT_FALSE(two.knows_direction) << "two radial lasers opposite one another are their own mirror image";
   Calibration noted = found(4, rig);
-  note_direction(noted, two);
+  note_direction(noted, rig, two);
   EXPECT_EQ(noted.provenance.at(kDirectionSource), kFromRig);
+  EXPECT_FALSE(leaves_direction_open(rig, two));
+  rig.plate.direction = CountDirection::automatic;
+  EXPECT_TRUE(leaves_direction_open(rig, check(noted, rig)));
+  note_direction(noted, rig, check(noted, rig));
+  EXPECT_FALSE(noted.provenance.contains(kDirectionSource));
   EXPECT_THAT(two.caveats, IsEmpty());
 }
 
