@@ -13,21 +13,17 @@
 namespace crisp {
 namespace {
 
-/// Limit of the beams' residuals against surfaces, in units of the noise. The surfaces' own roughness makes
-/// up to 1.4: see SurfelSettings::max_excess.
-constexpr double kPoorFit = 1.5;
-
 using Caveats = std::vector<std::string>;
 
 void append(Caveats& to, Caveats more) { std::ranges::move(more, std::back_inserter(to)); }
 
 Caveats of_misfit(const Refinement& refined, double noise) {
   const double misfit = misfit_of(refined, noise);
-  const double scatter = refined.scatter > 0 ? refined.scatter : noise;
-  if (misfit <= kPoorFit * scatter) return {};
+  const double relative = relative_misfit(refined, noise);
+  if (relative <= kPoorFit) return {};
   return {fmt::format(
       "the beams' residuals against their surfaces are {:.1f} mm (RMS), {:.1f} times the ranges' noise ({:.1f} mm): the rig is slightly wrong, or the sensor model lacks an effect. Check the rig's mount and counts_per_revolution; `crisp diagnose` searches for the effect",
-      misfit * 1e3, misfit / scatter, scatter * 1e3)};
+      misfit * 1e3, relative, misfit / relative * 1e3)};
 }
 
 /// Contradictions with the rig. The stage that gave a start outside of a range has already reported it.
@@ -92,6 +88,10 @@ bool agrees_well(const Refinement& refined) {
 }
 
 double misfit_of(const Refinement& refined, double noise) { return std::sqrt(refined.chi2) * noise; }
+
+double relative_misfit(const Refinement& refined, double noise) {
+  return misfit_of(refined, noise) / (refined.scatter > 0 ? refined.scatter : noise);
+}
 
 std::vector<std::string> check_fit(const Refinement& refined, const Calibration& calibration,
                                    const Calibration& start, const Measurements& beams, const Rig& rig,

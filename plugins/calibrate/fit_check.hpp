@@ -38,4 +38,10 @@ bool agrees_well(const Refinement& refined);
 /// [m] How far beams miss their surfaces (RMS).
 double misfit_of(const Refinement& refined, double noise);
 
+/// The same in units of what ranges scatter by from neighbour to neighbour, or else of their stated noise.
+double relative_misfit(const Refinement& refined, double noise);
+
+/// Limit of relative_misfit(). The surfaces' own roughness makes up to 1.4: see SurfelSettings::max_excess.
+inline constexpr double kPoorFit = 1.5;
+
 }  // namespace crisp

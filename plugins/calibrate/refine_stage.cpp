@@ -199,14 +199,15 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
                   {"chi2", refined.chi2},
                   {"rounds", refined.rounds},
                   {"converged", refined.converged}});
-  context.print(
-      fmt::format("{} flat surfaces with {} beams; chi2 {:.3f} per degree of freedom after {} rounds",
-                  refined.surfels, refined.beams, refined.chi2, refined.rounds));
+  const double noise = settings_.surfels.noise;
+  context.print(fmt::format(
+      "{} flat surfaces with {} beams after {} rounds; residuals {:.1f} mm (RMS), {:.2f} times the ranges' noise ({} or less is good)",
+      refined.surfels, refined.beams, refined.rounds, misfit_of(refined, noise) * 1e3,
+      relative_misfit(refined, noise), kPoorFit));
   report(refined.views, context);
   for (const auto& name : known_from_rig_only(calibration, settings_.prior)) {
     context.print(name + ": determined by the rig's value only; these data do not determine it better");
   }
-  const double noise = settings_.surfels.noise;
   context.report({{"misfit", misfit_of(refined, noise)}, {"neighbour_noise", refined.scatter}});
   const auto of_fit = check_fit(refined, calibration, *start_, sample.beams, context.rig(), noise);
   const auto of_rig = mistakes(sample, refined, *measure, context);
