@@ -30,6 +30,21 @@ bool are_resolved(const std::vector<std::string>& caveats, const RigCheck& refin
   });
 }
 
+/// The rig's nominal values, and their mirror image where the rig leaves the encoder's direction open.
+std::vector<Calibration> starts_of_rig(const Rig& rig) {
+  std::vector<Calibration> starts = {nominal_calibration(rig)};
+  if (rig.plate.direction == CountDirection::automatic) starts.push_back(mirrored(starts.front()));
+  return starts;
+}
+
+/// Whether views agree, and so do the data and the rig.
+bool fits(const Refinement& refined, const Rig& rig) {
+  if (!agrees_well(refined) || !refined.outcome.caveats.empty()) return false;
+  const Calibration found = calibration_of(refined.outcome, rig);
+  const RigCheck check = check_with_rig(found, rig, {});
+  return check.caveats.empty() || in_direction_of_rig(found, rig, check);
+}
+
 RoundReporter reporter(Context& context) {
   return [&context](int round) {
     context.progress(static_cast<double>(round) / (round + 4), fmt::format("round {}", round + 1));
@@ -139,28 +154,27 @@ void RefineStage::finish(Outputs& out, Context& context) {
 
 std::optional<Refinement> RefineStage::refined_from_rig(const Sample& sample, const Refinement& refined,
                                                         Context& context) const {
-  if (refined.views.empty() || agrees_well(refined) || context.interrupted()) return std::nullopt;
-  const auto& terms = context.run().registrar->get<TermRegistry>();
-  Calibration nominal = nominal_calibration(context.rig());
-  nominal.direction = start_->direction;
-  add_requested_terms(nominal, settings_.terms, terms);
+  if (refined.views.empty() || agrees_well(refined)) return std::nullopt;
   const auto least = [](const Refinement& of) {
     return 100 * std::ranges::min(of.views, {}, &ViewConsistency::share).share;
   };
-  try {
-    Refinement again = refine_by_surfels(SensorModel(nominal, terms), sample, settings_, reporter(context));
-    const Calibration found = calibration_of(again.outcome, context.rig());
-    if (!agrees_well(again) || !again.outcome.caveats.empty() ||
-        !check_with_rig(found, context.rig(), {}).caveats.empty()) {
-      return std::nullopt;
+  const auto& terms = context.run().registrar->get<TermRegistry>();
+  for (Calibration& from : starts_of_rig(context.rig())) {
+    if (context.interrupted()) return std::nullopt;
+    from.direction = start_->direction;
+    add_requested_terms(from, settings_.terms, terms);
+    try {
+      Refinement again = refine_by_surfels(SensorModel(from, terms), sample, settings_, reporter(context));
+      if (!fits(again, context.rig())) continue;
+      context.print(fmt::format(
+          "refined from the rig's nominal values, since the stage before ended in a local minimum: from its values views agree on at least {:.0f} % of their common flat surfaces, from the rig's on {:.0f} %",
+          least(refined), least(again)));
+      return again;
+    } catch (const Error&) {
+      continue;  // no flat surfaces from there
     }
-    context.print(fmt::format(
-        "refined from the rig's nominal values, since the stage before ended in a local minimum: from its values views agree on at least {:.0f} % of their common flat surfaces, from the rig's on {:.0f} %",
-        least(refined), least(again)));
-    return again;
-  } catch (const Error&) {
-    return std::nullopt;  // no flat surfaces from there
   }
+  return std::nullopt;
 }
 
 std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refinement& refined,
