@@ -164,7 +164,10 @@ std::optional<Refinement> RefineStage::refined_from_rig(const Sample& sample, co
     from.direction = start_->direction;
     add_requested_terms(from, settings_.terms, terms);
     try {
-      Refinement again = refine_by_surfels(SensorModel(from, terms), sample, settings_, reporter(context));
+      const SensorModel start(from, terms);
+      RefinementSettings settings = settings_;
+      for (auto& [name, known] : settings.prior.nominal) known.value = picked(start, {start.index(name)})[0];
+      Refinement again = refine_by_surfels(start, sample, settings, reporter(context));
       if (!fits(again, context.rig())) continue;
       context.print(fmt::format(
           "refined from the rig's nominal values, since the stage before ended in a local minimum: from its values views agree on at least {:.0f} % of their common flat surfaces, from the rig's on {:.0f} %",
