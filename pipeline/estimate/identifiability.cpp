@@ -62,7 +62,7 @@ FreeParameters identifiable_parameters(FreeParameters parameters, const SensorMo
            std::ranges::find(reported.known, parameter) == reported.known.end();
   });
   for (Unobservable lost : reported.unobservable) {
-    lost.reason = "it is not identifiable from the motion of the plate";
+    lost.reason = kNotByMotion;
     parameters.unobservable.push_back(std::move(lost));
   }
   return parameters;

@@ -7,6 +7,9 @@
 
 namespace crisp {
 
+/// Why identifiable_parameters() removed a parameter.
+inline constexpr const char* kNotByMotion = "it is not identifiable from the motion of the plate";
+
 /// Removes `parameters` that are not identifiable from the plate's motion: directions along which, over their
 /// whole search range, the cloud's points move by less than 5 mm apart from rigid motions. An example is the
 /// η of a plate at constant speed, which turns a laser's cloud as its λ does.

@@ -13,7 +13,7 @@
 namespace crisp {
 namespace {
 
-/// Why a parameter has no standard error, and where its value is from.
+/// Why a parameter has no standard error.
 ///
 /// @param change  of the value from nominal [SI]
 std::string remark(const Parameter& parameter, const std::string& name, const Calibration& calibration,
@@ -23,8 +23,9 @@ std::string remark(const Parameter& parameter, const std::string& name, const Ca
   const bool unknown =
       std::any_of(list.begin(), list.end(), [&](const auto& u) { return u.parameter == name; });
   if (!unknown && parameter.free) return "";
-  const std::string why = unknown ? "not observable" : "kept";
-  return std::abs(change) > kSmall ? why + ", at the value of an earlier stage" : why;
+  if (!unknown) return "kept";
+  // Moved by itself, it would move the cloud: only its combination with others is determined.
+  return std::abs(change) > kSmall ? "not observable by itself" : "not observable";
 }
 
 /// Number of decimals that show two digits of the error; four without an error, or for a large one.

@@ -190,10 +190,13 @@ std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refin
       .interrupted = [&] { return context.interrupted(); },
       .report = [&](double done, std::string_view what) { context.progress(done, what); }};
   auto found = check_mounts(refined.outcome.model, sample, context.rig(), settings);
-  if (agrees_well(refined) || !found.empty()) return found;
+  const bool is_undetermined = !refined.outcome.caveats.empty();
+  if (!found.empty() || (agrees_well(refined) && !is_undetermined)) return found;
   RigErrorSearch search(sample, context.rig(), settings);
   if (auto counts = search.counts()) return {std::move(*counts)};
-  if (auto mistake = search.any()) found.push_back(std::move(*mistake));
+  // In the part of a turn to which too large counts squeeze the scene, views agree with anything.
+  auto mistake = agrees_well(refined) ? search.factor_of_counts() : search.any();
+  if (mistake) found.push_back(std::move(*mistake));
   return found;
 }
 

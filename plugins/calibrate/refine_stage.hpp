@@ -35,7 +35,8 @@ class RefineStage final : public Stage {
   std::optional<Refinement> refined_from_rig(const Sample& sample, const Refinement& refined,
                                              Context& context) const;
 
-  /// Mistakes of the rig, as caveats: mounts always, the rest where the views do not agree well.
+  /// Mistakes of the rig, as caveats: mounts always, the rest where the views do not agree
+  /// well, or the data determine little.
   std::vector<std::string> mistakes(const Sample& sample, const Refinement& refined, Measure& measure,
                                     Context& context) const;
 

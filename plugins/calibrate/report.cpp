@@ -9,6 +9,7 @@
 
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
+#include "pipeline/estimate/identifiability.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/correlations.hpp"
 #include "plugins/calibrate/rig_check.hpp"
@@ -71,12 +72,19 @@ void report(const Calibration& calibration, const Calibration& start, Context& c
     }
   }
   nlohmann::json unobservable = nlohmann::json::array();
+  bool is_steady = false;
   for (const auto& u : calibration.unobservable) {
     unobservable.push_back(
         {{"parameter", u.parameter}, {"reason", u.reason}, {"combination", u.combination}});
     const bool reported_before = std::any_of(start.unobservable.begin(), start.unobservable.end(),
                                              [&](const auto& old) { return old.parameter == u.parameter; });
-    if (!reported_before) context.warn(in_words(u));
+    if (reported_before) continue;
+    context.warn(in_words(u));
+    is_steady = is_steady || (u.parameter.ends_with(".eta") && u.reason == kNotByMotion);
+  }
+  if (is_steady) {
+    context.warn(
+        "the plate's rate hardly changes, which determines lambda and eta together only: the cloud is right at this rate, and the calibration is wrong for recordings at another. Record with a changing rate (0.5 to 2 Hz) to determine both");
   }
   context.report({{"lasers", lasers}, {"quality", calibration.quality}, {"unobservable", unobservable}});
   report_correlations(calibration, context);

@@ -56,6 +56,18 @@ std::optional<Refinement> refined_with_mounts(const SensorModel& model, const Sa
   }
 }
 
+/// Nothing if no change fits.
+std::optional<std::string> caveat_of(const std::vector<RigChange>& fitting) {
+  if (fitting.empty()) return std::nullopt;
+  std::vector<std::string> words;
+  for (const RigChange& change : fitting) words.push_back(change.words);
+  return words.size() == 1
+             ? fmt::format("the rig is probably wrong: the data fit with {}. Set it in the rig", words[0])
+             : fmt::format(
+                   "the rig is probably wrong: the data fit with one of {} corrections: {}. Find out on the scanner which one is true, and set it in the rig",
+                   words.size(), fmt::join(words, "; or "));
+}
+
 }  // namespace
 
 std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
@@ -188,6 +200,10 @@ std::vector<RigChange> RigErrorSearch::of_all() {
   return found.empty() ? those_that_fit(other_mounts(rig_)) : found;
 }
 
+std::optional<std::string> RigErrorSearch::factor_of_counts() {
+  return period_ ? std::nullopt : caveat_of(those_that_fit(other_counts(rig_)));
+}
+
 std::optional<std::string> RigErrorSearch::any() {
   if (!fit_of_rig().mistake.empty()) return fit_of_rig().mistake;
   // A scene that wrong counts have squeezed can fit as well, by fewer beams.
@@ -196,14 +212,7 @@ std::optional<std::string> RigErrorSearch::any() {
   if (found.empty() && fit_of_rig().fits) return std::nullopt;
   if (found.empty()) found = of_some();  // a tenth of the time that all lasers together take
   if (found.empty()) found = of_all();
-  if (found.empty()) return std::nullopt;
-  std::vector<std::string> words;
-  for (const RigChange& change : found) words.push_back(change.words);
-  return found.size() == 1
-             ? fmt::format("the rig is probably wrong: the data fit with {}. Set it in the rig", words[0])
-             : fmt::format(
-                   "the rig is probably wrong: the data fit with one of {} corrections: {}. Find out on the scanner which one is true, and set it in the rig",
-                   words.size(), fmt::join(words, "; or "));
+  return caveat_of(found);
 }
 
 }  // namespace crisp

@@ -44,6 +44,10 @@ class RigErrorSearch {
   /// plate, or a little better, and with such counts a calibration fits with clearly more beams.
   std::optional<std::string> counts();
 
+  /// Counts that are off by a factor of two or four, as a caveat, where the plate turned too little for
+  /// counts().
+  std::optional<std::string> factor_of_counts();
+
   /// Any other mistake, as a caveat: the encoder's direction, mounts, lasers that are upside down, two that
   /// are exchanged, or counts that are off by a factor of two or four where the plate turned too little to
   /// show it.

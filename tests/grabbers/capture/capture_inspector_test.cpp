@@ -32,6 +32,8 @@ TEST(CaptureInspector, NamesDevicesAsTheRigDoes) {
                              HasSubstr("plate (192.168.0.10:4000)")));
   ASSERT_EQ(inspection.data["devices"].size(), 3U) << "what the rig has and the capture lacks is not listed";
   EXPECT_EQ(inspection.data["devices"][0]["name"], "left");
+  EXPECT_THAT(inspection.text, HasSubstr("nothing of the rig's laser2 (10.0.0.7), laser3 (192.168.0.3)"));
+  EXPECT_EQ(inspection.data["missing"].size(), 2U);
 }
 
 TEST(CaptureInspector, FindsAnEncodersOwnLinesByTheRig) {

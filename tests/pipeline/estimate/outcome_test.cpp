@@ -59,13 +59,13 @@ TEST(Outcome, IsTabledInMillimetresDegreesAndMilliseconds) {
   EXPECT_THAT(table, Not(HasSubstr("nan")));
 }
 
-TEST(Outcome, SaysWhereAnUnobservableValueIsFrom) {
+TEST(Outcome, MarksAnUnobservableValueThatIsNotTheRigs) {
   Outcome moved = example();
   Calibration start = moved.model.calibration();
   start.lasers[0].eta.value = 2e-3;
   moved.model = SensorModel(start);
   EXPECT_THAT(table_of(calibration_of(moved, default_rig()), default_rig()),
-              HasSubstr("+2.0000  not observable, at the value of an earlier stage"));
+              HasSubstr("+2.0000  not observable by itself"));
 }
 
 TEST(Outcome, IsTabledWithTwoDigitsOfEvenASmallError) {
