@@ -154,7 +154,9 @@ void RefineStage::finish(Outputs& out, Context& context) {
 
 std::optional<Refinement> RefineStage::refined_from_rig(const Sample& sample, const Refinement& refined,
                                                         Context& context) const {
-  if (refined.views.empty() || agrees_well(refined)) return std::nullopt;
+  const bool contradicts_rig =
+      !check_with_rig(calibration_of(refined.outcome, context.rig()), context.rig(), {}).caveats.empty();
+  if (refined.views.empty() || (agrees_well(refined) && !contradicts_rig)) return std::nullopt;
   const auto least = [](const Refinement& of) {
     return 100 * std::ranges::min(of.views, {}, &ViewConsistency::share).share;
   };
@@ -170,7 +172,7 @@ std::optional<Refinement> RefineStage::refined_from_rig(const Sample& sample, co
       Refinement again = refine_by_surfels(start, sample, settings, reporter(context));
       if (!fits(again, context.rig())) continue;
       context.print(fmt::format(
-          "refined from the rig's nominal values, since the stage before ended in a local minimum: from its values views agree on at least {:.0f} % of their common flat surfaces, from the rig's on {:.0f} %",
+          "refined from the rig's nominal values, since the values of the stage before lead to a local minimum: views agree on at least {:.0f} % of their common flat surfaces there, and on {:.0f} % here",
           least(refined), least(again)));
       return again;
     } catch (const Error&) {
