@@ -48,6 +48,12 @@ std::string stage_summary(const NodeResult& node, const nlohmann::ordered_json& 
   return fmt::format("{:<40}{:>12}\n{}", node.tag, format_duration(node.seconds), text);
 }
 
+std::size_t warnings_of(const RunRecord& record) {
+  std::size_t count = 0;
+  for (const NodeResult& node : record.nodes) count += node.report.warnings.size();
+  return count;
+}
+
 }  // namespace
 
 std::string summary_text(const RunRecord& record, bool verbose) {
@@ -61,6 +67,8 @@ std::string summary_text(const RunRecord& record, bool verbose) {
   });
   if (!record.is_trusted())
     text += "The result is UNTRUSTED: see the caveats above.\n";
+  else if (calibrates && warnings_of(record) > 0)
+    text += "The result is trusted, with the warnings above.\n";
   else if (calibrates)
     text += "The result is trusted.\n";
   return text;
