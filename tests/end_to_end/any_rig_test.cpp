@@ -83,6 +83,16 @@ TEST_F(AnyRig, ADirectionThatOnlyTheEntropysOptimumShowsIsNotTrusted) {
 
 TEST_F(AnyRig, AnEntropysLocalMinimumIsLeftByTheRigsValues) { is_right_and_trusted(8505, {}); }
 
+TEST_F(AnyRig, AMinimumThatContradictsTheRigIsLeftByItsValues) { is_right_and_trusted(8036, {}); }
+
+TEST_F(AnyRig, TooLargeCountsThatSqueezeTheSceneAreFound) {
+  is_untrusted_with(90205,
+                    {"fault=counts", "counts=4096", "counts_fault=1", "duration=7", "kind=lms1xx", "lasers=2",
+                     "mode=0", "motion=varied", "mount=45", "odd_mount=0", "orientation=tangential",
+                     "scene=office", "tilted=0", "has_mixed_pixels=0", "has_sd=0", "azimuths=even"},
+                    "plate.counts_per_revolution: 4096 (the rig has 16384)");
+}
+
 TEST_F(AnyRig, ADirectionThatOnlyTheRigKnowsIsCalledSo) {
   const auto outcome = calibrate(573, {"duration=6"});  // stated wrongly, and a mirror image agrees as well
   EXPECT_THAT(outcome.console, HasSubstr("counter_clockwise is known from the rig only"));
