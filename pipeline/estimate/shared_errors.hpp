@@ -45,8 +45,8 @@ std::vector<Division> shared_errors(const Measurements& beams, const Surfels& su
 ///          blocks disagree. 1 where that may be chance.
 Eigen::VectorXd widening(const NormalEquations& equations);
 
-/// The factors by which the standard errors of data and prior together grow if those of the data alone grow by
-/// `by`: no parameter ends with more than its prior's.
+/// The factors by which the standard errors of data and prior together grow if those of the data alone grow
+/// by `by`: no parameter ends with more than its prior's.
 ///
 /// @param of_prior  m, 0 to 1: variance over the prior's variance
 Eigen::VectorXd widening_with_prior(const Eigen::VectorXd& by, const Eigen::VectorXd& of_prior);
