@@ -54,6 +54,7 @@ class Patches final : public FlatSurfaces {
     for_each_index(surfels_.surfels.size(),
                    [&](std::size_t s) { cut_strange_ends(surfels_.surfels[s], surfels_, beams, settings_); });
     reject_inconsistent(surfels_, beams, settings_, kMore);
+    if (swept_) reject_grazed(surfels_, beams);
   }
 
   SurfelSettings settings_;

@@ -147,4 +147,24 @@ void reject_inconsistent(Surfels& found, const BeamsView& beams, const SurfelSet
   found.surfels = std::move(kept);
 }
 
+void reject_grazed(Surfels& found, const BeamsView& beams) {
+  constexpr double kLeast = 0.2;  // mean cosine between a beam and the normal
+  std::vector<double> incidences(found.surfels.size());
+  for_each_index(incidences.size(), [&](std::size_t s) {
+    const Surfel& surfel = found.surfels[s];
+    double sum = 0;
+    double weights = 0;
+    for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
+      sum += found.weights[k] * std::abs(surfel.normal.dot(direction_of(beams, found.members[k])));
+      weights += found.weights[k];
+    }
+    incidences[s] = weights > 0 ? sum / weights : 0;
+  });
+  std::vector<Surfel> kept;
+  for (std::size_t s = 0; s < incidences.size(); ++s) {
+    if (incidences[s] >= kLeast) kept.push_back(found.surfels[s]);
+  }
+  found.surfels = std::move(kept);
+}
+
 }  // namespace crisp

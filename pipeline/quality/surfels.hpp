@@ -83,4 +83,9 @@ Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings);
 void reject_inconsistent(Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
                          double times);
 
+/// Leaves out surfels that their beams graze, at less than 12° on average. Behind an edge, beams that end
+/// between it and the background (mixed pixels) form veils, which contain the beams. Across a veil the
+/// ranges' noise is next to nothing, so that a thousand of its beams would outweigh all walls.
+void reject_grazed(Surfels& found, const BeamsView& beams);
+
 }  // namespace crisp

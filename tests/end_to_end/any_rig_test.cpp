@@ -83,6 +83,8 @@ TEST_F(AnyRig, ADirectionThatOnlyTheEntropysOptimumShowsIsNotTrusted) {
 
 TEST_F(AnyRig, AnEntropysLocalMinimumIsLeftByTheRigsValues) { is_right_and_trusted(8505, {}); }
 
+TEST_F(AnyRig, VeilsOfMixedPixelsAreNoWalls) { is_right_and_trusted(8060, {}); }
+
 TEST_F(AnyRig, AMinimumThatContradictsTheRigIsLeftByItsValues) { is_right_and_trusted(8036, {}); }
 
 TEST_F(AnyRig, TooLargeCountsThatSqueezeTheSceneAreFound) {

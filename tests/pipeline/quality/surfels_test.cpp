@@ -203,6 +203,20 @@ TEST(Surfels, AreLeftOutWhereBeamsMissThemByMoreThanElsewhere) {
   EXPECT_EQ(surfels.surfels.size(), all - 1);
 }
 
+TEST(Surfels, AreLeftOutWhereBeamsGrazeThem) {
+  test::RoomScan scan;
+  Surfels found;
+  for (const double sine : {0.1, 0.3}) {  // of the angle between beams and floor
+    test::add(scan.points, 1, 0, 0);
+    test::add(scan.directions, std::sqrt(1 - sine * sine), 0, -sine);
+    const auto beam = static_cast<std::uint32_t>(scan.points.x.size() - 1);
+    found.add({.middle = {1, 0, 0}, .normal = {0, 0, 1}, .radius = sine}, std::vector<std::uint32_t>{beam});
+  }
+  reject_grazed(found, scan.beams());
+  ASSERT_EQ(found.surfels.size(), 1U);
+  EXPECT_EQ(found.surfels[0].radius, 0.3);
+}
+
 TEST(Surfels, OfNothingAreNone) {
   EXPECT_EQ(find_surfels({}, {}).surfels.size(), 0U);
   const auto few = look_down(5, 1, 0, 0, 7);

@@ -97,7 +97,7 @@ TEST(PassOffset, IsPrintedAsUnknownIfNotFinite) {
 }
 
 TEST(PassOffset, ReportsInhomogeneity) {
-  const auto passes = up_and_down(0, 2.5 * kStep);
+  const auto passes = up_and_down(0, 3 * kStep);
   EXPECT_LT(find_shift(passes[0], passes[1], 1).constant_p, 1e-3);
 }
 
