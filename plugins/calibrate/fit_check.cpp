@@ -94,11 +94,9 @@ double relative_misfit(const Refinement& refined, double noise) {
 }
 
 std::vector<std::string> check_fit(const Refinement& refined, const Calibration& calibration,
-                                   const Calibration& start, const Measurements& beams, const Rig& rig,
-                                   double noise) {
+                                   const Calibration& start, const Rig& rig, double noise) {
   Caveats caveats = refined.outcome.caveats;
   append(caveats, of_misfit(refined, noise));
-  append(caveats, check_silence(beams, rig));
   append(caveats, of_rig(calibration, start, rig));
   if (!agrees_well(refined)) append(caveats, of_rqe(calibration.quality, refined.restarts == 0));
   return caveats;

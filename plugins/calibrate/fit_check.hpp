@@ -12,20 +12,17 @@
 
 namespace crisp {
 
-/// Caveats of a refined calibration's fit; empty if it is trusted: convergence, agreement of views, misfit of
-/// the surfaces against the ranges' noise, consistency with the rig, RQE, and lasers that were heard for a
-/// part of the recording only: see check_silence().
+/// Caveats of a refined calibration's fit: convergence, agreement of views, misfit of the surfaces against
+/// the ranges' noise, consistency with the rig, and RQE.
 ///
 /// RQE counts only where the views are not known to agree, and the start's RQE only if the refinement ended
 /// near it: an entropy decreases as well where a wrong calibration folds the scene into less room.
 ///
 /// @param refined      of `start`
 /// @param calibration  the refined one, with its quality: "rqe_before", "rqe_unrefined", "rqe_after" [nat]
-/// @param beams        that it was fitted to
 /// @param noise        [m] standard deviation of a range
 std::vector<std::string> check_fit(const Refinement& refined, const Calibration& calibration,
-                                   const Calibration& start, const Measurements& beams, const Rig& rig,
-                                   double noise);
+                                   const Calibration& start, const Rig& rig, double noise);
 
 /// Caveats of devices without any beam, and of lasers that were heard for less than half of the recording:
 /// their own values rest on little, and the others' λ and η refer to the first laser's. A laser without an

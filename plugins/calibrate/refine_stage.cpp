@@ -231,7 +231,9 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
     context.print(name + ": determined by the rig's value only; these data do not determine it better");
   }
   context.report({{"misfit", misfit_of(refined, noise)}, {"neighbour_noise", refined.scatter}});
-  const auto of_fit = check_fit(refined, calibration, *start_, sample.beams, context.rig(), noise);
+  const auto of_silence = check_silence(sample.beams, context.rig());
+  for (const auto& caveat : of_silence) context.mark_untrusted(caveat);
+  const auto of_fit = check_fit(refined, calibration, *start_, context.rig(), noise);
   const auto of_rig = mistakes(sample, refined, *measure, context);
   for (const auto& mistake : of_rig) context.mark_untrusted(mistake);
   // A known mistake explains the other caveats, which nobody needs to examine before it is corrected.
@@ -248,7 +250,7 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
     report_direction(calibration, *start_, context);
   else if (!was_open)
     context.mark_untrusted(std::string(kDirectionIsOpen));
-  if (of_rig.empty() && of_fit.empty() && are_resolved(start_->caveats, check)) {
+  if (of_rig.empty() && of_fit.empty() && of_silence.empty() && are_resolved(start_->caveats, check)) {
     context.resolve_caveats(KindName<Calibration>::value,
                             "the refined calibration fits, and agrees with the rig");
   } else if (check.is_explained || !of_rig.empty()) {

@@ -35,7 +35,7 @@ RELAYS = {
     "grabbers/live/live_stage.cpp": 1,
     "grabbers/telegrams/telegrams_stage.cpp": 1,
     "pipeline/estimate/surfel_refiner.cpp": 1,
-    "plugins/calibrate/refine_stage.cpp": 3,
+    "plugins/calibrate/refine_stage.cpp": 4,
     "plugins/calibrate/rqe_stage.cpp": 5,
     "plugins/clock/clock_stages.cpp": 1,
     "plugins/diagnose/model/model_stage.cpp": 1,
