@@ -8,7 +8,6 @@
 
 namespace crisp::test {
 
-inline constexpr double kUnevenOnceInAHundred = 1.63;
 inline constexpr double kUnevenOnceInAThousand = 1.95;
 
 /// √n times the largest difference of the distribution of n p-values from an even one (Kolmogorov).
