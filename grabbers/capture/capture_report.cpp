@@ -88,8 +88,11 @@ std::string details(const DeviceStatistics& device) {
     text += fmt::format("\n  clock: stands still: {} of {} items carry the stamp of their predecessor",
                         device.standing, device.items);
   }
-  if (device.counted_up + device.counted_down > 0) {
-    text += fmt::format("\n  encoder: counted {} up and {} down", device.counted_up, device.counted_down);
+  const bool has_encoder = device.kind == DeviceKind::Plate || device.shape.encoder;
+  if (has_encoder && device.items > 0) {
+    const bool stands = device.counted_up + device.counted_down == 0;
+    text += fmt::format("\n  encoder: counted {} up and {} down{}", device.counted_up, device.counted_down,
+                        stands ? ": the plate or the encoder stood still" : "");
   }
   if (device.period) {
     text += fmt::format("\n  mirror: {:.3f} ms a turn ({:.2f} Hz, {:.2f} Hz claimed)", 1e3 * *device.period,
@@ -142,8 +145,9 @@ std::string device_table(const CaptureStatistics& statistics) {
   auto text = fmt::format("{:<30} {:>9} {:>9} {:>7} {:>10}  {}", "device", "items", "rate/Hz", "lost",
                           "silence/s", "scans");
   for (const auto& device : statistics.devices) {
-    text += fmt::format("\n{:<30} {:>9} {:>9.3f} {:>7} {:>10.3f}  {}", title(device), device.items,
-                        device.rate(), never_came(device), device.longest_silence, describe(device.shape));
+    const std::string silence = device.items > 0 ? fmt::format("{:.3f}", device.longest_silence) : "-";
+    text += fmt::format("\n{:<30} {:>9} {:>9.3f} {:>7} {:>10}  {}", title(device), device.items,
+                        device.rate(), never_came(device), silence, describe(device.shape));
   }
   return text;
 }

@@ -153,7 +153,8 @@ std::uint64_t CaptureStage::report(const CaptureStatistics& statistics, const st
     found += device.items;
     for (const auto& [what, n] : device.losses.all()) context.count(device.name + ": " + what, n);
     if (device.items == 0) {
-      context.warn(fmt::format("{} holds no whole telegram of {}{}", file.filename().string(), title(device),
+      context.warn(fmt::format("{} holds {} of {}{}", file.filename().string(),
+                               device.losses.all().empty() ? "nothing" : "no whole telegram", title(device),
                                device.kind == DeviceKind::Plate ? advice_on_encoders(statistics) : ""));
     }
   }

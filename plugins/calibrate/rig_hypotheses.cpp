@@ -80,7 +80,9 @@ std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sa
   const auto refined = refined_with_mounts(model, some, rig, settings);
   if (settings.interrupted() || !refined || !refined->outcome.caveats.empty()) return {};
   const Calibration found = calibration_of(refined->outcome, rig);
+  const Calibration given = model.calibration();
   for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
+    if (std::ranges::count(given.lasers[laser].terms, kMirrorZero, &TermParameters::term) > 0) continue;
     for (const TermParameters& term : found.lasers[laser].terms) {
       if (term.term != kMirrorZero || term.parameters.empty()) continue;
       const Parameter& zero = term.parameters.front();

@@ -27,7 +27,7 @@ struct HypothesisSettings {
 
 /// Mounts that are off by little, as caveats: where `mount.mirror_zero` is clearly not 0 once it is free.
 ///
-/// @param model  a refined one
+/// @param model  a refined one; lasers whose mount it estimates are left out
 std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
                                       const HypothesisSettings& settings);
 

@@ -47,6 +47,9 @@ TEST(CaptureInspector, FindsAnEncodersOwnLinesByTheRig) {
   rig.plate.line = EncoderLine{.count_column = 2};
   EXPECT_THAT(capture_inspector().inspect(file.path(), rig).text,
               HasSubstr("encoder: counted 0 up and 4 down"));
+  const MemoryFile still(pcap_file({frames.front(), frames.front()}));
+  EXPECT_THAT(capture_inspector().inspect(still.path(), rig).text,
+              HasSubstr("encoder: counted 0 up and 0 down: the plate or the encoder stood still"));
 }
 
 }  // namespace

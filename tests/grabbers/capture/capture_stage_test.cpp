@@ -74,7 +74,7 @@ TEST_F(CaptureStageTest, GivesWhatTheCaptureHoldsAndReportsIt) {
   EXPECT_EQ(result.report.section["devices"][0]["items"], 10);
   EXPECT_EQ(result.report.section["devices"][3]["kind"], "plate");
   EXPECT_THAT(result.report.lines, Contains(HasSubstr("laser1 (192.168.0.1)")));
-  EXPECT_THAT(result.report.warnings, testing::ElementsAre(HasSubstr("no whole telegram of laser3")));
+  EXPECT_THAT(result.report.warnings, testing::ElementsAre(HasSubstr("holds nothing of laser3")));
   EXPECT_THAT(result.report.read, testing::ElementsAre(folder_ / "hub.pcap"));
   EXPECT_TRUE(result.report.counts.empty());
 }

@@ -9,6 +9,7 @@
 #include <crisp/effect_catalogue.hpp>
 
 #include "pipeline/data/mirror_angle.hpp"
+#include "pipeline/estimate/requested_terms.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 
 namespace crisp {
@@ -56,6 +57,14 @@ TEST_F(RigHypotheses, AMountThatIsOffByADegreeIsFound) {
       check_mounts(SensorModel(simulated_.truth, terms_), with_mounts(off), rig_with_mounts(off), settings());
   EXPECT_THAT(caveats, ElementsAre(AllOf(HasSubstr("laser2's mount is off: 45.00"),
                                          HasSubstr("the rig has 46.000 deg"))));
+}
+
+TEST_F(RigHypotheses, AMountThatTheModelEstimatesIsNotSuspected) {
+  const std::vector<double> off = {0, 1 * kDegree, 0};
+  Calibration truth = simulated_.truth;
+  add_requested_terms(truth, {"laser2.mount.mirror_zero"}, terms_);
+  EXPECT_THAT(check_mounts(SensorModel(truth, terms_), with_mounts(off), rig_with_mounts(off), settings()),
+              IsEmpty());
 }
 
 TEST_F(RigHypotheses, MountsThatAreRightAreNotSuspected) {
