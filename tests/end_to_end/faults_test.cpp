@@ -140,7 +140,7 @@ TEST_F(Faults, ARigOfOtherAddressesNamesTheSendersOfTheCapture) {
   EXPECT_EQ(moved.status, ExitStatus::not_trusted);
   EXPECT_THAT(
       moved.console,
-      AllOf(HasSubstr("holds no whole telegram of laser2 (192.168.7.2"),
+      AllOf(HasSubstr("holds nothing of laser2 (192.168.7.2"),
             HasSubstr("not in the rig: laser at 192.168.0.2"),
             HasSubstr(
                 "there is no data of laser2 (192.168.7.2), but of an unknown laser at 192.168.0.2:2112")));
