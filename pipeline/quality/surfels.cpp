@@ -85,6 +85,17 @@ double misfit(const Surfel& surfel, const Surfels& surfels, const BeamsView& bea
   return std::sqrt(sum / std::max(weight, 1.0));
 }
 
+/// Mean |cosine| between the beams that count and the normal; 0 if none counts.
+double incidence_of(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams) {
+  double sum = 0;
+  double weights = 0;
+  for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
+    sum += surfels.weights[k] * std::abs(surfel.normal.dot(direction_of(beams, surfels.members[k])));
+    weights += surfels.weights[k];
+  }
+  return weights > 0 ? sum / weights : 0;
+}
+
 }  // namespace
 
 void Surfels::add(Surfel surfel, std::span<const std::uint32_t> beams) {
@@ -148,23 +159,9 @@ void reject_inconsistent(Surfels& found, const BeamsView& beams, const SurfelSet
 }
 
 void reject_grazed(Surfels& found, const BeamsView& beams) {
-  constexpr double kLeast = 0.2;  // mean cosine between a beam and the normal
-  std::vector<double> incidences(found.surfels.size());
-  for_each_index(incidences.size(), [&](std::size_t s) {
-    const Surfel& surfel = found.surfels[s];
-    double sum = 0;
-    double weights = 0;
-    for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
-      sum += found.weights[k] * std::abs(surfel.normal.dot(direction_of(beams, found.members[k])));
-      weights += found.weights[k];
-    }
-    incidences[s] = weights > 0 ? sum / weights : 0;
-  });
-  std::vector<Surfel> kept;
-  for (std::size_t s = 0; s < incidences.size(); ++s) {
-    if (incidences[s] >= kLeast) kept.push_back(found.surfels[s]);
-  }
-  found.surfels = std::move(kept);
+  constexpr double kLeast = 0.2;
+  std::erase_if(found.surfels,
+                [&](const Surfel& surfel) { return incidence_of(surfel, found, beams) < kLeast; });
 }
 
 }  // namespace crisp

@@ -82,9 +82,12 @@ std::vector<std::string> check_silence(const Measurements& beams, const Rig& rig
   return caveats;
 }
 
+double least_agreement(const Refinement& refined) {
+  return std::ranges::min(refined.views, {}, &ViewConsistency::share).share;
+}
+
 bool agrees_well(const Refinement& refined) {
-  return !refined.views.empty() &&
-         std::ranges::min(refined.views, {}, &ViewConsistency::share).share > kConsistentShare;
+  return !refined.views.empty() && least_agreement(refined) > kConsistentShare;
 }
 
 double misfit_of(const Refinement& refined, double noise) { return std::sqrt(refined.chi2) * noise; }

@@ -29,6 +29,9 @@ std::vector<std::string> check_fit(const Refinement& refined, const Calibration&
 /// address or topic of its own is one of many in a device, and may have seen nothing.
 std::vector<std::string> check_silence(const Measurements& beams, const Rig& rig);
 
+/// The least share of beams on which two views agree. @param refined  with views
+double least_agreement(const Refinement& refined);
+
 /// Whether views are known to agree well, so that no other judge is needed.
 bool agrees_well(const Refinement& refined);
 

@@ -157,9 +157,6 @@ std::optional<Refinement> RefineStage::refined_from_rig(const Sample& sample, co
   const bool contradicts_rig =
       !check_with_rig(calibration_of(refined.outcome, context.rig()), context.rig(), {}).caveats.empty();
   if (refined.views.empty() || (agrees_well(refined) && !contradicts_rig)) return std::nullopt;
-  const auto least = [](const Refinement& of) {
-    return 100 * std::ranges::min(of.views, {}, &ViewConsistency::share).share;
-  };
   const auto& terms = context.run().registrar->get<TermRegistry>();
   for (Calibration& from : starts_of_rig(context.rig())) {
     if (context.interrupted()) return std::nullopt;
@@ -173,7 +170,7 @@ std::optional<Refinement> RefineStage::refined_from_rig(const Sample& sample, co
       if (!fits(again, context.rig())) continue;
       context.print(fmt::format(
           "refined from the rig's nominal values, since the values of the stage before lead to a local minimum: views agree on at least {:.0f} % of their common flat surfaces there, and on {:.0f} % here",
-          least(refined), least(again)));
+          100 * least_agreement(refined), 100 * least_agreement(again)));
       return again;
     } catch (const Error&) {
       continue;  // no flat surfaces from there

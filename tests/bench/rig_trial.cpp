@@ -2,7 +2,7 @@
 // Calibration of any rig: tests/independent draws rigs, scenes, motions, clocks and mistakes from seeds, and
 // configs/calibrate.yaml gets the capture and the rig's file. Prints a line for each draw, and in the end how
 // many were right and trusted, which mistakes were reported, the coverage of the standard errors, and whether
-// configs/bound.yaml foretold from the rig's file what would be determined.
+// configs/bound.yaml predicted from the rig's file what would be determined.
 //
 //     rig_trial FIRST DRAWS [NAME=VALUE...]      as independent_scanner has them: fault=mount, duration=8
 #include <fmt/format.h>
@@ -100,7 +100,7 @@ class RigTrial {
                drawn.words(), fmt::join(wrong, ", "));
     if (drawn.fault() == "none") {
       const bool is_determined = verdict != "refused" && held.empty();
-      ++foretold_[{expected.problem.empty() && expected.unknown.empty(), is_determined}];
+      ++predicted_[{expected.problem.empty() && expected.unknown.empty(), is_determined}];
       if (expected.is_good()) ++where_bound_is_good_[verdict];
       fmt::print("      {}", expected.text());
       if (!held.empty()) fmt::print("; held: {}", fmt::join(held, ", "));
@@ -120,7 +120,7 @@ class RigTrial {
     fmt::print("bound below 2 mm and 0.3 deg:");
     for (const auto& [verdict, draws] : where_bound_is_good_) fmt::print("  {} {}", draws, verdict);
     fmt::print("\n");
-    for (const auto& [determined, draws] : foretold_) {
+    for (const auto& [determined, draws] : predicted_) {
       fmt::print("  {} {} by the bound, {} by the calibration\n", draws,
                  determined.first ? "determined" : "not determined",
                  determined.second ? "determined" : "not determined");
@@ -151,7 +151,7 @@ class RigTrial {
 
   std::map<std::string, std::map<std::string, int>> verdicts_;  // by fault
   std::map<std::string, int> where_bound_is_good_;              // by verdict; right rigs
-  std::map<std::pair<bool, bool>, int> foretold_;               // determined by the bound, by the calibration
+  std::map<std::pair<bool, bool>, int> predicted_;              // determined by the bound, by the calibration
   std::map<std::string, std::vector<double>> scores_;           // errors in standard errors, by kind
 };
 
